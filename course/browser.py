@@ -11,11 +11,8 @@ import os
 import socket
 import sys
 import threading
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 from urllib.parse import urlsplit
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 __all__ = ["can_open", "invite", "keep_closed", "opened", "over_ssh"]
 

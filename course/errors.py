@@ -15,7 +15,7 @@ the case, ``help`` what to do about it; neither needs the other to be understood
 
 from __future__ import annotations
 
-from pathlib import Path  # noqa: TC003 - used in a runtime annotation of ContentError
+from pathlib import Path
 
 __all__ = [
     "ContentError",

@@ -12,15 +12,12 @@ import os
 import subprocess
 import sys
 import tempfile
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import IO
 from unittest.mock import patch
 
-from course.cli.frame import app
-from course.cli.frame.terminal import console
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+from course.cli.frame import app, console
 
 __all__ = ["as_process", "in_process"]
 

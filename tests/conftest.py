@@ -39,7 +39,7 @@ sys.path.append(str(Path(__file__).resolve().parents[1]))
 @pytest.fixture(scope="module")
 def sandboxes() -> Iterator[None]:
     """For a module whose sessions take their sandboxes over from each other, as a lesson's do."""
-    from course.isolation.keeping import kept_sandboxes
+    from course.isolation.probe import kept_sandboxes
 
     with kept_sandboxes():
         yield

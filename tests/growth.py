@@ -7,11 +7,8 @@ does not belong into a run that decides.
 from __future__ import annotations
 
 import gc
+from collections.abc import Callable
 from time import process_time
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 #: The geometric mean of 8, which is linear, and 64, which is quadratic, for a size eight times as large.
 LIMIT = 22.6

@@ -8,25 +8,22 @@ though the text itself is not here. ``docs/coverage.md`` is the same for readers
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import msgspec
 
 from course.authoring.report import AuditProblem, Findings
 from course.catalog.blocks import Heading, slug, walk_blocks
+from course.catalog.load import Catalog
 from course.catalog.markdown import read_blocks
 from course.catalog.reading import Document, read_document
 from course.errors import ContentError, NotFoundError
 from course.figures.registry import figure_ids
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from pathlib import Path
-
-    from course.catalog.load import Catalog
-
-    #: Whether the words after ``course`` are a command that exists.
     IsCommand = Callable[[tuple[str, ...]], bool]
 
 __all__ = [

@@ -5,17 +5,13 @@ from __future__ import annotations
 import contextlib
 import os
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from course.authoring.exercises.variants import instructors, solution_path, solutions_folder
+from course.authoring.exercises.grading import instructors, solution_path, solutions_folder
+from course.catalog.load import Catalog
 from course.catalog.pack import pack_bytes
 from course.errors import ContentError, UsageError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from course.catalog.load import Catalog
 
 __all__ = ["write_pack"]
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from course.errors import ContentError
+from course.errors import ContentError
 
 __all__ = ["AuditProblem", "AuditReport", "Findings", "Progress"]
 

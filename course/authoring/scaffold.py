@@ -7,21 +7,18 @@ is ever overwritten, and either all files are written or none.
 from __future__ import annotations
 
 import ast
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import jinja2
 
+from course.authoring.exercises.grading import instructors
 from course.authoring.exercises.proofs import MUTANTS_EACH
-from course.authoring.exercises.variants import instructors
+from course.catalog.load import Catalog
 from course.errors import UsageError
 from course.ids import WARM_UPS, ExerciseId, LessonId, QuestionId, SceneId
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from course.catalog.load import Catalog
 
 __all__ = ["Function", "new_exercise", "new_lesson", "new_question", "new_scene", "new_warm_up"]
 

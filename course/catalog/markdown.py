@@ -8,17 +8,16 @@ file, line and fix, HTML above all: a terminal and a screen reader could not sho
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from course.catalog import blocks as b
-from course.catalog.front_matter import split_front_matter
 from course.catalog.mathtext import MathError, math_spoken, math_text
+from course.catalog.reading import split_front_matter
 from course.errors import ContentError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
-
     from markdown_it import MarkdownIt
     from markdown_it.tree import SyntaxTreeNode
 

@@ -7,16 +7,13 @@ the files into them and says which file and line is wrong when one does not fit.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import msgspec
 
 from course.ids import WARM_UPS, ExerciseId, LessonId
-
-if TYPE_CHECKING:
-    from collections.abc import Collection
 
 __all__ = [
     "FORMAT_VERSION",

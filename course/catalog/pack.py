@@ -18,17 +18,14 @@ import stat
 import struct
 import zipfile
 import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import msgspec
 
 from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
 from course.ids import ExerciseId
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
 
 __all__ = ["MAX_FILES", "MAX_FILE_BYTES", "MAX_TOTAL_BYTES", "Pack", "pack_bytes", "read_pack"]
 

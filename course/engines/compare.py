@@ -11,6 +11,7 @@ import dataclasses
 import datetime
 import statistics
 import threading
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -18,19 +19,24 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from course.engines import reference
-from course.engines.cache import Cache, cache_folder
-from course.engines.machine import this_machine
 from course.engines.process import EngineProcess
-from course.engines.registry import ENGINES, Availability, availability, get
-from course.engines.results import DEFAULT, OK, TUNED, Comparison, EngineState, Row, Setting
-from course.engines.scenarios.scenario import BOXES, DT, SCENARIOS
-from course.engines.scenarios.scenario import get as get_scenario
+from course.engines.registry import ENGINES, Availability, EngineInfo, availability, get
+from course.engines.results import (
+    DEFAULT,
+    OK,
+    TUNED,
+    Cache,
+    Comparison,
+    EngineState,
+    Row,
+    Setting,
+    cache_folder,
+    this_machine,
+)
+from course.engines.scenarios import BOXES, DT, SCENARIOS
+from course.engines.scenarios import get as get_scenario
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-
-    from course.engines.registry import EngineInfo
-
     Progress = Callable[[int, int, str], None]
 
 __all__ = ["LADDER", "QUICK_LADDER", "Request", "compare", "state_of"]

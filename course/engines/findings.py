@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
 
 from course.engines.registry import ENGINES
-from course.engines.results import DEFAULT, TUNED
-from course.engines.scenarios.scenario import DT, IMPACTS, SCENARIOS
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from course.engines.results import Row, Setting
+from course.engines.results import DEFAULT, TUNED, Row, Setting
+from course.engines.scenarios import DT, IMPACTS, SCENARIOS
 
 __all__ = ["chaos", "defaults", "findings", "fingerprints", "phases", "same_algorithm", "slope"]
 

@@ -10,7 +10,7 @@ from typing import Any
 import msgspec
 
 from course.engines.results import Comparison, Reference, Row, Setting
-from course.engines.scenarios.scenario import DT
+from course.engines.scenarios import DT
 
 __all__ = ["FORMAT_VERSION", "encoded", "load", "row"]
 
@@ -21,7 +21,7 @@ _RATES = ("steps_per_second", "slowest", "fastest", "pymunk_steps_per_second")
 @functools.cache
 def load() -> Reference:
     """The reference; without rows where it is missing or from another version of the course."""
-    from course.engines.machine import Machine
+    from course.engines.results import Machine
 
     path = files("course").joinpath("engines", "reference.json")
     try:

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import importlib.metadata
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
+from course.engines.base import Adapter
 from course.errors import NotFoundError
 from course.extras import requirement_of
-
-if TYPE_CHECKING:
-    from course.engines.base import Adapter
 
 __all__ = ["ENGINES", "Availability", "EngineInfo", "availability", "get", "load"]
 

@@ -2,13 +2,78 @@
 
 from __future__ import annotations
 
+import contextlib
+import functools
+import hashlib
+import json
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, Literal
 
 import msgspec
 
-from course.engines.machine import Machine
+# ---
+# Which machine a measurement was made on, without personal data: no host, no path, no user.
 
-__all__ = ["DEFAULT", "OK", "TUNED", "Comparison", "EngineState", "Reference", "Row", "Setting", "Status"]
+
+class Machine(msgspec.Struct, frozen=True):
+    """The machine and the versions that a measurement depends on.
+
+    Attributes:
+        cpu: the processor's model.
+        system: operating system and architecture.
+        cores: how many processors this process may use.
+        python: its version.
+    """
+
+    cpu: str
+    system: str
+    cores: int
+    python: str
+
+    def __str__(self) -> str:
+        cores = f"{self.cores} core{'s' if self.cores != 1 else ''}"
+        return f"{self.cpu}, {cores}, {self.system}, Python {self.python}"
+
+
+def this_machine() -> Machine:
+    """The machine that this runs on."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    version = ".".join(platform.python_version_tuple()[:2])
+    return Machine(_cpu(), f"{platform.system()} {platform.machine()}", cores, version)
+
+
+def _cpu() -> str:
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8", errors="replace") as file:  # noqa: PTH123 - no file, a kernel's answer
+            for line in file:
+                if line.startswith("model name"):
+                    return line.partition(":")[2].strip()
+    except OSError:
+        pass
+    if platform.system() == "Darwin":
+        try:
+            asked = subprocess.run(
+                ["/usr/sbin/sysctl", "-n", "machdep.cpu.brand_string"],
+                capture_output=True,
+                text=True,
+                timeout=5,
+                check=True,
+            )
+        except (OSError, subprocess.SubprocessError):
+            pass
+        else:
+            return asked.stdout.strip()
+    return platform.processor() or platform.machine() or "unknown processor"
+
+
+# ---
+
 
 Setting = Literal["default", "tuned"]
 Status = Literal[
@@ -118,3 +183,72 @@ class Comparison(msgspec.Struct, frozen=True, kw_only=True):
     def ran(self) -> bool:
         """True if at least one engine gave a value on this machine."""
         return any(row.ok and row.origin != "reference" for row in self.rows)
+
+
+# ---
+# Stores measurements, so that a second request is quick.
+#
+# A measurement is stored under everything it depends on: the engine's version, the measuring code, the
+# machine, the scenario and how it was run. Failures are not stored, because the next try may succeed.
+
+
+def cache_folder() -> Path:
+    """Where this system keeps caches; COURSE_CACHE names another folder."""
+    if own := os.environ.get("COURSE_CACHE"):
+        return Path(own) / "engines"
+    home = Path.home()
+    if sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
+    elif sys.platform == "darwin":
+        base = home / "Library" / "Caches"
+    else:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache")
+    return base / "physics-sim-course" / "engines"
+
+
+@functools.cache
+def code_digest() -> str:
+    """A digest of the code that builds and measures: when it changes, old numbers no longer count."""
+    digest = hashlib.sha256()
+    here = Path(__file__).parent
+    for path in sorted((*here.rglob("*.py"), *here.rglob("*.toml"), here / "well_set.json")):
+        digest.update(path.name.encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+class Cache:
+    """Rows in files of their own, so that two runs at once cannot damage each other's.
+
+    Args:
+        folder: made when it is needed.
+        machine: part of every key.
+    """
+
+    def __init__(self, folder: Path, machine: Machine) -> None:
+        self._folder = folder
+        self._machine = machine
+
+    def get(self, key: Mapping[str, Any]) -> Row | None:
+        """The row stored under a key; None if there is none, or it cannot be read."""
+        try:
+            row = msgspec.json.decode(self._path(key).read_bytes(), type=Row)
+        except (OSError, msgspec.DecodeError):
+            return None
+        return msgspec.structs.replace(row, origin="cached")
+
+    def put(self, key: Mapping[str, Any], row: Row) -> None:
+        """Store a row, if it has a value and the folder can be written."""
+        if not row.ok:
+            return
+        path = self._path(key)
+        with contextlib.suppress(OSError):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with tempfile.NamedTemporaryFile("wb", dir=path.parent, delete=False) as file:
+                file.write(msgspec.json.encode(row))
+            Path(file.name).replace(path)
+
+    def _path(self, key: Mapping[str, Any]) -> Path:
+        whole = {**key, "code": code_digest(), "machine": str(self._machine)}
+        name = hashlib.sha256(json.dumps(whole, sort_keys=True).encode()).hexdigest()[:32]
+        return self._folder / f"{name}.json"

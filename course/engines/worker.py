@@ -49,7 +49,7 @@ class EngineServer:
             return {"status": "failed", "message": f"{type(error).__name__}: {error}"}
 
     def _do(self, job: Mapping[str, Any]) -> dict[str, Any]:
-        from course.engines.scenarios.scenario import get
+        from course.engines.scenarios import get
 
         if job["do"] == "chunk":
             return self._chunk(job["steps"])
@@ -66,7 +66,7 @@ class EngineServer:
             return self._adapter.build(scene, tuning.options)
 
         if job["do"] == "boxes":
-            from course.engines.scenarios.contact import boxes_scene
+            from course.engines.scenarios import boxes_scene
 
             self._boxes = build(boxes_scene(job["dt"]))
             self._boxes.step(round(0.25 / job["dt"]))
@@ -96,10 +96,10 @@ def main(arguments: list[str]) -> int:
         replies.flush()
 
     try:
-        from course.engines import settings
+        from course.engines import base
         from course.engines.registry import load
 
-        desk = EngineServer(load(arguments[0]), functools.partial(settings.tuning, arguments[0]))
+        desk = EngineServer(load(arguments[0]), functools.partial(base.tuning, arguments[0]))
     except Exception as error:  # noqa: BLE001 - an extension module may raise anything when it cannot load
         say({"status": "unavailable", "message": f"{type(error).__name__}: {error}"})
         return 0

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 
 from course.engines import reference
+from course.engines.compare import LADDER
+from course.engines.findings import slope
 from course.engines.registry import ENGINES
-from course.engines.results import DEFAULT, TUNED
-from course.engines.scenarios.scenario import SCENARIOS
-from course.figures.drawing.style import PALETTE, new_figure, title
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from course.engines.results import Row, Setting
-
-__all__ = ["FLOOR", "LARGE", "TESTS", "Error", "error", "mended", "settings"]
+from course.engines.results import DEFAULT, TUNED, Row, Setting
+from course.engines.scenarios import BOXES, SCENARIOS
+from course.figures.style import PALETTE, file_of, new_figure, title
 
 _DEFAULT: dict[str, Any] = {
     "marker": "o",
@@ -112,3 +114,290 @@ def _key(left: Axes, middle: Axes, right: Axes) -> None:
     right.plot([1.2 * FLOOR, 8.0 * FLOOR], [-1.15] * 2, color=PALETTE["blue"], linewidth=1.0)
     right.plot(8.0 * FLOOR, -1.15, marker="|", markersize=6, color=PALETTE["blue"])
     right.text(14.0 * FLOOR, -1.15, "worst phase", color="#0072B2", fontsize=8.5, va="center")
+
+
+# ---
+# Figures of a comparison of engines: how errors shrink with the step, and what accuracy costs.
+#
+# ``render`` serves ``course engines compare --plot``; ``steps`` and ``speed`` draw the reference, for
+# lessons.
+
+
+@dataclass(frozen=True, slots=True)
+class _Look:
+    """How one engine is drawn everywhere: its hue, a shade dark enough for letters on white, its marker."""
+
+    color: str
+    ink: str
+    marker: str
+
+
+_LOOKS = {
+    "pymunk": _Look(PALETTE["grey"], "#4A4A4A", "P"),
+    "mujoco": _Look(PALETTE["purple"], "#9C4478", "D"),
+    "ode": _Look(PALETTE["orange"], "#8F6200", "v"),
+    "bullet": _Look(PALETTE["vermillion"], "#B34F00", "s"),
+    "rapier": _Look(PALETTE["green"], "#007A58", "o"),
+    "physx": _Look(PALETTE["blue"], "#0072B2", "^"),
+    "pybullet": _Look(PALETTE["black"], "#000000", "x"),
+    "dart": _Look(PALETTE["sky"], "#1F6F9F", "*"),
+}
+#: Below this an error is drawn at the foot of the figure, per cent.
+_FLOOR = 1e-11
+#: On axes of ten decades, errors that differ by less than this share look like one curve.
+_ALIKE = 0.5
+#: From one line of small letters to the next, inches.
+_LINE_IN = 0.155
+#: So many small letters fit between the second of five points and the right edge.
+_LINE_LETTERS = 28
+
+
+def steps() -> Figure:
+    """The errors of well-set engines in free fall and pendulum against the step, from the reference."""
+    return _steps(reference.load().rows)
+
+
+def speed() -> Figure:
+    """How far a stack moves against the rate with a hundred boxes, from the reference."""
+    return _speed(reference.load().rows)
+
+
+def render(rows: Sequence[Row], kind: str) -> dict[str, bytes]:
+    """The figures that can be drawn from the rows, as the bytes of files; equal rows give equal bytes.
+
+    Args:
+        kind: "png", "svg" or "pdf".
+
+    Returns:
+        By name: "steps" needs a ladder of steps, "speed" the boxes and the stack.
+    """
+
+    usable = [row for row in rows if row.ok]
+    made: dict[str, bytes] = {}
+    for name, enough, draw in (
+        ("steps", any(_ladders(usable, test) for test in _TESTS), _steps),
+        ("speed", bool(_costs(usable)), _speed),
+    ):
+        if not enough:
+            continue
+        made[name] = file_of(partial(draw, usable), kind)
+    return made
+
+
+# -- error against step ----------------------------------------------------------------------------------
+
+_TESTS = {"free-fall": "free fall: distance", "pendulum": "pendulum: place"}
+
+
+def _ladders(rows: Sequence[Row], test: str) -> dict[str, list[tuple[float, float]]]:
+    """(step, error in per cent) of each well-set engine that was measured at three steps or more."""
+    found: dict[str, list[tuple[float, float]]] = {}
+    for row in rows:
+        if row.scenario == test and row.setting == TUNED and row.value is not None:
+            found.setdefault(row.engine, []).append((row.dt, abs(row.value)))
+    return {engine: sorted(points) for engine, points in found.items() if len(points) >= 3}
+
+
+def _steps(rows: Sequence[Row]) -> Figure:
+    tests = [test for test in _TESTS if _ladders(rows, test)]
+    figure, panels = new_figure(4.0, 1, len(tests), sharey=True)
+    figure.subplots_adjust(left=0.115, right=0.985, wspace=0.1)
+    for axes, test in zip(panels, tests, strict=True):
+        groups = _alike(_ladders(rows, test))
+        for engines, points in groups:
+            _curve(axes, engines, points)
+        _frame_steps(axes, _TESTS[test], [point for _engines, points in groups for point in points])
+    # The names are placed by the limits that both panels share.
+    for axes, test in zip(panels, tests, strict=True):
+        _names(figure, axes, _alike(_ladders(rows, test)))
+    panels[0].set_ylabel("error (%)")
+    title(figure, "The slope is the integrator: most engines are first order")
+    return figure
+
+
+def _alike(
+    ladders: dict[str, list[tuple[float, float]]],
+) -> list[tuple[list[str], list[tuple[float, float]]]]:
+    """Groups of engines whose curves look like one over ten decades."""
+    groups: list[tuple[list[str], list[tuple[float, float]]]] = []
+    for engine, points in ladders.items():
+        for engines, known in groups:
+            if [dt for dt, _ in known] == [dt for dt, _ in points] and np.allclose(
+                [e for _, e in known], [e for _, e in points], rtol=_ALIKE
+            ):
+                engines.append(engine)
+                break
+        else:
+            groups.append(([engine], points))
+    return groups
+
+
+def _curve(axes: Axes, engines: list[str], points: list[tuple[float, float]]) -> None:
+    """One line for a group of engines."""
+    dt = np.array([dt for dt, _ in points])
+    error = np.maximum([e for _, e in points], _FLOOR)
+    color, _ink, marker = _shared(engines)
+    axes.loglog(dt, error, color=color, linewidth=1.4 if len(engines) == 1 else 2.2)
+    axes.loglog(dt, error, linestyle="none", marker=marker, color=color, markerfacecolor="white")
+
+
+def _shared(engines: list[str]) -> tuple[str, str, str]:
+    """Colour, ink and marker: an engine's own, or black for several."""
+    if len(engines) > 1:
+        return PALETTE["black"], PALETTE["black"], "o"
+    look = _LOOKS[engines[0]]
+    return look.color, look.ink, look.marker
+
+
+def _names(figure: Figure, axes: Axes, groups: list[tuple[list[str], list[tuple[float, float]]]]) -> None:
+    """The name of each curve, below it from its second point on, where a rising curve leaves room.
+
+    A short ladder needs all of the width: there names begin at the first point, below the whole curve. Curves
+    that lie closer together than their names are high have them in a block below the lowest.
+    """
+    low, high = (math.log10(limit) for limit in axes.get_ylim())
+    line = (high - low) * _LINE_IN / (axes.get_position().height * figure.get_figheight())  # decades
+    blocks: list[tuple[float, list[tuple[str, str]]]] = []
+    first = 1 if len(groups[0][1]) >= len(LADDER) else 0
+    lowest = {id(points): min(e for _, e in points[first:]) for _engines, points in groups}
+    for engines, points in sorted(groups, key=lambda group: -lowest[id(group[1])]):
+        names = [ENGINES[engine].name for engine in engines]
+        errors = [e for _, e in points]
+        order = slope([(dt, e / 100.0) for dt, e in points], single=ENGINES[engines[0]].single)
+        # Where a smaller step gives a larger error, the figure shows rounding, not a method.
+        if order is not None and errors == sorted(errors):
+            names[-1] += f": order {order:.1f}"
+        words = _wrapped(names)
+        level = math.log10(max(lowest[id(points)], _FLOOR))
+        entry = (words, _shared(engines)[1])
+        if blocks and level > blocks[-1][0] - line * _lines(blocks[-1][1]):
+            blocks[-1] = (level, [*blocks[-1][1], entry])
+        else:
+            blocks.append((level, [entry]))
+    x = 1.06 * groups[0][1][first][0]
+    for level, entries in blocks:
+        top = level - 0.3 * line
+        for words, ink in entries:
+            axes.text(x, 10.0**top, words, color=ink, fontsize=8.5, va="top")
+            top -= line * _lines([(words, ink)])
+
+
+def _lines(entries: list[tuple[str, str]]) -> float:
+    """How many lines high, with a little air below each entry."""
+    return sum(1.15 + words.count("\n") for words, _ink in entries)
+
+
+def _wrapped(names: list[str]) -> str:
+    """Names of a group, as many to a line as fit beside a curve; none is broken."""
+    lines = [names[0]]
+    for name in names[1:]:
+        if len(lines[-1]) + len(name) > _LINE_LETTERS:
+            lines.append(name)
+        else:
+            lines[-1] += f", {name}"
+    return ",\n".join(lines)
+
+
+def _frame_steps(axes: Axes, name: str, points: list[tuple[float, float]]) -> None:
+    axes.set_title(name)
+    axes.set_xlabel("step (s)")
+    axes.margins(x=0.08, y=0.1)
+    # A guide for the eye: an error that halves with the step.
+    known = sorted({dt for dt, _ in points})
+    low, high = known[0], known[-1]
+    top = 3.0 * max(error for _, error in points)
+    axes.loglog([low, high], [top * low / high, top], color=PALETTE["grey"], linewidth=0.8, linestyle=":")
+    axes.annotate(
+        "halves with the step",
+        (math.sqrt(low * high), top * math.sqrt(low / high)),
+        xytext=(-4, 5),
+        textcoords="offset points",
+        ha="right",
+        color=PALETTE["grey"],
+        fontsize=8.5,
+    )
+    axes.set_xticks(known, [_fraction(dt) for dt in known])
+    axes.minorticks_off()
+
+
+def _fraction(dt: float) -> str:
+    rate = 1.0 / dt
+    return f"1/{rate:.0f}" if math.isclose(rate, round(rate), rel_tol=1e-6) else f"{dt:g}"
+
+
+# -- speed against accuracy ------------------------------------------------------------------------------
+
+
+def _costs(rows: Sequence[Row]) -> dict[str, list[tuple[str, float, float]]]:
+    """Per engine: (setting, rate as a multiple of pymunk's, movement of the stack in mm)."""
+    found: dict[str, list[tuple[str, float, float]]] = {}
+    for setting in (DEFAULT, TUNED):
+        rate, moved = (
+            {row.engine: row.value for row in rows if row.scenario == name and row.setting == setting}
+            for name in (BOXES, "stack")
+        )
+        for engine in ENGINES:
+            x, y = rate.get(engine), moved.get(engine)
+            if x is not None and y is not None:
+                found.setdefault(engine, []).append((setting, x, y))
+    return found
+
+
+def _speed(rows: Sequence[Row]) -> Figure:
+    figure, panels = new_figure(4.4)
+    figure.subplots_adjust(left=0.115, top=0.885)
+    axes = panels[0]
+    for engine, points in _costs(rows).items():
+        look = _LOOKS[engine]
+        x, y = np.array([p[1] for p in points]), np.maximum([p[2] for p in points], 1e-4)
+        if len(points) == 2 and not np.allclose(y[0], y[1], rtol=0.02):
+            axes.annotate(
+                "",
+                xy=(x[1], y[1]),
+                xytext=(x[0], y[0]),
+                arrowprops={
+                    "arrowstyle": "-|>",
+                    "color": look.color,
+                    "linewidth": 1.3,
+                    "shrinkA": 5,
+                    "shrinkB": 4,
+                },
+            )
+            axes.loglog(x[:1], y[:1], "o", color=look.color, markerfacecolor="white", markeredgewidth=1.4)
+            axes.loglog(x[1:], y[1:], "D", color=look.color, markersize=4.5)
+        else:
+            axes.loglog(x[:1], y[:1], "D", color=look.color, markersize=4.5)
+        axes.annotate(
+            ENGINES[engine].name,
+            (x[0], y[0]),
+            xytext=(7, 4),
+            textcoords="offset points",
+            color=look.ink,
+            fontsize=8.5,
+            # A letter stays readable where an arrow crosses it.
+            path_effects=[withStroke(linewidth=2.5, foreground="white")],
+            zorder=4,
+        )
+    axes.set_xlabel("rate with a hundred boxes, as a multiple of pymunk's   (faster to the right)")
+    axes.set_ylabel("largest movement in a stack of ten (mm)")
+    axes.margins(x=0.08, y=0.12)
+    # The name of the fastest stands to its right.
+    axes.set_xlim(right=2.6 * max(x for points in _costs(rows).values() for _setting, x, _y in points))
+    _legend_speed(axes)
+    title(figure, "A stack can be made to stand still; most engines pay for it with speed")
+    return figure
+
+
+def _legend_speed(axes: Axes) -> None:
+    from matplotlib.lines import Line2D
+
+    grey = PALETTE["grey"]
+    handles = [
+        Line2D(
+            [], [], linestyle="none", marker="o", color=grey, markerfacecolor="white", label="as it comes"
+        ),
+        Line2D(
+            [], [], linestyle="none", marker="D", markersize=4.5, color=grey, label="well set for a stack"
+        ),
+    ]
+    axes.legend(handles=handles, loc="lower right")

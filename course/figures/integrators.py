@@ -10,8 +10,9 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from course.figures.drawing.style import METHODS, PALETTE, new_figure, note, title
+from course.figures.style import METHODS, PALETTE, new_figure, note, title
 from course.physics.integrators import STEPPERS, State, Trajectory, trajectory
 from course.physics.invariants import energy, jacobian, relative_change, spectral_radius
 from course.physics.systems import Oscillator
@@ -19,7 +20,6 @@ from course.physics.systems import Oscillator
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
 

@@ -6,18 +6,16 @@ builder without importing it, so asking whether a figure exists costs no matplot
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from course.errors import NotFoundError, UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
-
     from matplotlib.figure import Figure
 
-    #: Draws a figure; called in the house style.
     Builder = Callable[[], Figure]
 
 __all__ = ["FIGURES", "SCREEN_DPI", "Builder", "build", "figure_ids", "png", "save"]
@@ -28,36 +26,36 @@ FIGURES: dict[str, tuple[str, str]] = {
     "integrators-energy": ("integrators", "energy_error"),
     "integrators-order": ("integrators", "error_against_step"),
     "integrators-stability": ("integrators", "stability"),
-    "sim-chaos": ("experiments.basic", "chaos"),
-    "sim-collision": ("experiments.basic", "collision"),
-    "sim-contact-models": ("experiments.basic", "contact_models"),
-    "sim-dynamics": ("experiments.basic", "dynamics"),
-    "sim-environment": ("experiments.basic", "environment"),
-    "sim-free-fall": ("experiments.basic", "free_fall"),
-    "sim-integrators": ("experiments.basic", "integrators"),
-    "sim-projectile": ("experiments.basic", "projectile"),
-    "sim-rotation": ("experiments.basic", "rotation"),
-    "sim-solver-iterations": ("experiments.basic", "solver_iterations"),
-    "sim-substeps": ("experiments.basic", "substeps"),
-    "accuracy-chaos": ("accuracy", "chaos"),
-    "accuracy-small-steps": ("accuracy", "small_steps"),
-    "accuracy-substeps": ("accuracy", "substeps"),
-    "arm-planned": ("forward_inverse_kinematic", "planned"),
-    "arm-torques": ("forward_inverse_kinematic", "torques"),
-    "contact-cone": ("how_contact_is_solved", "cone"),
-    "contact-pair": ("collisions_and_contact", "pair"),
-    "contact-phases": ("how_contact_is_solved", "phases"),
-    "contact-rest": ("how_contact_is_solved", "rest"),
-    "contact-stacks": ("collisions_and_contact", "stacks"),
-    "contact-tunnelling": ("collisions_and_contact", "tunnelling"),
-    "how-an-engine-works-rotation": ("how_an_engine_works", "turning_over"),
-    "why-simulate-standing": ("why_simulate", "standing"),
+    "sim-chaos": ("experiments", "chaos"),
+    "sim-collision": ("experiments", "collision"),
+    "sim-contact-models": ("experiments", "contact_models"),
+    "sim-dynamics": ("experiments", "dynamics"),
+    "sim-environment": ("experiments", "environment"),
+    "sim-free-fall": ("experiments", "free_fall"),
+    "sim-integrators": ("experiments", "integrators"),
+    "sim-projectile": ("experiments", "projectile"),
+    "sim-rotation": ("experiments", "rotation"),
+    "sim-solver-iterations": ("experiments", "solver_iterations"),
+    "sim-substeps": ("experiments", "substeps"),
+    "accuracy-chaos": ("sim_to_real", "chaos"),
+    "accuracy-small-steps": ("sim_to_real", "small_steps"),
+    "accuracy-substeps": ("sim_to_real", "substeps"),
+    "arm-planned": ("robots", "planned"),
+    "arm-torques": ("robots", "torques"),
+    "contact-cone": ("contact", "cone"),
+    "contact-pair": ("contact", "pair"),
+    "contact-phases": ("contact", "phases"),
+    "contact-rest": ("contact", "rest"),
+    "contact-stacks": ("contact", "stacks"),
+    "contact-tunnelling": ("contact", "tunnelling"),
+    "how-an-engine-works-rotation": ("contact", "turning_over"),
+    "why-simulate-standing": ("robots", "standing"),
     "engines-settings": ("engines", "settings"),
-    "engines-speed": ("engine_comparison", "speed"),
-    "engines-steps": ("engine_comparison", "steps"),
-    "twins-following": ("twins", "following"),
+    "engines-speed": ("engines", "speed"),
+    "engines-steps": ("engines", "steps"),
+    "twins-following": ("sim_to_real", "following"),
     "gap-settling": ("sim_to_real", "settling"),
-    "summary-two-questions": ("summary", "two_questions"),
+    "summary-two-questions": ("robots", "two_questions"),
 }
 
 #: Figures are 6.5 in wide, the text width of a printed page; this makes 1170 pixels of it.
@@ -81,7 +79,7 @@ def build(figure_id: str) -> Figure:
             help=f"The figures are {', '.join(figure_ids())}.",
             code="figure_not_found",
         )
-    from course.figures.drawing.style import house_style
+    from course.figures.style import house_style
 
     module, function = FIGURES[figure_id]
     builder = cast("Builder", getattr(import_module(f"course.figures.{module}"), function))
@@ -100,7 +98,7 @@ def png(figure_id: str, *, dpi: int = SCREEN_DPI) -> bytes:
     """
     from io import BytesIO
 
-    from course.figures.drawing.style import house_style
+    from course.figures.style import house_style
 
     figure = build(figure_id)
     out = BytesIO()

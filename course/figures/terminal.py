@@ -11,6 +11,7 @@ JSON request a line on standard input, one JSON answer a line on standard output
 from __future__ import annotations
 
 import base64
+import io
 import json
 import re
 import sys
@@ -24,22 +25,23 @@ from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.text import Text
+from PIL import Image
 
 from course.errors import CourseError
-from course.figures.drawing.curves import plot_of, read_curve
-from course.figures.drawing.plots import draw
-from course.figures.drawing.style import house_style
+from course.figures.described import plot_of, read_curve
+from course.figures.plots import draw
 from course.figures.registry import build, png
+from course.figures.style import house_style
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
-    from course.figures.drawing.described import Plot
+    from course.figures.described import Plot
 
-__all__ = ["Label", "TerminalFigure", "in_cells", "terminal_figure", "terminal_plot"]
 
 #: A line of this many points on paper is one pixel here.
 _PAPER_PT = 1.3
@@ -286,6 +288,57 @@ def _serve() -> None:
             answer = {"error": error.message}
         sys.stdout.write(json.dumps({**answer, "id": request["id"]}) + "\n")
         sys.stdout.flush()
+
+
+# ---
+# A picture as sixels: six rows of pixels a line of letters, one pass for each colour.
+#
+# Source: Digital Equipment Corporation, *VT330/VT340 Programmer Reference Manual*, volume 2, chapter 14
+# ("Sixel Graphics").
+
+
+#: A VT340 has 16 colours; the terminals of today that speak sixel have at least 256.
+_COLOURS = 255
+
+
+def sixels(png: bytes, width: int) -> str:
+    """The characters that make a terminal show a picture.
+
+    Args:
+        png: the file's bytes.
+        width: in pixels; the height follows.
+    """
+    with Image.open(io.BytesIO(png)) as opened:
+        image = opened.convert("RGB")
+    image = image.resize((width, max(1, round(image.height * width / image.width))), Image.Resampling.LANCZOS)
+    reduced = image.quantize(_COLOURS, dither=Image.Dither.NONE)
+    pixels = np.asarray(reduced)
+    palette = np.asarray(reduced.getpalette()).reshape(-1, 3)
+    # Colours are said in percent.
+    colours = "".join(
+        f"#{number};2;{red};{green};{blue}"
+        for number, (red, green, blue) in enumerate(np.rint(palette * (100 / 255)).astype(int))
+    )
+    bands = "-".join(_band(pixels[top : top + 6]) for top in range(0, len(pixels), 6))
+    # P2 = 1: pixels that are not named stay as they are. 1;1 are square pixels.
+    return f'\x1bP0;1;0q"1;1;{width};{len(pixels)}{colours}{bands}\x1b\\'
+
+
+def _band(rows: NDArray[np.uint8]) -> str:
+    """Up to six rows of pixels: for each colour, a letter a column whose bits are the rows that have it."""
+    weights = 1 << np.arange(len(rows))
+    return "$".join(f"#{colour}{_run_lengths(weights @ (rows == colour))}" for colour in np.unique(rows))
+
+
+def _run_lengths(bits: NDArray[np.int64]) -> str:
+    """Letters, with runs as ``!count letter``."""
+    ends = np.append(np.flatnonzero(np.diff(bits)), len(bits) - 1)
+    counts = np.diff(ends, prepend=-1)
+    letters = [chr(63 + value) for value in bits[ends]]
+    return "".join(
+        f"!{count}{letter}" if count > 3 else letter * count
+        for count, letter in zip(counts, letters, strict=True)
+    )
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ import struct
 import threading
 import time
 from time import process_time
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, Any
 
 import msgspec
 
@@ -22,9 +22,7 @@ try:
     import resource
 except ImportError:  # Windows has none of these limits
     resource = None  # type: ignore[assignment]
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
+from collections.abc import Iterator
 
 __all__ = ["limit_cpu", "limit_memory", "read_frame", "served", "write_frame"]
 

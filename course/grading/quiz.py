@@ -14,18 +14,15 @@ from __future__ import annotations
 import hashlib
 import json
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import msgspec
 
 from course.errors import ContentError, UngradableError
 from course.progress.quiz import MAX_RECORDS
-from course.quizzing.attempt import Result, mark, needed
+from course.quizzing.attempt import MarkedQuestion, Result, mark, needed
 from course.quizzing.bank import MAX_SEED, Bank
 from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility
-
-if TYPE_CHECKING:
-    from course.quizzing.attempt import MarkedQuestion
 
 __all__ = [
     "EXERCISE_ID",

@@ -10,16 +10,14 @@ import ast
 import itertools
 import re
 import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import msgspec
 
 from course.errors import UngradableError, UsageError
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
 
 __all__ = ["MAX_CELLS", "MAX_CODE", "MAX_NOTEBOOK", "CodeCell", "code_cells", "read_notebook", "typed_cell"]
 

@@ -11,22 +11,18 @@ from __future__ import annotations
 import ast
 import re
 from bisect import bisect_right
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import msgspec
 
+from course.catalog.models import Exercise
 from course.errors import UngradableError
 from course.handed_in.cells import CodeCell, code_cells
 from course.isolation.inside import statements
 from course.printable import one_line
-from course.scoring.judging.submission import Submission
-from course.scoring.places import Places
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
-
-    from course.catalog.models import Exercise
+from course.scoring.judging.session import Submission
+from course.scoring.verdict import Places
 
 __all__ = ["RECORD", "SETUP", "SOLUTION", "NotebookSource", "notebook_source", "opened", "source_of"]
 

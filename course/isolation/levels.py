@@ -14,14 +14,12 @@ from the worker is the wire, not the operating system.
 
 from __future__ import annotations
 
+import socket
 import struct
 import sys
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING, Protocol
-
-if TYPE_CHECKING:
-    import socket
+from typing import Protocol
 
 __all__ = [
     "LIMITS",

@@ -11,17 +11,450 @@ above this package has to know of it.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import array
+import contextlib
+import json
+import os
+import select
+import shutil
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
 
-from course.isolation.forked import ZygoteSpawner
-from course.isolation.levels import LIMITS, Exit, Handle, Level, Limits, Spawner
-from course.isolation.plain import ProcessSpawner
-from course.isolation.view import view_for
+from course.isolation import launch
+from course.isolation.deadline import ProcessClock
+from course.isolation.failures import IsolationError
+from course.isolation.inside.frames import ENDED, LOOK
+from course.isolation.launch import View, view_for
+from course.isolation.levels import (
+    LIMITS,
+    MAX_OUTPUT,
+    START_TIMEOUT,
+    Exit,
+    Handle,
+    Level,
+    Limits,
+    Spawner,
+    ticking,
+)
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+# ---
+# Linux, L3 and L2: workers forked from a warm zygote, each ended by a pidfd.
 
-__all__ = ["LIMITS", "MAKERS", "Exit", "Handle", "Level", "Limits", "Spawner", "spawner"]
+
+_INSIDE = "/course-worker"  # where the worker's files appear inside bubblewrap
+_PACKAGES = "/packages"
+
+
+class ZygoteSpawner:
+    """Linux: forks workers from a warm zygote and holds a pidfd of each."""
+
+    def __init__(self, level: Level, view: View, imports: tuple[str, ...], limits: Limits) -> None:
+        self.level = level
+        self._view = view
+        self._imports = imports
+        self._limits = limits
+        self._process: subprocess.Popen[bytes] | None = None
+        self._left: list[Iterator[None]] = []  # removals of folders of workers that ended
+        self._start()
+
+    def _start(self) -> None:
+        self._folder = launch.private_folder()
+        self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        try:
+            with theirs:
+                launch.copy_worker_files(self._folder)
+                self._process = self._run(self._command(theirs.fileno()), theirs.fileno())
+            self._control.settimeout(START_TIMEOUT)
+            self._check_start(self._view)
+        except BaseException:
+            self.close()
+            raise
+
+    def _command(self, control: int) -> list[str]:
+        root = os.getuid() == 0
+        config: dict[str, Any] = {
+            "control": control,
+            "level": self.level.value,
+            "imports": list(self._imports),
+            "limits": vars(self._limits),
+            "become_nobody": root and (self.level is Level.L3 or _open_to_others(self._view)),
+        }
+        if self.level is Level.L3:
+            # No list of readable files is needed: the root contains only these.
+            self._scratch = "/tmp"
+            config |= {"path": [_INSIDE, _PACKAGES], "readable": None, "workdir": self._scratch}
+            inside = launch.command(self._view, _INSIDE, config)
+            return [*_bubblewrap(self._view, self._folder, root), *inside]
+        scratch = self._folder / "scratch"
+        scratch.mkdir(mode=0o711)
+        self._scratch = str(scratch)
+        readable = self._folder / "readable.json"  # may well be longer than an argument can be
+        readable.write_text(
+            json.dumps([str(path) for path in (*self._view.expanded(), self._folder)]), "utf-8"
+        )
+        path = [str(self._folder), *sorted({str(entry.parent) for entry in self._view.packages})]
+        config |= {"path": path, "readable": str(readable), "workdir": self._scratch}
+        if config["become_nobody"]:
+            self._folder.chmod(0o711)
+        return launch.command(self._view, str(self._folder), config)
+
+    def _run(self, command: list[str], control: int) -> subprocess.Popen[bytes]:
+        with (self._folder / "stderr").open("wb") as errors:
+            try:
+                return subprocess.Popen(
+                    command,
+                    pass_fds=(control,),
+                    stdin=subprocess.DEVNULL,
+                    stdout=subprocess.DEVNULL,
+                    stderr=errors,
+                    env=launch.environment(),
+                    cwd="/",
+                )
+            except OSError as error:
+                raise IsolationError(f"the zygote could not be started: {error}") from None
+
+    def _check_start(self, view: View) -> None:
+        """An interpreter may silently load a library other than its own: compare what the zygote reports."""
+        try:
+            hello, _ = self._receive()
+        except (OSError, ValueError) as error:
+            raise IsolationError(f"the zygote did not start: {self._stderr() or error}") from None
+        expected = list(sys.version_info[:3])
+        if Path(hello["prefix"]) != view.prefix or hello["version"] != expected:
+            raise IsolationError(f"the zygote runs another Python: {hello['prefix']}, expected {view.prefix}")
+        roots = [Path(_PACKAGES), *view.packages]
+        if not any(Path(hello["numpy"]).is_relative_to(root) for root in roots):
+            raise IsolationError(f"the zygote found another numpy: {hello['numpy']}")
+
+    def _stderr(self) -> str:
+        text = (self._folder / "stderr").read_text("utf-8", "replace").strip()
+        return text.splitlines()[-1] if text else ""
+
+    def _send(self, message: dict[str, Any], descriptors: tuple[int, ...] = ()) -> None:
+        rights = (
+            [(socket.SOL_SOCKET, socket.SCM_RIGHTS, array.array("i", descriptors))] if descriptors else []
+        )
+        self._control.sendmsg([json.dumps(message).encode()], rights)
+
+    def _receive(self) -> tuple[dict[str, Any], int | None]:
+        message, ancillary, _, _ = self._control.recvmsg(4096, socket.CMSG_LEN(4))
+        if not message:
+            raise OSError("the zygote ended")
+        received = array.array("i")
+        for _, _, data in ancillary:
+            received.frombytes(data[: len(data) - len(data) % received.itemsize])
+        return json.loads(message), received[0] if received else None
+
+    def spawn(self) -> Handle:
+        try:
+            return self._fork()
+        except OSError as error:
+            # The zygote is gone: the system may end any process when memory runs out. Start another, once.
+            cause = self._stderr() or str(error)
+        self.close()
+        self._start()
+        try:
+            return self._fork()
+        except OSError:
+            raise IsolationError(f"the zygote does not answer: {cause}") from None
+
+    def _fork(self) -> Handle:
+        ours, theirs = socket.socketpair()
+        output = os.memfd_create("output", os.MFD_CLOEXEC)
+        workdir = self._scratch
+        try:
+            if self.level is Level.L2:
+                workdir = tempfile.mkdtemp(dir=self._scratch)
+                # The worker may run as user nobody; only the owner can list the folder around it.
+                Path(workdir).chmod(0o777)
+            with theirs:
+                self._send({"workdir": workdir}, (theirs.fileno(), output))
+                answer, pidfd = self._receive()
+            if pidfd is None:
+                raise IsolationError(f"the zygote could not fork: {answer.get('error')}")
+        except BaseException:
+            ours.close()
+            os.close(output)
+            raise
+        return _ForkedHandle(ours, answer["pid"], pidfd, output, workdir, self)
+
+    def reap(self, pid: int) -> Exit:
+        """Collect a worker that has ended.
+
+        Raises:
+            IsolationError: the zygote, its parent, is gone too.
+        """
+        try:
+            self._send({"reap": pid})
+            status, *times = ENDED.unpack(self._control.recv(4096))
+        except (OSError, struct.error) as error:
+            raise IsolationError(f"the zygote does not answer: {self._stderr() or error}") from None
+        cpu_s = times[0] + times[2] + (times[1] + times[3]) / 1e6
+        return Exit(os.WEXITSTATUS(status) if os.WIFEXITED(status) else 0, status & 0x7F, cpu_s)
+
+    def leave(self, workdir: Path) -> None:
+        """Remember the folder of a worker that ended, for ``tidy``."""
+        self._left.append(launch.removing(workdir))
+
+    def tidy(self) -> None:
+        launch.tidy(self._left)
+
+    def close(self) -> None:
+        self._control.close()  # the zygote ends at end of file, and all it started with it
+        if self._process is not None:
+            try:
+                self._process.wait(2)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
+            self._process = None
+        launch.sweep(self._folder)
+
+
+def _bubblewrap(view: View, folder: Path, root: bool) -> list[str]:
+    """The command that builds a root with only the view in it, and starts a process there.
+
+    Raises:
+        IsolationError: there is no bubblewrap.
+    """
+    binary = shutil.which("bwrap")
+    if binary is None:
+        raise IsolationError("bubblewrap is not installed")
+    command = [
+        binary,
+        "--unshare-pid",
+        "--unshare-net",
+        "--unshare-ipc",
+        "--unshare-uts",
+        "--unshare-cgroup-try",
+    ]
+    command += ["--hostname", "course", "--die-with-parent", "--new-session"]
+    if not root:
+        # Not "--dev": it would nest a second user namespace, in which these capabilities are void.
+        command += ["--unshare-user", "--cap-add", "CAP_SYS_ADMIN", "--cap-add", "CAP_SETPCAP"]
+    for above in _folders_above(view.readable):
+        # Made by name: those that a bind makes on its way are closed to everyone but their owner.
+        command += ["--perms", "0755", "--dir", str(above)]
+    for path in view.readable:
+        if path.is_symlink():
+            command += ["--symlink", os.readlink(path), str(path)]  # noqa: PTH115 - the text of the link
+        else:
+            bind = "--dev-bind" if path.is_relative_to("/dev") else "--ro-bind"
+            command += [bind, str(path), str(path)]
+    for path in view.masked:
+        command += ["--perms", "0755", "--tmpfs", str(path)]
+    command += ["--perms", "0755", "--dir", _PACKAGES]
+    for path in view.packages:
+        command += ["--ro-bind", str(path), f"{_PACKAGES}/{path.name}"]
+    for path in view.masked:
+        command += ["--remount-ro", str(path)]
+    command += ["--ro-bind", str(folder), _INSIDE, "--proc", "/proc", "--tmpfs", "/tmp"]
+    return [*command, "--remount-ro", "/tmp", "--remount-ro", "/", "--chdir", "/", "--"]
+
+
+def _folders_above(paths: tuple[Path, ...]) -> list[Path]:
+    """Folders that lead to these paths and are not inside one of them, outermost first."""
+    above = {parent for path in paths for parent in path.parents}
+    inside = {folder for folder in above if any(folder.is_relative_to(path) for path in paths)}
+    return sorted(above - inside - {Path("/")})
+
+
+def _open_to_others(view: View) -> bool:
+    """Whether an unprivileged user can reach the interpreter (it may lie below root's own home)."""
+    for path in (view.interpreter, *view.packages):
+        for folder in path.parents:
+            if not folder.stat().st_mode & 0o001:
+                return False
+    return True
+
+
+def _number_here(pidfd: int) -> int:
+    """The pid of a process as this process sees it; the zygote may live in a namespace of its own."""
+    lines = Path(f"/proc/self/fdinfo/{pidfd}").read_text("ascii").splitlines()
+    return next(int(line.partition(":")[2]) for line in lines if line.startswith("Pid:"))
+
+
+class _ForkedHandle:
+    """A worker forked by the zygote, ended by its pidfd."""
+
+    def __init__(
+        self, sock: socket.socket, pid: int, pidfd: int, output: int, workdir: str, owner: ZygoteSpawner
+    ) -> None:
+        self.channel = self._socket = ticking(sock)
+        self._pid = pid
+        self._pidfd = pidfd
+        self._output = output
+        self._workdir = workdir
+        self._owner = owner
+        self._exit: Exit | None = None
+        clock = ProcessClock(_number_here(pidfd))
+        self.cpu_s, self.asleep = clock.cpu_s, clock.asleep
+
+    def output(self) -> str:
+        return os.pread(self._output, MAX_OUTPUT, 0).decode("utf-8", "replace")
+
+    def look(self) -> None:
+        if LOOK is not None and self._exit is None:
+            with contextlib.suppress(ProcessLookupError):
+                signal.pidfd_send_signal(self._pidfd, LOOK)
+
+    def finish(self) -> Exit:
+        if self._exit is None:
+            ended, _, _ = select.select([self._pidfd], [], [], 0)
+            if not ended:
+                with contextlib.suppress(ProcessLookupError):
+                    signal.pidfd_send_signal(self._pidfd, signal.SIGKILL)
+                ended, _, _ = select.select([self._pidfd], [], [], START_TIMEOUT)
+                if not ended:
+                    raise IsolationError("a worker does not end after SIGKILL")
+            try:
+                self._exit = self._owner.reap(self._pid)
+            finally:
+                self._socket.close()
+                os.close(self._pidfd)
+                os.close(self._output)
+                if self._owner.level is Level.L2:
+                    self._owner.leave(Path(self._workdir))
+        return self._exit
+
+
+# ---
+# L1, on any system: a plain process per worker.
+
+
+class ProcessSpawner:
+    """Any system: a plain process per worker, the next one started ahead so that a restart costs no wait."""
+
+    def __init__(self, view: View, imports: tuple[str, ...], limits: Limits) -> None:
+        self.level = Level.L1
+        self._folder = launch.private_folder()
+        launch.copy_worker_files(self._folder)
+        self._view = view
+        self._imports = imports
+        self._limits = limits
+        self._standby: _ProcessHandle | None = None
+        self._left: list[Iterator[None]] = []  # removals of folders of workers that ended
+
+    def _start(self) -> _ProcessHandle:
+        workdir = Path(tempfile.mkdtemp(dir=self._folder))
+        packages = sorted({str(entry.parent) for entry in self._view.packages})
+        config: dict[str, Any] = {
+            "level": "L1",
+            "imports": list(self._imports),
+            "limits": vars(self._limits),
+            "path": [str(self._folder), *packages],
+            "workdir": str(workdir),
+        }
+        ours, theirs = socket.socketpair()
+        with theirs:
+            return _ProcessHandle(ours, theirs, self._view, str(self._folder), config, workdir, self._left)
+
+    def spawn(self) -> Handle:
+        handle, self._standby = self._standby, None
+        if handle is not None and not handle.alive():
+            # It ended with the thread that started it, because Linux takes that thread for its parent.
+            handle.finish()
+            handle = None
+        handle = handle or self._start()
+        try:
+            self._standby = self._start()
+        except OSError as error:
+            handle.finish()
+            raise IsolationError(f"a worker process could not be started: {error}") from None
+        return handle
+
+    def tidy(self) -> None:
+        launch.tidy(self._left)
+
+    def close(self) -> None:
+        if self._standby is not None:
+            self._standby.finish()
+            self._standby = None
+        launch.sweep(self._folder)
+
+
+class _ProcessHandle:
+    """A worker that is a plain child process."""
+
+    def __init__(
+        self,
+        ours: socket.socket,
+        theirs: socket.socket,
+        view: View,
+        folder: str,
+        config: dict[str, Any],
+        workdir: Path,
+        left: list[Iterator[None]],
+    ) -> None:
+        self.channel = self._socket = ticking(ours)
+        self._left = left
+        self._workdir = workdir
+        # Opened twice and at once: later the student's code may have put anything under that name.
+        with (workdir / ".output").open("wb") as output:
+            self._output = (workdir / ".output").open("rb")
+            streams: dict[str, Any] = {"stdout": output, "stderr": output, "env": launch.environment()}
+            if sys.platform == "win32":
+                self._process = self._start_windows(theirs, view, folder, config, streams)
+            else:
+                self._process = subprocess.Popen(
+                    launch.command(view, folder, {**config, "control": theirs.fileno()}),
+                    pass_fds=(theirs.fileno(),),
+                    start_new_session=True,
+                    stdin=subprocess.DEVNULL,
+                    **streams,
+                )
+
+        clock = ProcessClock(self._process.pid)
+        self.cpu_s, self.asleep = clock.cpu_s, clock.asleep
+
+    @staticmethod
+    def _start_windows(
+        theirs: socket.socket, view: View, folder: str, config: dict[str, Any], streams: dict[str, Any]
+    ) -> subprocess.Popen[bytes]:
+        # A socket cannot be inherited there; it is shared with the child by its process id, over stdin.
+        shared_size = len(theirs.share(os.getpid()))  # type: ignore[attr-defined]
+        command = launch.command(view, folder, {**config, "share": shared_size})
+        process = subprocess.Popen(command, stdin=subprocess.PIPE, **streams)
+        assert process.stdin is not None
+        process.stdin.write(theirs.share(process.pid))  # type: ignore[attr-defined]
+        process.stdin.close()
+        return process
+
+    def alive(self) -> bool:
+        return self._process.poll() is None
+
+    def output(self) -> str:
+        if self._output.closed:
+            return ""
+        self._output.seek(0)
+        return self._output.read(MAX_OUTPUT).decode("utf-8", "replace")
+
+    def look(self) -> None:
+        if LOOK is not None:
+            self._process.send_signal(LOOK)
+
+    def finish(self) -> Exit:
+        if hasattr(os, "killpg"):  # not on Windows
+            # What it started goes with it, also if it ended by itself; until it is waited for, its number
+            # cannot have become another's.
+            with contextlib.suppress(ProcessLookupError, PermissionError):
+                os.killpg(self._process.pid, signal.SIGKILL)
+        self._process.kill()
+        code = self._process.wait()
+        self._socket.close()
+        self._output.close()
+        self._left.append(launch.removing(self._workdir))
+        return Exit(max(code, 0), max(-code, 0))
+
+
+# ---
 
 
 def _plain(level: Level, imports: tuple[str, ...], limits: Limits) -> Spawner:  # noqa: ARG001 - one of MAKERS

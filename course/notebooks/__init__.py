@@ -6,13 +6,12 @@ Building and grading notebooks needs no Jupyter; only what runs inside one impor
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-    from pathlib import Path
-
-    from course.notebooks.findings import CheckTable
+    from course.notebooks.checking import CheckTable
 
     Source = str | Path | Iterable[str | Callable[..., Any] | type]
 

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from html import escape
-from typing import TYPE_CHECKING
 
-from course.notebooks.building.cells import Cell, code, document, markdown, opening
-from course.notebooks.building.lowering import escaped
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from course.catalog.load import Catalog
-    from course.quizzing.attempt import MarkedQuestion, Result
-    from course.quizzing.bank import PosedQuestion
+from course.catalog.load import Catalog
+from course.notebooks.cells import Cell, code, document, markdown, opening
+from course.notebooks.lowering import escaped
+from course.quizzing.attempt import MarkedQuestion, Result
+from course.quizzing.bank import PosedQuestion
 
 __all__ = ["SEED", "Marks", "marked", "quiz_notebook"]
 
@@ -45,7 +41,7 @@ def quiz_notebook(catalog: Catalog, seed: int = SEED) -> bytes:
     posed = Bank.of(catalog).pose(seed)
     cells = [
         opening(_HEAD.format(mark=mark_sentence(len(posed)))),
-        code("from course.notebooks.taking import take\n\ntake()", role="quiz-take"),
+        code("from course.notebooks.predicting import take\n\ntake()", role="quiz-take"),
         markdown(_PRACTICE),
         code("answers = {}", role="quiz-setup"),
     ]

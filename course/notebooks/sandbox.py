@@ -8,15 +8,13 @@ import os
 from dataclasses import dataclass
 from html import escape
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from course.notebooks.building.cells import code, document, markdown, opening
-from course.notebooks.building.lowering import escaped
-
-if TYPE_CHECKING:
-    from course.catalog.load import Catalog
-    from course.sandbox.runs.running import Run
-    from course.sandbox.scene.model import Scene
+from course.catalog.load import Catalog
+from course.notebooks.cells import code, document, markdown, opening
+from course.notebooks.lowering import escaped
+from course.sandbox.runs.running import Run
+from course.sandbox.scene.model import Scene
 
 __all__ = ["STILL", "Film", "alive", "film", "play", "sandbox_notebook"]
 
@@ -79,7 +77,7 @@ def play(scene_id: str, **settings: float) -> Any:
     """
     if not alive():
         return film(scene_id, **settings)
-    from course.notebooks.widgets.sandbox import Sandbox
+    from course.notebooks.widgets import Sandbox
 
     return Sandbox(scene_id, **settings)
 
@@ -95,7 +93,7 @@ def film(scene_id: str, **settings: float) -> Film:
         NotFoundError: there is no such scene.
         UsageError: a setting is unknown or out of range.
     """
-    from course.sandbox.runs.film import Film as Frames
+    from course.sandbox.runs.recording import Film as Frames
     from course.sandbox.runs.running import run
     from course.sandbox.scene.loading import choose
 
@@ -126,7 +124,7 @@ class Film:
     @property
     def story(self) -> list[str]:
         """The run in sentences, its energy last."""
-        from course.sandbox.runs.describe import account, sentences
+        from course.sandbox.runs.running import account, sentences
 
         return [*sentences(self.run.events, _MOST_TOLD), *account(self.run.receipt), *self._compared()]
 

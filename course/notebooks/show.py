@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import base64
 from dataclasses import dataclass
+from html import escape
 
-__all__ = ["Picture", "figure"]
+from course.figures.described import Plot
+from course.scoring.failures import Report, Section
 
 
 @dataclass(frozen=True)
@@ -38,3 +41,53 @@ def figure(name: str) -> Picture:
     from course.figures.registry import png
 
     return Picture(name, png(name))
+
+
+# ---
+# An exercise's report as a notebook shows it: words, tables and figures.
+
+
+class ReportPage:
+    """A report: a page in Jupyter, lines in a plain terminal."""
+
+    def __init__(self, report: Report) -> None:
+        self.report = report
+
+    def __repr__(self) -> str:
+        lines = [self.report.title]
+        for section in self.report.sections:
+            lines += ["", section.title, section.text]
+            lines += ["  ".join(row) for row in section.rows]
+            lines += [section.plot.description] if section.plot else []
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        parts = [f"<h3>{escape(self.report.title)}</h3>", *map(_section, self.report.sections)]
+        return "".join(parts)
+
+
+def _section(section: Section) -> str:
+    parts = [f"<h4>{escape(section.title)}</h4>"]
+    for paragraph in section.text.split("\n\n"):
+        if paragraph.lstrip().startswith("- "):
+            items = (line.strip().removeprefix("- ") for line in paragraph.strip().split("\n"))
+            parts.append("<ul>" + "".join(f"<li>{escape(item)}</li>" for item in items) + "</ul>")
+        elif paragraph.strip():
+            parts.append(f"<p>{escape(' '.join(paragraph.split()))}</p>")
+    if section.rows:
+        head = "".join(f"<th>{escape(name)}</th>" for name in section.columns)
+        rows = ("".join(f"<td>{escape(cell)}</td>" for cell in row) for row in section.rows)
+        body = "".join(f"<tr>{row}</tr>" for row in rows)
+        parts.append(f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>")
+    if section.plot is not None:
+        parts.append(image_of(section.plot))
+    return "".join(parts)
+
+
+def image_of(plot: Plot) -> str:
+    """A figure as HTML, with its description as alternative text."""
+    from course.figures.plots import render
+
+    picture = base64.b64encode(render(plot)).decode()
+    described = escape(plot.description or plot.title)
+    return f'<img alt="{described}" style="max-width:100%" src="data:image/png;base64,{picture}">'

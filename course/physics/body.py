@@ -6,14 +6,12 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from course.physics.rotation import angular_momentum, kinetic_energy
+from course.physics.state import RigidBodyState
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from course.physics.state import RigidBodyState
-
     Array = NDArray[np.float64]
 
 __all__ = ["Body"]

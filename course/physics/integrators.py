@@ -28,12 +28,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, NamedTuple, Protocol, Self
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from course.physics.systems import System
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
-
-    from course.physics.systems import System
-
     Array = NDArray[np.float64]
 
 __all__ = [

@@ -6,19 +6,15 @@ energies of shape (...).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from course.physics.systems import FreeFall, Kepler, Oscillator, Pendulum
+from course.physics.systems import FreeFall, Kepler, Oscillator, Pendulum, System
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike, NDArray
-
-    from course.physics.systems import System
-
     Array = NDArray[np.float64]
 
 __all__ = [

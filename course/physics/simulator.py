@@ -19,10 +19,13 @@ States may hold many runs at once (leading axes), which are then advanced togeth
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
+from course.physics.body import Body
 from course.physics.contact import Plane, Surface
 from course.physics.contact.impulses import Impulses, Motion, normal_speed, solve
 from course.physics.contact.pairs import Pairs, in_any_run
@@ -32,15 +35,8 @@ from course.physics.rotation import ByMomentum, ByQuaternion, Spin, Turning, tur
 from course.physics.state import RigidBodyState
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from numpy.typing import NDArray
-
-    from course.physics.body import Body
-
     Array = NDArray[np.float64]
     Flags = NDArray[np.bool_]
-    #: Adds forces to bodies, given the time (s) and all of them: ``law(t, bodies)``.
     ForceLaw = Callable[[Any, Sequence[Body]], None]
 
 __all__ = ["Simulator", "step_count"]

@@ -10,17 +10,29 @@ import ast
 import hashlib
 import math
 import warnings
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime
 from typing import TYPE_CHECKING, Any, Protocol
 
-from course.progress.evidence import numbers_of, raised_by
+from course.printable import one_line
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-    from datetime import datetime
-
-    from course.progress.evidence import Finding
     from course.progress.store import Event
+
+    class Finding(Protocol):
+        """What is read of a check's result."""
+
+        @property
+        def status(self) -> str: ...
+        @property
+        def visibility(self) -> str: ...
+        @property
+        def input(self) -> Mapping[str, Any] | None: ...
+        @property
+        def expected(self) -> Any: ...
+        @property
+        def actual(self) -> Any: ...
 
     class _Check(Finding, Protocol):
         """The record of one check."""
@@ -49,7 +61,88 @@ if TYPE_CHECKING:
         def checks(self) -> Sequence[_Check]: ...
 
 
-__all__ = ["CheckRun", "History", "check_data", "fingerprint", "history_of"]
+# ---
+# The numbers of a failed check as words, which a hint may use: what went in, what came back, what is right.
+#
+# Public checks only: what a student may not see in a finding is not in a hint either.
+
+
+#: Longest list and longest text that a sentence can hold.
+_ITEMS, _LETTERS = 8, 40
+#: The most of an exception that is kept, in characters.
+_RAISED = 120
+#: Numbers beyond it are not compared: they come from a program that ran away.
+_HUGE = 1e150
+
+
+def numbers_of(check: Finding) -> dict[str, str]:
+    """The fields that a hint may name.
+
+    Returns:
+        each input by its name; ``expected`` and ``got``; where they are numbers, ``off``, which is got minus
+        expected, and ``ratio``, got over expected; where one entry of an array was compared, ``at``, which
+        names it. None, a ratio of 0 or 1 and values too long for a sentence are left out, and all of them
+        where the check passed or is a hidden one.
+    """
+    if check.status != "fail" or check.visibility != "public":
+        return {}
+    # The entries of a list may be told apart by a late digit only.
+    fields = {k: _words(x, 10 if isinstance(x, list) else 4) for k, x in (check.input or {}).items()}
+    expected, got, fields["at"] = _compared(check.expected, check.actual)
+    right, own = _apart(expected, got)
+    fields["expected"], fields["got"] = "" if expected is None else right, "" if got is None else own
+    if _is_number(expected) and _is_number(got):
+        fields["off"] = f"{'+' * (got > expected)}{_words(got - expected)}"
+        ratio = _words(got / expected) if expected and got else ""
+        fields["ratio"] = "" if ratio == "1" else ratio
+    return {name: words for name, words in fields.items() if words}
+
+
+def raised_by(check: Finding) -> str:
+    """The exception that ended a public check, in its own words; "" if none did."""
+    if check.status != "error" or check.visibility != "public" or not isinstance(check.actual, str):
+        return ""
+    return one_line(check.actual, _RAISED)
+
+
+def _compared(expected: Any, got: Any) -> tuple[Any, Any, str]:
+    """What was expected, what came, and of which entry: that of {"q[2]": 0.5} and {"q[2]": 0.4} is q[2]."""
+    if not isinstance(expected, dict) or len(expected) != 1:
+        return expected, got, ""
+    ((name, value),) = expected.items()
+    if name in {"at least", "at most"}:
+        return f"{name} {_words(value)}", got, ""
+    if isinstance(got, dict) and got.keys() == expected.keys():
+        return value, got[name], str(name)
+    return expected, got, ""
+
+
+def _apart(expected: Any, got: Any) -> tuple[str, str]:
+    """Both with four digits, or with so many that they differ."""
+    pairs = ((_words(expected, digits), _words(got, digits)) for digits in (4, 8, 16))
+    return next(((right, own) for right, own in pairs if right != own), ("", ""))
+
+
+def _words(value: Any, digits: int = 4) -> str:
+    """The value for a sentence; "" if it is too long for one."""
+    if isinstance(value, bool | None):
+        return str(value)
+    if isinstance(value, int):
+        return str(value) if abs(value) < _HUGE else ""
+    if isinstance(value, float):
+        return f"{value + 0.0:.{digits}g}"  # no "-0"
+    if isinstance(value, list | tuple) and 0 < len(value) <= _ITEMS:
+        items = [_words(item, digits) for item in value]
+        return f"[{', '.join(items)}]" if all(items) else ""
+    return value if isinstance(value, str) and len(value) <= _LETTERS else ""
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _HUGE
+
+
+# ---
+
 
 _PASS, _SKIP = "pass", "skip"
 _UNWRITTEN = "NOT_IMPLEMENTED"
@@ -339,3 +432,85 @@ def _run(event: Event) -> CheckRun:
             if isinstance(check.get("numbers"), dict)
         },
     )
+
+
+# ---
+# Which mistakes a student made, and when each was mended, from the recorded checks.
+#
+# A mistake is a diagnosis of one function. It is mended when every check that showed it has passed since;
+# checks that now fail for another reason do not mend it.
+
+
+#: Diagnoses that are not mistakes of their own: unwritten work, and consequences of another mistake.
+NO_MISTAKE = frozenset({"NOT_IMPLEMENTED", "MISSING_FUNCTION", "MEASURED_AS_NONE", "CALLS_A_WRONG_FUNCTION"})
+
+
+@dataclass(frozen=True, slots=True)
+class Mistake:
+    """One mistake in one function.
+
+    Attributes:
+        exercise, task: where.
+        diagnosis: its code.
+        first, last: the first and the last run that showed it, in UTC.
+        runs: how many runs showed it.
+        raised: the exception that the last of them ended in; "" if it was none.
+        mended: the run after which every check that showed it had passed; None while one has not.
+    """
+
+    exercise: str
+    task: str
+    diagnosis: str
+    first: datetime
+    last: datetime
+    runs: int
+    mended: datetime | None
+    raised: str = ""
+
+
+@dataclass(slots=True)
+class _Open:
+    first: datetime
+    last: datetime
+    runs: int = 0
+    checks: set[str] = field(default_factory=set)
+    mended: datetime | None = None
+    raised: str = ""
+
+
+def mistakes_of(events: Iterable[Event]) -> tuple[Mistake, ...]:
+    """The mistakes that events of kind "check" tell of, in the order they were first made.
+
+    Runs that were recorded before diagnoses were kept tell of none.
+    """
+    found: dict[tuple[str, str, str], _Open] = {}
+    for event in events:
+        if event.kind == "check" and event.data.get("state") == "graded":
+            _take(found, event)
+    return tuple(
+        Mistake(*key, one.first, one.last, one.runs, one.mended, one.raised) for key, one in found.items()
+    )
+
+
+def _take(found: dict[tuple[str, str, str], _Open], event: Event) -> None:
+    checks = [check for check in event.data.get("checks", ()) if isinstance(check, dict)]
+    shown: dict[tuple[str, str, str], set[str]] = {}
+    raised: dict[tuple[str, str, str], str] = {}
+    for check in checks:
+        code = check.get("diagnosis")
+        if isinstance(code, str) and code not in NO_MISTAKE:
+            key = (event.subject, str(check.get("task")), code)
+            shown.setdefault(key, set()).add(str(check.get("id")))
+            raised.setdefault(key, str(check.get("raised", "")))
+    for key, ids in shown.items():
+        one = found.setdefault(key, _Open(event.at, event.at))
+        one.last, one.mended = event.at, None
+        one.runs += 1
+        one.raised = raised[key]
+        one.checks |= ids
+    passed = {str(check.get("id")) for check in checks if check.get("status") == "pass"}
+    for (exercise, _, _), one in found.items():
+        if exercise == event.subject and one.checks:
+            one.checks -= passed
+            if not one.checks:
+                one.mended = event.at

@@ -7,13 +7,12 @@ question answered in a review. Events hold ids and seeds only; the questions fol
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from datetime import datetime
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-    from datetime import datetime
-
     from course.progress.store import Event
 
 __all__ = [

@@ -10,16 +10,16 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from course.errors import IntegrityError, MissingCapabilityError
 
 if TYPE_CHECKING:
     import sqlite3
-    from collections.abc import Iterator, Mapping
-    from pathlib import Path
 
 __all__ = ["SCHEMA_VERSION", "Event", "Repair", "Store"]
 

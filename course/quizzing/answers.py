@@ -16,17 +16,14 @@ import difflib
 import json
 import re
 import tomllib
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NoReturn
+from pathlib import Path
+from typing import Any, NoReturn
 
-from course.catalog.toml_lines import LineMap, syntax_error_line
+from course.catalog.reading import LineMap, syntax_error_line
 from course.errors import UsageError
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
-    from course.quizzing.bank import Bank, PosedQuestion
+from course.quizzing.bank import Bank, PosedQuestion
 
 __all__ = ["FORMAT_VERSION", "AnswerFile", "read_answers"]
 

@@ -4,17 +4,12 @@ from __future__ import annotations
 
 import math
 import secrets
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from course.errors import UsageError
-from course.quizzing.bank import MAX_SEED
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from course.quizzing.bank import Bank, Choice, PosedQuestion
+from course.quizzing.bank import MAX_SEED, Bank, Choice, PosedQuestion
 
 __all__ = [
     "PASS_SHARE",

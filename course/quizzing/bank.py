@@ -15,19 +15,13 @@ from __future__ import annotations
 import hashlib
 import math
 import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-from course.catalog.formulas import Formula, FormulaError
-from course.catalog.questions import read_questions
+from course.catalog.load import Catalog
+from course.catalog.questions import Formula, FormulaError, Question, Variant, read_questions
+from course.catalog.reading import Document
 from course.errors import NotFoundError
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-
-    from course.catalog.load import Catalog
-    from course.catalog.questions import Question, Variant
-    from course.catalog.reading import Document
 
 __all__ = ["LETTERS", "MAX_SEED", "Bank", "Choice", "PosedQuestion", "pose_case", "same_answer"]
 

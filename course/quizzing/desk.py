@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import secrets
-from datetime import UTC, datetime
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, date, datetime, timedelta
 from typing import TYPE_CHECKING
 
+from course.catalog.questions import Question
+from course.catalog.reading import Document
+from course.errors import ContentError
 from course.progress import quiz
-from course.quizzing.attempt import mark
+from course.progress.quiz import Attempt
+from course.quizzing.attempt import Result, mark
+from course.quizzing.bank import Bank, PosedQuestion, clashing, pose_case
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from course.progress.quiz import Attempt
-    from course.quizzing.attempt import Result
-    from course.quizzing.bank import Bank, PosedQuestion
-
     Record = Callable[[str, str, dict[str, object]], None]
-
-__all__ = ["answered", "begun", "finished", "fits"]
 
 
 def fits(bank: Bank, attempt: Attempt) -> bool:
@@ -57,3 +56,102 @@ def finished(attempt: Attempt, posed: Sequence[PosedQuestion], record: Record) -
     right = {marked.posed.question: marked.right for marked in result.marked}
     record(quiz.DONE, "", quiz.done_data(attempt.id, right, passed=result.passed))
     return result
+
+
+# ---
+# When a missed question comes back.
+#
+# Spaced practice beats massed practice, and evenly spaced is as good as any schedule and the easiest to keep:
+# a question that was missed is due every ``GAP_DAYS`` days until it was answered rightly ``ROUNDS`` times in
+# a row. A wrong answer starts the count again. An answer before the day it was due changes nothing when it is
+# right: repeating something while it is fresh is the massed practice that this is to avoid.
+#
+# Source: Latimier, Peyre, Ramus 2021, Educational Psychology Review 33 (a meta-analysis of spaced retrieval:
+# 0.74 against massed; no difference found between expanding and uniform spacing).
+
+
+GAP_DAYS = 2
+ROUNDS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Due:
+    """A question under review.
+
+    Attributes:
+        on: the day it is due, in the student's own time zone.
+        rounds: right answers in a row, each on or after its day.
+    """
+
+    question: str
+    on: date
+    rounds: int
+
+
+def schedule(
+    outcomes: Mapping[str, Iterable[tuple[datetime, bool]]], known: Iterable[str]
+) -> tuple[Due, ...]:
+    """The questions under review, soonest first.
+
+    Args:
+        outcomes: by question id, when it was answered and whether rightly, oldest first.
+        known: ids of the questions there are, in their order; others have gone from the quiz.
+    """
+    found = (due_after(name, outcomes[name]) for name in known if name in outcomes)
+    return tuple(sorted((due for due in found if due is not None), key=lambda due: due.on))
+
+
+def due_after(question: str, outcomes: Iterable[tuple[datetime, bool]]) -> Due | None:
+    """The state of one question; None if it was never missed, or was brought back often enough."""
+    due: Due | None = None
+    for at, right in outcomes:
+        day = at.astimezone().date()
+        following = day + timedelta(days=GAP_DAYS)
+        if not right:
+            due = Due(question, following, 0)
+        elif due is not None and day >= due.on:
+            due = Due(question, following, due.rounds + 1) if due.rounds + 1 < ROUNDS else None
+    return due
+
+
+# ---
+# Goes through every case of a question, for faults that reading its file cannot show.
+#
+# A variant draws its numbers from finite lists, so "no seed ever shows two options that are the same" is not
+# a matter of sampling: each case is posed once.
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """Something wrong with a question, and the line to look at."""
+
+    line: int | None
+    message: str
+    fix: str
+
+
+def faults_in(document: Document[Question]) -> Iterator[Fault]:
+    """The first fault of each variant: a formula without a value, or options that cannot be told apart."""
+    for index, variant in enumerate(document.value.variant):
+        for case in range(variant.cases):
+            fault = _fault(document, index, case)
+            if fault is not None:
+                yield fault
+                break
+
+
+def _fault(document: Document[Question], index: int, case: int) -> Fault | None:
+    try:
+        posed = pose_case(document, index, case)
+    except ContentError as error:
+        return Fault(error.line, error.problem, error.help)
+    clash = clashing(posed.choices)
+    if clash is None:
+        return None
+    one, other = (posed.choices[place] for place in clash)
+    return Fault(
+        document.lines.line(("variant", index, "option", clash[1], "text")),
+        f"variant {posed.variant}: option {other.id} reads {other.text!r}, and option {one.id} reads "
+        f"{one.text!r}; these numbers are too close to tell apart.",
+        "Change a formula, or the values it is computed from, so that options differ by more than 2 %.",
+    )

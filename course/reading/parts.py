@@ -11,17 +11,13 @@ moves and renumbers them, loses no student's answers.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from course.catalog import blocks as b
 from course.catalog.markdown import read_blocks, read_task
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from course.catalog.models import Exercise, Lesson
+from course.catalog.models import Exercise, Lesson
 
 __all__ = ["Cell", "Question", "Script", "Section", "is_unseen", "read_script", "words_of"]
 

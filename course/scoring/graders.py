@@ -8,17 +8,12 @@ here fails wherever it is graded first, and that is at its author's.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Collection, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from course.catalog.locate import PLACES
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
-
-    from course.catalog.load import Catalog
-    from course.catalog.locate import Content
-    from course.catalog.models import Exercise
+from course.catalog.load import Catalog
+from course.catalog.locate import PLACES, Content
+from course.catalog.models import Exercise
 
 __all__ = ["LEFT_OUT", "grader_files", "grader_version"]
 

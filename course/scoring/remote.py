@@ -4,21 +4,17 @@ from __future__ import annotations
 
 import contextlib
 import copy
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from course.isolation.deadline import WALL, Deadline
 from course.isolation.failures import StudentFailure
-from course.isolation.session import Connection, LoadRefusedError
-from course.scoring.places import Places
+from course.isolation.levels import Spawner
+from course.isolation.session import Connection, LoadFault, LoadRefusedError
 from course.scoring.values import Inspected, as_march, overwritten
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
-
-    from course.isolation.session import LoadFault
-    from course.isolation.spawn import Spawner
+from course.scoring.verdict import Places
 
 T = TypeVar("T")
 #: A step's name, the system that was marched along, and its times and states: t, (q, v).

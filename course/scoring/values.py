@@ -8,10 +8,12 @@ exception in the grader. NaN and infinity are passed on: the check compares them
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
+from numpy.typing import NDArray
 
 from course.isolation.inside.frames import MAX_VALUES
 from course.printable import one_line
@@ -19,10 +21,6 @@ from course.scoring.failures import CheckFailed
 from course.scoring.verdict import Finding
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from numpy.typing import NDArray
-
     Array = NDArray[np.float64]
 
 __all__ = [

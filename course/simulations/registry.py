@@ -4,29 +4,31 @@ from __future__ import annotations
 
 import difflib
 from importlib import import_module
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 from course.errors import NotFoundError
-
-if TYPE_CHECKING:
-    from course.simulations.base import Simulation
+from course.simulations.base import Simulation
 
 __all__ = ["CHAPTER", "SIMULATIONS", "get"]
 
 #: The four that an introduction begins with, in their order.
 CHAPTER = ("free-fall", "projectile", "collision", "integrators")
 
-#: Every simulation, in the order of a list; its module has the id's name and holds it as ``SIMULATION``.
-SIMULATIONS = (
-    *CHAPTER,
-    "rotation",
-    "dynamics",
-    "chaos",
-    "solver-iterations",
-    "substeps",
-    "environment",
-    "contact-models",
-)
+#: Every simulation, in the order of a list, and the module below ``experiments`` that holds it under its name
+#: in capitals.
+SIMULATIONS = {
+    "free-fall": "motion",
+    "projectile": "motion",
+    "collision": "contact",
+    "integrators": "dynamics",
+    "rotation": "motion",
+    "dynamics": "dynamics",
+    "chaos": "dynamics",
+    "solver-iterations": "contact",
+    "substeps": "contact",
+    "environment": "dynamics",
+    "contact-models": "contact",
+}
 
 
 def get(name: str) -> Simulation:
@@ -43,5 +45,5 @@ def get(name: str) -> Simulation:
             help=f"{meant}There are {', '.join(SIMULATIONS)}.",
             code="simulation_not_found",
         )
-    module = import_module(f"course.simulations.experiments.{name.replace('-', '_')}")
-    return cast("Simulation", module.SIMULATION)
+    module = import_module(f"course.simulations.experiments.{SIMULATIONS[name]}")
+    return cast("Simulation", getattr(module, name.replace("-", "_").upper()))

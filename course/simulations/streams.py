@@ -6,18 +6,16 @@ time is in seconds from the start of the recording.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from course.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import NDArray
-
     Array = NDArray[np.float64]
 
 __all__ = ["KINDS", "ImuStream", "OdometryStream", "ScanStream", "Stream", "TruthStream", "streams_from"]

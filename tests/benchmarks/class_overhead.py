@@ -22,17 +22,20 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 from course.catalog.load import Catalog  # noqa: E402
-from course.grading.gradebook.backup import back_up  # noqa: E402
 from course.grading.gradebook.book import Gradebook  # noqa: E402
 from course.grading.gradebook.file import row_digest  # noqa: E402
 from course.grading.gradebook.records import Result  # noqa: E402
+from course.grading.gradebook.salvage import back_up  # noqa: E402
 from course.grading.intake.downloads import Place  # noqa: E402
 from course.grading.intake.triage import survey  # noqa: E402
 from course.grading.results.effective import Results  # noqa: E402
 from course.grading.results.roster import Person, Roster  # noqa: E402
 from course.grading.running.snapshot import Snapshot, frozen  # noqa: E402
-from course.scoring.judging.session import GradingSession, Submission  # noqa: E402
-from course.scoring.judging.terms import Terms  # noqa: E402
+from course.scoring.judging.session import (  # noqa: E402
+    GradingSession,
+    Submission,
+    Terms,
+)
 from tests.unit.grading.made import key  # noqa: E402
 
 EXERCISE = "integrators"

@@ -31,15 +31,14 @@ sys.path.insert(0, str(ROOT))
 from course.catalog.load import Catalog  # noqa: E402
 from course.grading.cluster.connect import local_cluster  # noqa: E402
 from course.grading.running.batch import grade_all  # noqa: E402
-from course.grading.running.folder import open_results  # noqa: E402
 from course.grading.running.rerun import RerunOptions, rerun  # noqa: E402
 from course.grading.running.run import RunOptions, grade_class  # noqa: E402
+from course.grading.running.snapshot import open_results  # noqa: E402
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from course.grading.running.run import GradeAll
-    from course.grading.running.summary import Summary
+    from course.grading.running.run import GradeAll, Summary
 
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
 PAGE = os.sysconf("SC_PAGE_SIZE")

@@ -70,7 +70,7 @@ _CALLS: dict[str, Callable[[Any], tuple[Any, tuple[Any, ...], dict[str, Any]]]] 
 
 def measure(engine: str, pairs: int) -> float:
     """Time through the adapter over time without it."""
-    from course.engines.scenarios.contact import boxes_scene
+    from course.engines.scenarios import boxes_scene
 
     adapter = load(engine)
     world = adapter.build(boxes_scene(DT), {})

@@ -18,10 +18,10 @@ import sys
 from pathlib import Path
 
 from course.cli.engines.screen import number
-from course.engines import reference, settings
+from course.engines import base, reference
 from course.engines.registry import ENGINES
 from course.engines.results import DEFAULT, TUNED
-from course.engines.scenarios.scenario import SCENARIOS
+from course.engines.scenarios import SCENARIOS
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "engines.md"
@@ -89,7 +89,7 @@ def _cell(scenario, engine, setting):
 def well_set() -> str:
     """What is set where, of how many combinations."""
     lines = ["| engine | scenario | set | tried |", "|:--|:--|:--|--:|"]
-    for engine, chosen in settings.choices().items():
+    for engine, chosen in base.choices().items():
         by_options: dict[tuple[str, int], list[str]] = {}
         for scenario, choice in chosen.items():
             words = ", ".join(f"`{key}` {value}" for key, value in choice.options.items()) or "nothing"
@@ -104,7 +104,7 @@ def options() -> str:
     """Every option that an engine offers for the tests: those that are tried, and those that are left."""
     lines = []
     for engine, info in ENGINES.items():
-        listed = settings.options_of(engine)
+        listed = base.options_of(engine)
         lines += [f"**{info.name}**, [documentation]({listed.documented})", ""]
         lines += ["| option | default | what it does | tried |", "|:--|:--|:--|:--|"]
         for one in listed.option:

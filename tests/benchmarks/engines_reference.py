@@ -20,7 +20,7 @@ import msgspec
 
 from course.engines import reference
 from course.engines.compare import Request, compare
-from course.engines.scenarios.scenario import BOXES
+from course.engines.scenarios import BOXES
 
 if TYPE_CHECKING:
     from course.engines.results import Comparison

@@ -4,7 +4,7 @@
     python tests/benchmarks/engines_settings.py --engine ode     one engine; --scenario: one scenario
     python tests/benchmarks/engines_settings.py --compare         try again, and say what would be chosen now
 
-The rule is in course/engines/settings.py; the values that are tried are in course/engines/options. Needs all
+The rule is in course/engines/base.py; the values that are tried are in course/engines/options. Needs all
 extras. It takes about ten minutes of one processor. After it, tests/benchmarks/engines_reference.py has to
 measure again.
 """
@@ -18,10 +18,10 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from course.engines import settings
+from course.engines import base
 from course.engines.process import EngineProcess
 from course.engines.registry import ENGINES
-from course.engines.scenarios.scenario import BOXES, DT, SCENARIOS, Scenario
+from course.engines.scenarios import BOXES, DT, SCENARIOS, Scenario
 
 FILE = Path(__file__).parents[2] / "course" / "engines" / "well_set.json"
 #: The hundred boxes are stepped as the stack is, so that rate and movement belong to one setting.
@@ -66,7 +66,7 @@ def _of_engine(engine: str, wanted: set[str]) -> dict[str, Any]:
             chosen[scenario.id] = dict(chosen[SAME_AS[scenario.id]])
         if scenario.id in SAME_AS or scenario.id not in wanted:
             continue
-        tried = list(settings.candidates(engine, scenario.id))
+        tried = list(base.candidates(engine, scenario.id))
         results = [(_error(engine, scenario, options), options) for options in tried]
         best, options = _best(scenario, results)
         chosen[scenario.id] = {"options": options, "tried": len(tried)}

@@ -25,7 +25,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "benchmarks")]
 
 
-from course.authoring.exercises.unprotected import LocalSubmission  # noqa: E402
+from course.authoring.exercises.grading import LocalSubmission  # noqa: E402
 from course.grading import kit  # noqa: E402
 from course.scoring.failures import finding_of  # noqa: E402
 from course.scoring.judging.explaining import Explainer  # noqa: E402

@@ -17,7 +17,7 @@ import pytest
 sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
 
 
-from course.authoring.exercises.unprotected import LocalSubmission  # noqa: E402
+from course.authoring.exercises.grading import LocalSubmission  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.scoring.judging.session import check_files  # noqa: E402
 

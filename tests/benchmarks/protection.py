@@ -25,8 +25,8 @@ from typing import Any
 sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
 
 
-from course.authoring.exercises.unprotected import LocalSubmission  # noqa: E402
-from course.authoring.exercises.variants import (  # noqa: E402
+from course.authoring.exercises.grading import (  # noqa: E402
+    LocalSubmission,
     accepted_files,
     compose,
     mutant_files,
@@ -38,9 +38,9 @@ from course.isolation.session import Connection  # noqa: E402
 from course.scoring.judging.session import (  # noqa: E402
     GradingSession,
     Submission,
+    Terms,
     pinned_to,
 )
-from course.scoring.judging.terms import Terms  # noqa: E402
 from course.scoring.kit import expectations  # noqa: E402
 
 TICK = os.sysconf("SC_CLK_TCK")

@@ -16,10 +16,9 @@ import statistics
 import time
 from typing import Any
 
-from course.sandbox.runs.film import Film
+from course.sandbox.runs.recording import Film
 from course.sandbox.scene.loading import choose
-from course.sandbox.scene.model import Body, Material, Repeat, Scene
-from course.sandbox.scene.parts import layout
+from course.sandbox.scene.model import Body, Material, Repeat, Scene, layout
 from course.sandbox.world.engine import Space
 from course.sandbox.world.world import World
 

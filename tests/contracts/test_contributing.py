@@ -6,24 +6,17 @@ import ast
 import re
 import shutil
 import textwrap
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 
-from course.authoring.exercises.diagnosis.build import build
+from course.authoring.exercises.diagnosis import build
 from course.catalog.load import Catalog
 from course.grading import kit
-from course.scoring.checks.companions import words as known_words
-from course.scoring.judging.reporting import report_of
-from course.scoring.judging.session import GradingSession
-from course.scoring.judging.submission import Submission
-from course.scoring.verdict import Status
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from course.scoring.verdict import CheckResult
+from course.scoring.checks.collected import words as known_words
+from course.scoring.judging.session import GradingSession, Submission, report_of
+from course.scoring.verdict import CheckResult, Status
 
 ROOT = Path(__file__).parents[2]
 TEXT = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")

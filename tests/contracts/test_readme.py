@@ -12,7 +12,7 @@ from course.catalog.load import Catalog
 from course.cli.author.pictures import PICTURES
 from course.cli.frame.app import run
 from course.engines.registry import ENGINES
-from course.engines.scenarios.scenario import SCENARIOS
+from course.engines.scenarios import SCENARIOS
 from course.quizzing.attempt import needed
 from course.quizzing.bank import Bank
 from course.sandbox.scene.loading import scene_ids

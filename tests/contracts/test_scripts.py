@@ -8,9 +8,9 @@ from pathlib import Path
 from course import errors
 from course.cli.frame import app
 from course.cli.frame.schemas import reply_types
-from course.cli.setup.surroundings import KINDS
-from course.cli.work.verdict.annotations import FORMATS
-from course.grading.running.summary import Summary
+from course.cli.setup.making import KINDS
+from course.cli.work.verdict import FORMATS
+from course.grading.running.run import Summary
 
 TEXT = (Path(__file__).parents[2] / "docs" / "scripts.md").read_text("utf-8")
 

@@ -48,7 +48,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
     [
         (
             "catalog/locate.py",
-            "import course.cli.frame.terminal.console",
+            "import course.cli.frame.console",
             "Floors: imports go down only BROKEN",
         ),
         ("physics/systems.py", "import course.scoring.verdict", "Floors: imports go down only BROKEN"),

@@ -8,20 +8,16 @@ counts.
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from course.catalog.load import Catalog
-from course.notebooks.building.cells import document
-from course.notebooks.building.exercises import exercise_cells
+from course.catalog.models import Exercise
+from course.notebooks.build import exercise_cells
+from course.notebooks.cells import document
 from tests.journeys.conftest import ROOT, Way
 from tests.journeys.test_notebook import public
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from course.catalog.models import Exercise
 
 CATALOG = Catalog()
 EXERCISES = CATALOG.exercises()

@@ -6,18 +6,15 @@ import json
 import math
 import re
 import shutil
+from collections.abc import Callable, Iterator
 from itertools import count
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from course.authoring.exercises.files import BLANK
 from tests.journeys.conftest import ROOT, Way
 from tests.unit.authoring.test_scaffold import fill as fill_tripling
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from pathlib import Path
 
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
 SCENE = ROOT / "course" / "authoring" / "templates" / "scene.toml.tmpl"

@@ -13,8 +13,9 @@ import socket
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
@@ -22,18 +23,14 @@ from course.catalog.load import Catalog
 from course.grading.cluster.coordinator import grade_on
 from course.grading.cluster.worker import grade_batch
 from course.grading.gradebook.book import Gradebook
+from course.grading.results.effective import Effective
 from course.grading.running.run import RunOptions, grade_class
 from course.grading.running.snapshot import Snapshot, frozen
 from course.scoring.graders import grader_version
-from course.scoring.judging.terms import Terms
+from course.scoring.judging.session import Terms
 from tests.journeys.processes import below, left_running
 from tests.unit.grading.made import read_class
 from tests.unit.grading.running.test_snapshot import judged_by_the_snapshot
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from course.grading.results.effective import Effective
 
 ROOT = Path(__file__).resolve().parents[2]
 MINI = ROOT / "tests" / "fixtures" / "mini_course"

@@ -10,7 +10,7 @@ import sys
 import pytest
 
 from course.catalog import models
-from course.cli.frame.terminal.console import Console, Settings, install
+from course.cli.frame.console import Console, Settings, install
 from course.cli.setup.demo import TRIES
 from tests.command_line import as_process, in_process
 from tests.terminals import Terminal, needs_tmux
@@ -28,7 +28,7 @@ class _Screen(io.StringIO):
 @pytest.fixture
 def typing(monkeypatch):
     """Run the demonstration on a terminal where these lines are typed, and no more; what it said."""
-    from course.cli.frame.terminal import console as module
+    from course.cli.frame import console as module
     from course.cli.setup.demo import demo
 
     def run(*lines, out=None, environ=None, **settings):

@@ -12,18 +12,16 @@ import shlex
 import shutil
 import sys
 import tomllib
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
 from course.cli.frame.app import _program
 from course.cli.frame.options import global_options
 from tests.journeys.conftest import ROOT, Way, _environment, in_turn
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 TABLE = tomllib.loads(Path(__file__).with_name("docs.toml").read_text("utf-8"))

@@ -13,19 +13,17 @@ import sys
 import zipfile
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from xml.etree import ElementTree as ET
 
 import pytest
 from packaging.requirements import Requirement
 
 from course.catalog.load import Catalog
-from course.notebooks.building.cells import document
-from course.notebooks.building.exercises import exercise_cells
+from course.catalog.models import Exercise
+from course.notebooks.build import exercise_cells
+from course.notebooks.cells import document
 from tests.journeys.conftest import ALL, ROOT, Way, in_turn
-
-if TYPE_CHECKING:
-    from course.catalog.models import Exercise
 
 CATALOG = Catalog()
 EXERCISES = CATALOG.exercises()

@@ -6,16 +6,13 @@ import signal
 import subprocess
 import sys
 import time
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from course.catalog.load import Catalog
 from tests.journeys.conftest import ROOT, Way, in_turn
 from tests.journeys.processes import left_running
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads the process table of Linux")
 

@@ -10,18 +10,15 @@ import os
 import select
 import sys
 import time
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 
 import pytest
 
-from course.authoring.exercises.variants import compose, mutant_files, solution_path
+from course.authoring.exercises.grading import compose, mutant_files, solution_path
 from course.catalog.load import Catalog
 from course.progress.workspace import Workspace
 from tests.unit.cli.reading.test_each_fact_once import repeated
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-    from pathlib import Path
 
 pty = pytest.importorskip("pty")
 LESSON = "numerical-integration"

@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 from course.catalog.load import Catalog
-from course.notebooks.building.stub import pieces
+from course.notebooks.build import pieces
 from course.scoring.judging.session import GradingSession, Submission
 
 ROOT = Path(__file__).resolve().parents[2]

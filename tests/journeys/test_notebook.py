@@ -10,21 +10,17 @@ import contextlib
 import json
 import os
 import time
+from collections.abc import Callable, Iterator
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import pytest
 
 from course.catalog.load import Catalog
-from course.notebooks.building.stub import pieces
-from tests.journeys.conftest import ROOT, in_turn
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from pathlib import Path
-
-    from course.catalog.models import Exercise
-    from tests.journeys.conftest import Way
+from course.catalog.models import Exercise
+from course.notebooks.build import pieces
+from tests.journeys.conftest import ROOT, Way, in_turn
 
 CATALOG = Catalog()
 EXERCISES = CATALOG.exercises()

@@ -6,18 +6,16 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
 from course.catalog.load import Catalog
-from course.notebooks.building.cells import document
-from course.notebooks.building.exercises import exercise_cells
+from course.notebooks.build import exercise_cells
+from course.notebooks.cells import document
 from tests.unit.notebooks.edits import edited, new_cell
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 ROOT = Path(__file__).resolve().parents[2]
 EXERCISE = Catalog().exercise("integrators")

@@ -13,7 +13,7 @@ from course.catalog import blocks as b
 from course.catalog.load import Catalog
 from course.catalog.markdown import read_blocks
 from course.notebooks.build import generate
-from course.notebooks.execute import executed
+from course.notebooks.server import executed
 
 MISSING = [name for name in ("nbclient", "ipykernel") if find_spec(name) is None]
 

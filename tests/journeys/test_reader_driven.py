@@ -9,17 +9,14 @@ import contextlib
 import os
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 
 from course.catalog.load import Catalog
 from course.progress.workspace import Workspace
 from tests.terminals import Terminal, needs_tmux
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 pytestmark = [pytest.mark.soak, needs_tmux]
 

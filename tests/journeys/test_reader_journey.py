@@ -11,18 +11,15 @@ import os
 import signal
 import sys
 import time
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
-from course.authoring.exercises.variants import compose, mutant_files, solution_path
+from course.authoring.exercises.grading import compose, mutant_files, solution_path
 from course.catalog.load import Catalog
 from course.progress.workspace import Workspace
 from tests.terminals import Terminal, needs_tmux
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
 
 pytestmark = [pytest.mark.soak, needs_tmux]
 

@@ -6,16 +6,12 @@ import json
 import shutil
 import zipfile
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 
 from course.catalog.load import Catalog
-from tests.journeys.conftest import ROOT, in_turn
+from tests.journeys.conftest import ROOT, Way, in_turn
 from tests.journeys.test_line_journey import Lines
-
-if TYPE_CHECKING:
-    from tests.journeys.conftest import Way
 
 CATALOG = Catalog()
 EXERCISES = CATALOG.exercises()

@@ -7,28 +7,314 @@ Blanks left by ``course author new``, hints, README, stub against solution, and 
 from __future__ import annotations
 
 import ast
+import math
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
 
-from course.authoring.exercises.checks import audit_checks
-from course.authoring.exercises.points import audit_points
-from course.authoring.exercises.slow import audit_slow
-from course.authoring.exercises.source import CheckSource, foreign_imports, parse, signatures
-from course.authoring.exercises.variants import instructors, solution_path, solutions_folder
-from course.catalog.models import Exercise
+from course.authoring.exercises.grading import (
+    accepted_files,
+    compose,
+    declared_checks,
+    exercise_graders,
+    instructors,
+    solution_path,
+    solutions_folder,
+)
+from course.authoring.exercises.source import (
+    DECIMAL,
+    CheckSource,
+    checks_in,
+    foreign_imports,
+    parse,
+    quoted_numbers,
+    signatures,
+)
+from course.authoring.report import Findings
+from course.catalog.load import Catalog
+from course.catalog.models import QUICK, Exercise
 from course.catalog.reading import read_document, read_text
 from course.errors import ContentError
+from course.progress.workspace import write_atomically
 from course.reading.parts import read_script
-from course.scoring.explain.words import FILE as WORDS
-from course.scoring.explain.words import read_words
+from course.scoring.explain.story import WORDS, read_words
+from course.scoring.judging.session import GradingSession, Submission, Terms
 
-if TYPE_CHECKING:
-    from pathlib import Path
+# ---
+# The audit of an exercise's checks as declared: titles, markers, points, and the words they show.
 
-    from course.authoring.report import Findings
-    from course.catalog.load import Catalog
 
-__all__ = ["BLANK", "audit_files", "exercise_folders", "find_blanks"]
+def audit_checks(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[CheckSource, ...]:
+    """Audit the checks of an exercise, public ones first, and return them.
+
+    Raises:
+        ContentError: a file is missing or is not Python.
+    """
+    checks = declared(catalog, exercise)
+    first: dict[str, CheckSource] = {}
+    for check in checks:
+        if check.id in first:
+            other = first[check.id].path.parent.name
+            _wrong(findings, check, "exists twice.", f"Rename it; the other is in {other}.")
+        first.setdefault(check.id, check)
+    for check in checks:
+        _audit_check(exercise, check, first, findings)
+    _audit_words(exercise, exercise_graders(catalog, exercise), findings)
+    return checks
+
+
+def declared(catalog: Catalog, exercise: Exercise) -> tuple[CheckSource, ...]:
+    """The checks of an exercise with their markers, public ones first.
+
+    Raises:
+        ContentError: a file is missing or is not Python.
+    """
+    public, hidden = exercise.checks_path, exercise_graders(catalog, exercise) / "checks.py"
+    checks = tuple(checks_in(public, parse(public), hidden=False))
+    if hidden.is_file() or not exercise.is_warm_up:
+        checks += tuple(checks_in(hidden, parse(hidden), hidden=True))
+    return _with_computed_marks(catalog, exercise, checks)
+
+
+def _with_computed_marks(
+    catalog: Catalog, exercise: Exercise, checks: tuple[CheckSource, ...]
+) -> tuple[CheckSource, ...]:
+    """Ask pytest for the values of markers that are not plain values in the source.
+
+    Not while a check lacks a marker or its docstring: then nothing can be collected, and that is reported.
+    """
+    complete = all(
+        check.title
+        and (check.task is not None or "task" in check.indirect)
+        and (check.points is not None or "points" in check.indirect)
+        for check in checks
+    )
+    if not complete or not any(check.indirect for check in checks):
+        return checks
+    known = declared_checks(exercise, catalog)
+    return tuple(
+        replace(
+            check, task=known[check.id].task, points=known[check.id].points, requires=known[check.id].requires
+        )
+        if check.id in known
+        else check
+        for check in checks
+    )
+
+
+def _audit_check(
+    exercise: Exercise, check: CheckSource, known: dict[str, CheckSource], findings: Findings
+) -> None:
+    """One check: its docstring, its markers, and what it depends on."""
+    if not check.title:
+        fix = "Start the function with a docstring of one line: what is true of right code."
+        _wrong(findings, check, "has no title.", fix)
+    if check.task is None:
+        if "task" not in check.indirect:
+            _wrong(findings, check, "has no task.", 'Mark it: @pytest.mark.task("name of the function").')
+    elif check.task not in {task.id for task in exercise.task}:
+        _wrong(
+            findings, check, f"belongs to a task {check.task!r} that does not exist.", "Correct the marker."
+        )
+    if check.points is None:
+        if "points" not in check.indirect:
+            _wrong(findings, check, "has no points.", "Mark it: @pytest.mark.points(2).")
+    elif not (check.points >= 0 and math.isfinite(check.points)):
+        _wrong(findings, check, "has no points that could be added up.", "Give it a number, 0 or more.")
+    for required in check.requires:
+        if required not in known:
+            _wrong(findings, check, f"requires {required!r}, which is not a check.", "Correct the marker.")
+        elif known[required].hidden and not check.hidden:
+            fix = "Let it depend on public checks alone: a student has no others."
+            _wrong(findings, check, f"is public and requires the hidden check {required}.", fix)
+    if check.id in _needed_for(check.requires, known):
+        _wrong(findings, check, "requires itself, by way of others.", "Remove one of the markers.")
+
+
+def _needed_for(ids: Iterable[str], known: dict[str, CheckSource]) -> set[str]:
+    """Every check that must pass first, directly or indirectly."""
+    needed: set[str] = set()
+    left = list(ids)
+    while left:
+        name = left.pop()
+        if name in known and name not in needed:
+            needed.add(name)
+            left += known[name].requires
+    return needed
+
+
+def _audit_words(exercise: Exercise, graders: Path, findings: Findings) -> None:
+    """The words of hidden checks contain no decimal number, unless the student already has it in a file."""
+    public = public_numbers(exercise)
+    for path in sorted(graders.glob("*.py")):
+        for line, number in quoted_numbers(parse(path)):
+            if number not in public:
+                findings.add(
+                    path,
+                    line,
+                    "leak",
+                    f"a text that a hidden check shows contains the number {number}.",
+                    "Say it in words; put values into input, expected and actual, which are not shown.",
+                )
+
+
+def public_numbers(exercise: Exercise) -> frozenset[str]:
+    """Decimal numbers in the student's files: showing them reveals nothing."""
+    files = [path for path in exercise.stub_path.parent.rglob("*") if path.suffix in {".py", ".md", ".toml"}]
+    return frozenset(match[0] for path in files for match in DECIMAL.finditer(read_text(path)))
+
+
+def _wrong(findings: Findings, check: CheckSource, message: str, fix: str) -> None:
+    findings.add(check.path, check.line, "check", f"check {check.id} {message}", fix)
+
+
+# ---
+# Sums over the checks of an exercise: written into ``exercise.toml``, and refused there when stale.
+#
+# A student's wheel has no hidden checks, so their number and points are data there. They are computed from
+# the markers of the checks, which say what each is worth.
+
+
+#: Decimals that are written: sums of markers such as 0.1 are exact to far more.
+_DIGITS = 9
+
+
+@dataclass(frozen=True, slots=True)
+class _Sum:
+    """A number of ``exercise.toml`` that follows from the checks.
+
+    Attributes:
+        where: its key, as steps from the top of the file.
+        about: its meaning, in words.
+        written, due: the value in the file, and the sum over the checks.
+    """
+
+    where: tuple[str | int, ...]
+    about: str
+    written: float
+    due: float
+
+    @property
+    def stale(self) -> bool:
+        """Whether another number is due."""
+        return round(self.written - self.due, _DIGITS) != 0
+
+
+def _sums(exercise: Exercise, checks: tuple[CheckSource, ...]) -> Iterator[_Sum]:
+    hidden = [check for check in checks if check.hidden]
+    yield _Sum(("hidden_checks",), "the hidden checks", exercise.hidden_checks, len(hidden))
+    points = sum(check.points or 0.0 for check in hidden)
+    yield _Sum(("hidden_points",), "the points of the hidden checks", exercise.hidden_points, points)
+    for index, task in enumerate(exercise.task):
+        points = sum(check.points or 0.0 for check in checks if check.task == task.id)
+        about = f"the points of task {task.id}, public and hidden,"
+        yield _Sum(("task", index, "points"), about, task.points, points)
+
+
+def audit_points(exercise: Exercise, checks: tuple[CheckSource, ...], findings: Findings) -> None:
+    """Report each number that differs from the sum over the checks."""
+    path = exercise.checks_path.with_name("exercise.toml")
+    lines = read_document(path, Exercise).lines
+    for one in _sums(exercise, checks):
+        if one.where[0] == "task" and not one.due:
+            task = exercise.task[int(one.where[1])].id
+            message, fix = (
+                f"no check gives task {task} a point.",
+                "Mark a check of it: @pytest.mark.points(2).",
+            )
+            findings.add(path, lines.line(one.where), "points", message, fix)
+        elif one.stale:
+            message = f"{one.about} come to {one.due:g}, and {one.written:g} is written here."
+            fix = f"Run `course author build {exercise.id}`."
+            findings.add(path, lines.line(one.where), "points", message, fix)
+
+
+def write_points(catalog: Catalog, exercise: Exercise) -> Path | None:
+    """Write the sums over the checks; None if they are there already.
+
+    Raises:
+        ContentError: a file is missing, is not Python, or a check lacks its markers.
+    """
+    path = exercise.checks_path.with_name("exercise.toml")
+    lines = read_document(path, Exercise).lines
+    text = read_text(path).split("\n")
+    stale = [
+        one
+        for one in _sums(exercise, declared(catalog, exercise))
+        if one.stale and (one.due or one.where[0] != "task")
+    ]
+    # From the bottom up, so that a line that is put in moves none that is still to be changed.
+    for one in sorted(stale, key=lambda one: lines.line(one.where), reverse=True):
+        key, at = str(one.where[-1]), lines.line(one.where) - 1
+        line = f"{key} = {round(one.due, _DIGITS):.{_DIGITS}g}"
+        if re.match(rf"\s*{key}\s*=", text[at]):
+            text[at] = re.sub(r"[^#]*?(?=\s*(#|$))", line, text[at], count=1)
+        else:
+            # It was left out: the last line above the first task.
+            last = next(i for i in range(lines.line(("task",)) - 2, 0, -1) if text[i].strip())
+            text.insert(last + 1, line)
+    if not stale:
+        return None
+    write_atomically(path, "\n".join(text).encode())
+    return path
+
+
+# ---
+# How long the slow public checks of an exercise take, measured and written into ``exercise.toml``.
+#
+# It determines how long ``course check`` waits for a function that may hang; see ``Exercise.patience``.
+
+
+#: A number is replaced once a check takes longer, or less than this share of it: times vary by two.
+_LEAST = 0.4
+
+
+def audit_slow(exercise: Exercise, checks: tuple[CheckSource, ...], findings: Findings) -> None:
+    """Report slow checks that do not exist."""
+    known = {check.id for check in checks if not check.hidden}
+    for check in sorted(exercise.slow.keys() - known):
+        path = exercise.checks_path.with_name("exercise.toml")
+        message, fix = f"there is no public check {check}.", f"Run `course author build {exercise.id}`."
+        findings.add(path, None, "slow", message, fix)
+
+
+def measured(catalog: Catalog, exercise: Exercise) -> dict[str, float]:
+    """The most CPU time that each public check takes of a right solution, in s."""
+    solution, most = solution_path(catalog, exercise), dict[str, float]()
+    sources = [solution.read_bytes(), *(compose(solution, one) for one in accepted_files(catalog, exercise))]
+    with GradingSession(exercise, catalog, terms=Terms(timeout=60.0)) as session:
+        for source in sources:
+            session.grade(Submission({exercise.module: source}))
+            for check, seconds in session.took.items():
+                most[check] = max(seconds, most.get(check, 0.0))
+    return most
+
+
+def due(written: dict[str, float], most: dict[str, float]) -> dict[str, float]:
+    """The value to write, from the present and the measured one: in tenths, rounded up."""
+    kept = {check: old for check, old in written.items() if _LEAST * old <= most.get(check, 0.0) <= old}
+    slow = {check: math.ceil(10 * seconds) / 10 for check, seconds in most.items() if seconds > QUICK}
+    return dict(sorted({**slow, **kept}.items()))
+
+
+def write_slow(catalog: Catalog, exercise: Exercise) -> Path | None:
+    """Measure, and write the new value; None if it is there already."""
+    slow = due(exercise.slow, measured(catalog, exercise))
+    if slow == exercise.slow:
+        return None
+    path = exercise.checks_path.with_name("exercise.toml")
+    text = re.sub(r"^slow = .*\n", "", read_text(path), flags=re.MULTILINE)
+    if slow:
+        line = ", ".join(f"{check} = {seconds:g}" for check, seconds in slow.items())
+        above, task, below = text.partition("\n[[task]]")
+        text = f"{above.rstrip()}\nslow = {{ {line} }}\n{task}{below}"
+    write_atomically(path, text.encode())
+    return path
+
+
+# ---
+
 
 #: The mark that ``course author new`` leaves where an author has to write.
 BLANK = re.compile(r"<<FILL IN:\s*(?P<what>.*?)>>")

@@ -3,30 +3,101 @@
 from __future__ import annotations
 
 import ast
+import traceback
+import types
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, TypeAlias
+from pathlib import Path
+from typing import Any, TypeAlias
 
 import msgspec
+import numpy as np
 
-from course.authoring.exercises.variants import solution_path
 from course.catalog.load import Catalog
+from course.catalog.models import Exercise
 from course.catalog.reading import read_text
+from course.errors import ContentError
 from course.grading.intake.students import Entry
 from course.grading.running.batch import Graders
 from course.grading.running.snapshot import Snapshot, frozen
-from course.scoring.checks.collected import CollectedChecks
-from course.scoring.explain.calls import reached_from
-from course.scoring.judging.session import Submission, check_files
-from course.scoring.judging.terms import Terms
+from course.isolation.failures import StudentFailure
+from course.isolation.inside import loops
+from course.physics.systems import SYSTEMS
+from course.scoring.checks.collected import Check, CollectedChecks
+from course.scoring.explain.fingerprint import reached_from
+from course.scoring.judging.session import Submission, Terms, check_files
+from course.scoring.values import Inspected, as_march, overwritten
+from course.scoring.verdict import Verdict
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+# ---
+# The submissions that prove an exercise: its stub, its solution, and the variants of the solution.
+#
+# A file in ``accepted/`` or ``mutants/`` holds only the definitions that differ. It is appended to the model
+# solution, so that its definitions win.
 
-    from course.catalog.models import Exercise
-    from course.scoring.checks.collected import Check
-    from course.scoring.verdict import Verdict
 
-__all__ = ["GradeSources", "declared_checks", "grade_sources"]
+def instructors(catalog: Catalog) -> tuple[Path, Path]:
+    """The folders of solutions and of hidden graders.
+
+    Raises:
+        MissingCapabilityError: this installation is a student's and has none.
+    """
+    return catalog.content.instructors()
+
+
+def solutions_folder(catalog: Catalog, exercise: Exercise) -> Path:
+    """Where the solutions of an exercise lie."""
+    return instructors(catalog)[0] / exercise.place
+
+
+def exercise_graders(catalog: Catalog, exercise: Exercise) -> Path:
+    """Where the hidden checks of an exercise lie; a warm-up has none."""
+    return instructors(catalog)[1] / exercise.place
+
+
+def solution_path(catalog: Catalog, exercise: Exercise) -> Path:
+    """The model solution."""
+    return solutions_folder(catalog, exercise) / exercise.module
+
+
+def accepted_files(catalog: Catalog, exercise: Exercise) -> tuple[Path, ...]:
+    """Correct but unusual variants, by name."""
+    return tuple(sorted((solutions_folder(catalog, exercise) / "accepted").glob("*.py")))
+
+
+def mutant_files(catalog: Catalog, exercise: Exercise) -> tuple[Path, ...]:
+    """Wrong variants, by name."""
+    return tuple(sorted((solutions_folder(catalog, exercise) / "mutants").glob("*.py")))
+
+
+def compose(solution: Path, variant: Path) -> bytes:
+    """The model solution with a variant's definitions put after it.
+
+    Raises:
+        ContentError: a file is missing, or the two together are not Python.
+    """
+    model, own = read_text(solution), read_text(variant)
+    if not own.lstrip().startswith(('"""', "#")):
+        raise ContentError(
+            variant, 1, "the file does not say what is unusual about it.", help="Start it with a docstring."
+        )
+    whole = f"{model.rstrip()}\n\n\n{own}"
+    try:
+        compile(whole, str(variant), "exec")
+    except (SyntaxError, ValueError) as error:
+        above = model.rstrip().count("\n") + 3
+        line = getattr(error, "lineno", None)
+        raise ContentError(
+            variant,
+            line - above if line and line > above else None,
+            f"the model solution with this appended is not valid Python: {getattr(error, 'msg', error)}.",
+            help="Keep only plain definitions in the file; __future__ imports belong into the solution.",
+        ) from None
+    return whole.encode("utf-8")
+
+
+# ---
+
 
 #: How many gradings of small exercises take as long as starting one more process.
 _WORTH_A_GRADER = 25
@@ -53,7 +124,7 @@ def grade_sources(
     Raises:
         CourseError: nothing can be graded here.
     """
-    from course.engines.machine import this_machine
+    from course.engines.results import this_machine
 
     if not sources:
         return
@@ -188,3 +259,204 @@ def declared_checks(exercise: Exercise, catalog: Catalog) -> dict[str, Check]:
         return {check.id: check for check in collected.checks}
     finally:
         collected.close()
+
+
+# ---
+# A submission run in this process, with the interface that checks use and no protection.
+#
+# It is only for the course's own programs: to find the diagnosis of every known wrong one, to calibrate
+# checks, and as the unprotected side of the benchmark. It reproduces what the boundary does to values (tuples
+# become lists, numpy scalars plain numbers, arrays are copied) so that a check cannot come to rely on
+# something that would not cross.
+
+
+_SYSTEM_TYPES = tuple(SYSTEMS.values())
+_FILE = "<submission>"
+
+
+class LocalSubmission:
+    """One student's module, loaded here.
+
+    Args:
+        source: text of the module.
+        seed: seed of the grading run.
+        replaced: functions to put in the place of the module's own, by name.
+    """
+
+    def __init__(self, source: str, seed: int = 0, replaced: Mapping[str, Any] | None = None) -> None:
+        self.seed = seed
+        self.returned: tuple[str, Any] | None = None
+        self.asked: set[str] = set()
+        self.marched = None
+        self.faults, self.without = (), None
+        self.used = 0.0
+        self.heard: list[Any] = []
+        self._module = types.ModuleType("submission")
+        exec(compile(source, _FILE, "exec", dont_inherit=True), self._module.__dict__)
+        self._module.__dict__.update(replaced or {})
+
+    @property
+    def functions(self) -> frozenset[str]:
+        """Names of what can be called."""
+        return frozenset(name for name, value in vars(self._module).items() if callable(value))
+
+    def begin_check(self, task: str = "", patience: float | None = None) -> None:  # noqa: ARG002 - of the interface
+        """Forget which functions the last check used; there is no deadline."""
+        self.asked = set()
+
+    def printed(self) -> str:
+        """Empty: its output goes to this process's own."""
+        return ""
+
+    def close(self) -> None:
+        """Nothing to end."""
+
+    def call(self, name: str, *args: Any, **kwargs: Any) -> Any:
+        """Call the student's function with copies of the arguments; its value as plain data."""
+        return self._inspect(name, args, kwargs).value
+
+    def call_inspect(self, name: str, *args: Any) -> Inspected:
+        """Call it, and report its value and its arguments after the call."""
+        return self._inspect(name, args, {})
+
+    def call_each(self, name: str, calls: Any) -> list[Any]:
+        """Call the student's function once for each sequence of arguments."""
+        function = self._function(name)
+        escaped: list[BaseException] = []
+        given = [[_given(arg, escaped) for arg in args] for args in calls]
+        values, changed = self._loop(lambda: loops.each(function, given), escaped)
+        if changed is not None:
+            raise overwritten(name)
+        return [_plain(value) for value in values]
+
+    def fold(self, name: str, state: Any, calls: Any, *, carry: int | None = None, keep: Any = None) -> Any:
+        """Pass a state through the student's function."""
+        function = self._function(name)
+        escaped: list[BaseException] = []
+        given = [[_given(arg, escaped) for arg in args] for args in calls]
+        values, last = self._loop(lambda: loops.fold(function, _plain(state), given, carry, keep), escaped)
+        return [_plain(value) for value in (values if keep is None else [*values[:-1], last])]
+
+    def ref(self, name: str) -> Any:
+        """The student's own function, to be passed back as an argument."""
+        return self._function(name)
+
+    def march(
+        self, step_name: str, system: Any, q0: Any, v0: Any, h: float, n: int, t0: float = 0.0
+    ) -> tuple[Any, Any, Any]:
+        """n steps in a row; times (n + 1,), positions and velocities (n + 1, d)."""
+        return self.march_each(step_name, [(system, q0, v0, h, n, t0)])[0]
+
+    def march_each(self, step_name: str, marches: Any) -> list[tuple[Any, Any, Any]]:
+        """Several marches, (system, q0, v0, h, n, t0) each."""
+        return [self._march(step_name, *march) for march in marches]
+
+    def _march(self, step_name: str, system: Any, q0: Any, v0: Any, h: float, n: int, t0: float) -> Any:
+        step = self._function(step_name)
+        q, v = as_march(_guarded(lambda: loops.march(step, system, q0, v0, t0, h, n)), n, len(q0))
+        return t0 + h * np.arange(n + 1), q, v
+
+    def _inspect(self, name: str, args: Any, kwargs: Any) -> Inspected:
+        function = self._function(name)
+        escaped: list[BaseException] = []
+        given = [_given(arg, escaped) for arg in args]
+        named = {key: _given(arg, escaped) for key, arg in kwargs.items()}
+        value = self._loop(lambda: function(*given, **named), escaped)
+        after = [
+            None if callable(arg) or isinstance(arg, np.random.Generator | loops.Methods) else _plain(arg)
+            for arg in given
+        ]
+        return Inspected(_plain(value), after, _shares(value, given))
+
+    def _loop(self, loop: Any, escaped: list[BaseException]) -> Any:
+        """The value of student code; a callback that refused its arguments is the finding."""
+        try:
+            result = _guarded(loop)
+        except StudentFailure:
+            if escaped:
+                raise escaped[0] from None
+            raise
+        if escaped:
+            raise escaped[0]
+        return result
+
+    def _function(self, name: str) -> Any:
+        self.asked.add(name)
+        function = getattr(self._module, name, None)
+        if not callable(function):
+            raise StudentFailure.missing(name)
+        return function
+
+
+def _guarded(fn: Any) -> Any:
+    """``fn()``, with the student code's exceptions as StudentFailure."""
+    try:
+        with np.errstate(all="ignore"):
+            return fn()
+    except BaseException as error:
+        if isinstance(error, KeyboardInterrupt):
+            raise
+        frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename == _FILE]
+        raise StudentFailure(
+            "error",
+            type=type(error).__name__,
+            message=str(error),
+            line=frames[-1].lineno if frames else None,
+            traceback="".join(traceback.format_list(frames)),
+            bases=[cls.__name__ for cls in type(error).__mro__],
+        ) from None
+
+
+def _given(value: Any, escaped: list[BaseException]) -> Any:
+    """An argument as student code gets it: arrays copied, tuples as lists, callbacks behind a wrapper."""
+    if isinstance(value, dict) and value.keys() == {"$methods"}:
+        return loops.Methods(**{name: _given(fn, escaped) for name, fn in value["$methods"].items()})
+    if isinstance(value, np.random.Generator):  # crosses as a seed
+        return np.random.default_rng(int(value.integers(2**62)))
+    if isinstance(value, _SYSTEM_TYPES) or not callable(value):
+        return _plain(value) if not isinstance(value, _SYSTEM_TYPES) else value
+
+    def callback(*args: Any, **kwargs: Any) -> Any:
+        try:
+            return _plain(value(*map(_crossing, args), **{k: _crossing(a) for k, a in kwargs.items()}))
+        except BaseException as error:  # noqa: BLE001 - whatever it is, the check raises it
+            escaped.append(error)
+            raise ValueError("the grader's function refused its arguments") from None
+
+    callback.original = value  # type: ignore[attr-defined]
+    return callback
+
+
+def _crossing(value: Any) -> Any:
+    """The form in which a value arrives at a callback; a callback that is passed back arrives unchanged."""
+    return getattr(value, "original", value) if callable(value) else _plain(value)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        if value.dtype.kind not in "fiubc":
+            raise StudentFailure("protocol", message=f"an array of dtype {value.dtype}")
+        return np.array(value)
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, dict):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    if callable(value):
+        return value
+    raise StudentFailure("protocol", message=f"a value of type {type(value).__name__}")
+
+
+def _arrays(value: Any) -> list[Any]:
+    if isinstance(value, np.ndarray):
+        return [value]
+    if isinstance(value, list | tuple):
+        return [array for item in value for array in _arrays(item)]
+    return []
+
+
+def _shares(value: Any, args: Any) -> bool:
+    return any(np.may_share_memory(a, b) for a in _arrays(value) for b in _arrays(args))

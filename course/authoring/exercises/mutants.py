@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
 
-from course.authoring.exercises.grading import GradeSources, grade_sources
-from course.authoring.exercises.variants import compose, solution_path, solutions_folder
+from course.authoring.exercises.grading import (
+    GradeSources,
+    compose,
+    grade_sources,
+    solution_path,
+    solutions_folder,
+)
+from course.authoring.report import Progress
+from course.catalog.load import Catalog
+from course.catalog.models import Exercise, Mutant
 from course.scoring.failures import OURS
-from course.scoring.verdict import Status
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from course.authoring.report import Progress
-    from course.catalog.load import Catalog
-    from course.catalog.models import Exercise, Mutant
-    from course.scoring.verdict import CheckResult, Verdict
+from course.scoring.verdict import CheckResult, Status, Verdict
 
 __all__ = ["Fault", "MutantOutcome", "judge", "mutant_path", "run_mutants"]
 

@@ -4,27 +4,22 @@ from __future__ import annotations
 
 import ast
 import copy
+import json
 import re
+import subprocess
 import sys
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
 
+from course.authoring.exercises.grading import exercise_graders, solutions_folder
+from course.authoring.report import Findings
+from course.catalog.load import Catalog
+from course.catalog.models import Exercise
 from course.catalog.reading import read_text
 from course.errors import ContentError
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
-
-__all__ = [
-    "CheckSource",
-    "Signature",
-    "checks_in",
-    "foreign_imports",
-    "parse",
-    "quoted_numbers",
-    "signatures",
-]
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -189,3 +184,38 @@ def _literal(expression: ast.expr) -> Any:
         return ast.literal_eval(expression)
     except ValueError:
         return _INDIRECT
+
+
+# ---
+# The audit of exercises' Python as ruff sees it, by the rules of the course they belong to.
+
+
+def audit_style(catalog: Catalog, exercises: Sequence[Exercise], findings: Findings) -> None:
+    """Report what ruff finds; nothing where it is not installed, or the course has no rules for it."""
+    root = catalog.content.root
+    if not exercises or not (root / "pyproject.toml").is_file() or find_spec("ruff") is None:
+        return
+    folders = [
+        folder
+        for exercise in exercises
+        for folder in (
+            exercise.readme_path.parent,
+            solutions_folder(catalog, exercise),
+            exercise_graders(catalog, exercise),
+        )
+    ]
+
+    def said(*arguments: str) -> str:
+        there = (str(folder) for folder in folders if folder.is_dir())  # a warm-up has no hidden checks
+        command = [sys.executable, "-m", "ruff", *arguments, *there]
+        return subprocess.run(command, cwd=root, capture_output=True, text=True, check=False).stdout
+
+    for one in json.loads(said("check", "--output-format", "json") or "[]"):
+        message = f"{one['message']} ({one['code']})."
+        fix = "Try `ruff check --fix`." if one["fix"] else "Change the line."
+        findings.add(one["filename"], one["location"]["row"], "style", message, fix)
+    for line in said("format", "--diff").splitlines():
+        if line.startswith(start := "--- "):
+            name = line.removeprefix(start)
+            message, fix = "it is not laid out as ruff lays it out.", f"Run `ruff format {name}`."
+            findings.add(root / name, None, "style", message, fix)

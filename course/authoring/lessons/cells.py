@@ -12,14 +12,12 @@ import io
 import re
 import traceback
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 from course.catalog import blocks as b
 from course.catalog.markdown import read_blocks
 from course.errors import ContentError
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 __all__ = ["CellRun", "LessonRun", "ValueRun", "as_written", "run_cells", "run_lesson", "update_outputs"]
 

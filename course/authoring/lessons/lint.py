@@ -8,15 +8,23 @@ from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
+from urllib.parse import unquote
 
+from course.authoring.lessons.cells import run_lesson
+from course.authoring.report import Findings
 from course.catalog import blocks as b
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
-
-__all__ = ["MAX_COLUMNS", "Finding", "findings"]
+from course.catalog.blocks import Block, Figure, Heading, Link, Text, slug, walk_blocks, walk_inlines
+from course.catalog.load import Catalog
+from course.catalog.markdown import read_blocks
+from course.catalog.models import Exercise, Lesson
+from course.catalog.questions import Question
+from course.catalog.reading import Document, LineMap, read_document, read_text, split_front_matter
+from course.errors import ContentError, UsageError
+from course.figures.registry import figure_ids
+from course.ids import LessonId
 
 #: Code, output and drawings are never wrapped; this is what 60 columns leave beside a margin of two.
 MAX_COLUMNS = 58
@@ -215,3 +223,249 @@ def _too_wide(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
             if widest > MAX_COLUMNS:
                 problem = f"{kind} {widest} columns wide"
                 yield Finding(line, problem, f"Break it: 60 columns leave room for {MAX_COLUMNS}.")
+
+
+# ---
+# Whether every link of the course works.
+#
+# Three kinds are checked: ``lesson:ID`` and ``exercise:ID``, which work wherever the course is installed;
+# ``#anchor`` alone or behind one of those; and files beside the text. Links to the web are left alone: the
+# course works offline, and so does its audit.
+
+
+_WEB = ("https://", "http://", "mailto:")
+
+
+class LinkChecker:
+    """Checks links of lessons and READMEs against one catalogue."""
+
+    def __init__(self, catalog: Catalog, findings: Findings) -> None:
+        self._catalog = catalog
+        self._findings = findings
+        self._anchors: dict[Path, frozenset[str]] = {}
+
+    def check_lesson(self, path: Path, blocks: tuple[Block, ...]) -> None:
+        """Every link in the text of a lesson."""
+        for _, inline in walk_inlines(blocks):
+            if isinstance(inline, Link):
+                self._check(path, inline.line, inline.target)
+
+    def check_readme(self, path: Path) -> None:
+        """Every link and picture in an ordinary Markdown file."""
+        for line, target in _links(read_text(path)):
+            self._check(path, line, target)
+
+    def check_reading(self, path: Path, exercise: Exercise) -> None:
+        """The sections to which an ``exercise.toml`` refers."""
+        lines = read_document(path, Exercise).lines
+        for index, task in enumerate(exercise.task):
+            if task.read:
+                self._check(path, lines.line(("task", index, "read")), f"lesson:{task.read}")
+
+    def check_question(self, document: Document[Question]) -> None:
+        """The section to which a quiz question refers."""
+        self._check(document.path, document.lines.line(("lesson",)), f"lesson:{document.value.lesson}")
+
+    def _check(self, path: Path, line: int | None, target: str) -> None:
+        problem = self._problem_with(path, target)
+        if problem:
+            self._findings.add(path, line, "link", f"the link {target!r} {problem[0]}", problem[1])
+
+    def _problem_with(self, path: Path, target: str) -> tuple[str, str] | None:
+        """A link's fault and the fix, or None."""
+        if target.startswith(_WEB):
+            return None
+        place, _, anchor = target.partition("#")
+        if place.startswith("lesson:"):
+            name, known = place.removeprefix("lesson:"), self._catalog.lesson_ids()
+            destination = self._catalog.content.lessons / f"{name}.md"
+        elif place.startswith("exercise:"):
+            catalog = self._catalog
+            name, known = (
+                place.removeprefix("exercise:"),
+                (*catalog.exercise_ids(), *catalog.warm_up_ids()),
+            )
+            destination = catalog.content.exercise_folder(name) / "README.md"
+        elif place:
+            return self._problem_with_file(path, unquote(place), anchor)
+        else:
+            return self._problem_with_anchor(path, anchor)
+        if name not in known:
+            return "leads to nothing: the id does not exist.", f"Known: {', '.join(known)}."
+        return self._problem_with_anchor(destination, anchor) if anchor else None
+
+    def _problem_with_file(self, path: Path, place: str, anchor: str) -> tuple[str, str] | None:
+        if ":" in place.split("/", maxsplit=1)[0]:
+            return (
+                "is of an unknown kind.",
+                "Use https://, lesson:ID, exercise:ID, or a file beside this one.",
+            )
+        destination = (path.parent / place).resolve()
+        if not destination.is_relative_to(path.parent.resolve()):
+            return (
+                "leaves its folder, which breaks where the course is installed.",
+                "Link with lesson:ID or exercise:ID.",
+            )
+        if not destination.exists():
+            return "leads to no file.", "Correct the name, or add the file."
+        if anchor and destination.suffix == ".md":
+            return self._problem_with_anchor(destination, anchor)
+        return None
+
+    def _problem_with_anchor(self, path: Path, anchor: str) -> tuple[str, str] | None:
+        if path not in self._anchors:
+            try:
+                self._anchors[path] = _anchors(path, lesson=path.parent == self._catalog.content.lessons)
+            except ContentError:
+                return None  # that file has a problem of its own, which is reported where it is read
+        if anchor in self._anchors[path]:
+            return None
+        known = ", ".join(sorted(self._anchors[path])) or "none"
+        return "names a heading that does not exist.", f"Headings of {path.name}: {known}."
+
+
+def _anchors(path: Path, *, lesson: bool) -> frozenset[str]:
+    if lesson:
+        return frozenset(
+            slug(block) for block in walk_blocks(read_blocks(path)) if isinstance(block, Heading)
+        )
+    from markdown_it import MarkdownIt
+
+    tokens = MarkdownIt("commonmark").enable("table").parse(read_text(path))
+    return frozenset(
+        slug(Heading(line=1, level=2, inlines=(Text(_words(tokens[index + 1].children or [])),)))
+        for index, token in enumerate(tokens)
+        if token.type == "heading_open"
+    )
+
+
+def _words(children: list) -> str:  # type: ignore[type-arg]  # tokens of a library that is imported late
+    return "".join(child.content for child in children if child.type in {"text", "code_inline"})
+
+
+def _links(text: str) -> Iterator[tuple[int | None, str]]:
+    """Line and target of each link and picture of a Markdown text."""
+    from markdown_it import MarkdownIt
+
+    parser = MarkdownIt("commonmark").enable("table")
+    parser.validateLink = lambda url: True  # type: ignore[method-assign]  # noqa: ARG005 - judged here instead
+    line: int | None = None
+    for token in parser.parse(text):
+        if token.map:
+            line = token.map[0] + 1
+        if token.type != "inline":
+            continue
+        below = 0
+        for child in token.children or []:
+            below += child.type in {"softbreak", "hardbreak"}
+            target = child.attrGet("href") or child.attrGet("src")
+            if target:
+                yield (line + below if line else None), str(target)
+
+
+# ---
+# The audit of lessons.
+#
+# The syllabus and the files agree, the heads name what exists, texts parse, links work, and every quoted or
+# printed number is what the lesson's own code gives.
+
+
+def audit_syllabus(catalog: Catalog, findings: Findings) -> None:
+    """Every lesson file is listed and every listed lesson has a file."""
+    syllabus = catalog.content.syllabus
+    listed = catalog.lesson_ids()
+    lines = LineMap(read_text(syllabus))
+    for index, lesson_id in enumerate(listed):
+        if not (catalog.content.lessons / f"{lesson_id}.md").is_file():
+            findings.add(
+                syllabus,
+                lines.line(("lessons", index)),
+                "syllabus",
+                f"lesson {lesson_id} has no file.",
+                f"Write {lesson_id}.md beside the syllabus, or remove the line.",
+            )
+    for path in sorted(catalog.content.lessons.glob("*.md")):
+        if path.stem not in listed:
+            findings.add(
+                path,
+                None,
+                "syllabus",
+                "the syllabus does not list this lesson.",
+                f'Add "{path.stem}" to `lessons` in {syllabus.name}.',
+            )
+
+
+def audit_lesson(catalog: Catalog, lesson_id: str, findings: Findings, links: LinkChecker) -> None:
+    """One lesson: its head, its text and its links."""
+    path = catalog.content.lessons / f"{lesson_id}.md"
+    try:
+        LessonId(lesson_id)
+        lesson = catalog.read_lesson(lesson_id)
+        _audit_head(catalog, path, lesson, findings)
+        blocks = read_blocks(path)
+        links.check_lesson(path, blocks)
+        _audit_figures(path, blocks, findings)
+        _audit_numbers(path, findings)
+    except UsageError as error:
+        findings.add(path, None, "content", error.message, error.help)
+    except ContentError as error:
+        findings.add_error(error)
+
+
+def _audit_head(catalog: Catalog, path: Path, lesson: Lesson, findings: Findings) -> None:
+    lines = LineMap(split_front_matter(read_text(path), path).toml, first_line=2)
+    order = catalog.lesson_ids()
+    place = order.index(lesson.id) if lesson.id in order else len(order)
+    for index, earlier in enumerate(lesson.before):
+        if earlier not in order[:place]:
+            findings.add(
+                path,
+                lines.line(("before", index)),
+                "lesson",
+                f"lesson {earlier} does not come before this one in the syllabus.",
+                "Correct the id, or change the order of the syllabus.",
+            )
+    for index, exercise_id in enumerate(lesson.exercises):
+        if exercise_id not in catalog.exercise_ids():
+            findings.add(
+                path,
+                lines.line(("exercises", index)),
+                "lesson",
+                f"there is no exercise {exercise_id}.",
+                f"Known: {', '.join(catalog.exercise_ids())}.",
+            )
+
+
+def _audit_figures(path: Path, blocks: tuple[Block, ...], findings: Findings) -> None:
+    for block in walk_blocks(blocks):
+        if isinstance(block, Figure) and block.id not in figure_ids():
+            findings.add(
+                path,
+                block.line,
+                "lesson",
+                f"there is no figure {block.id}.",
+                f"Known: {', '.join(figure_ids())}.",
+            )
+
+
+def _audit_numbers(path: Path, findings: Findings) -> None:
+    """Recorded output and quoted numbers agree with the cells."""
+    run = run_lesson(path)
+    for cell in run.cells:
+        if not cell.agrees:
+            findings.add(
+                path,
+                cell.cell.output_line or cell.cell.line,
+                "lesson",
+                f"the code cell prints {cell.printed!r}, and the lesson records {cell.cell.output!r}.",
+                "Put what it prints into the output block below the cell.",
+            )
+    for quoted in run.values:
+        if not quoted.agrees:
+            findings.add(
+                path,
+                quoted.value.line,
+                "lesson",
+                f"the text says {quoted.value.text}, and {quoted.value.expression} gives {quoted.computed}.",
+                "Correct the text, or the code if the text is right.",
+            )

@@ -2,60 +2,146 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from course.authoring import scaffold
 from course.authoring.audit import audit
-from course.authoring.exercises.kill_table import kill_table
-from course.authoring.exercises.mutants import run_mutants
-from course.authoring.exercises.variants import instructors
+from course.authoring.coverage import Coverage, as_markdown, check_coverage, read_coverage, written_to
+from course.authoring.exercises.grading import instructors
+from course.authoring.exercises.mutants import MutantOutcome, run_mutants
+from course.authoring.exercises.proofs import kill_table
 from course.authoring.packing import write_pack
-from course.catalog.models import CourseRef
-from course.cli.author.coverage import counted, coverage, shown
+from course.authoring.report import AuditProblem, AuditReport
+from course.catalog.load import Catalog
+from course.catalog.models import CourseRef, Exercise
 from course.cli.author.pictures import pictures
 from course.cli.author.replies import (
     AuthorCheck,
+    AuthorCoverage,
     AuthorMutants,
     AuthorNew,
     AuthorPack,
     AuthorProblem,
+    CoverageRow,
     MutantRow,
 )
-from course.cli.frame import files
+from course.cli.frame import here
 from course.cli.frame.completion import exercise_ids, lesson_ids
+from course.cli.frame.console import Console, current, meter
 from course.cli.frame.here import load_catalog
-from course.cli.frame.terminal.console import Console, current
-from course.cli.frame.terminal.meter import meter
+from course.cli.frame.registry import COMMANDS
 from course.errors import ContentError, UsageError
 from course.progress.workspace import write_atomically
 from course.sandbox.scene.loading import scene_ids
-from course.scoring.numbers import in_points
+from course.scoring.verdict import in_points
+from course.simulations.registry import SIMULATIONS
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+# ---
+# ``course author coverage``: where the course has each part of the chapter it grew out of.
 
-    from course.authoring.exercises.mutants import MutantOutcome
-    from course.authoring.report import AuditReport
-    from course.catalog.load import Catalog
-    from course.catalog.models import Exercise
 
-__all__ = [
-    "app",
-    "build",
-    "check",
-    "coverage",
-    "mutants",
-    "new_exercise",
-    "new_lesson",
-    "new_question",
-    "new_scene",
-    "new_warm_up",
-    "pack",
-    "pictures",
-]
+def coverage(
+    write: Annotated[bool, typer.Option("--write", help="Write docs/coverage.md again.")] = False,
+) -> int:
+    """Show where the course covers each part of the chapter that it is based on.
+
+    Lists the chapter's headings, objectives, examples, exercises and questions, each with its place in the
+    course and one word on how it is covered. Exit code 1 if a part or a place is missing.
+    """
+
+    console, catalog = current(), load_catalog()
+    document = read_coverage(catalog)
+    problems = check_coverage(document, catalog, is_command)
+    table, page = document.value, None
+    if write and not problems:
+        page = written_to(catalog)
+        page.write_text(as_markdown(table), encoding="utf-8")
+    _show_coverage(console, table, problems)
+    if page:
+        console.note(f"Wrote {shown(page, catalog)}.")
+    _emit_coverage(console, table, problems, shown(page, catalog) if page else None)
+    return 1 if problems else 0
+
+
+def _show_coverage(console: Console, table: Coverage, problems: tuple[AuditProblem, ...]) -> None:
+    for section in table.section:
+        console.heading(section.title)
+        rows = [(part.what, part.word, ", ".join(part.where)) for part in section.parts]
+        console.table(("part", "word", "where"), rows)
+        console.blank()
+    for problem in problems:
+        console.line((problem.where, "bold"))
+        console.line(problem.message, indent=2)
+        console.line((problem.fix, "dim"), indent=2)
+    found = counted(len(problems), "problem") if problems else "none is missing"
+    console.line(f"{counted(len(table.parts), 'part')}, {table.source_lines} lines: {found}.")
+
+
+def _emit_coverage(
+    console: Console, table: Coverage, problems: tuple[AuditProblem, ...], written: str | None
+) -> None:
+    parts = [
+        CoverageRow(
+            section=section.title,
+            lines=part.lines,
+            kind=section.kind,
+            what=part.what,
+            word=part.word,
+            where=part.where,
+        )
+        for section in table.section
+        for part in section.parts
+    ]
+    console.emit(
+        AuthorCoverage(
+            ok=not problems,
+            exit_code=1 if problems else 0,
+            source_lines=table.source_lines,
+            parts=tuple(parts),
+            written=written,
+            problems=tuple(AuthorProblem(p.file, p.line, p.code, p.message, p.fix) for p in problems),
+        )
+    )
+
+
+def is_command(words: tuple[str, ...]) -> bool:
+    """Whether ``course`` followed by these words is a command.
+
+    Simulations count as words of ``sim run``, exercises that ask for prose as one of ``reflect``.
+    """
+    from importlib import import_module
+
+    entry = COMMANDS.get(words[0]) if words else None
+    if words[:1] == ("reflect",) and len(words) == 2:
+        catalog = load_catalog()
+        return words[1] in catalog.exercise_ids() and catalog.exercise(words[1]).rubric_path.is_file()
+    if entry is None or (not entry.is_group and len(words) > 1):
+        return False
+    if len(words) == 1:
+        return True
+    group = typer.main.get_group(import_module(f"course.cli.{entry.module}").app)
+    if words[1] not in group.commands:
+        return False
+    return all(word in (*SIMULATIONS, "--all") for word in words[2:])
+
+
+def shown(path: Path, catalog: Catalog) -> str:
+    """A path relative to the checkout."""
+    root = catalog.content.root
+    return path.relative_to(root).as_posix() if path.is_relative_to(root) else str(path)
+
+
+def counted(number: int, word: str) -> str:
+    """A number and its noun, in the plural where it needs one."""
+    return f"{number} {word}" if number == 1 else f"{number} {word}s"
+
+
+# ---
+
 
 _HELP = {"help_option_names": ["-h", "--help"]}
 
@@ -324,12 +410,11 @@ def build(
     With --confusion each wrong program is graded, at home and as in a grading run, and its diagnoses are kept
     beside the solution for docs/graders.md.
     """
-    from course.authoring.exercises.diagnosis import build as desk
-    from course.authoring.exercises.kill_table import write_page
-    from course.authoring.exercises.points import write_points
-    from course.authoring.exercises.slow import write_slow
+    from course.authoring.exercises import diagnosis as desk
+    from course.authoring.exercises.files import write_points, write_slow
+    from course.authoring.exercises.proofs import write_page
     from course.cli.author.replies import AuthorBuild
-    from course.scoring.explain.table import read_table
+    from course.scoring.explain.story import read_table
 
     console, catalog = current(), load_catalog()
     instructors(catalog)
@@ -346,7 +431,7 @@ def build(
     made += [write_slow(catalog, exercise) for exercise in chosen]
     written = [shown(path, catalog) for path in made if path]
     if confusion:
-        from course.authoring.exercises.diagnosis.confusion import confusion_of, write_confusion
+        from course.authoring.exercises.diagnosis import confusion_of, write_confusion
 
         for exercise in chosen:
             if exercise.readme_path.with_name("diagnoses.toml").is_file() and not exercise.is_warm_up:
@@ -422,7 +507,7 @@ def mutants(
 
 
 def _write_table(console: Console, catalog: Catalog, path: Path) -> None:
-    full = files.target(path, "--table", ("md",))
+    full = here.target(path, "--table", ("md",))
     write_atomically(full, kill_table(catalog).encode())  # generated, and under version control: no copy
     console.line(f"Wrote {full}")
 

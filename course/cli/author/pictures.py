@@ -12,19 +12,17 @@ import os
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from course.cli.author.replies import AuthorPictures
+from course.cli.frame.console import current
 from course.cli.frame.here import load_catalog
-from course.cli.frame.terminal.console import current
 from course.errors import InternalError
 from course.progress.workspace import write_atomically
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 __all__ = ["PICTURES", "pictures"]
 
@@ -119,7 +117,7 @@ def _diagnosis() -> bytes:
 
 def _film_source() -> bytes:
     """Where everything was, and how it is drawn."""
-    import course.sandbox.runs.film as drawing
+    import course.sandbox.runs.recording as drawing
 
     with tempfile.TemporaryDirectory(prefix="course-pictures-") as folder:
         table = Path(folder) / "run.csv"

@@ -2,29 +2,205 @@
 
 from __future__ import annotations
 
+import csv
+import io
+import math
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Any
 
+import msgspec
 import typer
 
-from course.cli.engines import files as engines_files
-from course.cli.engines.files import rows
-from course.cli.engines.replies import Engine, EngineList, EngineMachine, Engines, EngineScenario
-from course.cli.frame import files
+from course.cli.frame import here
 from course.cli.frame.completion import engine_ids, scenario_ids
-from course.cli.frame.terminal.console import current
-from course.cli.frame.terminal.meter import meter
+from course.cli.frame.console import Console, current, meter
+from course.cli.frame.here import inserted
+from course.cli.frame.replies import Envelope, WrittenFile
 from course.engines.registry import ENGINES
+from course.engines.results import Comparison, EngineState
 from course.errors import MissingCapabilityError, UsageError
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+# ---
+# The replies of ``course engines ... --json``, as types.
 
-    from course.cli.frame.replies import WrittenFile
-    from course.cli.frame.terminal.console import Console
-    from course.engines.results import Comparison, EngineState
 
-__all__ = ["app", "compare", "list_engines"]
+class Engine(msgspec.Struct, frozen=True, kw_only=True):
+    """One engine. ``usable`` is "installed and it starts"; ``command`` installs what is missing."""
+
+    id: str
+    name: str
+    package: str
+    version: str | None
+    extra: str
+    licence: str
+    about: str
+    usable: bool
+    missing: str
+    command: str
+
+
+class EngineScenario(msgspec.Struct, frozen=True, kw_only=True):
+    """One scenario; ``truth`` is None where nothing is true or false, "inf" for "any speed"."""
+
+    id: str
+    title: str
+    question: str
+    quantity: str
+    unit: str
+    truth: float | None
+    source: str
+
+
+class EngineList(Envelope, tag="course.engines-list/1", frozen=True, kw_only=True):
+    engines: tuple[Engine, ...]
+    scenarios: tuple[EngineScenario, ...]
+
+
+class EngineMachine(msgspec.Struct, frozen=True, kw_only=True):
+    """Where and, for the reference, when it was measured."""
+
+    cpu: str
+    system: str
+    cores: int
+    python: str
+    measured: str = ""
+
+
+class EngineRow(msgspec.Struct, frozen=True, kw_only=True):
+    """One engine in one scenario.
+
+    ``setting`` is "default" or "tuned"; ``origin`` "measured", "cached" or "reference" (another machine).
+    ``status`` is "ok" or why there is no value: not_installed, unavailable, crash, deadline, diverged,
+    not_applicable, failed. ``samples`` are what ``value`` is the mean or median of: one for each phase of the
+    step or each start. ``best`` marks what is nearest the truth among those measured on this machine.
+    """
+
+    engine: str
+    scenario: str
+    setting: str
+    dt: float
+    status: str
+    value: float | None
+    truth: float | None
+    error: float | None
+    unit: str
+    best: bool
+    message: str
+    origin: str
+    measured: str
+    version: str
+    options: dict[str, Any]
+    why: tuple[str, ...]
+    samples: tuple[float, ...]
+    repeats: int
+    spread: float
+    details: dict[str, Any]
+
+
+class Engines(Envelope, tag="course.engines/1", frozen=True, kw_only=True):
+    """One comparison. ``reference`` is None unless rows of it are shown."""
+
+    machine: EngineMachine
+    reference: EngineMachine | None
+    quick: bool
+    engines: tuple[Engine, ...]
+    scenarios: tuple[EngineScenario, ...]
+    rows: tuple[EngineRow, ...]
+    findings: tuple[str, ...]
+    plots: tuple[WrittenFile, ...] = ()
+    csv: WrittenFile | None = None
+
+
+# ---
+# The files that ``course engines compare`` writes, and its rows as data.
+
+
+_COLUMNS = (
+    "engine",
+    "version",
+    "scenario",
+    "setting",
+    "dt",
+    "status",
+    "value",
+    "truth",
+    "error",
+    "unit",
+    "best",
+    "origin",
+    "measured",
+    "repeats",
+    "spread",
+    "message",
+)
+
+
+def rows(comparison: Comparison) -> tuple[EngineRow, ...]:
+    """Every row with its truth, its error and whether it is the best of its column."""
+    from course.cli.engines.screen import best_rows
+    from course.engines.scenarios import SCENARIOS
+
+    best = best_rows(comparison.rows)
+    made = []
+    for row in comparison.rows:
+        scenario = SCENARIOS[row.scenario]
+        made.append(
+            EngineRow(
+                engine=row.engine,
+                scenario=row.scenario,
+                setting=row.setting,
+                dt=row.dt,
+                status=row.status,
+                value=row.value,
+                truth=scenario.truth,
+                error=None if row.value is None else scenario.error(row.value),
+                unit=scenario.unit,
+                best=id(row) in best,
+                message=row.message,
+                origin=row.origin,
+                measured=row.measured,
+                version=row.version,
+                options=row.options,
+                why=row.why,
+                samples=row.samples,
+                repeats=row.repeats,
+                spread=row.spread,
+                details=row.details,
+            )
+        )
+    return tuple(made)
+
+
+def table(comparison: Comparison) -> bytes:
+    """All rows as CSV: a line of names, then every digit."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(_COLUMNS)
+    for row in rows(comparison):
+        writer.writerow(_plain(getattr(row, column)) for column in _COLUMNS)
+    return text.getvalue().encode()
+
+
+def _plain(value: object) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, float) and math.isinf(value):
+        return "inf"
+    return repr(value) if isinstance(value, float) else str(value)
+
+
+def figures(comparison: Comparison, path: Path) -> list[tuple[Path, bytes]]:
+    """The figures that can be drawn from the rows, each with the name of its file."""
+    from course.figures.engines import render
+
+    kind = path.suffix.lower().removeprefix(".")
+    pictures = render(comparison.rows, kind)
+    return [(inserted(path, name), data) for name, data in pictures.items()]
+
+
+# ---
+
 
 app = typer.Typer(
     help="Compare real physics engines on this machine.",
@@ -45,7 +221,7 @@ def list_engines() -> int:
     engine the list shows the command that installs it.
     """
     from course.engines.compare import state_of
-    from course.engines.scenarios.scenario import SCENARIOS
+    from course.engines.scenarios import SCENARIOS
 
     console = current()
     with console.working("Starting each engine"):
@@ -105,8 +281,8 @@ def compare(
     from course.engines.findings import findings
 
     console = current()
-    plot = files.target(plot, "--plot", files.FORMATS) if plot else None
-    csv = files.target(csv, "--csv", ("csv",)) if csv else None
+    plot = here.target(plot, "--plot", here.FORMATS) if plot else None
+    csv = here.target(csv, "--csv", ("csv",)) if csv else None
     request = Request(
         tuple(engine or ()), tuple(scenario or ()), tuple(map(_step, dt or ())), repeat, quick, fresh
     )
@@ -129,16 +305,16 @@ def _write(
     plots: tuple[WrittenFile, ...] = ()
     if plot:
         with console.working("Drawing"):
-            pictures = engines_files.figures(comparison, plot)
-        plots = tuple(files.write(path, data, why="engines") for path, data in pictures)
+            pictures = figures(comparison, plot)
+        plots = tuple(here.write(path, data, why="engines") for path, data in pictures)
         if not plots:
             console.line("No figure: steps need three values of --dt, speed needs boxes and stack.")
-    table = files.write(csv, engines_files.table(comparison), why="engines") if csv else None
-    for file in (*plots, *([table] if table else [])):
+    rows = here.write(csv, table(comparison), why="engines") if csv else None
+    for file in (*plots, *([rows] if rows else [])):
         if file.backup:
             console.line(f"There was a file of that name; it is kept at {file.backup.backup}.")
         console.line(f"Wrote {file.path}")
-    return plots, table
+    return plots, rows
 
 
 def _step(text: str) -> float:
@@ -175,7 +351,7 @@ def _engine(state: EngineState) -> Engine:
 
 
 def _scenarios(ids: Iterable[str]) -> tuple[EngineScenario, ...]:
-    from course.engines.scenarios.scenario import SCENARIOS
+    from course.engines.scenarios import SCENARIOS
 
     return tuple(
         EngineScenario(

@@ -3,18 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping, Sequence
 
+from course.cli.frame.console import Console
 from course.engines.registry import ENGINES
-from course.engines.results import DEFAULT, TUNED
-from course.engines.scenarios.scenario import BOXES, SCENARIOS
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
-
-    from course.cli.frame.terminal.console import Console
-    from course.engines.results import Comparison, Row, Setting
-    from course.engines.scenarios.scenario import Scenario
+from course.engines.results import DEFAULT, TUNED, Comparison, Row, Setting
+from course.engines.scenarios import BOXES, SCENARIOS, Scenario
 
 __all__ = ["best_rows", "number", "show"]
 

@@ -9,21 +9,22 @@ import contextlib
 import gc
 import io
 import os
+import platform
 import signal
 import sys
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+import tempfile
+import traceback
+from collections.abc import Callable, Sequence
+from datetime import UTC, datetime
+from typing import Annotated, Any, NoReturn
 
 import typer
 
+from course import __version__
+from course.cli.frame.console import Console, current, install
 from course.cli.frame.options import Line, global_options
 from course.cli.frame.registry import HOME, LazyGroup, build, find
-from course.cli.frame.terminal.console import Console, current, install
 from course.errors import CourseError, NotFoundError, UsageError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-__all__ = ["again", "main", "run"]
 
 INTERRUPTED = 130
 OUR_FAULT = 70
@@ -227,8 +228,29 @@ def _usage(console: Console, line: Line, error: Any) -> int:
 
 def _crash(console: Console, line: Line, error: BaseException) -> int:
     """Our fault: the details go to a file, one line to the screen."""
-    from course.cli.frame.crash import write_report
 
     where = write_report(error)
     message = f"A fault in the course, not in your work ({type(error).__name__}); the details are in {where}."
     return _say(console, line, OUR_FAULT, "internal", message)
+
+
+# ---
+# A report of a crash: everything needed to look for the fault, in a file, for the person to send or not.
+
+
+def write_report(error: BaseException) -> str:
+    """Write the report and return its path; if even that fails, a phrase that says so."""
+    lines = [
+        f"course {__version__}, Python {platform.python_version()}, {platform.platform()}",
+        f"when: {datetime.now(UTC).isoformat(timespec='seconds')}",
+        f"command: {sys.argv!r}",
+        "",
+        *traceback.format_exception(error),
+    ]
+    try:
+        handle, path = tempfile.mkstemp(prefix="course-crash-", suffix=".txt")
+        with os.fdopen(handle, "w", encoding="utf-8", errors="backslashreplace") as file:
+            file.write("\n".join(lines))
+    except OSError as problem:
+        return f"no file, because none could be written ({problem.strerror or problem})"
+    return path

@@ -3,31 +3,11 @@
 from __future__ import annotations
 
 import ast
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Annotated, Any
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
-    from pathlib import Path
-
-__all__ = [
-    "check_ids",
-    "choice_of",
-    "engine_ids",
-    "exercise_ids",
-    "grade_lists",
-    "lesson_ids",
-    "notebook_ids",
-    "run_numbers",
-    "scenario_ids",
-    "scene_ids",
-    "scene_settings",
-    "simulation_ids",
-    "simulation_settings",
-    "student_ids",
-    "submitted_ids",
-    "task_ids",
-    "warm_up_ids",
-]
+import typer
 
 
 def choice_of(*values: str) -> Callable[[str], list[str]]:
@@ -93,7 +73,7 @@ def engine_ids(incomplete: str) -> list[str]:
 
 def scenario_ids(incomplete: str) -> list[str]:
     """Scenarios of the engine comparison whose id begins with what was typed."""
-    from course.engines.scenarios.scenario import SCENARIOS
+    from course.engines.scenarios import SCENARIOS
 
     return _beginning(incomplete, SCENARIOS)
 
@@ -225,3 +205,39 @@ def grade_lists(incomplete: str) -> list[str]:
     """Grades that a student gives, joined by commas: what was typed with the next one."""
     before, comma, last = incomplete.rpartition(",")
     return [f"{before}{comma}{grade}" for grade in ("yes", "partly", "no") if grade.startswith(last)]
+
+
+# ---
+# Arguments that several commands share.
+
+
+#: An exercise, or the one the folder is of, or the one last worked on; or the path of its file.
+ExerciseName = Annotated[
+    str | None,
+    typer.Argument(
+        metavar="EXERCISE",
+        help="Its id, its number, or its file; the one last worked on if left out.",
+        autocompletion=exercise_ids,
+    ),
+]
+
+#: An exercise that must be named.
+OneExercise = Annotated[
+    str, typer.Argument(metavar="EXERCISE", help="Its id or its number.", autocompletion=exercise_ids)
+]
+
+#: A lesson, or the next unread one.
+LessonName = Annotated[
+    str | None,
+    typer.Argument(
+        metavar="ID",
+        help="Its id or its number, and perhaps #SECTION; the next unread one if left out.",
+        autocompletion=lesson_ids,
+    ),
+]
+
+#: A warm-up, or all of them.
+WarmUpName = Annotated[
+    str | None,
+    typer.Argument(metavar="ID", help="Its id; a list of all if left out.", autocompletion=warm_up_ids),
+]

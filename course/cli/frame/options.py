@@ -6,13 +6,10 @@ ends the search: what follows it is data.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-from course.cli.frame.terminal.console import Settings
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+from course.cli.frame.console import Settings
 
 __all__ = ["Line", "global_options"]
 

@@ -53,16 +53,16 @@ COMMANDS: dict[str, Entry] = {
         "reading.commands", "lesson", LEARN, "Read a lesson.", "course lesson numerical-integration"
     ),
     "warmup": Entry(
-        "reading.warming", "warmup", LEARN, "Do a lesson's small tasks.", "course warmup fall-time"
+        "reading.commands", "warmup", LEARN, "Do a lesson's small tasks.", "course warmup fall-time"
     ),
-    "exercises": Entry("home.listing", "exercises", LEARN, "List the exercises.", "course exercises"),
+    "exercises": Entry("home.overview", "exercises", LEARN, "List the exercises.", "course exercises"),
     "next": Entry("home.going", "next_command", LEARN, "Say what is next.", "course next"),
     "go": Entry("home.going", "go", LEARN, "Go on from where you stopped.", "course go"),
     "quiz": Entry(
         "quiz.commands", "app", LEARN, "Answer the quiz, and review what was missed.", "course quiz take"
     ),
     "sim": Entry(
-        "sim.commands", "app", LEARN, "Run a simulation and compare with theory.", "course sim run free-fall"
+        "sim", "app", LEARN, "Run a simulation and compare with theory.", "course sim run free-fall"
     ),
     "sandbox": Entry(
         "sandbox.commands",
@@ -79,21 +79,21 @@ COMMANDS: dict[str, Entry] = {
         "course engines compare --quick",
     ),
     "notebook": Entry(
-        "notebook.commands",
+        "notebook",
         "app",
         LEARN,
         "Get lessons and exercises as Jupyter notebooks.",
         "course notebook build integrators",
     ),
     "open": Entry(
-        "notebook.opening",
+        "notebook",
         "open_notebook",
         LEARN,
         "Open a notebook in JupyterLab.",
         "course open integrators",
     ),
     "start": Entry(
-        "work.starting", "start", WORK, "Put an exercise into the workspace.", "course start integrators"
+        "work.changing", "start", WORK, "Put an exercise into the workspace.", "course start integrators"
     ),
     "check": Entry("work.checking", "check", WORK, "Run the public checks.", "course check integrators"),
     "watch": Entry("work.watching", "watch", WORK, "Check again on every save.", "course watch integrators"),
@@ -109,7 +109,7 @@ COMMANDS: dict[str, Entry] = {
         "course report sim-to-real",
     ),
     "reflect": Entry(
-        "work.reflecting",
+        "work.hinting",
         "reflect",
         WORK,
         "Answer in prose, and grade your answer.",
@@ -133,7 +133,7 @@ COMMANDS: dict[str, Entry] = {
         "work.submitting", "submit", KEEP, "Write the file to hand in.", "course submit -o mine.zip"
     ),
     "doctor": Entry("setup.doctor", "doctor", KEEP, "Say what works on this machine.", "course doctor"),
-    "bug": Entry("setup.bug", "bug", KEEP, "Write what a fault report needs into a file.", "course bug"),
+    "bug": Entry("setup.doctor", "bug", KEEP, "Write what a fault report needs into a file.", "course bug"),
     "schema": Entry(
         "frame.schemas", "schema", KEEP, "Print the JSON Schema of a reply.", "course schema check"
     ),

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import importlib
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import msgspec
 import typer
 
+from course.cli.frame.console import current
+from course.cli.frame.options import Line
+from course.cli.frame.registry import COMMANDS
 from course.cli.frame.replies import Bare, Envelope, ErrorReply, Schema, Schemas
-from course.cli.frame.terminal.console import current
 from course.errors import NotFoundError
-
-if TYPE_CHECKING:
-    from course.cli.frame.options import Line
 
 __all__ = ["NO_COMMAND", "reply_types", "schema", "schema_names", "schema_of", "schema_of_line"]
 
@@ -64,10 +63,13 @@ def schema(
 
 def reply_types() -> dict[str, type[msgspec.Struct]]:
     """Every kind of reply by its schema's name, sorted."""
-    from course.grading.exports.lines import GradeLine
+    from course.grading.exports.grades import GradeLine
 
-    for file in Path(__file__).parents[1].glob("*/replies.py"):
-        importlib.import_module(f"course.cli.{file.parent.name}.replies")
+    below = Path(__file__).parents[1]
+    modules = {entry.module for entry in COMMANDS.values()}
+    modules |= {f"{file.parent.name}.replies" for file in below.glob("*/replies.py")}
+    for module in modules:
+        importlib.import_module(f"course.cli.{module}")
     kinds: list[type[msgspec.Struct]] = [*Envelope.__subclasses__(), GradeLine]
     found = {str(kind.__struct_config__.tag): kind for kind in kinds} | {NO_COMMAND: ErrorReply}
     return dict(sorted(found.items()))

@@ -4,40 +4,50 @@ from __future__ import annotations
 
 from contextlib import nullcontext
 from functools import partial
-from pathlib import Path  # noqa: TC003 - typer reads the annotations
-from typing import TYPE_CHECKING, Annotated
+from pathlib import Path
+from typing import Annotated
 
 import typer
 
 from course.cli.frame.completion import exercise_ids, student_ids
+from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
-from course.cli.frame.terminal.console import Console, current
-from course.cli.grade.changes import moved_scores, show_change, show_roster
-from course.cli.grade.changes import points as _points
-from course.cli.grade.options import Against, Exercises, Isolation, Jobs, Out, Reason, Share, levels
+from course.cli.grade.options import (
+    Against,
+    Exercises,
+    Isolation,
+    Jobs,
+    Out,
+    Reason,
+    Share,
+    levels,
+    moved_scores,
+    show_change,
+    show_roster,
+)
+from course.cli.grade.options import points as _points
+from course.cli.grade.replies import LateOne
 from course.cli.grade.running import checks_gave
 from course.errors import UsageError
-from course.grading.exports.cells import write_bytes
-from course.grading.exports.lines import grade_line, utc
-from course.grading.results import override as overriding
-from course.grading.results.effective import Results
-from course.grading.results.late import in_days, read_policy, unknown_names
+from course.grading.exports.grades import grade_line, utc, write_bytes
+from course.grading.gradebook.book import Gradebook
+from course.grading.gradebook.records import SubmittedAt
+from course.grading.results import effective as overriding
+from course.grading.results.effective import Effective, Results, ScoreChange
+from course.grading.results.late import (
+    Worksheet,
+    in_days,
+    read_policy,
+    read_times,
+    unknown_names,
+    worksheet_times,
+)
 from course.grading.results.merge import merged
-from course.grading.results.roster import read_roster
-from course.grading.results.times import Worksheet, read_times, worksheet_times
-from course.grading.similar.page import page
+from course.grading.results.roster import Roster, read_roster
+from course.grading.running.rerun import Regraded
+from course.grading.similar import Similar, page
 from course.printable import one_line
-from course.scoring.numbers import format_points, in_points
-
-if TYPE_CHECKING:
-    from course.cli.grade.replies import LateOne
-    from course.grading.gradebook.book import Gradebook
-    from course.grading.gradebook.records import SubmittedAt
-    from course.grading.results.effective import Effective
-    from course.grading.results.journal import ScoreChange
-    from course.grading.results.roster import Roster
-    from course.grading.running.rerun import Regraded
-    from course.grading.similar.compare import Similar
+from course.scoring.verdict import format_points, in_points
 
 __all__ = ["late", "override", "rerun", "similar"]
 
@@ -69,9 +79,9 @@ def rerun(
     """
     from course.cli.grade.replies import GradeRerun
     from course.grading.running.batch import grade_all
-    from course.grading.running.folder import open_results
     from course.grading.running.rerun import RerunOptions
     from course.grading.running.rerun import rerun as regrade
+    from course.grading.running.snapshot import open_results
 
     console = current()
     level, at_least = levels(isolation)
@@ -135,7 +145,7 @@ def override(
     It counts in place of the graders' score in every export and report, whatever is graded later, and no late
     penalty touches it.
     """
-    from course.grading.running.folder import open_results, previewed
+    from course.grading.running.snapshot import open_results, previewed
 
     if (score is None) != lift:
         raise UsageError(
@@ -201,8 +211,8 @@ def late(
     Without options it shows the present policy.
     """
     from course.cli.grade.replies import GradeLate
-    from course.grading.results.journal import Recording, recorded
-    from course.grading.running.folder import open_results, previewed
+    from course.grading.results.effective import Recording, recorded
+    from course.grading.running.snapshot import open_results, previewed
 
     if policy is not None and clear:
         raise UsageError("--policy and --clear do not go together.", help="Give one of them.")
@@ -369,8 +379,8 @@ def similar(
     layout do not count, and neither does the stub. Similarity is a reason to talk with students, not a proof.
     """
     from course.cli.grade.replies import GradeSimilar, SimilarGroup, SimilarPair
-    from course.grading.running.folder import open_results
-    from course.grading.similar.compare import compare
+    from course.grading.running.snapshot import open_results
+    from course.grading.similar import compare
 
     console = current()
     catalog = load_catalog()

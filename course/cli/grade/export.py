@@ -3,30 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, load_catalog
-from course.cli.frame.terminal.console import Console, current
-from course.cli.grade.changes import moved_scores, show_roster
-from course.cli.grade.options import Exercises, Missing, one_of
+from course.cli.grade.options import Exercises, Missing, moved_scores, one_of, show_roster
 from course.errors import CourseError, UsageError
 from course.grading.container.packing import write_autograder
-from course.grading.exports.cells import STDOUT
 from course.grading.exports.formats import AUTOGRADER, FORMATS
 from course.grading.exports.formats import export as write
-from course.grading.exports.lines import grade_line
-from course.grading.exports.selection import ExportOptions, select
-from course.grading.results.effective import Results
-from course.grading.results.journal import counting, moved
+from course.grading.exports.grades import STDOUT, grade_line
+from course.grading.exports.selection import ExportOptions, Written, select
+from course.grading.results.effective import Results, counting, moved
 from course.grading.results.merge import Merged, merged
 from course.grading.results.roster import Roster, read_roster
 from course.printable import command, one_line
-from course.scoring.numbers import LARGEST_SEED
-
-if TYPE_CHECKING:
-    from course.grading.exports.selection import Written
+from course.scoring.verdict import LARGEST_SEED
 
 __all__ = ["export"]
 
@@ -122,7 +116,7 @@ def _from_gradebook(
     options: ExportOptions,
 ) -> tuple[Written | None, Merged]:
     """Write it, and say first what the roster changes; nothing is written if it was printed."""
-    from course.grading.running.folder import open_results, remember
+    from course.grading.running.snapshot import open_results, remember
 
     with open_results(out) as opened:
         found, results = Merged(opened.roster or Roster(())), opened
@@ -177,7 +171,7 @@ def _autograder(
 ) -> Written:
     import secrets
 
-    from course.grading.running.folder import open_results
+    from course.grading.running.snapshot import open_results
 
     catalog = load_catalog()
     chosen = tuple(catalog.exercise(name) for name in exercises) or catalog.exercises()

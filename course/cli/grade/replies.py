@@ -6,9 +6,9 @@ import msgspec
 
 from course.cli.frame.replies import Envelope
 from course.grading.gradebook.records import Decision, Run
-from course.grading.results.journal import ScoreChange
+from course.grading.results.effective import ScoreChange
 from course.grading.running.rerun import Change
-from course.grading.running.summary import Ungraded
+from course.grading.running.run import Ungraded
 
 __all__ = [
     "AssignedOne",

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, nullcontext
 from functools import partial
-from pathlib import Path  # noqa: TC003 - typer reads annotations at run time
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from course import extras
+from course.catalog.load import Catalog
+from course.catalog.models import CourseRef
 from course.cli.frame.completion import exercise_ids, student_ids, submitted_ids
+from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
-from course.cli.frame.terminal.console import Console, current
-from course.cli.grade.changes import in_words, show_change, show_roster
 from course.cli.grade.options import (
     Jobs,
     Layout,
@@ -21,29 +23,25 @@ from course.cli.grade.options import (
     Protection,
     RosterFile,
     Scheduler,
+    in_words,
     levels,
+    show_change,
+    show_roster,
 )
-from course.cli.work.verdict.screen import show_everything
+from course.cli.work.verdict import show_everything
 from course.errors import CourseError, NotFoundError, UsageError
-from course.grading.exports.lines import grade_line
-from course.grading.results.effective import MISSING, NOT_YET
+from course.grading.exports.grades import grade_line
+from course.grading.gradebook.records import Decision, Result
+from course.grading.results.effective import MISSING, NOT_YET, Effective
 from course.grading.results.late import in_days
 from course.grading.results.roster import read_roster
+from course.grading.running.rerun import Change
 from course.printable import command, one_line
-from course.scoring.judging.terms import Terms
-from course.scoring.numbers import LARGEST_SEED, format_points, in_points
+from course.scoring.judging.session import Terms
+from course.scoring.verdict import LARGEST_SEED, format_points, in_points
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from contextlib import AbstractContextManager
-
-    from course.catalog.load import Catalog
-    from course.catalog.models import CourseRef
-    from course.grading.gradebook.records import Decision, Result
-    from course.grading.results.effective import Effective
-    from course.grading.running.rerun import Change
-    from course.grading.running.run import GradeAll, RunOptions
-    from course.grading.running.summary import Summary, Ungraded
+    from course.grading.running.run import GradeAll, RunOptions, Summary, Ungraded
 
 __all__ = ["checks_gave", "explain", "run", "score_of"]
 
@@ -122,8 +120,8 @@ def _would_change(
     console: Console, summary: Summary, out: Path, catalog: Catalog, terms: Terms, grade: GradeAll
 ) -> tuple[Change, ...]:
     """The students who would get another score from the present graders, which a resumed run does not use."""
-    from course.grading.running.folder import open_results
     from course.grading.running.rerun import RerunOptions, rerun
+    from course.grading.running.snapshot import open_results
 
     if not summary.edited:
         return ()
@@ -199,7 +197,7 @@ def explain(
     exercise: Annotated[str, typer.Argument(metavar="EXERCISE", autocompletion=exercise_ids)],
 ) -> int:
     """Show everything about one result, expected values included: for the instructor, not the student."""
-    from course.grading.running.folder import open_results
+    from course.grading.running.snapshot import open_results
 
     catalog = load_catalog()
     with open_results(out) as results:

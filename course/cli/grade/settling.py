@@ -3,29 +3,25 @@
 from __future__ import annotations
 
 from functools import partial
-from pathlib import Path  # noqa: TC003 - typer reads the annotations
-from typing import TYPE_CHECKING, Annotated
+from pathlib import Path
+from typing import Annotated
 
 import typer
 
 from course.cli.frame.completion import exercise_ids, student_ids
+from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
-from course.cli.frame.terminal.console import Console, current
-from course.cli.grade.changes import in_words
-from course.cli.grade.options import Isolation, Jobs, Out, levels
+from course.cli.grade.options import Isolation, Jobs, Out, in_words, levels
+from course.cli.grade.replies import AssignedOne, UnsettledOne
 from course.errors import UsageError
-from course.grading.gradebook.backup import back_up
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import Decision
+from course.grading.gradebook.salvage import Salvaged, back_up
 from course.grading.gradebook.salvage import salvage as rescue
 from course.grading.results.effective import Results
+from course.grading.running.assign import Assigned, Unsettled
 from course.printable import command, one_line
-from course.scoring.numbers import format_points
-
-if TYPE_CHECKING:
-    from course.cli.grade.replies import AssignedOne, UnsettledOne
-    from course.grading.gradebook.salvage import Salvaged
-    from course.grading.running.assign import Assigned, Unsettled
+from course.scoring.verdict import format_points
 
 __all__ = ["assign", "log", "salvage"]
 
@@ -63,7 +59,7 @@ def assign(
     from course.cli.grade.replies import GradeAssign
     from course.grading.running import assign as assigning
     from course.grading.running.batch import grade_all
-    from course.grading.running.folder import open_results, previewed
+    from course.grading.running.snapshot import open_results, previewed
 
     if (student is None) != (file is None) or (student is not None and accept_names):
         raise UsageError(
@@ -176,7 +172,7 @@ def log(
 ) -> int:
     """List every run and every change of a grade: who, when, why, and what it was before."""
     from course.cli.grade.replies import GradeLog
-    from course.grading.running.folder import open_results
+    from course.grading.running.snapshot import open_results
 
     console = current()
     with open_results(out) as results:
@@ -217,7 +213,7 @@ def salvage(
     if nothing is known to be lost, else 6 with a list; `course grade run --resume` grades what is missing.
     """
     from course.cli.grade.replies import GradeSalvage
-    from course.grading.running.folder import export_all
+    from course.grading.running.snapshot import export_all
     from course.isolation.launch import private_folder, remove_tree
 
     console = current()
@@ -256,7 +252,7 @@ def salvage(
 
 
 def _show_salvaged(console: Console, told: Salvaged, to: Path, *, dry_run: bool) -> None:
-    from course.grading.running.folder import open_results
+    from course.grading.running.snapshot import open_results
 
     for name in ("results", "submissions", "overrides", "journal", "snapshots"):
         backed = told.from_backup[name]

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from course.catalog.models import Exercise
+from course.cli.frame.here import Here
 from course.errors import CourseError
 from course.progress.history import fingerprint
 from course.progress.quiz import quiz_history
-from course.scoring.numbers import format_points
-
-if TYPE_CHECKING:
-    from course.catalog.models import Exercise
-    from course.cli.frame.here import Here
-    from course.scoring.verdict import Verdict
+from course.scoring.verdict import Verdict, format_points
 
 __all__ = [
     "after_report",

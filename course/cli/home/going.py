@@ -5,9 +5,9 @@ from __future__ import annotations
 import shlex
 
 from course.cli.frame.app import again
+from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.replies import NextStep
-from course.cli.frame.terminal.console import Console, current
 from course.cli.home.advice import exercise_ahead, next_in_course
 from course.cli.home.replies import Go, Next
 

@@ -2,29 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from course.cli.home.replies import MistakeState, PredictionsOf, PredictionsState, PredictionState, Revisit
+from course.catalog.load import Catalog
+from course.catalog.models import Exercise
+from course.cli.frame.console import Console
+from course.cli.frame.here import Here
+from course.cli.home.replies import (
+    ExerciseState,
+    MistakeState,
+    ObjectiveState,
+    PredictionsOf,
+    PredictionsState,
+    PredictionState,
+    Revisit,
+    WarmUpState,
+)
 from course.errors import CourseError
-from course.progress.mistakes import mistakes_of
-from course.reading.parts import read_script
-from course.reading.predictions import predictions_of, tally
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from course.catalog.load import Catalog
-    from course.catalog.models import Exercise
-    from course.cli.frame.terminal.console import Console
-    from course.progress.mistakes import Mistake
-    from course.progress.store import Event
-    from course.reading.parts import Script
-    from course.reading.predictions import RecordedPrediction
-
-__all__ = ["Learning", "day", "show_learning"]
+from course.progress.history import Mistake, mistakes_of
+from course.progress.quiz import quiz_history
+from course.progress.store import Event
+from course.reading.parts import Script, read_script
+from course.reading.record import RecordedPrediction, predictions_of, tally
 
 #: So many days of predictions are shown; ``--json`` has all.
 _DAYS = 7
@@ -235,9 +237,9 @@ def _counts(of: str, said: Sequence[RecordedPrediction]) -> PredictionsOf:
 
 def _looks_like(exercise: Exercise, code: str) -> str:
     """The diagnosis in words; "" where the exercise keeps none as data."""
-    from course.scoring.explain.words import FILE, read_words
+    from course.scoring.explain.story import WORDS, read_words
 
-    path = Path(exercise.folder) / FILE
+    path = Path(exercise.folder) / WORDS
     if not path.is_file():
         return ""
     entry = read_words(path).entries.get(code)
@@ -258,3 +260,66 @@ def _day(said: RecordedPrediction) -> str:
 def day(moment: str) -> str:
     """The local date and time of an ISO moment, to the minute."""
     return datetime.fromisoformat(moment).astimezone().strftime("%Y-%m-%d %H:%M")
+
+
+# ---
+# The learning objectives, with the evidence that each was reached.
+
+
+def objective_states(
+    here: Here, states: Sequence[ExerciseState], warm_ups: Sequence[WarmUpState]
+) -> tuple[ObjectiveState, ...]:
+    """The evidence for each objective; raises what reading the record raises."""
+    events = here.workspace.store.events()
+    read = {event.subject for event in events if event.kind == "lesson"}
+    predicted = {
+        (event.subject, event.data.get("key"))
+        for event in events
+        if event.kind == "prediction" and event.data.get("text")
+    }
+    passed = {state.id for state in states if state.passed_at is not None}
+    answered = {
+        question
+        for attempt in quiz_history(events).counting
+        for question, right in attempt.right.items()
+        if right
+    }
+    return tuple(
+        ObjectiveState(
+            title=one.title,
+            lessons=one.lessons,
+            lessons_read=tuple(name for name in one.lessons if name in read),
+            predictions=sum(lesson in one.lessons for lesson, _ in predicted),
+            warm_ups=sum(state.lesson in one.lessons for state in warm_ups),
+            warm_ups_done=sum(state.lesson in one.lessons and state.state == "done" for state in warm_ups),
+            exercises=one.exercises,
+            passed=tuple(name for name in one.exercises if name in passed),
+            questions=one.quiz,
+            answered=tuple(name for name in one.quiz if name in answered),
+        )
+        for one in here.catalog.syllabus.objective
+    )
+
+
+def show_objectives(
+    console: Console, objectives: Sequence[ObjectiveState], exercises: Mapping[str, str], *, taken: bool
+) -> None:
+    """Each objective with its evidence.
+
+    Args:
+        exercises: the line about each exercise, by id.
+        taken: the quiz was taken, so there is something to say of it.
+    """
+    console.heading("After this course you can …")
+    for number, one in enumerate(objectives, 1):
+        console.item(str(number), one.title)
+        facts = [f"lessons read: {len(one.lessons_read)} of {len(one.lessons)}"]
+        facts.append(f"predictions: {one.predictions}")
+        if one.warm_ups:
+            facts.append(f"warm-ups: {one.warm_ups_done} of {one.warm_ups}")
+        if one.questions and taken:
+            facts.append(f"quiz: {len(one.answered)} of {len(one.questions)} right")
+        console.line((", ".join(facts), "dim"), indent=5)
+        for name in one.exercises:
+            if name in exercises:
+                console.line((exercises[name], "dim"), indent=5)

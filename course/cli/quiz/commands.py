@@ -2,30 +2,34 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from datetime import date, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn
+from typing import Annotated, NoReturn
 
 import typer
 
+from course.cli.frame.console import Console, current
 from course.cli.frame.replies import NextStep
-from course.cli.frame.terminal.console import Console, current
 from course.cli.quiz import screen
-from course.cli.quiz.desk import Desk, agrees, answer, open_or_new, printed_seed, start
-from course.cli.quiz.replies import Quiz, QuizHistoryReply, QuizReview
+from course.cli.quiz.screen import (
+    Desk,
+    Quiz,
+    QuizHistoryReply,
+    QuizReview,
+    agrees,
+    answer,
+    open_or_new,
+    printed_seed,
+    start,
+)
 from course.errors import UsageError
 from course.progress import quiz
+from course.progress.quiz import Attempt
 from course.quizzing.answers import read_answers
-from course.quizzing.attempt import check_seed, mark, mark_sentence, needed
-from course.quizzing.desk import finished, fits
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from course.progress.quiz import Attempt
-    from course.quizzing.attempt import MarkedQuestion
-    from course.quizzing.bank import PosedQuestion
-    from course.quizzing.review import Due
+from course.quizzing.attempt import MarkedQuestion, check_seed, mark, mark_sentence, needed
+from course.quizzing.bank import PosedQuestion
+from course.quizzing.desk import Due, finished, fits
 
 __all__ = ["app", "history", "review", "take"]
 

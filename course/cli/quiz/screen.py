@@ -2,49 +2,149 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import date
 from textwrap import shorten
-from typing import TYPE_CHECKING
 
-from course.cli.frame.replies import NextStep
-from course.cli.home.overview import day
-from course.cli.quiz.replies import (
-    QuizAsked,
-    QuizAttempt,
-    QuizDue,
-    QuizOption,
-    QuizPlace,
-    QuizQuestion,
-    QuizQuestions,
-)
-from course.quizzing.attempt import mark_sentence, needed
-from course.quizzing.bank import LETTERS
-from course.quizzing.review import GAP_DAYS, ROUNDS
+import msgspec
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from datetime import date
+from course.catalog.models import CourseRef
+from course.cli.frame.console import Console
+from course.cli.frame.here import Here
+from course.cli.frame.replies import Envelope, NextStep
+from course.cli.home.learning import day
+from course.errors import CourseError
+from course.progress.quiz import Attempt, QuizHistory, quiz_history
+from course.quizzing.attempt import MarkedQuestion, Result, fresh_seed, mark_sentence, needed
+from course.quizzing.bank import LETTERS, Bank, Choice, PosedQuestion
+from course.quizzing.desk import GAP_DAYS, ROUNDS, Due, answered, begun, fits, schedule
 
-    from course.cli.frame.here import Here
-    from course.cli.frame.terminal.console import Console
-    from course.progress.quiz import Attempt, QuizHistory
-    from course.quizzing.attempt import MarkedQuestion, Result
-    from course.quizzing.bank import Choice, PosedQuestion
-    from course.quizzing.review import Due
+# ---
+# The replies of ``course quiz ... --json``, as types.
 
-__all__ = [
-    "ask",
-    "attempt_replies",
-    "due_reply",
-    "hand_out",
-    "question_reply",
-    "show_attempts",
-    "show_due",
-    "show_first_due",
-    "show_keys",
-    "show_mark",
-    "show_marked",
-    "show_result",
-]
+
+class QuizOption(msgspec.Struct, frozen=True, kw_only=True):
+    """One option of a question that was answered. ``belief`` is the misconception in plain words."""
+
+    letter: str
+    id: str
+    text: str
+    right: bool
+    chosen: bool
+    explanation: str
+    misconception: str | None = None
+    belief: str | None = None
+
+
+class QuizQuestion(msgspec.Struct, frozen=True, kw_only=True):
+    """One question that was answered; ``answer`` is the id of the option chosen."""
+
+    id: str
+    title: str
+    variant: str
+    prompt: str
+    answer: str
+    right: bool
+    options: tuple[QuizOption, ...]
+    source: str
+    lesson: str | None = None
+    read: str | None = None
+
+
+class QuizPlace(msgspec.Struct, frozen=True):
+    """One option of a question."""
+
+    letter: str
+    id: str
+    text: str
+
+
+class QuizAsked(msgspec.Struct, frozen=True):
+    """One question to answer; it does not say which option is right."""
+
+    id: str
+    title: str
+    prompt: str
+    options: tuple[QuizPlace, ...]
+
+
+class QuizDue(msgspec.Struct, frozen=True):
+    """A question under review: the day it is due, and right answers in a row so far."""
+
+    question: str
+    due_on: str
+    rounds: int
+
+
+class Quiz(Envelope, tag="course.quiz/1", frozen=True, kw_only=True):
+    """A scored attempt. ``ok`` and ``passed`` are the same; ``mark`` is the pass mark in words."""
+
+    course: CourseRef
+    seed: int
+    resumed: bool
+    score: int
+    max_score: int
+    needed: int
+    passed: bool
+    mark: str
+    questions: tuple[QuizQuestion, ...]
+    review: tuple[QuizDue, ...]
+    next: NextStep
+    warnings: tuple[str, ...] = ()
+
+
+class QuizQuestions(Envelope, tag="course.quiz-questions/1", frozen=True, kw_only=True):
+    """Questions to answer in a file; ``template`` is that file, to fill in."""
+
+    course: CourseRef
+    seed: int
+    mark: str
+    questions: tuple[QuizAsked, ...]
+    template: str
+    next: NextStep
+    warnings: tuple[str, ...] = ()
+
+
+class QuizReview(Envelope, tag="course.quiz-review/1", frozen=True, kw_only=True):
+    """A review. ``ok`` is "no question was missed again"; ``next_due`` is None with none under review."""
+
+    course: CourseRef
+    seed: int | None
+    questions: tuple[QuizQuestion, ...]
+    review: tuple[QuizDue, ...]
+    next_due: str | None
+    next: NextStep
+    warnings: tuple[str, ...] = ()
+
+
+class QuizAttempt(msgspec.Struct, frozen=True, kw_only=True):
+    """One attempt. ``state`` is "finished", "open" or "left"; ``counts`` is False for a seed seen before."""
+
+    seed: int
+    state: str
+    started_at: str
+    finished_at: str | None
+    version: str
+    answered: int
+    score: int | None
+    max_score: int
+    passed: bool
+    counts: bool
+
+
+class QuizHistoryReply(Envelope, tag="course.quiz-history/1", frozen=True, kw_only=True):
+    course: CourseRef
+    mark: str
+    attempts: tuple[QuizAttempt, ...]
+    best: int | None
+    passed: bool
+    review: tuple[QuizDue, ...]
+    next: NextStep
+
+
+# ---
+
 
 _PROMPT = "Your answer: "
 _KEYS = f"Type {LETTERS[0]} to {LETTERS[-1]} or 1 to {len(LETTERS)}, then Enter; q stops."
@@ -281,3 +381,74 @@ def attempt_replies(history: QuizHistory) -> tuple[QuizAttempt, ...]:
         )
         for attempt in shown
     )
+
+
+# ---
+# A student's side of the quiz: the questions, the record, and the present attempt.
+
+
+@dataclass
+class Desk:
+    """A student's side of the quiz."""
+
+    here: Here
+    bank: Bank
+    history: QuizHistory
+
+    @classmethod
+    def load(cls) -> Desk:
+        """Raises what finding the workspace, reading the questions and reading the record raise."""
+        here = Here.load()
+        return cls(here, Bank.of(here.catalog), quiz_history(here.workspace.store.events()))
+
+    def new_seed(self) -> int:
+        """A seed that asks no question in the same way as last time."""
+        return fresh_seed(self.bank, self.history.last_seeds())
+
+    def reviews(self) -> tuple[Due, ...]:
+        """The questions under review, from the record as it is now."""
+        try:
+            self.history = quiz_history(self.here.workspace.store.events())
+        except CourseError as error:
+            self.here.warnings.append(f"{error.message} {error.help}")
+        return schedule(self.history.outcomes(), self.bank.ids)
+
+
+def open_or_new(console: Console, desk: Desk, seed: int | None) -> tuple[Attempt, bool]:
+    """The attempt to go on with, or a new one; and whether it was begun before."""
+    open_one = desk.history.open
+    if open_one is not None and seed in (None, open_one.seed):
+        if fits(desk.bank, open_one):
+            return open_one, bool(open_one.answers)
+        console.line("The questions have changed since you left your last attempt, so a new one begins.")
+    elif open_one is not None and open_one.answers:
+        left = f"{len(open_one.answers)} of {len(open_one.questions)} answered"
+        console.line(f"This is another attempt; the one you left (seed {open_one.seed}, {left}) ends here.")
+    return start(desk, desk.new_seed() if seed is None else seed), False
+
+
+def printed_seed(console: Console, desk: Desk, seed: int | None) -> int:
+    """Which questions to print: they are the same until they are answered.
+
+    An attempt with at least one answer stays open, whatever is printed.
+    """
+    open_one = desk.history.open
+    if seed is not None and open_one is not None and open_one.answers:
+        return seed
+    return open_or_new(console, desk, seed)[0].seed
+
+
+def start(desk: Desk, seed: int) -> Attempt:
+    """Record the beginning of an attempt."""
+    return begun(desk.bank, seed, desk.here.catalog.version, desk.here.record)
+
+
+def answer(desk: Desk, attempt: Attempt, question: str, option: str) -> None:
+    """Record one answer at once."""
+    answered(attempt, question, option, desk.here.record)
+
+
+def agrees(bank: Bank, attempt: Attempt, seed: int, answers: Mapping[str, str]) -> bool:
+    """Whether a file completes an open attempt and does not contradict it."""
+    same = attempt.seed == seed and fits(bank, attempt)
+    return same and all(answers[name] == option for name, option in attempt.answers.items())

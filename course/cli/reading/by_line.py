@@ -10,31 +10,23 @@ import contextlib
 import itertools
 import re
 import threading
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 
 from course.catalog import blocks as b
+from course.catalog.load import Catalog
+from course.catalog.models import Exercise, Lesson
 from course.cli.frame.app import again
-from course.cli.reading.lesson import paginate
+from course.cli.frame.console import Console
+from course.cli.frame.here import Here
+from course.cli.reading.lesson import Reader, paginate
 from course.cli.reading.screen.machine import write_new
 from course.cli.reading.screen.running import Bench
 from course.errors import CourseError
-from course.reading.finding import find
-from course.reading.pages import Place
-from course.reading.parts import read_script
-from course.reading.record import JUDGEMENTS, InProgress
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-    from pathlib import Path
-
-    from course.catalog.load import Catalog
-    from course.catalog.models import Exercise, Lesson
-    from course.cli.frame.here import Here
-    from course.cli.frame.terminal.console import Console
-    from course.cli.reading.lesson import Reader
-    from course.progress.store import Event
-    from course.reading.cells import CellOutput
-    from course.reading.parts import Cell, Question
+from course.progress.store import Event
+from course.reading.cells import CellOutput
+from course.reading.parts import Cell, Question, read_script
+from course.reading.record import JUDGEMENTS, InProgress, Place, find
 
 __all__ = ["LineReader"]
 

@@ -5,17 +5,18 @@ from __future__ import annotations
 import difflib
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
 from course.cli.frame.completion import choice_of, scene_ids, scene_settings
+from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd
-from course.cli.frame.terminal.console import Console, current
-from course.cli.sandbox import files as sandbox_files
+from course.cli.frame.here import target as target_file
+from course.cli.sandbox import play as sandbox_files
 from course.cli.sandbox import play as sandbox_play
-from course.cli.sandbox.replies import (
+from course.cli.sandbox.play import (
     SandboxEntry,
     SandboxExport,
     SandboxList,
@@ -24,14 +25,11 @@ from course.cli.sandbox.replies import (
     SandboxVersion,
 )
 from course.errors import NotFoundError, UsageError
-from course.sandbox.exports.mjcf import mjcf
-from course.sandbox.exports.sdf import START, sdf, start_script
+from course.sandbox.exports.formats import START, mjcf, sdf, start_script
 from course.sandbox.scene.loading import choose, question, scenes, unchanged
 from course.sandbox.scene.loading import scene_ids as known_scenes
-from course.sandbox.scene.settings import SETTINGS
-
-if TYPE_CHECKING:
-    from course.sandbox.scene.model import Scene
+from course.sandbox.scene.model import Scene
+from course.sandbox.scene.rules import SETTINGS
 
 __all__ = ["app", "export", "list_scenes", "play", "replay"]
 
@@ -236,7 +234,7 @@ def export(
     if format_ not in writers:
         raise UsageError(f"There is no format {format_[:20]!r}.", help="Formats: sdf, mjcf.")
     console = current()
-    target = sandbox_files.target(output, "-o", ("sdf", "world", "xml")) if output else None
+    target = target_file(output, "-o", ("sdf", "world", "xml")) if output else None
     chosen = sandbox_files.chosen(scene, settings or ())
     data = writers[format_](chosen)
     written = None

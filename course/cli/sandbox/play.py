@@ -2,33 +2,196 @@
 
 from __future__ import annotations
 
+import csv
 import importlib
+import io
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
-from course.cli.frame.here import Here
-from course.cli.sandbox import files as sandbox_files
-from course.cli.sandbox.replies import Sandbox, SandboxMomentum
+import msgspec
+
+from course.cli.frame import here
+from course.cli.frame.console import Console
+from course.cli.frame.here import Here, cwd, target
+from course.cli.frame.replies import Backup, Envelope
 from course.errors import CourseError, MissingCapabilityError, UsageError
 from course.extras import require
-from course.sandbox.runs.film import Film, ffmpeg
-from course.sandbox.scene.loading import question
-from course.sandbox.scene.predicting import NO_GUESS, guess_of
+from course.sandbox.runs.recording import Film, Recording, ffmpeg
+from course.sandbox.runs.running import Run
+from course.sandbox.scene.loading import NO_GUESS, Chosen, Comparison, choose, guess_of, question
+from course.sandbox.world.accounts import Event, Receipt
+from course.sandbox.world.world import Snapshot, World
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
+# ---
+# The replies of ``course sandbox ... --json``, as types.
 
-    from course.cli.frame.terminal.console import Console
-    from course.cli.sandbox.replies import SandboxFile
-    from course.sandbox.runs.recording import Recording
-    from course.sandbox.runs.running import Run
-    from course.sandbox.scene.loading import Chosen
-    from course.sandbox.scene.predicting import Comparison
-    from course.sandbox.world.world import Snapshot, World
 
-__all__ = ["PlayOptions", "play"]
+class SandboxParameter(msgspec.Struct, frozen=True, kw_only=True):
+    """Something ``--set`` can set; ``default`` is None where each body has its own."""
+
+    name: str
+    unit: str
+    meaning: str
+    low: float
+    high: float
+    default: float | None = None
+
+
+class SandboxEntry(msgspec.Struct, frozen=True, kw_only=True):
+    """A scene in a list; the student answers ``question`` before the run, ``after`` afterwards."""
+
+    id: str
+    title: str
+    teaches: str
+    question: str
+    note: str
+    after: str
+    duration: float
+    parameters: tuple[SandboxParameter, ...]
+
+
+class SandboxList(Envelope, tag="course.sandbox-list/1", frozen=True, kw_only=True):
+    scenes: tuple[SandboxEntry, ...]
+
+
+class SandboxFile(msgspec.Struct, frozen=True, kw_only=True):
+    """A file that was written, and the copy of what was there before."""
+
+    kind: str
+    path: str
+    backup: Backup | None = None
+
+
+class SandboxMomentum(msgspec.Struct, frozen=True, kw_only=True):
+    """Along x and y in kg m/s, and angular about the origin in kg m²/s."""
+
+    before: tuple[float, float, float]
+    after: tuple[float, float, float]
+
+
+class Sandbox(Envelope, tag="course.sandbox/1", frozen=True, kw_only=True):
+    """One run of a scene.
+
+    ``settings`` holds everything that was set or has a default; ``probes`` the scene's measurements, "nan"
+    for events that did not happen; ``prediction`` is None where a scene asks for none. ``description`` is the
+    run in sentences.
+    """
+
+    scene: str
+    title: str
+    duration: float
+    steps: int
+    settings: dict[str, float]
+    receipt: Receipt
+    momentum: SandboxMomentum
+    probes: dict[str, float]
+    prediction: Comparison | None
+    events: tuple[Event, ...]
+    dropped: int
+    description: tuple[str, ...]
+    after: str
+    state_hash: str
+    versions: dict[str, str]
+    files: tuple[SandboxFile, ...] = ()
+
+
+class SandboxVersion(msgspec.Struct, frozen=True, kw_only=True):
+    """A part whose version differs from that of the recording."""
+
+    name: str
+    recorded: str
+    here: str
+
+
+class SandboxReplay(Envelope, tag="course.sandbox-replay/1", frozen=True, kw_only=True):
+    """Whether a recording runs the same here; the steps are counted over the whole recording."""
+
+    scene: str
+    same: bool
+    steps: int
+    checked: int
+    good_until: int
+    first_difference: int | None
+    t: float | None
+    versions: tuple[SandboxVersion, ...]
+
+
+class SandboxExport(Envelope, tag="course.sandbox-export/1", frozen=True, kw_only=True):
+    """A scene as another engine's world; ``text`` is empty if it went to a file.
+
+    ``beside`` is the file that a world for Gazebo needs in its folder to start with velocities.
+    """
+
+    scene: str
+    format: str
+    file: SandboxFile | None = None
+    beside: SandboxFile | None = None
+    text: str = ""
+
+
+# ---
+# The files that ``course sandbox`` reads and writes, and the settings on its command line.
+
+
+def pairs(settings: Sequence[str]) -> dict[str, object]:
+    """``KEY=VALUE`` as numbers.
+
+    Raises:
+        UsageError: one is not such a pair, or its value is not a number.
+    """
+    found: dict[str, object] = {}
+    for pair in settings:
+        key, sign, value = pair.partition("=")
+        if not sign or not key:
+            raise UsageError(f"--set {pair}: write KEY=VALUE.", help="For example --set gravity=1.62.")
+        try:
+            number = float(value)
+        except ValueError:
+            raise UsageError(
+                f"--set {pair}: {value[:40]!r} is not a number.",
+                help=f"For example --set {key}=1.",
+                code="bad_parameter",
+            ) from None
+        found[key.strip()] = int(number) if key == "seed" and number.is_integer() else number
+    return found
+
+
+def chosen(scene: str, settings: Sequence[str]) -> Chosen:
+    """The scene of this name, or of this file in the current folder, with its settings."""
+    if scene.endswith(".toml"):
+        from pathlib import Path
+
+        scene = str(cwd() / Path(scene).expanduser())
+    return choose(scene, pairs(settings))
+
+
+def write(console: Console, path: Path, data: bytes, kind: str) -> SandboxFile:
+    """Write a file, keep a copy of an earlier one, and say so."""
+    file = here.write(path, data, why="sandbox")
+    if file.backup:
+        console.line(f"There was a file of that name; it is kept at {file.backup.backup}.")
+    console.line(f"Wrote {file.path}")
+    return SandboxFile(kind=kind, path=file.path, backup=file.backup)
+
+
+def table(run: Run) -> bytes:
+    """The samples of a run as CSV: a line of names with units, then a row for each body and time."""
+    from course.sandbox.runs.running import COLUMNS
+
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for t, names, state in run.samples:
+        for name, row in zip(names, state.tolist(), strict=True):
+            writer.writerow([repr(round(t, 9)), name, *map(repr, row)])
+    return text.getvalue().encode()
+
+
+# ---
+
 
 #: Frames per simulated second of a film.
 _FPS = 25.0
@@ -79,7 +242,7 @@ class _Targets:
             ("record", options.record, ("jsonl",)),
         ):
             if path is not None:
-                paths[kind] = sandbox_files.target(path, f"--{kind}", endings)
+                paths[kind] = target(path, f"--{kind}", endings)
         if options.mp4 is not None:
             ffmpeg()
         return cls(paths)
@@ -93,13 +256,13 @@ def play(console: Console, options: PlayOptions) -> int:
     """
     _check(options)
     targets = _Targets.of(options)
-    chosen = sandbox_files.chosen(options.scene, tuple(options.settings or ()))
+    picked = chosen(options.scene, tuple(options.settings or ()))
     if options.web:
         require("web")
     seen = options.web or (not options.unseen and console.interactive and console.fancy)
     if seen:
-        return _play_seen(console, chosen, options, targets)
-    return _run_unseen(console, chosen, options, targets, _guess(console, chosen, options))
+        return _play_seen(console, picked, options, targets)
+    return _run_unseen(console, picked, options, targets, _guess(console, picked, options))
 
 
 def _check(options: PlayOptions) -> None:
@@ -154,7 +317,7 @@ def _play_seen(console: Console, chosen: Chosen, options: PlayOptions, targets: 
         pass  # the usual way to leave
     finally:
         if recording is not None:
-            sandbox_files.write(console, targets.paths["record"], recording.encode(), "record")
+            write(console, targets.paths["record"], recording.encode(), "record")
     console.note(("After playing: ", "bold"), chosen.scene.after)
     return 0
 
@@ -211,7 +374,7 @@ def _run_unseen(
     if recordings:
         made["record"] = recordings[0].encode()
     if "csv" in targets.paths:
-        made["csv"] = sandbox_files.table(done)
+        made["csv"] = table(done)
     if film is not None:
         with console.working("Drawing"):
             made |= {kind: getattr(film, kind)(_FPS) for kind in ("gif", "mp4") if kind in targets.paths}
@@ -219,9 +382,7 @@ def _run_unseen(
                 made["png"] = film.png(*made["picture"])
     told = _sentences(done)
     _show(console, chosen, done, told, options)
-    files = tuple(
-        sandbox_files.write(console, targets.paths[kind], made[kind], kind) for kind in targets.paths
-    )
+    files = tuple(write(console, targets.paths[kind], made[kind], kind) for kind in targets.paths)
     if guess is not None:
         _keep(chosen, done.comparison)
     _emit(console, chosen, done, told, files)
@@ -253,9 +414,9 @@ def _taker(
 
 
 def _sentences(done: Run) -> tuple[str, ...]:
-    from course.sandbox.runs import describe
+    from course.sandbox.runs import running
 
-    return (*describe.sentences(done.events), *describe.account(done.receipt), *describe.momentum(done))
+    return (*running.sentences(done.events), *running.account(done.receipt), *running.momentum(done))
 
 
 def _show(console: Console, chosen: Chosen, done: Run, told: tuple[str, ...], options: PlayOptions) -> None:
@@ -275,9 +436,9 @@ def _show(console: Console, chosen: Chosen, done: Run, told: tuple[str, ...], op
 
 
 def _account_lines(done: Run) -> int:
-    from course.sandbox.runs import describe
+    from course.sandbox.runs import running
 
-    return len(describe.account(done.receipt)) + len(describe.momentum(done))
+    return len(running.account(done.receipt)) + len(running.momentum(done))
 
 
 def _show_comparison(console: Console, comparison: Comparison | None) -> None:

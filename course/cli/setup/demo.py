@@ -15,23 +15,21 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from course.catalog.load import read_toml
+from course.catalog.load import Catalog
 from course.catalog.models import Exercise
+from course.catalog.reading import read_toml
+from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
-from course.cli.frame.terminal.console import Console, current
 from course.cli.setup.replies import Demo
 from course.cli.work.checking import reply_to
-from course.cli.work.verdict.screen import show_verdict
+from course.cli.work.verdict import show_verdict
 from course.errors import InternalError
+from course.figures.described import Plot
+from course.scoring.judging.session import GradingSession, Submission
+from course.scoring.verdict import Verdict
 
 if TYPE_CHECKING:
     import numpy as np
-
-    from course.catalog.load import Catalog
-    from course.figures.drawing.described import Plot
-    from course.scoring.judging.session import GradingSession
-    from course.scoring.judging.submission import Submission
-    from course.scoring.verdict import Verdict
 
 __all__ = ["MISTAKEN", "WORKED", "demo", "worked_example"]
 
@@ -152,7 +150,7 @@ class _Bench:
         return _Motion(source, verdict, np.array(x), np.array(v))
 
     def _submission(self, source: str) -> Submission:
-        from course.scoring.judging.submission import Submission
+        from course.scoring.judging.session import Submission
 
         # What a terminal cannot decode it hands over as lone surrogates.
         return Submission({self._session.exercise.module: source.encode(errors="replace")})
@@ -278,7 +276,7 @@ def _draw(console: Console, before: _Motion, after: _Motion) -> None:
     """Both motions, where the terminal can show a picture."""
     if not console.draws:
         return
-    from course.cli.frame.terminal.half_blocks import half_blocks
+    from course.cli.frame.pictures import half_blocks
     from course.figures.terminal import terminal_plot
 
     wide = console.width >= _WIDE
@@ -294,7 +292,7 @@ def _draw(console: Console, before: _Motion, after: _Motion) -> None:
 
 
 def _plot(before: _Motion, after: _Motion, *, wide: bool) -> Plot:
-    from course.figures.drawing.described import Panel, Plot, Series
+    from course.figures.described import Panel, Plot, Series
 
     # Each with the other in grey: then both have the same axes, and the growth shows.
     panels = tuple(

@@ -3,42 +3,104 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
-from course.cli.frame.completion import check_ids, choice_of
+from course.catalog.models import CourseRef, Exercise
+from course.cli.frame.completion import (
+    ExerciseName,
+    check_ids,
+    choice_of,
+)
+from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.replies import ErrorBody, ErrorReply, NextStep
-from course.cli.frame.terminal.console import Console, current
 from course.cli.home.advice import next_step
-from course.cli.work.chosen import asked_for, chosen_work, worked_on
-from course.cli.work.curves import curve_replies, show_curve
-from course.cli.work.replies import Check, CheckAll
-from course.cli.work.verdict.annotations import FORMATS, annotate, annotate_error, known_format
-from course.cli.work.verdict.prints import show_loading
-from course.cli.work.verdict.screen import show_verdict
+from course.cli.work.chosen import StudentWork, asked_for, chosen_work, worked_on
+from course.cli.work.replies import Check, CheckAll, CurveReply
+from course.cli.work.verdict import (
+    FORMATS,
+    annotate,
+    annotate_error,
+    known_format,
+    show_loading,
+    show_verdict,
+)
 from course.errors import CourseError, NotFoundError, UngradableError, UsageError
 from course.progress.history import check_data
+from course.scoring.verdict import Verdict
 
 if TYPE_CHECKING:
     from course.catalog.load import Catalog
-    from course.catalog.models import CourseRef, Exercise
-    from course.cli.work.chosen import StudentWork
-    from course.cli.work.replies import CurveReply
+    from course.figures.described import Curve
     from course.scoring.judging.session import GradingSession, Submission
-    from course.scoring.verdict import Verdict
 
-__all__ = [
-    "check",
-    "error_without_checks",
-    "grade_once",
-    "open_session",
-    "record_verdict",
-    "reply_to",
-    "report_source_file",
-]
+
+# ---
+# The curve of a failed check over the right one: drawn where the terminal can, and always in words.
+
+
+def curve_replies(exercise: Exercise, verdict: Verdict, session: GradingSession) -> tuple[CurveReply, ...]:
+    """The curves as ``--json`` prints them."""
+    return tuple(_reply(check, curve) for check, curve in _curves(exercise, verdict, session))
+
+
+def show_curve(
+    console: Console,
+    exercise: Exercise,
+    verdict: Verdict,
+    session: GradingSession,
+    *,
+    focus: str = "",
+    drawn: bool = True,
+) -> None:
+    """Show the first failed check that has a curve; nothing if none has one.
+
+    Args:
+        focus: a function whose checks come before those of others.
+        drawn: with a picture; else in words alone.
+    """
+    check, curve = next(_curves(exercise, verdict, session, focus), ("", None))
+    if console.quiet or curve is None:
+        return
+    from course.figures.described import plot_of
+    from course.figures.plots import draw
+
+    if not drawn and console.fancy:
+        console.blank()
+    elif console.fancy:
+        console.figure(lambda: draw(plot_of(curve)))
+    console.line((f"{check}: {curve.description}", "dim"))
+    if console.fancy:
+        console.blank()
+
+
+def _curves(
+    exercise: Exercise, verdict: Verdict, session: GradingSession, focus: str = ""
+) -> Iterator[tuple[str, Curve]]:
+    """Id and curve of each check that has one, in the order of the tasks."""
+    order = [focus, *(task.id for task in exercise.task)]
+    for check in sorted(
+        (check for check in verdict.checks if check.id in session.curves),
+        key=lambda check: order.index(check.task) if check.task in order else len(order),
+    ):
+        yield check.id, session.curves[check.id]
+
+
+def _reply(check: str, curve: Curve) -> CurveReply:
+    from course.figures.described import thinned
+
+    few = thinned(curve)
+    return CurveReply(
+        check, curve.quantity, curve.units, curve.right_is, curve.parts_at, curve.description,
+        tuple(few.t.tolist()), tuple(few.yours.tolist()), tuple(few.right.tolist()),
+    )  # fmt: skip
+
+
+# ---
+
 
 FAILED = 1
 
@@ -68,7 +130,7 @@ def check(
     checked. If you worked in the notebook instead of the .py file, the notebook is checked.
     """
 
-    from course.isolation.keeping import kept_sandboxes
+    from course.isolation.probe import kept_sandboxes
 
     form = known_format(form)
     console, here = current(), Here.load()
@@ -89,8 +151,7 @@ def check(
 
 def open_session(exercise: Exercise, catalog: Catalog) -> GradingSession:
     """A grading session over the public checks of an exercise; a context manager."""
-    from course.scoring.judging.session import GradingSession
-    from course.scoring.judging.terms import Terms
+    from course.scoring.judging.session import GradingSession, Terms
 
     return GradingSession(exercise, catalog, scope="public", terms=Terms(home=True))
 

@@ -8,26 +8,24 @@ be handed in.
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from course.cli.frame.here import MAX_FILE_BYTES, cwd
+from course.catalog.models import Exercise
+from course.cli.frame.here import MAX_FILE_BYTES, Here, cwd
 from course.cli.frame.replies import FileReply
 from course.errors import CourseError, NotFoundError, UngradableError
 from course.handed_in.cells import read_notebook
-from course.notebooks.building.cells import dumped
-from course.notebooks.building.merge import is_untouched
+from course.notebooks.cells import dumped
+from course.notebooks.merge import is_untouched
 from course.printable import command
 from course.progress.history import fingerprint
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from course.catalog.models import Exercise
-    from course.cli.frame.here import Here
     from course.handed_in.notebook import NotebookSource
-    from course.scoring.judging.submission import Submission
+    from course.scoring.judging.session import Submission
 
 __all__ = ["StudentWork", "as_handed_in", "asked_for", "chosen_work", "work_of", "worked_on"]
 
@@ -65,7 +63,7 @@ class StudentWork:
         """The part that is graded."""
         if self.notebook is not None:
             return self.notebook.submission(self.exercise)
-        from course.scoring.judging.submission import Submission
+        from course.scoring.judging.session import Submission
 
         return Submission({self.exercise.module: self.source})
 
@@ -179,7 +177,7 @@ def _notebook(here: Here, exercise: Exercise) -> StudentWork:
         UsageError: it cannot be read.
     """
     from course.handed_in.notebook import notebook_source
-    from course.notebooks.building.exercises import exercise_notebook
+    from course.notebooks.build import exercise_notebook
 
     name = _notebook_name(exercise)
     path = here.workspace.path(exercise.place, name)
@@ -264,7 +262,7 @@ def as_handed_in(work: StudentWork) -> Submission:
     Raises:
         UngradableError: it is a notebook that cannot be graded.
     """
-    from course.scoring.judging.submission import Submission
+    from course.scoring.judging.session import Submission
 
     if work.notebook is None:
         return Submission({work.exercise.module: work.data})

@@ -4,25 +4,23 @@ from __future__ import annotations
 
 import re
 import shlex
-from pathlib import Path  # noqa: TC003 - typer reads annotations at run time
-from typing import TYPE_CHECKING, Annotated
+from pathlib import Path
+from typing import Annotated
 
 import typer
 
-from course.cli.frame import files
-from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
+from course.cli.frame import here
+from course.cli.frame.completion import ExerciseName
+from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd
-from course.cli.frame.terminal.console import Console, current
+from course.cli.frame.replies import WrittenFile
 from course.cli.home.advice import after_report
 from course.cli.work.checking import report_source_file
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.replies import ReportReply, SectionReply
 from course.errors import UsageError
-
-if TYPE_CHECKING:
-    from course.cli.frame.replies import WrittenFile
-    from course.figures.drawing.described import Plot
-    from course.scoring.report import Report, Section
+from course.figures.described import Plot
+from course.scoring.failures import Report, Section
 
 __all__ = ["report"]
 
@@ -45,7 +43,7 @@ def report(
     Runs your functions on public data, as the checks do, and draws the results. Parts whose functions are not
     written yet say so.
     """
-    from course.scoring.judging.reporting import report_of
+    from course.scoring.judging.session import report_of
 
     console, here = current(), Here.load()
     work = chosen_work(here, *asked_for(here, exercise))
@@ -118,7 +116,7 @@ def _shown(console: Console, section: Section, path: Path) -> SectionReply:
 
 
 def _drawn(console: Console, plot: Plot, path: Path) -> WrittenFile:
-    from course.figures.drawing.plots import draw, render
+    from course.figures.plots import draw, render
 
     with console.working("Drawing"):
         picture = render(plot)
@@ -127,7 +125,7 @@ def _drawn(console: Console, plot: Plot, path: Path) -> WrittenFile:
         console.line(("Figure: " + plot.description, "dim"))
     # An unchanged figure needs no copy of the old one.
     path.unlink(missing_ok=True)
-    file = files.write(path, picture, why="report")
+    file = here.write(path, picture, why="report")
     console.line(f"Wrote {file.path}")
     return file
 

@@ -11,28 +11,23 @@ import io
 import json
 import time
 import zipfile
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
+from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd
-from course.cli.frame.terminal.console import Console, current
-from course.cli.work.chosen import as_handed_in, work_of
+from course.cli.frame.replies import FileReply
+from course.cli.work.chosen import StudentWork, as_handed_in, work_of
 from course.cli.work.replies import Submit, SubmitFile
 from course.errors import CourseError, UngradableError, UsageError
 from course.progress.history import fingerprint
 from course.progress.quiz import quiz_history, records
 from course.progress.workspace import write_atomically
-from course.scoring.numbers import format_points
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from course.cli.frame.replies import FileReply
-    from course.cli.work.chosen import StudentWork
-    from course.scoring.verdict import Verdict
+from course.scoring.verdict import Verdict, format_points
 
 __all__ = ["FORMAT_VERSION", "archive", "submit"]
 
@@ -182,7 +177,7 @@ class _GoesIn:
 
 def _checked(console: Console, here: Here, works: Sequence[StudentWork]) -> list[_GoesIn]:
     """The files, each checked from the bytes that are handed in."""
-    from course.isolation.keeping import kept_sandboxes
+    from course.isolation.probe import kept_sandboxes
 
     found = []
     with kept_sandboxes():

@@ -7,40 +7,108 @@ at twenty times a second: one question to the file system, which works on every 
 from __future__ import annotations
 
 import contextlib
+import queue
+import select
+import sys
 import threading
 import time
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING, Annotated
+from pathlib import Path
+from typing import Annotated
 
 import typer
 
-from course.cli.frame.arguments import ExerciseName  # noqa: TC001 - typer reads annotations at run time
+from course.catalog.models import Exercise
+from course.cli.frame.completion import ExerciseName
+from course.cli.frame.console import PATIENCE, Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.replies import ErrorBody, ErrorReply
-from course.cli.frame.terminal.console import PATIENCE, Console, current
 from course.cli.home.advice import hint_is_due, next_step
 from course.cli.work import checking
+from course.cli.work.checking import curve_replies, show_curve
 from course.cli.work.chosen import asked_for, chosen_work
-from course.cli.work.curves import curve_replies, show_curve
 from course.cli.work.hinting import give_hint
-from course.cli.work.keys import keys_of_terminal
-from course.cli.work.replies import Watch, WatchRun
-from course.cli.work.verdict.prints import show_loading
-from course.cli.work.verdict.screen import is_unwritten, show_verdict
+from course.cli.work.replies import Check, Watch, WatchRun
+from course.cli.work.verdict import is_unwritten, show_loading, show_verdict
 from course.errors import CourseError, UngradableError
+from course.scoring.judging.session import GradingSession
+from course.scoring.verdict import Verdict
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
+# ---
+# Single key presses while a command waits or works, on a terminal only.
 
-    from course.catalog.models import Exercise
-    from course.cli.work.keys import Keys
-    from course.cli.work.replies import Check
-    from course.scoring.judging.session import GradingSession
-    from course.scoring.verdict import Verdict
 
-__all__ = ["Watcher", "saves", "watch"]
+#: How often the thread checks whether to go on, in s.
+_LOOK = 0.1
+
+
+class Keys:
+    """Keys that were pressed and not yet taken.
+
+    Args:
+        on_key: called, in the thread that listens, with each key.
+    """
+
+    def __init__(self, on_key: Callable[[str], None] = lambda _: None) -> None:
+        self._queue: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self._on_key = on_key
+
+    def press(self, key: str) -> None:
+        """Take a key."""
+        self._queue.put(key)
+        self._on_key(key)
+
+    def taken(self) -> Iterator[str]:
+        """The keys since the last call, oldest first."""
+        with contextlib.suppress(queue.Empty):
+            while True:
+                yield self._queue.get_nowait()
+
+
+@contextlib.contextmanager
+def keys_of_terminal(on_key: Callable[[str], None]) -> Iterator[Keys | None]:
+    """Keys as they are pressed, without Enter; None where the system has no such terminals.
+
+    Ctrl-C keeps its meaning. The terminal is restored afterwards.
+    """
+    try:
+        import termios
+        import tty
+    except ImportError:  # Windows
+        yield None
+        return
+    descriptor = sys.stdin.fileno()
+    before = termios.tcgetattr(descriptor)
+    keys, done = Keys(on_key), threading.Event()
+
+    def listen() -> None:
+        import os
+
+        while not done.is_set():
+            ready, _, _ = select.select([descriptor], [], [], _LOOK)
+            if ready:
+                pressed = os.read(descriptor, 64)
+                if not pressed:
+                    return
+                for key in pressed.decode("utf-8", "ignore"):
+                    keys.press(key)
+
+    thread = threading.Thread(target=listen, name="keys", daemon=True)
+    try:
+        tty.setcbreak(descriptor)
+        thread.start()
+        yield keys
+    finally:
+        done.set()
+        if thread.is_alive():
+            thread.join()
+        termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
+
+
+# ---
+
 
 INTERRUPTED = 130
 #: A save counts as done once the file has not changed for this long, in ms.

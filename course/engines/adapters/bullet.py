@@ -8,16 +8,14 @@ results lag by up to a step.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from panda3d import bullet
 from panda3d.core import BitMask32, ConfigVariableBool, ConfigVariableInt, NodePath, Point3, Vec3
 
 from course.engines.base import Body, Motion, Scene
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 __all__ = ["ADAPTER", "BulletAdapter", "BulletWorld"]
 

@@ -7,15 +7,13 @@ too: each is a skeleton with a free joint.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import Any
 
 import dartpy as dart
 import numpy as np
 
 from course.engines.base import Body, Motion, Scene
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 __all__ = ["ADAPTER", "DartAdapter", "DartWorld"]
 

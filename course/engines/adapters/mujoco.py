@@ -9,15 +9,13 @@ from __future__ import annotations
 
 import functools
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import Any
 
 import mujoco
 import numpy as np
 
 from course.engines.base import Motion, Scene
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 __all__ = ["ADAPTER", "MujocoAdapter", "MujocoWorld"]
 

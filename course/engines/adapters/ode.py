@@ -9,16 +9,14 @@ An exception inside a callback of panda3d is printed and dropped; the one callba
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from panda3d import ode
 from panda3d.core import Quat, Vec4
 
 from course.engines.base import Body, Motion, Scene
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 __all__ = ["ADAPTER", "OdeAdapter", "OdeWorld"]
 

@@ -7,7 +7,7 @@ an articulation have friction, and its links are damped.
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -18,9 +18,7 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore")
     import sapien
     from sapien import physx
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
+from collections.abc import Mapping
 
 __all__ = ["ADAPTER", "PhysxAdapter", "PhysxWorld"]
 

@@ -7,15 +7,13 @@ apart. Friction and restitution of two shapes are multiplied.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import pymunk
 
 from course.engines.base import Body, Motion, NotApplicableError, Scene, Wall
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 __all__ = ["ADAPTER", "PymunkAdapter", "PymunkWorld"]
 

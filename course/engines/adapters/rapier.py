@@ -5,15 +5,13 @@ It averages the coefficients of two materials by default, so equal ones act unch
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import rapier3d as rapier
 
 from course.engines.base import Body, Motion, Scene
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 __all__ = ["ADAPTER", "RapierAdapter", "RapierWorld"]
 

@@ -11,21 +11,17 @@ import itertools
 import queue
 import time
 from collections import deque
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol, TypeAlias
+from typing import Protocol, TypeAlias
 
-from course.errors import InternalError, MissingCapabilityError
-from course.grading.cluster.messages import FORMAT, Answers, Batch, decode_answers, encode
+from course.errors import CourseError, InternalError, MissingCapabilityError
+from course.grading.cluster.worker import FORMAT, Answers, Batch, decode_answers, encode
+from course.grading.intake.students import Entry
 from course.grading.running.batch import MAX_TRIES, Graded, as_error, killed_its_grader, without_grading
 from course.grading.running.grader import Job
+from course.scoring.judging.session import Terms
 from course.scoring.verdict import Problem
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
-
-    from course.errors import CourseError
-    from course.grading.intake.students import Entry
-    from course.scoring.judging.terms import Terms
 
 __all__ = ["LostBatch", "Outcome", "Workers", "grade_on"]
 

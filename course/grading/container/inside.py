@@ -16,15 +16,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from course.errors import CourseError
-from course.grading.exports.cells import write_bytes
-from course.grading.exports.gradescope import results_body
+from course.grading.exports.grades import write_bytes
+from course.grading.exports.platforms import results_body
 from course.grading.gradebook.records import Key, Result
 from course.grading.intake.downloads import Place, Student
 from course.grading.intake.students import read_student
 from course.grading.results.effective import Effective
 from course.grading.running.batch import grade_all, without_grading
 from course.grading.running.snapshot import Snapshot, frozen
-from course.scoring.judging.terms import Terms
+from course.scoring.judging.session import Terms
 from course.scoring.verdict import Problem
 
 if TYPE_CHECKING:

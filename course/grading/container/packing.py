@@ -9,20 +9,16 @@ from __future__ import annotations
 import io
 import json
 import zipfile
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from course.catalog.load import Catalog
+from course.catalog.models import Exercise
 from course.extras import CONTAINER, requirement_of
 from course.grading.container.inside import SNAPSHOT
-from course.grading.exports.cells import write_bytes
+from course.grading.exports.grades import write_bytes
 from course.grading.exports.selection import Written
 from course.grading.running.snapshot import Snapshot
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from course.catalog.load import Catalog
-    from course.catalog.models import Exercise
 
 __all__ = ["write_autograder"]
 

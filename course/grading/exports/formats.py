@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course.errors import UsageError
-from course.grading.exports.gradescope import write_gradescope
+from course.grading.exports.grades import write_csv, write_jsonl
 from course.grading.exports.html_report.write import write_html
 from course.grading.exports.junit import write_junit
-from course.grading.exports.lines import write_csv, write_jsonl
-from course.grading.exports.platforms import write_canvas, write_moodle
+from course.grading.exports.platforms import write_canvas, write_gradescope, write_moodle, write_worksheet
 from course.grading.exports.selection import ExportOptions, Written, is_part, select
-from course.grading.exports.worksheet import write_worksheet
+from course.grading.results.effective import Results
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
-
-    from course.grading.results.effective import Results
-
     Writer = Callable[[Path, Results, ExportOptions], Written]
 
 __all__ = ["AUTOGRADER", "FORMATS", "export"]

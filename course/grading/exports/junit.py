@@ -7,19 +7,20 @@ file contains only what students may read, because build servers show such files
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from pathlib import Path
 from xml.etree import ElementTree as ET
 
-from course.grading.exports.cells import number, replacing
-from course.grading.exports.handout import checks_for_student, problem_for_student
-from course.grading.exports.selection import ExportOptions, Written, select
+from course.grading.exports.grades import number, replacing
+from course.grading.exports.selection import (
+    ExportOptions,
+    Written,
+    checks_for_student,
+    problem_for_student,
+    select,
+)
+from course.grading.results.effective import Effective, Results
 from course.printable import one_line
 from course.scoring.verdict import CheckResult, Problem, Status
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from course.grading.results.effective import Effective, Results
 
 __all__ = ["suite", "write_junit"]
 

@@ -6,28 +6,32 @@ that a spreadsheet would take for a formula cannot be escaped without becoming a
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import csv
+import io
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import msgspec
 
 from course.errors import UsageError
-from course.grading.exports.cells import csv_bytes, for_moodle, is_safe, number, write_bytes
+from course.grading.exports.grades import csv_bytes, for_moodle, is_safe, number, safe_cell, write_bytes
 from course.grading.exports.selection import (
     ExportOptions,
     Needs,
     Selection,
     Written,
     check_settled,
+    checks_for_student,
+    problem_for_student,
     select,
+    some,
 )
-from course.grading.results.roster import Column
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from pathlib import Path
-
-    from course.grading.results.effective import Results
-    from course.grading.results.roster import Person
-
-__all__ = ["write_canvas", "write_moodle"]
+from course.grading.results.effective import Effective, Results
+from course.grading.results.roster import Column, Person, in_english, moodle_key, read_text
+from course.printable import one_line
+from course.scoring.verdict import CheckResult, Problem, Status, Visibility, finite, in_points
 
 _CANVAS = Needs(
     ("canvas_id", "sis_user_id"), "Canvas", "Give Canvas' gradebook export with --roster, or add the column."
@@ -170,3 +174,294 @@ def _table(selection: Selection, scales: Mapping[str, float] | None = None) -> d
             None if effective.score is None else effective.score * scale
         )
     return table
+
+
+# ---
+# Moodle's grading worksheet, filled in with grades and feedback.
+#
+# A teacher downloads it ("Download grading worksheet"), and uploads it again ("Upload grading worksheet").
+# Moodle finds a row by ``Identifier``, takes ``Grade`` and ``Feedback comments`` from it, refuses a file
+# without ``Last modified (grade)``, leaves out a grade that is empty, out of range or locked, and one that
+# was changed in Moodle after the time in that column. An empty feedback cell deletes existing feedback. So
+# everything but those two cells is written unchanged, and so is the whole row where we have no grade. A row
+# that has a grade or feedback already, other than ours, is a teacher's: it is kept, and listed.
+#
+# Source: Moodle's own reader, https://github.com/moodle/moodle/tree/main/mod/assign/feedback/offline
+
+
+_KEY, _GRADE, _MOST = "Identifier", "Grade", "Maximum Grade"
+_NEEDS = Needs(("moodle_key",), "Moodle", "Give the worksheet of Moodle's 'Download grading worksheet'.")
+_MODIFIED, _FEEDBACK, _OPEN = "Last modified (grade)", "Feedback comments", "Grade can be changed"
+
+
+def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Written:
+    """The worksheet with the grades of one exercise.
+
+    Raises:
+        UsageError: there is no worksheet, the file is not one, or there are several exercises.
+        MissingCapabilityError: students are missing in the roster, or the file cannot be written.
+    """
+    if options.worksheet is None:
+        raise UsageError(
+            "There is no worksheet to fill in.",
+            help="Add --roster FILE: the one that Moodle gave with 'Download grading worksheet'.",
+            code="needs_roster",
+        )
+    selection = select(results, options, usable=lambda person: bool(person.moodle_key), needs=_NEEDS)
+    if len(selection.exercises) != 1:
+        raise UsageError(
+            f"A worksheet is about one assignment, and this is about {len(selection.exercises)} exercises.",
+            help=f"Add --exercise, one of {', '.join(selection.exercises)}.",
+            code="needs_exercise",
+        )
+    check_settled(selection, options)
+    as_given, rows = _read(options.worksheet)
+    headings = in_english(as_given)
+    mine = {selection.people[one.student].moodle_key: one for one in selection.each()}
+    locked, kept, filled = [], [], 0
+    for row in rows:
+        effective = mine.get(moodle_key(row[headings.index(_KEY)]) or "")
+        if effective is None or effective.score is None:
+            continue
+        if _OPEN in headings and row[headings.index(_OPEN)].strip().casefold() in {"no", "nein"}:
+            locked.append(effective.student)
+            continue
+        ours = {_GRADE: _grade(options.worksheet, effective, _most(headings, row))}
+        ours |= {_FEEDBACK: _feedback(effective)} if _FEEDBACK in headings else {}
+        theirs = {name: cell for name in ours if (cell := row[headings.index(name)].strip())}
+        if any(not _same(cell, ours[name]) for name, cell in theirs.items()) and not options.overwrite:
+            kept.append(f"{effective.student} ({', '.join(theirs.values())})")
+            continue
+        for name, cell in ours.items():
+            row[headings.index(name)] = cell
+        filled += 1
+    text = io.StringIO(newline="")
+    csv.writer(text, lineterminator="\r\n").writerows([as_given, *rows])
+    write_bytes(path, text.getvalue().encode("utf-8"))
+    written = selection.written
+    written.paths.append(path)
+    written.rows = filled
+    written.notes.append(f"{len(rows) - filled} rows of the worksheet are unchanged.")
+    if kept:
+        written.kept = kept
+        rows_have = "1 row has" if len(kept) == 1 else f"{len(kept)} rows have"
+        written.notes.append(
+            f"{rows_have} a grade or feedback already and stayed as they were: {some(kept)}. --overwrite"
+            " writes ours in their place."
+        )
+    if locked:
+        written.notes.append(
+            f"{len(locked)} grades cannot be changed in Moodle, which says so in the worksheet."
+        )
+    if _FEEDBACK not in headings:
+        written.notes.append("The worksheet has no feedback comments: Moodle's feedback type is off.")
+    return written
+
+
+def _same(theirs: str, ours: str) -> bool:
+    """Whether a cell says the same: 55.00 and 55 are one grade."""
+    try:
+        return float(theirs.replace(",", ".")) == float(ours.replace(",", "."))
+    except ValueError:
+        return theirs == ours.strip()
+
+
+def _read(path: Path) -> tuple[list[str], list[list[str]]]:
+    try:
+        headings, *rows = csv.reader(io.StringIO(read_text(path), newline=""), strict=True)
+    except (csv.Error, ValueError) as error:
+        raise _wrong(path, str(error)) from None
+    missing = [name for name in (_KEY, _GRADE, _MODIFIED) if name not in in_english(headings)]
+    if missing:
+        raise _wrong(path, f"it has no column {missing[0]!r}, without which Moodle does not take it back")
+    if any(len(row) != len(headings) for row in rows):
+        raise _wrong(path, "a row has another number of cells than the headings")
+    return headings, rows
+
+
+def _most(headings: list[str], row: list[str]) -> str:
+    return row[headings.index(_MOST)].strip() if _MOST in headings else ""
+
+
+def _grade(path: Path, effective: Effective, most: str) -> str:
+    """The score on Moodle's scale; its decimal separator is kept."""
+    assert effective.score is not None
+    if not most:
+        return number(effective.score)
+    comma = "," in most
+    try:
+        largest = float(most.replace(",", "."))
+    except ValueError:
+        largest = math.nan
+    if not largest > 0 or not math.isfinite(largest):
+        raise _wrong(path, f"its maximum grade is {most!r}, not a number of points")
+    share = effective.score / effective.max_score if effective.max_score else 0.0
+    # Moodle keeps five digits after the point, and leaves out what is above the maximum.
+    text = number(min(share, 1.0) * largest)
+    return text.replace(".", ",") if comma else text
+
+
+def _feedback(effective: Effective) -> str:
+    """A result for its student, on one line; of a hidden check only that it failed."""
+    verdict = effective.verdict
+    problem = problem_for_student(verdict)
+    told = [f"{number(effective.score)} of {number(effective.max_score)} points."]
+    if effective.penalty:
+        told.append(f"Lateness cost {in_points(effective.penalty)}.")
+    if effective.override is not None:
+        told.append(f"Set by the instructor: {effective.override.reason}")
+    elif problem is not None:
+        told += [problem.message, problem.help]
+    elif verdict.checks:
+        passed = sum(check.status.value == "pass" for check in verdict.checks)
+        told.append(f"{passed} of {len(verdict.checks)} checks pass.")
+    return for_moodle(safe_cell(" ".join(part for part in told if part)))
+
+
+def _wrong(path: Path, why: str) -> UsageError:
+    return UsageError(
+        f"{path}: {why}.",
+        help="Give the file that Moodle's 'Download grading worksheet' made, unchanged.",
+        code="invalid_worksheet",
+    )
+
+
+# ---
+# Gradescope's ``results.json``: an autograder's answer there, one file per submission.
+#
+# Everything in it may be shown to the student, so it contains only what students may read. A hidden check is
+# shown only after the due date, because students may hand in as often as they like, and could otherwise try
+# until it passes.
+
+
+_WHAT_FOR = (
+    "Each JSON file is what an autograder leaves at /autograder/results/results.json for one submission; an "
+    "autograder of your own can hand them out. index.csv says whose is which. To grade in Gradescope itself, "
+    "use --format gradescope-autograder."
+)
+_LONGEST = 4000  # characters of one check's words: a student's function may return anything
+
+
+def write_gradescope(folder: Path, results: Results, options: ExportOptions) -> Written:
+    """A folder with one results file per student and exercise, and ``index.csv``, which names the owners.
+
+    Raises:
+        UsageError: no such exercise.
+        MissingCapabilityError: students are missing in the roster, or a file cannot be written.
+    """
+    selection = select(results, options)
+    check_settled(selection, options)
+    rows: list[Sequence[str]] = []
+    for effective in (item for item in selection.each() if not item.missing):
+        # A student's id never becomes a path.
+        name = f"{len(rows) + 1:05}.json"
+        body = results_body([effective])
+        write_bytes(folder / name, msgspec.json.format(msgspec.json.encode(body), indent=1))
+        person = selection.people.get(effective.student)
+        about = [person.name, person.email] if person else ["", ""]
+        rows.append([name, effective.student, *about, effective.exercise, number(effective.score)])
+    index = folder / "index.csv"
+    write_bytes(index, csv_bytes(["file", "student", "name", "email", "exercise", "score"], rows))
+    selection.written.paths += [index, folder]
+    selection.written.notes.append(_WHAT_FOR)
+    return selection.written
+
+
+def results_body(found: Sequence[Effective]) -> dict[str, Any]:
+    """The body of one ``results.json`` over all exercises of one submission."""
+    tests = [
+        _test(effective.exercise, number_, check)
+        for effective in found
+        for number_, check in enumerate(checks_for_student(effective.verdict), 1)
+    ]
+    tests += [
+        _not_graded(effective, problem)
+        for effective in found
+        if (problem := problem_for_student(effective.verdict)) is not None
+    ]
+    scores = [effective.score for effective in found if effective.score is not None]
+    body: dict[str, Any] = {
+        "score": round(sum(scores), 4),
+        "execution_time": round(sum(_seconds(effective) for effective in found), 3),
+        "output": "\n\n".join(_words(effective) for effective in found),
+        "output_format": "text",
+        "visibility": "visible",
+        "stdout_visibility": "hidden",
+        "tests": tests,
+        "extra_data": {"results": [_extra(effective) for effective in found]},
+    }
+    return dict(finite(body))
+
+
+def _seconds(effective: Effective) -> float:
+    """The time of the public checks alone: a function's time could reveal its hidden inputs."""
+    return sum(check.duration_ms for check in checks_for_student(effective.verdict)) / 1e3
+
+
+def _words(effective: Effective) -> str:
+    """The text about the submission as a whole."""
+    verdict = effective.verdict
+    score = "no score yet" if effective.score is None else f"{number(effective.score)} points"
+    said = [f"{effective.exercise}: {score} of {number(effective.max_score)}."]
+    problem = problem_for_student(verdict)
+    if problem is not None:
+        said += [problem.message, problem.help]
+    if effective.penalty:
+        said.append(f"Lateness cost {in_points(effective.penalty)}.")
+    if effective.override is not None:
+        said.append(f"Score set by the instructor: {effective.override.reason}")
+    return _plain("\n".join(part for part in (*said, *verdict.warnings) if part))
+
+
+def _test(exercise: str, number_: int, check: CheckResult) -> dict[str, Any]:
+    said = [check.message, check.help, f"Diagnosis: {check.diagnosis}" if check.diagnosis else ""]
+    if check.blocked_by:
+        said.append(f"Runs once {check.blocked_by} passes.")
+    public = check.visibility is Visibility.PUBLIC
+    if public and check.expected is not None:
+        units = f" {check.units}" if check.units not in {"", "1"} else ""
+        said.append(f"Measured {check.actual}{units}, expected {check.expected}{units}.")
+    return {
+        "name": _plain(check.title),
+        "number": f"{exercise}.{number_}",
+        "score": check.points,
+        "max_score": check.max_points,
+        "status": "passed" if check.status is Status.PASS else "failed",
+        "output": _plain("\n".join(part for part in said if part))[:_LONGEST],
+        "output_format": "text",
+        "tags": [exercise, check.task, check.status.value],
+        "visibility": "visible" if public else "after_due_date",
+        "extra_data": {"id": check.id, "diagnosis": check.diagnosis},
+    }
+
+
+def _not_graded(effective: Effective, error: Problem) -> dict[str, Any]:
+    return {
+        "name": f"{effective.exercise} could not be graded",
+        "score": 0.0,
+        "max_score": 0.0,
+        "status": "failed",
+        "output": _plain(f"{error.message}\n{error.help}"),
+        "output_format": "text",
+        "tags": [effective.exercise, effective.verdict.state],
+        "visibility": "visible",
+        "extra_data": {"code": error.code},
+    }
+
+
+def _extra(effective: Effective) -> dict[str, Any]:
+    return {
+        "exercise": effective.exercise,
+        "state": effective.verdict.state,
+        "score": effective.score,
+        "max_score": effective.max_score,
+        "passed": effective.passed,
+        "late": effective.late,
+        "isolation": effective.verdict.isolation,
+        "grader_version": effective.result.key.grader_version,
+        "submission_sha256": effective.result.key.submission_sha256,
+    }
+
+
+def _plain(text: str) -> str:
+    return "\n".join(one_line(line) for line in text.split("\n"))

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
-from course.grading.results.roster import FOR_TESTS
+from course.grading.results.effective import Effective, Results
+from course.grading.results.roster import FOR_TESTS, Column, Person, Roster
 from course.printable import command
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
-    from pathlib import Path
-
-    from course.grading.results.effective import Effective, Results
-    from course.grading.results.roster import Column, Person, Roster
-
-__all__ = ["ExportOptions", "Needs", "Selection", "Written", "check_settled", "is_part", "select", "some"]
+from course.scoring.verdict import CheckResult, Problem, Verdict, for_student
 
 _SHOWN = 10
 
@@ -247,3 +241,27 @@ def _unmatched(results: Results, why: dict[str, str], needs: str) -> MissingCapa
         f"{key}. --partial leaves these students out.",
         code="unmatched_students",
     )
+
+
+# ---
+# A verdict as its student may read it; everything that students get is made from this.
+
+
+#: The message of a broken check may contain its hidden values.
+_OUR_FAULT = Problem(
+    "grader_error",
+    "A fault of the grader, not of yours, kept this from being graded.",
+    "It will be graded again. Your instructor knows of it.",
+)
+
+
+def checks_for_student(verdict: Verdict) -> tuple[CheckResult, ...]:
+    """The checks, hidden values dropped; none where the grader itself failed."""
+    if verdict.state == "grader_error":
+        return ()
+    return tuple(for_student(check) for check in verdict.checks)
+
+
+def problem_for_student(verdict: Verdict) -> Problem | None:
+    """Why there is no grade; details of a fault in the grader stay with the instructor."""
+    return _OUR_FAULT if verdict.state == "grader_error" else verdict.error

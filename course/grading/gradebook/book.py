@@ -16,8 +16,11 @@ import os
 import sqlite3
 import time
 import zlib
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any, Self
+from pathlib import Path
+from typing import Any, Self
 
 import msgspec
 
@@ -44,11 +47,6 @@ from course.grading.gradebook.records import (
     SubmittedAt,
 )
 from course.scoring.verdict import Verdict, finite
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
-    from contextlib import AbstractContextManager
-    from pathlib import Path
 
 __all__ = ["Gradebook"]
 

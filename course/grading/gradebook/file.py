@@ -21,14 +21,12 @@ import hashlib
 import itertools
 import os
 import sqlite3
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
 
 from course.errors import CourseError, IntegrityError, MissingCapabilityError, NotFoundError, UsageError
 from course.printable import command
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
 
 __all__ = [
     "FORMAT_VERSION",

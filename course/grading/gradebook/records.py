@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 
-if TYPE_CHECKING:
-    from course.scoring.verdict import Verdict
+from course.scoring.verdict import Verdict
 
 __all__ = [
     "Decision",

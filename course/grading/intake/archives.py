@@ -6,36 +6,40 @@ folder around everything, and the backslashes of Windows, are accepted and noted
 
 from __future__ import annotations
 
+import ast
+import atexit
 import contextlib
 import functools
 import hashlib
 import json
+import os
 import stat
+import subprocess
+import sys
+import threading
+import warnings
 import zipfile
 from dataclasses import dataclass
-from pathlib import PurePosixPath
-from typing import TYPE_CHECKING, Any, TypeVar
+from pathlib import Path, PurePosixPath
+from types import SimpleNamespace
+from typing import IO, TYPE_CHECKING, Any, TypeVar
 
-from course.grading.intake.downloads import IGNORED
-from course.grading.intake.names import is_meant
+import msgspec
+
+from course.errors import InternalError, UngradableError
+from course.grading.intake.downloads import IGNORED, is_meant
+from course.grading.pipes import limit_cpu, limit_memory, read_frame, served, write_frame
+from course.grading.quiz import checked_record
+from course.handed_in.cells import MAX_CODE, MAX_NOTEBOOK
+from course.handed_in.notebook import notebook_source
 from course.printable import one_line
 from course.scoring.verdict import Problem
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from pathlib import Path
 
     from course.catalog.models import Exercise
 
-__all__ = [
-    "MAX_FILE",
-    "ArchiveContent",
-    "RefusedError",
-    "manifest_of",
-    "member_of",
-    "module_in",
-    "outline_of",
-]
 
 T = TypeVar("T")
 Members = dict[str, zipfile.ZipInfo]
@@ -91,7 +95,7 @@ def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
 
     def read(archive: zipfile.ZipFile, members: Members) -> ArchiveContent | None:
         manifest = _manifest(path, archive, members)
-        wanted = _wanted(members, exercise)
+        wanted = _wanted_members(members, exercise)
         if not wanted:
             return None
         contents = {name: _unpacked(path, archive, members[name]) for name in wanted}
@@ -128,7 +132,7 @@ def _notes(path: Path, name: str, raw: str, wanted: list[str], exercise: Exercis
         yield f"The same file is in {path.name} {len(wanted)} times: {', '.join(wanted)}."
 
 
-def _wanted(members: Members, exercise: Exercise) -> list[str]:
+def _wanted_members(members: Members, exercise: Exercise) -> list[str]:
     """The members for an exercise, those with exactly its name first."""
     names = (exercise.module, PurePosixPath(exercise.module).with_suffix(".ipynb").name)
     found = [
@@ -267,3 +271,292 @@ def _manifest(path: Path, archive: zipfile.ZipFile, members: Members) -> dict[st
         case {"format_version": int(), "files": dict(files)} if files or manifest.get("quiz"):
             return dict(manifest)
     raise _refused(path, "its submission.json is damaged")
+
+
+# ---
+# Submissions, read in a separate process that can be ended.
+#
+# Notebooks and archives are parsed there, with limits on CPU time, memory, wall time and the size of the
+# answer; nothing in them is ever run. A file that exceeds a limit is named and cannot be graded; other files
+# are not affected. ``python -m course.grading.intake.archives`` is the process; it answers frames of msgpack.
+
+
+#: For one file. The largest notebook that may be handed in takes about 3 s of CPU, ten thousand lines of code
+#: less than one; a busy machine may take six times as long by the wall clock.
+CPU_S, WALL_S = 10, 60.0
+MEMORY = 1 << 30
+#: The largest answer, in bytes: a module and the notes on it.
+MAX_ANSWER = 4 << 20
+
+
+class _Request(msgspec.Struct, frozen=True):
+    """One file to read, and what to look for in it.
+
+    Attributes:
+        kind: "notebook", "archive", "quiz", "outline" or "member".
+        path: of an archive, or of a file to outline.
+        content: of a notebook.
+        name: what to call it in messages.
+    """
+
+    kind: str
+    name: str
+    path: bytes = b""
+    content: bytes = b""
+    exercise: str = ""
+    place: str = ""
+    module: str = ""
+    tasks: tuple[str, ...] = ()
+    skip: tuple[str, ...] = ()
+
+
+#: A file by its name in its archive, the digest of its content, the names of the functions in it, and how
+#: much code was parsed to find them.
+Outline = tuple[str, str, tuple[str, ...], int]
+
+
+class _Reply(msgspec.Struct, frozen=True):
+    """The result: a file with its name and content, or why there is none; both None if it is not there."""
+
+    problem: Problem | None = None
+    name: str | None = None
+    content: bytes = b""
+    record: bytes = b""
+    notes: tuple[str, ...] = ()
+    copies: tuple[str, ...] = ()
+    outlines: tuple[Outline, ...] = ()
+
+
+@dataclass(frozen=True)
+class _Limits:
+    cpu_s: int = CPU_S
+    wall_s: float = WALL_S
+    memory: int = MEMORY
+
+
+class Reader:
+    """A process that reads; started when it is first needed, and again after a file killed it."""
+
+    def __init__(self, limits: _Limits = _Limits()) -> None:
+        self._limits = limits
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def notebook(self, content: bytes, exercise: Exercise, name: str) -> tuple[bytes, bytes]:
+        """The module that a notebook makes up, and the record of its cells.
+
+        Raises:
+            RefusedError: it cannot be graded.
+        """
+        told = self._ask(_Request("notebook", one_line(name), content=content, **_wanted(exercise)))
+        return told.content, told.record
+
+    def module_in(self, path: Path, exercise: Exercise) -> ArchiveContent | None:
+        """An archive's file for an exercise; None if it has none.
+
+        Raises:
+            RefusedError: it must not be opened, or is damaged.
+        """
+        told = self._ask(
+            _Request("archive", one_line(path.name), path=os.fsencode(path.absolute()), **_wanted(exercise))
+        )
+        return None if told.name is None else ArchiveContent(told.name, told.content, told.notes, told.copies)
+
+    def outlines(self, path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> tuple[Outline, ...]:
+        """The functions that a module or a notebook defines, or each file in an archive.
+
+        Args:
+            skip: members of the archive to ignore.
+            functions: the names to look for.
+
+        Raises:
+            RefusedError: it cannot be read.
+        """
+        where = os.fsencode(path.absolute())
+        ask = _Request("outline", one_line(path.name), path=where, tasks=functions, skip=skip)
+        return self._ask(ask).outlines
+
+    def member(self, path: Path, name: str) -> bytes:
+        """The content of one file of an archive.
+
+        Raises:
+            RefusedError: there is none, or the archive must not be opened.
+        """
+        ask = _Request("member", one_line(path.name), path=os.fsencode(path.absolute()), skip=(name,))
+        return self._ask(ask).content
+
+    def quiz_in(self, path: Path) -> Any:
+        """The quiz attempts in an archive; a word if they have another form, None if it has none.
+
+        Raises:
+            RefusedError: it must not be opened, or is damaged.
+        """
+        told = self._ask(_Request("quiz", one_line(path.name), path=os.fsencode(path.absolute())))
+        return json.loads(told.content)
+
+    def close(self) -> None:
+        """End the process; the next file starts another one."""
+        process, self._process = self._process, None
+        if process is None:
+            return
+        process.kill()
+        process.wait()
+        for stream in (process.stdin, process.stdout):
+            with contextlib.suppress(OSError):
+                if stream is not None:
+                    stream.close()
+
+    def _ask(self, ask: _Request) -> _Reply:
+        process = self._process or self._start()
+        assert process.stdin is not None
+        assert process.stdout is not None
+        too_long = threading.Timer(self._limits.wall_s, process.kill)
+        too_long.start()
+        try:
+            write_frame(process.stdin, ask)
+            frame = read_frame(process.stdout, MAX_ANSWER)
+        except OSError:
+            frame = None
+        finally:
+            too_long.cancel()
+        if frame is None:
+            self.close()
+            raise RefusedError(
+                "unreadable",
+                f"{ask.name} takes more time or memory to read than any honest file.",
+                "Hand in the .py file, or a notebook of ordinary size.",
+            )
+        told = msgspec.msgpack.decode(frame, type=_Reply)
+        if told.problem is not None:
+            problem = told.problem
+            raise RefusedError(problem.code, problem.message, problem.help)
+        return told
+
+    def _start(self) -> subprocess.Popen[bytes]:
+        """The process, once it is ready.
+
+        Raises:
+            InternalError: it does not start.
+        """
+        package = str(Path(__file__).resolve().parents[3])
+        environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+        environment["PYTHONPATH"] = os.pathsep.join(filter(None, (package, environment.get("PYTHONPATH"))))
+        limits = self._limits
+        process = self._process = subprocess.Popen(
+            [sys.executable, "-P", "-m", __name__, str(limits.cpu_s), str(limits.memory)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env=environment,
+            start_new_session=True,  # Ctrl-C is for the run, which ends it
+        )
+        assert process.stdout is not None
+        if read_frame(process.stdout, MAX_ANSWER) is None:
+            self.close()
+            raise InternalError("The process that reads submissions does not start; see what it printed.")
+        return process
+
+
+#: The one of this process: a run reads one file after the other.
+reader = Reader()
+atexit.register(reader.close)
+
+
+def _wanted(exercise: Exercise) -> dict[str, Any]:
+    tasks = tuple(task.id for task in exercise.task)
+    return {"exercise": exercise.id, "place": exercise.place, "module": exercise.module, "tasks": tasks}
+
+
+# -- the process ------------------------------------------------------------------------------------------
+
+
+def main() -> None:
+    """Serve until standard input ends."""
+    cpu_s, memory = int(sys.argv[1]), int(sys.argv[2])
+    source, sink = sys.stdin.buffer, sys.stdout.buffer
+    limit_memory(memory)
+    with contextlib.suppress(BrokenPipeError, KeyboardInterrupt):  # whoever asked is gone
+        write_frame(sink, None)
+        _serve(source, sink, cpu_s)
+
+
+def _serve(source: IO[bytes], sink: IO[bytes], cpu_s: int) -> None:
+    for frame in served(source):
+        limit_cpu(cpu_s)
+        ask = msgspec.msgpack.decode(frame, type=_Request)
+        try:
+            told = _answer(ask)
+        except RefusedError as refused:
+            told = _Reply(problem=refused.problem)
+        except UngradableError as error:
+            told = _Reply(problem=Problem(error.code, error.message, error.help))
+        except OSError as error:
+            told = _Reply(problem=Problem("unreadable", f"{ask.name} cannot be read: {error.strerror}.", ""))
+        except MemoryError:
+            os._exit(1)  # the parent process reports it
+        write_frame(sink, told)
+
+
+def _answer(ask: _Request) -> _Reply:
+    # What it is looked for by, of an exercise; the course's content is not needed to read a file.
+    exercise: Any = SimpleNamespace(
+        id=ask.exercise,
+        place=ask.place,
+        module=ask.module,
+        task=[SimpleNamespace(id=name) for name in ask.tasks],
+    )
+    if ask.kind == "notebook":
+        module = notebook_source(ask.content, exercise, ask.name)
+        return _Reply(name=ask.name, content=module.source, record=module.record())
+    path = Path(os.fsdecode(ask.path))
+    if ask.kind == "outline":
+        return _Reply(outlines=tuple(_outlines(path, ask.skip, ask.tasks)))
+    if ask.kind == "member":
+        return _Reply(content=member_of(path, ask.skip[0]))
+    if ask.kind == "quiz":
+        return _Reply(content=json.dumps(checked_record(manifest_of(path).get("quiz"))).encode())
+    found = module_in(path, exercise)
+    if found is None:
+        return _Reply()
+    return _Reply(name=found.name, content=found.content, notes=found.notes, copies=found.copies)
+
+
+def _outlines(path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> Iterator[Outline]:
+    if path.suffix.casefold() == ".zip":
+        files = outline_of(path, skip)
+    else:
+        with path.open("rb") as handle:
+            content = handle.read(MAX_NOTEBOOK + 1)
+        files = [("", content)] if len(content) <= MAX_NOTEBOOK else []
+    for name, content in files:
+        yield name, hashlib.sha256(content).hexdigest(), *_defined(name or path.name, content, functions)
+
+
+def _defined(name: str, content: bytes, functions: tuple[str, ...]) -> tuple[tuple[str, ...], int]:
+    """The functions among these that a file's top level defines, and how much code was parsed for that."""
+    if not any(function.encode() in content for function in functions):
+        return (), 0  # parsing takes a hundred times as long as looking
+    pieces: list[str | bytes] = [content]
+    try:
+        if name.casefold().endswith(".ipynb"):
+            cells = json.loads(content).get("cells", ())
+            pieces = ["".join(cell.get("source", ())) for cell in cells if cell.get("cell_type") == "code"]
+    except (ValueError, AttributeError, TypeError, RecursionError):
+        return (), 0
+    size = sum(map(len, pieces))
+    if size > MAX_CODE:
+        return (), 0  # nor could it be graded
+    found = [node for tree in map(_parsed, pieces) if tree for node in tree.body]
+    names = {node.name for node in found if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)}
+    return tuple(function for function in functions if function in names), size
+
+
+def _parsed(source: str | bytes) -> ast.Module | None:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of a stranger's escapes
+            return ast.parse(source)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None  # the last two: nesting that the parser does not follow
+
+
+if __name__ == "__main__":
+    main()

@@ -16,18 +16,38 @@ import contextlib
 import datetime as dt
 import os
 import re
+import unicodedata
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from pathlib import Path
+from typing import Any, Literal
 
 from course import extras
 from course.errors import NotFoundError, UsageError
 from course.grading.gradebook.records import PlatformIdentity
-from course.grading.intake.names import is_meant
 
-if TYPE_CHECKING:
-    from pathlib import Path
+# ---
+# File names, and the spellings of them that are accepted without asking.
+#
+# Letter case does not matter, nor does the number that a browser, Canvas or Windows adds to a second
+# download. Every such spelling is named in the result. Any other name is for triage.
 
-__all__ = ["IGNORED", "LAYOUTS", "ClassList", "Layout", "Place", "Student", "class_list"]
+
+_NUMBERED = re.compile(r"(?:\s*\([0-9]{1,3}\)|-[0-9]{1,3})+$")
+
+
+def plain(name: str) -> str:
+    """A file's name without letter case, and without the number of a copy: ``Name (2).py`` is ``name.py``."""
+    stem, dot, suffix = unicodedata.normalize("NFC", name).rpartition(".")
+    return (_NUMBERED.sub("", stem) + dot + suffix.rstrip()).casefold()
+
+
+def is_meant(name: str, wanted: str) -> bool:
+    """Whether a file of this name is the wanted one."""
+    return name == wanted or plain(name) == wanted.casefold()
+
+
+# ---
+
 
 Layout = Literal["auto", "folders", "canvas", "moodle", "gradescope"]
 LAYOUTS = ("auto", "folders", "canvas", "moodle", "gradescope")

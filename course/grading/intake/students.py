@@ -20,27 +20,23 @@ import io
 import os
 import stat
 import tokenize
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from course.catalog.models import Exercise
 from course.errors import InternalError, UngradableError
 from course.grading.gradebook.records import SubmittedAt
-from course.grading.intake.archives import MAX_FILE, ArchiveContent, RefusedError
-from course.grading.intake.reading import reader
+from course.grading.intake.archives import MAX_FILE, ArchiveContent, RefusedError, reader
+from course.grading.intake.downloads import Place, Student
 from course.grading.intake.triage import Candidate, Found, described, found_for, survey
 from course.grading.results.roster import decoded
 from course.handed_in.cells import MAX_NOTEBOOK
 from course.handed_in.notebook import RECORD
 from course.printable import one_line
-from course.scoring.judging.submission import Submission
+from course.scoring.judging.session import Submission
 from course.scoring.verdict import Problem
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from course.catalog.models import Exercise
-    from course.grading.intake.downloads import Place, Student
 
 __all__ = [
     "MAX_FILE",

@@ -9,23 +9,16 @@ from __future__ import annotations
 
 import difflib
 import os
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import msgspec
 
-from course.grading.intake.archives import RefusedError
-from course.grading.intake.downloads import IGNORED
-from course.grading.intake.names import plain
-from course.grading.intake.reading import reader
+from course.catalog.models import Exercise
+from course.grading.intake.archives import RefusedError, reader
+from course.grading.intake.downloads import IGNORED, Place, plain
 from course.printable import one_line
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-
-    from course.catalog.models import Exercise
-    from course.grading.intake.downloads import Place
 
 __all__ = ["Candidate", "Found", "described", "found_for", "survey"]
 

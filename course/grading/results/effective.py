@@ -11,26 +11,25 @@ an option decides how an export writes it. Until a run has looked at all of a st
 
 from __future__ import annotations
 
+import contextlib
 import itertools
-from dataclasses import dataclass
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Self
+from pathlib import Path
+from typing import Self
 
 import msgspec
 
 from course.catalog.models import CourseRef
+from course.errors import NotFoundError, UsageError
 from course.grading.gradebook.book import Gradebook
-from course.grading.gradebook.records import GradedExercise, Key, Override, Result, SubmittedAt
+from course.grading.gradebook.records import Decision, GradedExercise, Key, Override, Result, SubmittedAt
 from course.grading.results.late import Policy, lateness, parse_policy
 from course.grading.results.roster import FOR_TESTS, Person, Roster
-from course.printable import one_line
-from course.scoring.verdict import Problem, Verdict, not_graded
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from pathlib import Path
-
-__all__ = ["MISSING", "NOT_YET", "Effective", "Results"]
+from course.printable import command, one_line
+from course.scoring.verdict import Problem, Verdict, format_points, not_graded
 
 #: State of work that an enrolled student did not hand in.
 MISSING = "missing"
@@ -335,3 +334,180 @@ class Results:
         problem = _NOTHING[state]
         verdict = not_graded(exercise, noted.max_points if noted else 0.0, state, problem)
         return Result(Key(student, exercise, "", "", self.seed), verdict)
+
+
+# ---
+# The scores that a decision about the class changed, and by how much; stored with the decision.
+
+
+#: By student and exercise: the score that counts, and the points there are.
+Scores = dict[tuple[str, str], tuple[float | None, float | None]]
+_NONE = (None, None)
+
+
+class ScoreChange(msgspec.Struct, frozen=True):
+    """A change of the score that counts, and of the points there are; None where there is no score."""
+
+    student: str
+    exercise: str
+    before: float | None
+    after: float | None
+    max_before: float | None = None
+    max_after: float | None = None
+
+
+@dataclass
+class Recording:
+    """The scores that a decision changed, once it is made."""
+
+    moved: list[ScoreChange] = field(default_factory=list)
+
+
+def counting(results: Results) -> Scores:
+    """The effective scores."""
+    return {(item.student, item.exercise): (item.score, item.max_score) for item in results.all()}
+
+
+def moved(before: Scores, after: Scores) -> list[ScoreChange]:
+    """The scores that are not the same, by student."""
+    return [
+        ScoreChange(*key, was, now, most_before, most_after)
+        for key in sorted({*before, *after})
+        for (was, most_before), (now, most_after) in [(before.get(key, _NONE), after.get(key, _NONE))]
+        if was != now
+    ]
+
+
+@contextlib.contextmanager
+def recorded(book: Gradebook, kind: str, reason: str) -> Iterator[Recording]:
+    """Record which scores the decision in this block changed.
+
+    Args:
+        kind: as in ``Decision``.
+    """
+    told = Recording()
+    before = counting(Results(book))
+    yield told
+    told.moved = moved(before, counting(Results(book)))
+    old = [(one.student, one.exercise, one.before) for one in told.moved]
+    new = [(one.student, one.exercise, one.after) for one in told.moved]
+    texts = (msgspec.json.encode(old).decode(), msgspec.json.encode(new).decode())
+    book.note(Decision("", "", kind, "", "", reason, *texts))
+
+
+@contextlib.contextmanager
+def replacing(book: Gradebook, view: Results, key: Key) -> Iterator[None]:
+    """Note in the journal if the result that this block puts in the place of another changes what counts."""
+    before = next(view.all(key.student, key.exercise), None)
+    yield
+    after = next(view.all(key.student, key.exercise), None)
+    if before is None or after is None or before.waiting:
+        return  # it is the first
+    if (before.verdict.state, before.score) != (after.verdict.state, after.score):
+        told = counted(before), counted(after)
+        book.note(Decision("", "", "resume", key.student, key.exercise, "another submission", *told))
+
+
+def counted(counts: Effective | None, file: str = "") -> str:
+    """What counts for a student's exercise, as a decision about it keeps it.
+
+    Args:
+        file: the file that the instructor chose, if any.
+    """
+    if counts is None:
+        return msgspec.json.encode({"state": "missing", "score": None}).decode()
+    told: dict[str, object] = {"state": counts.verdict.state, "score": counts.score, "of": counts.max_score}
+    told |= {"submission": counts.result.key.submission_sha256}
+    if counts.verdict.error is not None:
+        told["reason"] = counts.verdict.error.code
+    return msgspec.json.encode(told | ({"file": file} if file else {})).decode()
+
+
+# ---
+# A score set by an instructor, with a reason: it replaces the graders', now and after any regrading.
+
+
+_MAX_REASON = 2000
+
+
+def override(results: Results, student: str, exercise: str, score: float, reason: str) -> Effective:
+    """Set a score and store the reason; earlier decisions stay in the gradebook.
+
+    Args:
+        results: over a gradebook opened for writing.
+        score: points, from 0 to the exercise's maximum.
+
+    Raises:
+        NotFoundError: the gradebook knows no such student or exercise.
+        UsageError: no such score is possible, or there is no reason.
+    """
+    most = _maximum(results, student, exercise)
+    if not math.isfinite(score) or not 0 <= score <= most:
+        raise UsageError(
+            f"--score is {score:g}; {exercise} has 0 to {most:g} points.",
+            help="Give the points that are to count.",
+            code="impossible_score",
+        )
+    reason = reason.strip()
+    if not reason or len(reason) > _MAX_REASON:
+        raise UsageError(
+            "An override needs a reason of at most 2000 characters.",
+            help="Add --reason: it is shown wherever the score is.",
+            code="no_reason",
+        )
+    before = _told(next(results.all(student, exercise), None))
+    results.book.add_override(Override(student, exercise, float(score), reason), before)
+    return _now_counts(results, student, exercise)
+
+
+def lift(results: Results, student: str, exercise: str, reason: str) -> Effective | None:
+    """Let the graders' result count again; None if there is none.
+
+    Raises:
+        NotFoundError: there is no override to lift.
+    """
+    _maximum(results, student, exercise)
+    found = next((item for item in results.all(student, exercise)), None)
+    if found is None or found.override is None:
+        explain = command("grade", "explain", results.folder, student, exercise)
+        raise NotFoundError(
+            f"There is no override for {student!r} and {exercise}.",
+            help=f"{explain} shows what counts.",
+            code="no_override",
+        )
+    results.book.add_override(Override(student, exercise, None, reason.strip()), _told(found))
+    return next(type(results)(results.book).all(student, exercise), None)
+
+
+def _told(counts: Effective | None) -> str:
+    """The score that counted, for the journal."""
+    if counts is None or counts.score is None:
+        return "no score"
+    by = f"by hand: {counts.override.reason}" if counts.override else counts.verdict.state
+    return f"{format_points(counts.score)}, {by}"
+
+
+def _now_counts(results: Results, student: str, exercise: str) -> Effective:
+    return next(type(results)(results.book).all(student, exercise))
+
+
+def _maximum(results: Results, student: str, exercise: str) -> float:
+    """The exercise's maximum; also checks that student and exercise exist."""
+    graded = next(iter(results.book.results(student, exercise)), None)
+    noted = next((item for item in results.exercises() if item.id == exercise), None)
+    if graded is None and noted is None:
+        raise NotFoundError(
+            f"The gradebook has no exercise {exercise!r}.",
+            help=f"It has {', '.join(item.id for item in results.exercises()) or 'none'}.",
+            code="exercise_not_found",
+        )
+    if student not in results.students():
+        raise NotFoundError(
+            f"The gradebook has no student {student!r}.",
+            help="grades.csv lists all, and with a roster everybody who is enrolled.",
+            code="student_not_found",
+        )
+    if noted is not None:
+        return noted.max_points
+    assert graded is not None
+    return graded.verdict.max_score

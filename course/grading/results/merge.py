@@ -7,17 +7,14 @@ that only the stored roster has goes.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from course.grading.results.effective import Results, ScoreChange
 from course.grading.results.roster import COLUMNS, Person, Roster
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from course.grading.results.effective import Results
-    from course.grading.results.journal import ScoreChange
-
     Stage = Callable[[Person], list[Person]]
 
 __all__ = ["Merged", "merged"]

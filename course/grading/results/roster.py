@@ -23,20 +23,15 @@ import csv
 import io
 import re
 import unicodedata
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import msgspec
 
 from course.errors import UsageError
+from course.grading.gradebook.records import PlatformIdentity
 from course.printable import one_line
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
-
-    from course.grading.gradebook.records import PlatformIdentity
 
 __all__ = [
     "COLUMNS", "FOR_TESTS", "Column", "Person", "Roster", "decoded", "in_english", "moodle_key",

@@ -7,32 +7,27 @@ given; ``course grade run --resume`` leaves assigned files alone.
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import msgspec
 
+from course.catalog.load import Catalog
 from course.errors import NotFoundError, UngradableError, UsageError
 from course.grading.gradebook.records import Decision, Key, Result, SubmittedAt
 from course.grading.intake.archives import RefusedError
 from course.grading.intake.students import Entry, submission_from
 from course.grading.intake.triage import Found
-from course.grading.results.effective import Results
-from course.grading.results.journal import counted
-from course.grading.running.batch import grade_all
-from course.grading.running.snapshot import Snapshot, frozen, kept
+from course.grading.results.effective import Effective, Results, counted
+from course.grading.running.batch import Graded, grade_all
+from course.grading.running.snapshot import Snapshot, Unpacked, frozen, kept
 from course.printable import command
-from course.scoring.judging.terms import Terms
+from course.scoring.judging.session import Terms
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from course.catalog.load import Catalog
-    from course.grading.results.effective import Effective
-    from course.grading.running.batch import Graded
     from course.grading.running.run import GradeAll
-    from course.grading.running.snapshot import Unpacked
 
 __all__ = ["Assigned", "Assignment", "Unsettled", "assign", "named", "proposals", "unsettled"]
 

@@ -13,26 +13,23 @@ import subprocess
 import sys
 import time
 from collections import deque
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
 import msgspec
 
 from course.catalog.locate import ENVIRONMENT_VARIABLE
 from course.errors import CourseError, InternalError
+from course.grading.intake.students import Entry
 from course.grading.pipes import read_frame, write_frame
 from course.grading.running.grader import Answer, Config, Job
 from course.grading.running.snapshot import in_use
 from course.isolation.deadline import WALL
 from course.isolation.launch import keep_private, sweep_after_the_dead
+from course.scoring.judging.session import Terms
 from course.scoring.remote import BUDGET_S
 from course.scoring.verdict import Problem, Verdict, not_graded
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
-
-    from course.grading.intake.students import Entry
-    from course.scoring.judging.terms import Terms
 
 __all__ = [
     "MAX_TRIES",

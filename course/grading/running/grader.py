@@ -16,10 +16,9 @@ import msgspec
 from course.errors import ContentError, CourseError, MissingCapabilityError
 from course.grading.pipes import read_frame, served, write_frame
 from course.handed_in.notebook import opened
-from course.isolation.keeping import kept_sandboxes
 from course.isolation.launch import keep_private
-from course.scoring.judging.submission import Submission
-from course.scoring.judging.terms import Terms
+from course.isolation.probe import kept_sandboxes
+from course.scoring.judging.session import Submission, Terms
 from course.scoring.verdict import Problem, Verdict, not_graded
 
 if TYPE_CHECKING:

@@ -7,32 +7,29 @@ unscored. Old results are kept beside the new ones; an override still replaces b
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from course.catalog.load import Catalog
 from course.catalog.questions import read_questions
 from course.errors import IntegrityError, NotFoundError
 from course.grading.gradebook.records import Key, Result
 from course.grading.intake.students import Entry
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version
+from course.grading.results.effective import Effective, Results
 from course.grading.running.batch import grade_all
 from course.grading.running.run import QUIZ_RECORD, graded_exercises
-from course.grading.running.snapshot import Snapshot, frozen, kept
+from course.grading.running.snapshot import Snapshot, Unpacked, frozen, kept
 from course.quizzing.bank import Bank
-from course.scoring.judging.submission import Submission
-from course.scoring.judging.terms import Terms
+from course.scoring.judging.session import Submission, Terms
+from course.scoring.verdict import Verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from course.catalog.load import Catalog
-    from course.grading.results.effective import Effective, Results
     from course.grading.running.run import GradeAll
-    from course.grading.running.snapshot import Unpacked
-    from course.scoring.verdict import Verdict
 
 __all__ = ["Change", "CheckChange", "Regraded", "RerunOptions", "rerun"]
 

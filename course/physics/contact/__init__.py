@@ -6,6 +6,6 @@ impulses  what all contacts do to the bodies at once
 models    a ball on a floor in one dimension, under the contact models of engines
 """
 
-from course.physics.contact.geometry import Plane, Surface, meet, meet_plane
+from course.physics.contact.pairs import Plane, Surface, meet, meet_plane
 
 __all__ = ["Plane", "Surface", "meet", "meet_plane"]

@@ -22,16 +22,14 @@ Temporal Coherence, 2005 (projected Gauss-Seidel with warm starting).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike, NDArray
-
     Array = NDArray[np.float64]
     Flags = NDArray[np.bool_]
 

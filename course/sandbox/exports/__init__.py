@@ -1,5 +1,4 @@
-"""Scenes exported as worlds for other engines.
+"""Scenes exported as worlds for other engines: ``formats`` writes them for MuJoCo and Gazebo.
 
-``mjcf`` is for MuJoCo; ``sdf`` is for Gazebo, with ``sdf_joints`` for what holds its bodies and
-``gazebo_start`` for the file that lies beside a world with velocities; ``common`` is shared by both.
+``gazebo_start`` is the file that lies beside a world for Gazebo with velocities.
 """

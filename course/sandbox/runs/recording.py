@@ -6,20 +6,25 @@ what is replayed), a line for each thing done by hand, a line with a hash every 
 
 from __future__ import annotations
 
+import io
+import math
 import platform
+import shutil
+import subprocess
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 
-from course.errors import IntegrityError, NotFoundError, UsageError
-from course.sandbox.scene.model import Scene
+from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
+from course.sandbox.scene.model import Part, Scene
 from course.sandbox.world.engine import versions
-from course.sandbox.world.world import World
+from course.sandbox.world.world import Snapshot, World
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from PIL.Image import Image
+    from PIL.ImageDraw import ImageDraw
 
-__all__ = ["EVERY", "Difference", "Recording", "Replay", "read", "replay"]
 
 FORMAT = "course.sandbox-recording/1"
 #: Steps between two hashes. A hash costs what two steps of a small scene do.
@@ -233,3 +238,208 @@ def _versions() -> dict[str, str]:
 
     machine = f"{platform.system()} {platform.machine()}"
     return {**versions(), "course": __version__, "machine": machine}
+
+
+# ---
+# Frames drawn with PIL: a GIF, an MP4 where ffmpeg is there, or one picture.
+#
+# Drawn at twice the size and scaled down, because PIL draws hard edges. A GIF has one palette for all frames,
+# made of the scene's own colours, so no frame has to be analysed and none flickers.
+
+
+_PAPER = "#ffffff"
+_INK = "#222222"
+_FAINT = "#c9ccd1"
+_MOST_FRAMES = 3000
+#: Longest side of a picture, in pixels.
+_LARGEST = 1600
+
+
+def ffmpeg() -> str:
+    """Where ffmpeg is.
+
+    Raises:
+        MissingCapabilityError: it is not installed.
+    """
+    found = shutil.which("ffmpeg")
+    if found is None:
+        raise MissingCapabilityError(
+            "An MP4 needs ffmpeg, which is not on this machine.",
+            help="Install ffmpeg with the system's packages (apt, brew, winget), or write a --gif.",
+            code="no_ffmpeg",
+        )
+    return found
+
+
+class Film:
+    """Collects frames of one run.
+
+    Args:
+        scene: the scene to film; the picture shows its view.
+        width: of a frame in pixels; its height follows from the view.
+    """
+
+    def __init__(self, scene: Scene, width: int = 480) -> None:
+        left, bottom, right, top = scene.view
+        if not 64 <= width <= _LARGEST:
+            raise UsageError(f"A frame may be 64 to {_LARGEST} pixels wide, not {width}.", code="bad_size")
+        height = min(_LARGEST, max(32, round(width * (top - bottom) / (right - left))))
+        # Video encoders want even sides.
+        self.size = (width - width % 2, height - height % 2)
+        self._scale = 2 * self.size[0] / (right - left)
+        self._origin = left, top
+        self._frames: list[Image] = []
+        self._palette: Image | None = None
+        #: What does not move, drawn once for each cast of bodies.
+        self._still: tuple[int, Image] | None = None
+
+    def __len__(self) -> int:
+        return len(self._frames)
+
+    def take(self, parts: tuple[Part, ...], snapshot: Snapshot) -> None:
+        """Draw one frame.
+
+        Raises:
+            UsageError: the film is too long.
+        """
+        if len(self._frames) >= _MOST_FRAMES:
+            raise UsageError(
+                f"A film has at most {_MOST_FRAMES} frames.",
+                help="Give a shorter --duration.",
+                code="too_long",
+            )
+        self._frames.append(self._reduced(self.draw(parts, snapshot), parts))
+
+    def draw(self, parts: tuple[Part, ...], snapshot: Snapshot) -> Image:
+        """One picture in full colour."""
+        from PIL import Image as Images
+        from PIL import ImageDraw
+
+        if self._still is None or self._still[0] != snapshot.version:
+            ground = Images.new("RGB", (2 * self.size[0], 2 * self.size[1]), _PAPER)
+            self._draw_parts(ImageDraw.Draw(ground), parts, snapshot, fixed=True)
+            self._still = snapshot.version, ground
+        large = self._still[1].copy()
+        pen = ImageDraw.Draw(large)
+        self._draw_parts(pen, parts, snapshot, fixed=False)
+        for ax, ay, bx, by in snapshot.joints.tolist():
+            pen.line([self._at(ax, ay), self._at(bx, by)], fill=_INK, width=4)
+        picture = large.reduce(2)
+        ImageDraw.Draw(picture).text((6, 4), f"{snapshot.t:.2f} s", fill=_INK)
+        return picture
+
+    def gif(self, fps: float = 25.0) -> bytes:
+        """The film as an animated GIF that repeats."""
+        # The format counts hundredths of a second.
+        pause = max(2, round(100.0 / fps)) * 10
+        first, *rest = self._some()
+        data = io.BytesIO()
+        first.save(
+            data,
+            format="GIF",
+            save_all=True,
+            append_images=rest,
+            duration=pause,
+            loop=0,
+            optimize=False,
+            disposal=1,
+        )
+        return data.getvalue()
+
+    def mp4(self, fps: float = 25.0) -> bytes:
+        """The film as an MP4 that every browser plays.
+
+        Raises:
+            MissingCapabilityError: there is no ffmpeg, or it cannot encode H.264.
+        """
+        import tempfile
+        from pathlib import Path
+
+        command = [ffmpeg(), "-v", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"]
+        command += ["-s", f"{self.size[0]}x{self.size[1]}", "-r", f"{fps:g}", "-i", "-"]
+        command += ["-c:v", "libx264", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-y"]
+        raw = b"".join(frame.convert("RGB").tobytes() for frame in self._some())
+        with tempfile.TemporaryDirectory() as folder:
+            out = Path(folder) / "film.mp4"
+            done = subprocess.run([*command, str(out)], input=raw, capture_output=True, check=False)
+            if done.returncode or not out.is_file():
+                lines = done.stderr.decode(errors="replace").strip().splitlines()
+                raise MissingCapabilityError(
+                    f"ffmpeg could not make the film: {lines[-1] if lines else 'it said nothing'}.",
+                    help="Write a --gif instead.",
+                    code="ffmpeg_failed",
+                )
+            return out.read_bytes()
+
+    def png(self, parts: tuple[Part, ...], snapshot: Snapshot) -> bytes:
+        """One picture."""
+        data = io.BytesIO()
+        self.draw(parts, snapshot).save(data, format="PNG")
+        return data.getvalue()
+
+    def _some(self) -> list[Image]:
+        if not self._frames:
+            raise UsageError("There is no frame to make a film of.", code="no_frames")
+        return self._frames
+
+    def _draw_parts(
+        self, pen: ImageDraw, parts: tuple[Part, ...], snapshot: Snapshot, *, fixed: bool
+    ) -> None:
+        places = zip(parts, snapshot.x.tolist(), snapshot.y.tolist(), snapshot.angle.tolist(), strict=True)
+        for part, x, y, angle in places:
+            if part.fixed == fixed:
+                self._draw_part(pen, part, x, y, angle)
+
+    def _draw_part(self, pen: ImageDraw, part: Part, x: float, y: float, angle: float) -> None:
+        c, s = math.cos(angle), math.sin(angle)
+        if part.shape == "circle":
+            centre, r = self._at(x, y), part.radius * self._scale
+            box = (centre[0] - r, centre[1] - r, centre[0] + r, centre[1] + r)
+            pen.ellipse(box, fill=part.colour, outline=_INK, width=2)
+            if not part.fixed:  # a mark, so that turning is seen
+                edge = (centre[0] + r * c, centre[1] - r * s)
+                pen.line([centre, edge], fill=_INK, width=2)
+            return
+        corners = [self._at(x + c * px - s * py, y + s * px + c * py) for px, py in part.outline]
+        if part.shape == "segment":
+            pen.line(corners, fill=part.colour, width=max(2, round(2 * part.radius * self._scale)))
+            return
+        pen.polygon(corners, fill=part.colour, outline=_INK, width=2)
+        if part.wheels is not None:
+            for side in (0.5, -0.5):
+                px, py = self._at(x - s * side * part.wheels.track, y + c * side * part.wheels.track)
+                dx, dy = 0.06 * self._scale * c, -0.06 * self._scale * s
+                pen.line([(px - dx, py - dy), (px + dx, py + dy)], fill=_INK, width=8)
+
+    def _at(self, x: float, y: float) -> tuple[float, float]:
+        """A place in pixels of the large picture; far outside it is cut, which PIL needs."""
+        px = (x - self._origin[0]) * self._scale
+        py = (self._origin[1] - y) * self._scale
+        return min(max(px, -1e4), 1e4), min(max(py, -1e4), 1e4)
+
+    def _reduced(self, picture: Image, parts: tuple[Part, ...]) -> Image:
+        """A frame in the film's own 256 colours."""
+        from PIL import Image as Images
+
+        if self._palette is None:
+            self._palette = _palette({part.colour for part in parts})
+        return picture.quantize(palette=self._palette, dither=Images.Dither.NONE)
+
+
+def _palette(colours: set[str]) -> Image:
+    """Each colour, and its way to paper and to ink in steps, for smooth edges."""
+    from PIL import Image as Images
+    from PIL import ImageColor
+
+    paper, ink = ImageColor.getrgb(_PAPER)[:3], ImageColor.getrgb(_INK)[:3]
+    wanted: list[tuple[int, ...]] = [paper, ink]
+    steps = max(2, min(8, 120 // (len(colours) + 1)))
+    for colour in [_INK, *sorted(colours)]:
+        own = ImageColor.getrgb(colour)[:3]
+        for end in (paper, ink):
+            pairs = list(zip(own, end, strict=True))
+            wanted += [tuple(round(a + (b - a) * k / steps) for a, b in pairs) for k in range(steps)]
+    image = Images.new("P", (1, 1))
+    flat = [value for colour in dict.fromkeys(wanted) for value in colour][: 3 * 256]
+    image.putpalette(flat)
+    return image

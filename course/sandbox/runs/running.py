@@ -3,24 +3,160 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any
 
 import msgspec
 import numpy as np
 
-from course.sandbox.runs.probes import Probes
-from course.sandbox.scene.loading import Chosen, values_of
-from course.sandbox.scene.predicting import Comparison, compare
-from course.sandbox.world.events import Event, Receipt
-from course.sandbox.world.ledger import Floats
-from course.sandbox.world.world import World
+from course.sandbox.scene.expression import evaluate
+from course.sandbox.scene.loading import Chosen, Comparison, compare, values_of, with_settings
+from course.sandbox.scene.model import Probe, Scene, layout
+from course.sandbox.scene.rules import matching
+from course.sandbox.world.accounts import Event, Receipt
+from course.sandbox.world.contacts import MINOR
+from course.sandbox.world.engine import Block, Floats
+from course.sandbox.world.world import Snapshot, World
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+# ---
+# Numbers read from a run: the scene's probes.
 
-    from course.sandbox.world.world import Snapshot
 
-__all__ = ["COLUMNS", "Run", "finish", "run"]
+_COLUMN = {"x": 0, "y": 1, "angle_deg": 2, "vx": 3, "vy": 4, "spin": 5}
+
+
+class Probes:
+    """Watches a world and answers its scene's probes at the end.
+
+    Args:
+        world: before its first step. It must keep an energy account, because the states of each step come
+            from there.
+        chosen: its scene, with the parameters that went into it.
+    """
+
+    def __init__(self, world: World, chosen: Chosen) -> None:
+        self._world, self._chosen = world, chosen
+        self._scene: Scene = world.scene
+        names = tuple(part.name for part in layout(self._scene))
+        self._of = {probe.name: matching(probe.of, names) for probe in self._scene.probe}
+        self._start: dict[str, float] = {}
+        self._found: dict[str, float] = {}
+        self._times: dict[str, float] | None = None
+        state = world.state()
+        for probe in self._scene.probe:
+            self._start[probe.name] = self._value(probe, state)
+            self._take(probe, self._start[probe.name])
+        world.on_block.append(self._watch)
+
+    def read(self, events: Sequence[Event]) -> dict[str, float]:
+        """The answers, by probe; "nan" for what did not happen.
+
+        Args:
+            events: everything the world reported since its start.
+        """
+        state = self._world.state()
+        return {probe.name: self._answer(probe, state, events) for probe in self._scene.probe}
+
+    def _answer(self, probe: Probe, state: Floats, events: Sequence[Event]) -> float:
+        if probe.quantity in {"contacts", "contact_time"}:
+            mine = [event for event in events if self._is_contact(probe, event)]
+            if probe.quantity == "contacts":
+                return float(sum(not event.minor for event in mine)) * probe.scale
+            return mine[0].t * probe.scale if mine else math.nan
+        if probe.when == "end":
+            value = self._value(probe, state)
+        elif probe.when == "start":
+            value = self._start[probe.name]
+        else:
+            value = self._found.get(probe.name, math.nan)
+        return (value - self._start[probe.name] * probe.change) * probe.scale
+
+    def _watch(self, block: Block) -> None:
+        """Read the probes that are due at a moment of their own."""
+        if self._times is None:
+            self._times = self._moments()
+        for probe in self._scene.probe:
+            if probe.when in {"max", "min"}:
+                for state in block.states:
+                    self._take(probe, self._value(probe, state))
+            elif probe.when == "at" and probe.name not in self._found:
+                # The first step that ends there or later; times are exact multiples, but for rounding.
+                rows = np.flatnonzero(block.times >= self._times[probe.name] - 1e-9)
+                if len(rows):
+                    self._found[probe.name] = self._value(probe, block.states[rows[0]])
+            elif probe.when == "after" and probe.name not in self._found:
+                row = self._first_contact(probe, block)
+                if row is not None:
+                    self._found[probe.name] = self._value(probe, block.states[row])
+
+    def _moments(self) -> dict[str, float]:
+        """When probes read, by the settings at the first step: until then they may change."""
+        given = {p.name: p.time for p in self._scene.probe if p.time is not None}
+        values: Mapping[str, float] = {}
+        if any(isinstance(time, str) for time in given.values()):
+            values = values_of(with_settings(self._chosen, self._world.settings))
+        return {
+            name: evaluate(time, values) if isinstance(time, str) else time for name, time in given.items()
+        }
+
+    def _first_contact(self, probe: Probe, block: Block) -> int | None:
+        """The step of the block in which the probe's two met."""
+        index = {part.name: i for i, part in enumerate(self._world.parts)}
+        a, b = index.get(self._of[probe.name][0]), index.get(probe.other or "")
+        contacts = block.contacts
+        met = ((contacts.a == a) & (contacts.b == b)) | ((contacts.a == b) & (contacts.b == a))
+        rows = contacts.row[met & (contacts.first == 1)]
+        return int(rows.min()) if len(rows) else None
+
+    def _is_contact(self, probe: Probe, event: Event) -> bool:
+        if event.kind != "contact":
+            return False
+        mine = self._of[probe.name]
+        if probe.other is None:
+            return event.a in mine or event.b in mine
+        return (event.a in mine and event.b == probe.other) or (event.b in mine and event.a == probe.other)
+
+    def _take(self, probe: Probe, value: float) -> None:
+        if probe.when in {"max", "min"}:
+            best = max if probe.when == "max" else min
+            self._found[probe.name] = best(self._found.get(probe.name, value), value)
+
+    def _value(self, probe: Probe, state: Floats) -> float:
+        """The quantity in one state; "nan" if none of its bodies is there."""
+        index = {part.name: i for i, part in enumerate(self._world.parts)}
+        rows = [index[name] for name in self._of[probe.name] if name in index]
+        if not rows or len(state) != len(index):
+            return math.nan
+        mine = state[rows]
+        if probe.quantity in _COLUMN:
+            value = float(mine[0, _COLUMN[probe.quantity]])
+            return math.degrees(value) if probe.quantity == "angle_deg" else value
+        return self._of_many(probe, mine, rows)
+
+    def _of_many(self, probe: Probe, mine: Floats, rows: list[int]) -> float:
+        parts = [self._world.parts[i] for i in rows]
+        mass = np.array([part.mass for part in parts])
+        value: Any = 0.0
+        if probe.quantity == "speed":
+            value = np.hypot(mine[0, 3], mine[0, 4])
+        elif probe.quantity == "kinetic":
+            inertia = np.array([part.moment if math.isfinite(part.moment) else 0.0 for part in parts])
+            value = (mass @ (mine[:, 3] ** 2 + mine[:, 4] ** 2) + inertia @ mine[:, 5] ** 2) / 2
+        elif probe.quantity == "momentum_x":
+            value = mass @ mine[:, 3]
+        elif probe.quantity == "count" and probe.region is not None:
+            left, bottom, right, top = probe.region
+            inside = (mine[:, 0] >= left) & (mine[:, 0] < right) & (mine[:, 1] >= bottom) & (mine[:, 1] < top)
+            value = inside.sum()
+        elif probe.quantity == "mean":
+            value = mine[:, 0].mean()
+        elif probe.quantity == "spread":
+            value = mine[:, 0].std()
+        return float(value)
+
+
+# ---
+
 
 #: Columns of a table of samples, with their units; a row for each body and sample, totals with each.
 COLUMNS = (
@@ -160,3 +296,126 @@ def _stops(
     last = times.setdefault(round(until, 9), [False, False])
     last[0] = last[0] or every > 0.0
     return [(t, sample, frame) for t, (sample, frame) in sorted(times.items())]
+
+
+# ---
+# A run in sentences, from the same events that pictures are drawn from.
+
+
+#: A pair that touches again within this time, in s, is not reported each time.
+_PATIENCE = 0.05
+#: Changes of energy below this share are not worth a clause.
+_WORTH = 0.005
+
+
+def sentence(event: Event) -> str:
+    """One event in words, with the time in front: "0.42 s: the ball meets the floor at 4.09 m/s ..."."""
+    when = f"{event.t:.2f} s: "
+    if event.kind == "contact":
+        return when + _contact(event)
+    if event.kind == "rest":
+        return f"{when}{_the(event.a)} comes to rest at x = {_place(event.x)} m, y = {_place(event.y)} m."
+    if event.kind == "gone":
+        return f"{when}{_the(event.a)} has left the scene."
+    return f"{when}{event.text}."
+
+
+def _place(value: float) -> str:
+    """To the centimetre, and never "-0.00"."""
+    return f"{round(value, 2) + 0.0:.2f}"
+
+
+def sentences(events: Iterable[Event], most: int = 40) -> Iterator[str]:
+    """The events worth reporting, and at the end how many were left out.
+
+    Args:
+        events: in order.
+        most: sentences at most, the last one not counted.
+    """
+    last: dict[tuple[str, str], float] = {}
+    told = left = 0
+    for event in events:
+        if event.kind == "contact":
+            pair = (event.a, event.b)
+            since = event.t - last.get(pair, -1.0)
+            last[pair] = event.t
+            if event.minor or since < _PATIENCE:
+                left += not event.minor
+                continue
+        if told >= most:
+            left += 1
+            continue
+        told += 1
+        yield sentence(event)
+    if left:
+        yield f"{left} more event{'s' if left > 1 else ''} happened; --csv and --json have every one."
+
+
+def account(receipt: Receipt) -> list[str]:
+    """The energy account in sentences."""
+    had = receipt.start + receipt.given
+    lines = [
+        f"Energy at the start {_joule(receipt.start)}"
+        + (f", given since {_joule(receipt.given)}" if abs(receipt.given) > 1e-9 else "")
+        + f"; now {_joule(receipt.kinetic)} of motion and {_joule(receipt.potential)} of height.",
+    ]
+    scale = max(abs(had), abs(receipt.kinetic), abs(receipt.contacts), abs(receipt.friction), 1e-12)
+    contacts, friction, rods = (
+        part if abs(part) > 1e-9 * scale else 0.0
+        for part in (receipt.contacts, receipt.friction, receipt.rods)
+    )
+    in_rods = f", lost in rods {_joule(rods)}" if rods else ""
+    lines.append(f"Lost in contacts {_joule(contacts)}, lost to friction {_joule(friction)}{in_rods}.")
+    share = abs(receipt.residual) / scale
+    if share < 1e-9:
+        lines.append("Nothing is unaccounted for.")
+    else:
+        verb = "is missing without a physical cause" if receipt.residual > 0 else "has no physical source"
+        lines.append(f"{_joule(abs(receipt.residual))} {verb}: that is the solver's ({100 * share:.2g} %).")
+    return lines
+
+
+def momentum(done: Run) -> list[str]:
+    """The change of momentum, in a sentence."""
+    (px, py, _), (qx, qy, _) = done.momentum_before, done.momentum_after
+    size = max(abs(px), abs(py), abs(qx), abs(qy), 1e-12)
+    now = f"({qx if abs(qx) > 1e-9 * size else 0.0:.4g}, {qy if abs(qy) > 1e-9 * size else 0.0:.4g}) kg m/s"
+    if abs(qx - px) <= 1e-9 * size and abs(qy - py) <= 1e-9 * size:
+        return [f"Momentum is kept: {now}."]
+    was = f"({px:.4g}, {py:.4g})"
+    return [f"Momentum went from {was} to {now}: something outside took part."]
+
+
+def _contact(event: Event) -> str:
+    a, b = _the(event.a), _the(event.b)
+    if event.approach < -MINOR:
+        way = "they move" if event.shared else "moves"
+        return f"{a} is found inside {b} and {way} apart at {-event.approach:.2f} m/s."
+    # Both speeds are relative: of two bodies that can move, neither is said to be the one that leaves.
+    text = f"{a} and {b} meet" if event.shared else f"{a} meets {b}"
+    text += f" at {event.approach:.2f} m/s"
+    if event.leave is None:
+        return f"{text}."
+    if event.leave > 0.01:
+        text += f" and {'part' if event.shared else 'leaves'} at {event.leave:.2f}"
+    else:
+        text += " and stay together" if event.shared else " and stays with it"
+    share = event.lost
+    if share is None or event.before is None or event.before < 1e-9:
+        return f"{text}."
+    whose = "their" if event.shared else "its"
+    if abs(share) < _WORTH:
+        return f"{text}; none of {whose} kinetic energy is gone."
+    if share < 0:
+        return f"{text}; {whose} kinetic energy grew by {-100 * share:.0f} %, pushed by others."
+    return f"{text}; {100 * share:.0f} % of {whose} kinetic energy is gone."
+
+
+def _the(name: str) -> str:
+    """A body's name in a sentence: ``ball-3`` is "ball 3", ``floor`` is "the floor"."""
+    words = name.replace("-", " ")
+    return words if words[-1:].isdigit() else f"the {words}"
+
+
+def _joule(value: float) -> str:
+    return f"{value:.4g} J"

@@ -9,16 +9,13 @@ from __future__ import annotations
 import ast
 import math
 import operator
+import re
+import string
 import warnings
+from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 from course.errors import UsageError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-__all__ = ["evaluate", "names"]
 
 _MAX_LENGTH = 300
 #: Longest chain of operations; a deeper tree is not a formula that a person wrote.
@@ -159,3 +156,68 @@ def _look_up(name: str, values: Mapping[str, float]) -> float:
 
 def _refused(text: str, why: str, help: str = "Write plain arithmetic: sqrt(2 * g * drop).") -> UsageError:  # noqa: A002
     return UsageError(f"The formula {text!r} {why}.", help=help, code="bad_formula")
+
+
+# ---
+# Texts of a scene that hold numbers: ``{restitution}``, ``{speed * step:.2f}``.
+#
+# A number that a setting can change is never written out in a question or its explanation, because the text
+# would then become false. The formulas are those of ``course.sandbox.scene.expression``, and no text is ever
+# handed to ``str.format``, whose fields reach into objects.
+
+
+#: The formats a number may have; few digits, because a text is not a table.
+_SHAPE = re.compile(r"\+?(\.\d)?[efg]")
+#: The default: 0.4, 30, 0.004167.
+_USUAL = ".4g"
+_HELP = "Write {speed * step} or {speed:.2f}; a brace that is meant as one is doubled: {{."
+
+
+def fill(text: str, values: Mapping[str, float]) -> str:
+    """A text with the value of each of its formulas in the formula's place.
+
+    Args:
+        text: formulas are in braces, with a format such as ``.2f`` after a colon where four digits are wrong.
+        values: the value of each name; see ``course.sandbox.scene.loading.values_of``.
+
+    Raises:
+        UsageError: one is no formula, names something unknown or has no value, or a brace is left over.
+    """
+    return "".join(
+        words + ("" if formula is None else _shown(evaluate(formula, values), shape))
+        for words, formula, shape in _pieces(text)
+    )
+
+
+def used(text: str) -> frozenset[str]:
+    """The names its formulas use.
+
+    Raises:
+        UsageError: see ``fill``.
+    """
+    found = (names(formula) for _, formula, _ in _pieces(text) if formula is not None)
+    return frozenset(name for some in found for name in some)
+
+
+def _pieces(text: str) -> Iterator[tuple[str, str | None, str]]:
+    """Words, the formula after them if there is one, and how to show its value."""
+    try:
+        pieces = list(string.Formatter().parse(text))
+    except ValueError as error:
+        raise _refused_text(text, f"has a brace without its partner ({error})") from None
+    for words, formula, shape, conversion in pieces:
+        if conversion or (shape and not _SHAPE.fullmatch(shape)):
+            raise _refused_text(
+                f"{formula}:{shape or conversion}", "has a format other than .2f, .3g or +.1e"
+            )
+        yield words, formula, shape or _USUAL
+
+
+def _shown(value: float, shape: str) -> str:
+    shown = format(value, shape)
+    return shown.lstrip("-") if float(shown) == 0.0 else shown
+
+
+def _refused_text(text: str, why: str) -> UsageError:
+    short = text if len(text) <= 60 else text[:57] + "..."
+    return UsageError(f"The text {short!r} {why}.", help=_HELP, code="bad_formula")

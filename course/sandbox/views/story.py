@@ -3,23 +3,16 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import msgspec
 
 from course.errors import UsageError
-from course.sandbox.runs.describe import sentence
-from course.sandbox.runs.probes import Probes
-from course.sandbox.scene.loading import question, values_of, with_settings
-from course.sandbox.scene.predicting import compare
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from course.sandbox.scene.loading import Chosen
-    from course.sandbox.scene.predicting import Comparison
-    from course.sandbox.world.events import Event
-    from course.sandbox.world.world import World
+from course.sandbox.runs.running import Probes, sentence
+from course.sandbox.scene.loading import Chosen, Comparison, compare, question, values_of, with_settings
+from course.sandbox.world.accounts import Event
+from course.sandbox.world.world import World
 
 __all__ = ["Experiment", "Narrator"]
 

@@ -7,21 +7,191 @@ from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import msgspec
 import numpy as np
 
-from course.sandbox.world.engine import Recorder
-from course.sandbox.world.events import Receipt
-from course.sandbox.world.ledger import Block, Ledger
-from course.sandbox.world.pushes import brake, drive
+from course.sandbox.scene.model import Floor, Part, Wheels
+from course.sandbox.world.engine import Block, Floats, Ledger, Recorder, Space
 
 if TYPE_CHECKING:
-    from course.sandbox.scene.model import Floor
-    from course.sandbox.scene.parts import Part
-    from course.sandbox.world.engine import Space
-    from course.sandbox.world.ledger import Floats
-    from course.sandbox.world.pushes import Hand
+    import pymunk
 
-__all__ = ["BLOCK", "Accounts", "Clock", "History"]
+
+# ---
+# Pushes from outside the contacts: a hand that drags, wheels that drive, a floor that rubs.
+#
+# Wheels and floor are impulses before a step, sized for that step. A hand is a force inside it, because rods
+# and contacts answer it there. So the account of energy knows exactly what each did.
+
+
+#: How fast a hand closes the gap to where it is, in 1/s, unless the step is too long for that.
+_EAGERNESS = 20.0
+#: The strongest pull, as an acceleration of what is held, in m/s²: a hand does not go through walls.
+_STRENGTH = 500.0
+#: How fast turning dies down while something is held, in 1/s.
+_CALM = 4.0
+
+
+@dataclass(slots=True)
+class Hand:
+    """Holds a body at a point and pulls that point to where the pointer is.
+
+    Attributes:
+        name: of the body.
+        anchor: in the body's frame, in m.
+        x, y: where the pointer is, in m.
+    """
+
+    name: str
+    anchor: tuple[float, float]
+    x: float
+    y: float
+
+    def pull(self, body: pymunk.Body, step: float) -> tuple[float, float, float]:
+        """Put the hand's force on the body for one step, and return its impulses: in N s, N s and N m s."""
+        place = body.local_to_world(self.anchor)
+        velocity = body.velocity_at_local_point(self.anchor)
+        eager = min(_EAGERNESS, 0.5 / step)
+        rx, ry = place.x - body.position.x, place.y - body.position.y
+        inertia = 0.0 if math.isinf(body.moment) else (rx * rx + ry * ry) / body.moment
+        heavy = 1.0 / (1.0 / body.mass + inertia)
+        jx = heavy * ((self.x - place.x) * eager - velocity.x) / 2
+        jy = heavy * ((self.y - place.y) * eager - velocity.y) / 2
+        size, most = math.hypot(jx, jy), body.mass * _STRENGTH * step
+        if size > most:
+            jx, jy = jx * most / size, jy * most / size
+        turn = rx * jy - ry * jx
+        if not math.isinf(body.moment):
+            turn -= body.moment * body.angular_velocity * (1.0 - math.exp(-_CALM * step))
+        body.force += jx / step, jy / step
+        body.torque += turn / step
+        return jx, jy, turn
+
+
+def brake(body: pymunk.Body, floor: Floor, step: float, gyration: float) -> None:
+    """Let the floor rub for one step: Coulomb's friction on the sliding and the turning.
+
+    Args:
+        gyration: radius at which the body's weight rubs when it turns, in m.
+    """
+    speed = body.velocity.length
+    change = floor.friction * floor.gravity * step
+    if speed > 0.0:
+        body.velocity = body.velocity * max(0.0, 1.0 - change / speed)
+    spin = body.angular_velocity
+    if spin != 0.0 and not math.isinf(body.moment):
+        slower = change * body.mass * gyration / body.moment
+        body.angular_velocity = math.copysign(max(0.0, abs(spin) - slower), spin)
+
+
+def drive(
+    body: pymunk.Body, wheels: Wheels, speeds: tuple[float, float], gravity: float, step: float
+) -> float:
+    """Let two wheels roll for one step; neither slips sideways before its grip is used up.
+
+    Args:
+        speeds: of the left and the right rim, in m/s.
+        gravity: presses the wheels onto the floor, in m/s².
+
+    Returns:
+        the work of the motors in J; what it did not turn into motion was rubbed off.
+    """
+    work = 0.0
+    most = wheels.grip * body.mass * gravity * step / 2
+    for side, speed in zip((0.5, -0.5), speeds, strict=True):
+        ahead = body.rotation_vector
+        place = body.local_to_world((0.0, side * wheels.track))
+        slip = ahead * speed - body.velocity_at_world_point(place)
+        # Half the body's mass rests on each wheel; a wheel that took all of it would fight the other.
+        push = slip * (body.mass / 2)
+        if push.length > most:
+            push = push * (most / push.length)
+        body.apply_impulse_at_world_point(push, place)
+        work += push.dot(ahead) * speed
+    return work
+
+
+# ---
+# Events that a world reports: contacts, bodies that stop or leave, and the user's actions.
+
+
+class Event(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """One thing that happened.
+
+    Attributes:
+        kind: "contact", "rest" (a body came to a stop), "gone" (it left the world), or "input" (the user
+            did something).
+        t: in s; step: number of the step, the first is 1.
+        a, b: names of the bodies; ``a`` moves, ``b`` is "" unless it is a contact.
+        x, y: where, in m.
+        nx, ny: unit normal of a contact, from ``a`` to ``b``.
+        approach, leave: speed along the normal before and after, in m/s; both positive for a bounce. A
+            contact in which they stay together leaves at about 0. One whose approach is below 0 was found too
+            late: the bodies were already inside each other.
+        slip: speed along the surface before, in m/s.
+        impulse: size of the impulse of the first step of contact, in N s.
+        before, after: kinetic energy of the two together, in J; None in a world without a receipt, as are
+            ``leave`` and ``impulse``.
+        shared: both of them can move.
+        minor: too soft to be worth a sentence.
+        text: what was done, for "input".
+    """
+
+    kind: str
+    t: float
+    step: int
+    a: str = ""
+    b: str = ""
+    x: float = 0.0
+    y: float = 0.0
+    nx: float = 0.0
+    ny: float = 0.0
+    approach: float = 0.0
+    leave: float | None = None
+    slip: float = 0.0
+    impulse: float | None = None
+    before: float | None = None
+    after: float | None = None
+    shared: bool = False
+    minor: bool = False
+    text: str = ""
+
+    @property
+    def lost(self) -> float | None:
+        """The share of the kinetic energy that this contact took, 0 to 1; None where it is not known."""
+        if self.before is None or self.after is None or self.before <= 0.0:
+            return None
+        return 1.0 - self.after / self.before
+
+
+class Receipt(msgspec.Struct, frozen=True, kw_only=True):
+    """Where the energy is. All in J; the parts always add up: ``start + given`` equals all the others.
+
+    Attributes:
+        start: the energy at time 0.
+        given: added since by hands, motors, spawned bodies and changes of gravity.
+        kinetic, potential: now; potential energy is zero at y = 0 (x = 0).
+        contacts: lost across contacts, along their normals.
+        friction: lost along surfaces, and to the floor of a scene seen from above.
+        rods: lost in joints that stopped a body which was thrown against them.
+        residual: missing without a known loss. Below zero: the solver made energy.
+        integrator: the part of ``residual`` that comes from moving bodies before accelerating them: half a
+            step's worth of gravity's power, -m g (v - v at the start) h/2. It comes back with the velocity.
+    """
+
+    start: float
+    given: float
+    kinetic: float
+    potential: float
+    contacts: float
+    friction: float
+    rods: float
+    residual: float
+    integrator: float
+
+
+# ---
+
 
 #: Steps that are booked together. More would save nothing, because the arrays would not fit the cache.
 BLOCK = 32

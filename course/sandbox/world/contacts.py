@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
-from course.sandbox.world.events import Event
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
-    from course.sandbox.scene.parts import Part
-    from course.sandbox.world.accounts import Clock
-    from course.sandbox.world.engine import Space
-    from course.sandbox.world.ledger import Block, Floats, Ledger
+from course.sandbox.scene.model import Part
+from course.sandbox.world.accounts import Clock, Event
+from course.sandbox.world.engine import Block, Floats, Ledger, Space
 
 __all__ = ["MINOR", "ContactCollector", "contact_events"]
 

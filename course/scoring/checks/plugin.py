@@ -7,15 +7,13 @@ hook keeps the exception and builds no traceback text; the verdict is made from 
 from __future__ import annotations
 
 import zlib
-from typing import TYPE_CHECKING, Any
+from collections.abc import Generator
+from typing import Any
 
 import numpy as np
 import pytest
 
-if TYPE_CHECKING:
-    from collections.abc import Generator
-
-    from course.scoring.remote import RemoteSubmission
+from course.scoring.remote import RemoteSubmission
 
 __all__ = ["MARKERS", "CheckPlugin"]
 

@@ -8,9 +8,18 @@ probes of the single checks decide, and of several probes the one that the other
 """
 
 from course.scoring.explain.fingerprint import Answers, fingerprint
-from course.scoring.explain.story import Failure, Story, story_of
-from course.scoring.explain.table import Row, Table, matching, read_table
-from course.scoring.explain.words import Diagnosis, Words, read_words
+from course.scoring.explain.story import (
+    Diagnosis,
+    Failure,
+    Row,
+    Story,
+    Table,
+    Words,
+    matching,
+    read_table,
+    read_words,
+    story_of,
+)
 
 __all__ = [
     "Answers",

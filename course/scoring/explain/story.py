@@ -3,18 +3,115 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import cache
+from pathlib import Path
+from typing import Any, Literal
 
-from course.scoring.explain.words import KEPT, NOT_FINITE, OWN_WORDS, STATE, Diagnosis
+import msgspec
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+from course.catalog.reading import read_document
+from course.errors import ContentError
+from course.scoring.explain.fingerprint import SAME
+from course.scoring.verdict import Divergence
 
-    from course.scoring.explain.table import Row
-    from course.scoring.explain.words import Words
+# ---
+# The words of an exercise's diagnoses: ``diagnoses.toml``, one table for each code.
 
-__all__ = ["Failure", "Story", "story_of"]
+
+WORDS = "diagnoses.toml"
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnosis:
+    """Which mistake a failure looks like.
+
+    Attributes:
+        code: stable name, upper case with underscores.
+        looks_like: one sentence, without values, that says what the student's code seems to do.
+        advice: what to change, without values.
+        divergence: where the trajectory first left the reference, if that was looked for.
+    """
+
+    code: str
+    looks_like: str
+    advice: str
+    divergence: Divergence | None = None
+
+
+#: Codes of values that are nan or infinite where a number belongs, from any cause.
+NOT_FINITE = frozenset({"NOT_A_NUMBER", "NOT_FINITE"})
+#: Codes of exercises for something that is kept between two calls: probes that say them have seen it.
+STATE = frozenset({"STALE_CACHE", "STATE_IN_MODULE", "STATE_KEPT"})
+#: Codes whose words are true of it, too, and say what of it matters: they win once it was seen.
+OWN_WORDS = STATE | {"BIAS_CARRIED_OVER", "WALLS_NOT_READ", "LAG_WITHOUT_DT", "GAINS_HARD_CODED"}
+#: What is said of it where an exercise has no words of its own.
+KEPT = Diagnosis(
+    "STATE_KEPT",
+    "The same call gives another result when other calls come before it: something is kept between calls.",
+    "What a call returns may depend on its arguments alone. Look for what one call changes and a later one "
+    "reads: a variable at the top of the file, an array or a dict that is filled again, a default argument.",
+)
+
+
+class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """One diagnosis in words.
+
+    Attributes:
+        looks_like, advice: as in ``Diagnosis``.
+        kind: "cause" of wrong values; "consequence", which says what is broken but not why; "fact", which the
+            check saw directly and which is true whatever else is wrong; "nan", the origin of a nan or an
+            infinity.
+    """
+
+    looks_like: str
+    advice: str
+    kind: Literal["cause", "consequence", "fact", "nan"] = "cause"
+
+
+class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    format_version: int
+    diagnosis: dict[str, Entry]
+
+
+class Words:
+    """The diagnoses of one exercise by their codes."""
+
+    def __init__(self, entries: dict[str, Entry]) -> None:
+        self.entries = entries
+
+    def __call__(self, code: str, divergence: Divergence | None = None) -> Diagnosis:
+        """The diagnosis of that code.
+
+        Raises:
+            KeyError: ``diagnoses.toml`` has no words for it.
+        """
+        if code == KEPT.code and code not in self.entries:
+            return KEPT
+        if code not in self.entries:
+            raise KeyError(f"diagnoses.toml has no words for {code}")
+        entry = self.entries[code]
+        return Diagnosis(code, entry.looks_like, entry.advice, divergence)
+
+    def kind(self, code: str) -> str:
+        """Its kind; a code without an entry is a fact that was found while reading a value."""
+        if code in self.entries:
+            return self.entries[code].kind
+        return "nan" if code in NOT_FINITE else "fact"
+
+
+@cache
+def read_words(path: Path) -> Words:
+    """The words in a ``diagnoses.toml``.
+
+    Raises:
+        ContentError: the file is wrong; the message names the line.
+    """
+    return Words(read_document(path, _File).value.diagnosis)
+
+
+# ---
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,3 +243,88 @@ def _most_named(guesses: Sequence[Diagnosis]) -> Diagnosis | None:
         return None
     best = [guess for guess in guesses if guess.code == votes[0][0]]
     return next((guess for guess in best if guess.divergence), best[0])
+
+
+# ---
+# The answers of known wrong programs to an exercise's questions: ``hypotheses.json``, made by a command.
+#
+# The file is part of the exercise, so that a diagnosis at home is as good as in a grading run. It contains
+# nothing that solves the exercise: only fingerprints, and the answers to public checks with fixed inputs.
+
+
+TABLE = "hypotheses.json"
+
+
+class Row(msgspec.Struct, frozen=True, array_like=True):
+    """One wrong program: the codes of its mistakes, and its answers.
+
+    Attributes:
+        codes: one for each mistake.
+        sums: its fingerprint, or the answers themselves where a task is compared within a tolerance.
+    """
+
+    codes: tuple[str, ...]
+    sums: tuple[float, ...]
+
+
+class Table(msgspec.Struct, frozen=True, kw_only=True):
+    """``hypotheses.json``.
+
+    Attributes:
+        format_version: of this file.
+        made_from: digest of what it was computed from.
+        within: relative tolerance of the tasks whose answers are stored directly.
+        rows: by task; programs with one mistake come first.
+        right: fingerprints of right programs, by task.
+        answers: those that public checks with fixed inputs expect, by check and in its order.
+    """
+
+    format_version: int = 1
+    made_from: str = ""
+    within: dict[str, float] = {}
+    rows: dict[str, tuple[Row, ...]] = {}
+    right: dict[str, tuple[tuple[float, ...], ...]] = {}
+    answers: dict[str, list[Any]] = {}
+
+
+@cache
+def read_table(path: Path) -> Table:
+    """The table of an exercise.
+
+    Raises:
+        ContentError: there is none, or it is damaged.
+    """
+    try:
+        return msgspec.json.decode(path.read_bytes(), type=Table)
+    except (OSError, msgspec.DecodeError) as error:
+        raise ContentError(
+            path, None, f"what wrong programs answer cannot be read: {error}.", help="`course author build`"
+        ) from None
+
+
+def write_table(path: Path, table: Table) -> None:
+    """Write the table, one row a line."""
+    text = msgspec.json.format(msgspec.json.encode(table), indent=0).decode()
+    path.write_text(text.replace("\n", "").replace("]],[[", "]],\n[[") + "\n", encoding="utf-8")
+
+
+def matching(table: Table, task: str, sums: Sequence[float]) -> tuple[Row, ...]:
+    """The programs with these sums, and of these only the ones with the fewest mistakes."""
+    within = table.within.get(task, 0.0)
+    fits = [row for row in table.rows.get(task, ()) if _same(row.sums, sums, within)]
+    fewest = min((len(row.codes) for row in fits), default=0)
+    return tuple(row for row in fits if len(row.codes) == fewest)
+
+
+def is_right(table: Table, task: str, sums: Sequence[float]) -> bool:
+    """Whether a right program has these sums."""
+    within = table.within.get(task, 0.0)
+    return any(_same(right, sums, within) for right in table.right.get(task, ()))
+
+
+def _same(a: Sequence[float], b: Sequence[float], within: float) -> bool:
+    if len(a) != len(b):
+        return False
+    if not within:
+        return all(abs(x - y) <= SAME for x, y in zip(a, b, strict=True))
+    return all(x == y or abs(x - y) <= within * max(abs(x), abs(y)) for x, y in zip(a, b, strict=True))

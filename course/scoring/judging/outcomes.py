@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from course.isolation.hanging import LOOP
+from course.catalog.models import Exercise
+from course.isolation.failures import StudentFailure
+from course.isolation.session import LOOP, LoadRefusedError
+from course.scoring.checks.collected import Check
+from course.scoring.remote import RemoteSubmission
 from course.scoring.values import kind_of, plain
-from course.scoring.verdict import CheckResult, Finding, Problem, Status
-
-if TYPE_CHECKING:
-    from course.catalog.models import Exercise
-    from course.isolation.failures import StudentFailure
-    from course.isolation.session import LoadRefusedError
-    from course.scoring.checks.collected import Check
-    from course.scoring.places import Places
-    from course.scoring.remote import RemoteSubmission
+from course.scoring.verdict import CheckResult, Finding, Places, Problem, Status
 
 __all__ = [
     "NOT_JUDGED",

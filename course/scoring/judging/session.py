@@ -7,25 +7,29 @@ with GradingSession(exercise, catalog, scope="public") as session:
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import os
 import random
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Literal, Self, TypeVar
+from typing import Literal, Self, TypeVar
 
 import msgspec
 
-from course.errors import ContentError, InternalError, MissingCapabilityError, UngradableError
-from course.figures.drawing.curves import compared, marched
+from course.catalog.load import Catalog
+from course.catalog.models import Exercise
+from course.errors import ContentError, InternalError, MissingCapabilityError, NotFoundError, UngradableError
+from course.figures.described import Curve, compared, marched
 from course.isolation.failures import IsolationError, StudentFailure
-from course.isolation.keeping import open_sandbox
 from course.isolation.launch import keep_private
+from course.isolation.levels import Level, Spawner
+from course.isolation.probe import open_sandbox
 from course.isolation.session import LoadRefusedError
-from course.isolation.spawn import Level
-from course.scoring.checks.collected import Check, CollectedChecks
-from course.scoring.checks.companions import companion, companion_path, not_importable
-from course.scoring.failures import OURS, CheckFailed, broke_at, finding_of
-from course.scoring.judging.explaining import Explainer
+from course.scoring.checks.collected import Check, CollectedChecks, companion, companion_path, not_importable
+from course.scoring.failures import OURS, CheckFailed, Report, broke_at, finding_for, finding_of
+from course.scoring.judging.explaining import Again, Explainer
 from course.scoring.judging.outcomes import (
     found,
     left_out_notes,
@@ -35,22 +39,64 @@ from course.scoring.judging.outcomes import (
     skipped,
     unjudged,
 )
-from course.scoring.judging.repeating import Again
-from course.scoring.judging.submission import Submission
-from course.scoring.judging.terms import Terms
-from course.scoring.places import Places
 from course.scoring.remote import Heard, RemoteSubmission
-from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility, bounded
+from course.scoring.verdict import CheckResult, Places, Problem, Status, Verdict, Visibility, bounded
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator
+# ---
+# One student's submission for one exercise, and its digest.
 
-    from course.catalog.load import Catalog
-    from course.catalog.models import Exercise
-    from course.figures.drawing.curves import Curve
-    from course.isolation.levels import Spawner
 
-__all__ = ["GradingSession", "Scope", "Submission", "check_files", "pinned_to"]
+@dataclass(frozen=True)
+class Submission:
+    """One student's submission for one exercise.
+
+    Attributes:
+        files: file name to content, exactly as handed in.
+        places: how its lines are named; None if the student wrote the module itself.
+        notes: parts left out, and assumptions, one sentence each.
+    """
+
+    files: Mapping[str, bytes]
+    places: Places | None = None
+    notes: tuple[str, ...] = ()
+
+    @property
+    def sha256(self) -> str:
+        """Over names and contents, in a fixed order."""
+        digest = hashlib.sha256()
+        for name in sorted(self.files):
+            digest.update(f"{len(name)}:{name}:{len(self.files[name])}:".encode())
+            digest.update(self.files[name])
+        return digest.hexdigest()
+
+
+# ---
+# The terms of a grading run, the same for every submission in it.
+
+
+class Terms(msgspec.Struct, frozen=True):
+    """How submissions are judged; made once and passed on unchanged, also over pipes and networks.
+
+    Attributes:
+        level: protection level to insist on; None takes the best one not below ``at_least``.
+        at_least: the weakest level to accept when ``level`` is None.
+        timeout: seconds of CPU time per check.
+        seed: of the run, for checks that draw their inputs.
+        graders: digest of the snapshot that judges; empty for the course as it is here.
+        home: a student checks their own file: a check that hangs, or the file itself while it is loaded, has
+            the patience of ``Exercise.patience``, and is told by its line.
+    """
+
+    level: str | None = None
+    at_least: str = "L1"
+    timeout: float = 10.0
+    seed: int = 0
+    graders: str = ""
+    home: bool = False
+
+
+# ---
+
 
 Scope = Literal["public", "full"]
 T = TypeVar("T")
@@ -447,3 +493,44 @@ def _with_required(only: Collection[str], checks: list[Check]) -> set[str]:
             wanted.add(name)
             left += by_id[name].requires
     return wanted
+
+
+# ---
+# The report of an exercise: its ``report.py``, run on a submission through the boundary of the checks.
+
+
+FILE = "report.py"
+
+
+def has_report(exercise: Exercise) -> bool:
+    """Whether the exercise has something to show."""
+    return (Path(exercise.folder) / FILE).is_file()
+
+
+def report_of(
+    exercise: Exercise, catalog: Catalog, submission: Submission, *, timeout: float = 60.0
+) -> Report:
+    """The report on a submission.
+
+    Args:
+        timeout: wall seconds for all of it.
+
+    Raises:
+        NotFoundError: the exercise has no report.
+        UngradableError: the submission cannot be loaded, or ended the report.
+        MissingCapabilityError: no submission can be run on this machine.
+    """
+    if not has_report(exercise):
+        raise NotFoundError(
+            f"The exercise {exercise.id} has no report.",
+            help=f"See what its checks say: course check {exercise.id}",
+            code="report_not_found",
+        )
+    module = companion(exercise.id, FILE.removesuffix(".py"))
+    try:
+        with GradingSession(exercise, catalog, terms=Terms(timeout=timeout)) as session:
+            report: Report = session.using(submission, module.report)
+    except (StudentFailure, CheckFailed) as failure:
+        finding = finding_for(failure)
+        raise UngradableError(finding.message, help=finding.help or "", code="report_stopped") from None
+    return report

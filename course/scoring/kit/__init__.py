@@ -12,11 +12,12 @@ is below: callbacks that count, and modules shared by the checks of one exercise
 This side is trusted: nothing here runs in the process that runs the student's code.
 """
 
-from course.figures.drawing.described import Panel, Plot, Series
-from course.scoring.checks.companions import companion, known_answers, reference, sibling, words
+from course.figures.described import Panel, Plot, Series
+from course.isolation.failures import StudentFailure
+from course.scoring.checks.collected import companion, known_answers, reference, sibling, words
 from course.scoring.explain.fingerprint import SAME, in_range
-from course.scoring.explain.words import Words
-from course.scoring.failures import CheckFailed, Diagnosis, StudentFailure
+from course.scoring.explain.story import Diagnosis, Words
+from course.scoring.failures import CheckFailed, Report, Section, finding_for, guarded_section
 from course.scoring.kit.callbacks import Counted, acceleration, black_box, counted, first_divergence
 from course.scoring.kit.expectations import (
     Diagnose,
@@ -36,7 +37,6 @@ from course.scoring.kit.expectations import (
     fail,
 )
 from course.scoring.kit.marching import Problem, march_all_errors, march_errors
-from course.scoring.report import Report, Section, finding_for, guarded_section
 from course.scoring.values import (
     Inspected,
     as_array,

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from course.scoring.failures import CheckFailed, StudentFailure
+from course.isolation.failures import StudentFailure
+from course.scoring.failures import CheckFailed
 from course.scoring.kit.expectations import fail
 from course.scoring.values import as_number, as_vector
 from course.scoring.verdict import Divergence
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from numpy.typing import ArrayLike, NDArray
-
     Array = NDArray[np.float64]
 
 __all__ = ["Counted", "acceleration", "black_box", "counted", "first_divergence"]

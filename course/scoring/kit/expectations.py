@@ -15,23 +15,18 @@ A comparison with NaN always fails: every inequality here is written so that NaN
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+from collections.abc import Callable, Collection, Sequence
+from typing import Any, NoReturn, TypeVar
 
 import msgspec
 import numpy as np
 
-from course.isolation.failures import IsolationError
+from course.isolation.failures import IsolationError, StudentFailure
 from course.physics.invariants import convergence_order
-from course.scoring.failures import CheckFailed, Diagnosis, StudentFailure, broke_at
-from course.scoring.values import as_array, as_list, as_number, as_vector, plain
+from course.scoring.explain.story import Diagnosis
+from course.scoring.failures import CheckFailed, Comparison, broke_at
+from course.scoring.values import Inspected, as_array, as_list, as_number, as_vector, plain
 from course.scoring.verdict import Divergence, Finding, Tolerance
-
-if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
-
-    from course.scoring.failures import Comparison
-    from course.scoring.values import Inspected
 
 __all__ = [
     "Diagnose",

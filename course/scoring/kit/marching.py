@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from course.physics.exact import solution
+from course.physics.systems import System
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Sequence
-
-    from numpy.typing import NDArray
-
-    from course.physics.systems import System
-
     Array = NDArray[np.float64]
 
 __all__ = ["CHECKPOINTS", "Marches", "Problem", "march_all_errors", "march_errors"]

@@ -2,24 +2,37 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from course.physics.dynamics import HandPath, TwoLinkArm
-from course.physics.integrators import RK4, State, trajectory
-from course.physics.simulator import step_count
-from course.simulations.base import Column, Parameter, Result, Row, Simulation, duration, step
+from course.physics.body import Body
+from course.physics.contact import Surface
+from course.physics.dynamics import HandPath, PassiveArm, TwoLinkArm
+from course.physics.integrators import RK4, STEPPERS, SemiImplicitEuler, State, trajectory
+from course.physics.invariants import energy, relative_change
+from course.physics.simulator import Simulator, step_count
+from course.physics.state import RigidBodyState
+from course.physics.systems import Oscillator
+from course.simulations.base import (
+    METHOD_NAMES,
+    Column,
+    Parameter,
+    Result,
+    Row,
+    Simulation,
+    digits,
+    duration,
+    percent,
+    step,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from numpy.typing import ArrayLike, NDArray
-
     Array = NDArray[np.float64]
-
-__all__ = ["SIMULATION"]
 
 
 class _Driven:
@@ -35,7 +48,7 @@ class _Driven:
         return {}
 
 
-def _run(p: Mapping[str, Any]) -> Result:
+def _run_dynamics(p: Mapping[str, Any]) -> Result:
     arm = TwoLinkArm()
     path = HandPath((p["start_x"], p["start_y"]), (p["end_x"], p["end_y"]), p["duration"])
     h = p["step"]
@@ -60,8 +73,8 @@ def _run(p: Mapping[str, Any]) -> Result:
         simulation="dynamics",
         settings=p,
         rows=rows,
-        headline=_headline(p, missed),
-        finding=_finding(p, missed, torques),
+        headline=_headline_dynamics(p, missed),
+        finding=_finding_dynamics(p, missed, torques),
         columns=(
             Column.of("t", "s", t),
             *(Column.of(f"q{k + 1}_planned", "rad", planned[:, k]) for k in (0, 1)),
@@ -127,13 +140,13 @@ def _work_row(arm: TwoLinkArm, q: Array, v: Array, torques: Array, t: Array) -> 
     return Row("forward: energy gained", gained, "J", work, "work of the torques, by trapezes")
 
 
-def _headline(p: Mapping[str, Any], missed: float) -> str:
+def _headline_dynamics(p: Mapping[str, Any], missed: float) -> str:
     if p["payload"] > 0:
         return f"A load of {p['payload']:g} kg is not in the model: the hand misses by {missed:.2g} m"
     return "Torques from inverse dynamics carry the hand along the planned line"
 
 
-def _finding(p: Mapping[str, Any], missed: float, torques: Array) -> str:
+def _finding_dynamics(p: Mapping[str, Any], missed: float, torques: Array) -> str:
     peak = np.max(np.abs(torques), axis=0)
     plan = (
         "Kinematics plans the joint angles of a straight line without any forces; inverse dynamics says "
@@ -151,7 +164,7 @@ def _finding(p: Mapping[str, Any], missed: float, torques: Array) -> str:
     return f"{plan}The hand ends {missed:.1e} m from its goal, because here plan and arm are the same model."
 
 
-SIMULATION = Simulation(
+DYNAMICS = Simulation(
     id="dynamics",
     title="Forward, inverse and kinematic: one arm, three questions",
     question="The torques were computed for an arm of 2 kg with an empty hand. If it holds 10 g, how far "
@@ -166,5 +179,356 @@ SIMULATION = Simulation(
         duration(1.0, high=100.0),
         step(high=0.1),
     ),
+    run=_run_dynamics,
+)
+
+
+# ---
+# Two double pendulums a billionth of a radian apart: for how long do they agree?
+
+
+_CROWD = 400  # pendulums whose average is compared between two steps
+_SPREAD = 1e-3  # rad: how far apart they start
+_SEED = 1
+_FEWEST = 40  # steps
+
+
+def _run(p: Mapping[str, Any]) -> Result:
+    h = p["step"]
+    n = step_count(p["duration"], h)
+    if n < _FEWEST:
+        raise ValueError(f"{n} steps are too few to see anything part; take {_FEWEST} or more.")
+    first, second = math.radians(p["angle1_deg"]), math.radians(p["angle2_deg"])
+    pair = np.array([[first, second], [first + p["nudge"], second]])
+    pendulum = TwoLinkArm.double_pendulum()
+    t, q, v = _swing(pendulum, pair, h, n)
+    apart = np.max(np.abs(_from_hanging(q[:, 1]) - _from_hanging(q[:, 0])), axis=-1)
+    small, large = _first_above(t, apart, 1e-3), _first_above(t, apart, 1.0)
+    drift = float(np.max(np.abs(relative_change(pendulum.energy(q[:, 0], v[:, 0]) + _OFFSET))))
+    coarse, fine = _crowd(pendulum, first, second, h, n)
+    rows = (
+        Row("separation passes 1e-3 rad", small, "s"),
+        Row("separation passes 1 rad", large, "s"),
+        Row("growth of the separation", _growth(t, apart, p["nudge"]), "1/s"),
+        Row("energy error, at most", drift, "1", 0.0, "nothing drives or brakes"),
+        Row(f"mean energy of the upper bob, {_CROWD} starts, step {4 * h:g} s", coarse, "J/kg"),
+        Row(f"mean energy of the upper bob, {_CROWD} starts, step {2 * h:g} s", fine, "J/kg"),
+    )
+    return Result(
+        simulation="chaos",
+        settings=p,
+        rows=rows,
+        headline=_headline(p, large),
+        finding=_finding(p, small, large, coarse, fine),
+        columns=(
+            Column.of("t", "s", t),
+            Column.of("separation", "rad", apart),
+            *(Column.of(f"angle{k + 1}_{name}", "rad", _from_hanging(q[:, i])[:, k])
+              for i, name in enumerate(("a", "b")) for k in (0, 1)),
+        ),
+    )  # fmt: skip
+
+
+#: Energy is counted from the lowest point, so that a share of it means something. In J.
+_OFFSET = 3 * 9.81
+
+
+def _swing(pendulum: TwoLinkArm, hanging: Array, h: float, n: int) -> tuple[Array, Array, Array]:
+    """Let go of pendulums at angles from the downward vertical, shape (..., 2); the arm counts otherwise."""
+    upper = hanging[..., 0] - math.pi / 2
+    joints = np.stack([upper, hanging[..., 1] - hanging[..., 0]], axis=-1)
+    return trajectory(RK4(), PassiveArm(pendulum), State.at_rest(joints), h, n)
+
+
+def _from_hanging(q: Array) -> Array:
+    """Angles of both rods from the downward vertical, rad."""
+    return np.stack([q[..., 0] + math.pi / 2, q[..., 0] + q[..., 1] + math.pi / 2], axis=-1)
+
+
+def _first_above(t: Array, values: Array, level: float) -> float:
+    above = np.flatnonzero(values > level)
+    return float(t[above[0]]) if above.size else math.nan
+
+
+def _growth(t: Array, apart: Array, nudge: float) -> float:
+    """Slope of the logarithm of the separation, from where it is ten times the nudge until it is 0.1 rad."""
+    end = _first_above(t, apart, 0.1)
+    fit = (apart > 10 * abs(nudge)) & (t < (end if math.isfinite(end) else math.inf))
+    if np.count_nonzero(fit) < 5:
+        return math.nan
+    return float(np.polyfit(t[fit], np.log(apart[fit]), 1)[0])
+
+
+def _crowd(pendulum: TwoLinkArm, first: float, second: float, h: float, n: int) -> tuple[float, float]:
+    """Kinetic energy of the upper bob, averaged over many starts and the second half, at 4 h and at 2 h."""
+    starts = np.array([first, second]) + _SPREAD * np.random.default_rng(_SEED).standard_normal((_CROWD, 2))
+    means = []
+    for longer in (4, 2):
+        _, _, v = _swing(pendulum, starts, h * longer, n // longer)
+        means.append(float(np.mean(0.5 * v[n // longer // 2 :, :, 0] ** 2)))
+    return means[0], means[1]
+
+
+def _headline(p: Mapping[str, Any], large: float) -> str:
+    if math.isnan(large):
+        return f"{p['nudge']:.0e} rad apart at the start, still close after {p['duration']:g} s"
+    return f"{p['nudge']:.0e} rad apart at the start, more than 1 rad after {digits(large)} s"
+
+
+def _finding(p: Mapping[str, Any], small: float, large: float, coarse: float, fine: float) -> str:
+    if math.isnan(large):
+        return (
+            f"Within {p['duration']:g} s the two stay less than 1 rad apart. Start them higher, or run for "
+            "longer, and they come further apart."
+        )
+    early = f"{digits(small)} s" if math.isfinite(small) else "the start"
+    return (
+        f"A difference of {p['nudge']:.0e} rad passes 0.001 rad after {early} and 1 rad after "
+        f"{digits(large)} s. "
+        "After that a comparison of two paths says nothing about a simulator, because an error in the last "
+        f"digit grows like this too. Averages can still be compared: over {_CROWD} starts the energy of the "
+        f"upper bob differs by {percent(abs(coarse / fine - 1))} between a step of {4 * p['step']:g} s and "
+        "half of it."
+    )
+
+
+CHAOS = Simulation(
+    id="chaos",
+    title="Chaos: how long does a prediction last?",
+    question="Two double pendulums start a billionth of a radian apart. After how many seconds can you see "
+    "the difference?",
+    teaches="limits of accuracy",
+    parameters=(
+        Parameter("angle1_deg", 160.0, "deg", "upper rod at the start, from hanging", low=-180.0, high=180.0),
+        Parameter("angle2_deg", -95.0, "deg", "lower rod at the start, from hanging", low=-180.0, high=180.0),
+        Parameter("nudge", 1e-9, "rad", "how much further the second upper rod starts", low=1e-12, high=1.0),
+        duration(15.0, high=100.0),
+        step(0.005, high=0.05),
+    ),
     run=_run,
+)
+
+
+# ---
+# The floor decides: friction and restitution swept, and how little of the outcome the step decides.
+
+
+_RADIUS = 0.1  # m
+_SHOWN_FRICTION = (0.1, 0.3, 0.6)
+_SHOWN_RESTITUTION = (0.3, 0.5, 0.9)
+#: The whole sweep, as friction of one experiment and restitution of the other.
+_SWEEP = np.round(np.arange(0.05, 1.0001, 0.05), 2)
+
+
+def _run_environment(p: Mapping[str, Any]) -> Result:
+    stopping = _slide(p, _SWEEP)
+    rebound = _drop(p, _SWEEP)
+    stops = p["speed"] ** 2 / (2 * _SWEEP * p["gravity"])
+    rises = _SWEEP**2 * p["height"]
+    rows = [
+        Row(
+            f"sliding to rest, friction {x:g}",
+            float(stopping[_at(x)]),
+            "m",
+            float(stops[_at(x)]),
+            "v² / (2 μ g)",
+        )
+        for x in _SHOWN_FRICTION
+    ]
+    rows += [
+        Row(
+            f"rebound, restitution {x:g}",
+            float(rebound[_at(x)]),
+            "m",
+            float(rises[_at(x)]),
+            "e² times the drop",
+        )
+        for x in _SHOWN_RESTITUTION
+    ]
+    guess = 0.3
+    wrong = float(_slide(p, np.array([0.9 * guess]))[0]) / float(stopping[_at(guess)]) - 1
+    numeric = abs(float(stopping[_at(guess)] / stops[_at(guess)]) - 1)
+    rows.append(Row("sliding further, friction 10 % lower", wrong, "1", 1 / 0.9 - 1, "1 / 0.9 - 1"))
+    return Result(
+        simulation="environment",
+        settings=p,
+        rows=tuple(rows),
+        headline=f"Friction 10 % off moves the stop by {percent(wrong)}; this step by {percent(numeric)}",
+        finding=f"From {p['speed']:g} m/s a block slides {digits(float(stopping[_at(0.6)]), 2)} m at a "
+        f"friction of 0.6 and {digits(float(stopping[_at(0.1)]), 2)} m at 0.1. If the true friction is 10 % "
+        f"lower than the modelled one, the block ends {percent(wrong)} further away; the step of "
+        f"{p['step']:g} s makes an error of "
+        f"{percent(numeric)}. Measure the floor before you refine the step.",
+        columns=(
+            Column.of("coefficient", "1", _SWEEP),
+            Column.of("stopping_distance", "m", stopping),
+            Column.of("stopping_distance_theory", "m", stops),
+            Column.of("rebound", "m", rebound),
+            Column.of("rebound_theory", "m", rises),
+        ),
+    )
+
+
+def _at(coefficient: float) -> int:
+    return int(np.argmin(np.abs(_SWEEP - coefficient)))
+
+
+def _steps(seconds: float, h: float) -> float:
+    """A duration of whole steps, a little longer than ``seconds``."""
+    duration = (math.ceil(seconds / h) + 2) * h
+    if step_count(duration, h) > 20_000:
+        raise ValueError(
+            f"with a step of {h:g} s this takes more than 20,000 steps; take a larger step, or a lower speed."
+        )
+    return duration
+
+
+def _slide(p: Mapping[str, Any], friction: Array) -> Array:
+    """How far a block slides on each floor, m: one simulation, all floors at once."""
+    block = Body.sphere(
+        1.0, _RADIUS, RigidBodyState.of([0.0, 0.0, _RADIUS], [p["speed"], 0.0, 0.0]), spins=False
+    )
+    # Velocity before position, as in most engines: of first order, so that the step has an error to show.
+    engine = Simulator(
+        [block],
+        h=p["step"],
+        gravity=p["gravity"],
+        surface=Surface(0.0, friction),
+        stepper=SemiImplicitEuler(),
+    )
+    slowest = p["speed"] / (float(friction.min()) * p["gravity"])
+    record = engine.run(_steps(slowest, p["step"]))
+    return np.asarray(record.position[-1, 0, :, 0])
+
+
+def _drop(p: Mapping[str, Any], restitution: Array) -> Array:
+    """How high a ball bounces from each floor, m: the top of its first rebound."""
+    g, h = p["gravity"], p["step"]
+    ball = Body.sphere(1.0, _RADIUS, RigidBodyState.of([0.0, 0.0, _RADIUS + p["height"]]), spins=False)
+    engine = Simulator([ball], h=h, gravity=g, surface=Surface(restitution))
+    fall = math.sqrt(2 * p["height"] / g)
+    record = engine.run(_steps(2.05 * fall, h))
+    heights = record.position[:, 0, :, 2] - _RADIUS
+    speeds = record.velocity[:, 0, :, 2]
+    rising = (record.t[:, None] > record.ground_time[0]) & (speeds > 0)
+    # From its first sample on the way up the top follows exactly.
+    first, each = np.argmax(rising, axis=0), np.arange(restitution.size)
+    tops = heights[first, each] + speeds[first, each] ** 2 / (2 * g)
+    return np.where(rising.any(axis=0), tops, 0.0)
+
+
+ENVIRONMENT = Simulation(
+    id="environment",
+    title="Environment: the floor decides",
+    question="If the real friction is 10 % lower than the modelled one, how much further does the block "
+    "slide? And how small must the step be to make up for it?",
+    teaches="environmental modelling",
+    parameters=(
+        Parameter("speed", 2.0, "m/s", "of the sliding block at the start", low=0.1, high=20.0),
+        Parameter("height", 1.0, "m", "that the ball is dropped from", low=0.01, high=100.0),
+        Parameter("gravity", 9.81, "m/s²", "acceleration downwards", low=0.1, high=100.0),
+        step(high=0.05),
+    ),
+    run=_run_environment,
+)
+
+
+# ---
+# One spring, four methods: where do they put it, and what do they do to its energy?
+
+
+def _run_integrators(p: Mapping[str, Any]) -> Result:
+    w, h = p["omega"], p["step"]
+    n = step_count(p["duration"], h)
+    t = h * np.arange(n + 1)
+    exact = p["amplitude"] * np.cos(w * t) + p["speed"] / w * np.sin(w * t)
+    spring, start = Oscillator(omega=w), State.of([p["amplitude"]], [p["speed"]])
+    positions: dict[str, Array] = {}
+    drifts: dict[str, Array] = {}
+    # A method beyond its limit overflows; infinity is then the honest answer.
+    with np.errstate(over="ignore", invalid="ignore"):
+        for name, method in STEPPERS.items():
+            path = trajectory(method, spring, start, h, n)
+            positions[name] = path.q[:, 0]
+            drifts[name] = np.nan_to_num(relative_change(energy(spring, path.q, path.v)), nan=np.inf)
+    worst = {name: float(np.max(np.abs(drift))) for name, drift in drifts.items()}
+    where = f"position at {p['duration']:g} s"
+    rows = [
+        Row(f"{where}, {METHOD_NAMES[name]}", float(q[-1]), "m", float(exact[-1]), "A cos ωt + (v₀/ω) sin ωt")
+        for name, q in positions.items()
+    ]
+    theory = _energy_theory(p, w * h, n)
+    rows += [
+        Row(f"largest energy error, {METHOD_NAMES[name]}", worst[name], "1", *theory[name])
+        for name in STEPPERS
+    ]
+    return Result(
+        simulation="integrators",
+        settings=p,
+        rows=tuple(rows),
+        headline=_headline_integrators(worst),
+        finding=_finding_integrators(p, rows, worst),
+        columns=(
+            Column.of("t", "s", t),
+            Column.of("exact", "m", exact),
+            *(Column.of(name, "m", q) for name, q in positions.items()),
+            *(Column.of(f"energy_error_{name}", "1", drift) for name, drift in drifts.items()),
+        ),
+    )
+
+
+def _energy_theory(p: Mapping[str, Any], z: float, n: int) -> dict[str, tuple[float | None, str]]:
+    """The largest relative energy error that theory allows each method, and where it comes from."""
+    with np.errstate(over="ignore"):
+        explicit = float(np.float64(1.0 + z * z) ** n) - 1.0
+    # The bounds hold from rest, below the limit, and for runs long enough to reach them.
+    plain = p["speed"] == 0.0 and z < 2.0 and z * n > 2 * math.pi
+    return {
+        "explicit_euler": (explicit, "(1 + z²)ⁿ - 1, z = h ω"),
+        "semi_implicit_euler": (z / (2 - z) if plain else None, "bound z / (2 - z)"),
+        "velocity_verlet": (z * z / 4 if plain else None, "bound z² / 4"),
+        "rk4": (n * z**6 / 72 if z < 0.3 and n * z**6 < 1 else None, "n z⁶ / 72"),
+    }
+
+
+def _headline_integrators(worst: Mapping[str, float]) -> str:
+    if worst["velocity_verlet"] > 1.0:
+        return "Beyond h ω = 2 even the symplectic methods blow up"
+    return "Explicit Euler's energy keeps growing; the symplectic methods' does not"
+
+
+def _finding_integrators(p: Mapping[str, Any], rows: list[Row], worst: Mapping[str, float]) -> str:
+    z = p["omega"] * p["step"]
+    off = [abs(row.error or 0.0) for row in rows[:4]]
+    if z >= 2.0:
+        return (
+            f"Step times frequency is {z:.3g}, beyond the limit of 2 for semi-implicit Euler and Verlet"
+            f"{' and 2.83 for Runge-Kutta' if z > 2 * math.sqrt(2) else ''}: these results mean nothing. "
+            f"Take a step below {2 / p['omega']:.3g} s."
+        )
+    return (
+        f"At {p['duration']:g} s explicit Euler is off by {digits(off[0])} m and semi-implicit Euler by "
+        f"{digits(off[1])} m: the same two lines in another order. Explicit Euler's energy grows with every "
+        f"step, to {digits(1 + worst['explicit_euler'])} times the start; semi-implicit Euler and Verlet "
+        "stay "
+        f"within {percent(worst['semi_implicit_euler'])} and {percent(worst['velocity_verlet'])}, however "
+        "long "
+        f"the run, and Runge-Kutta, now at {percent(worst['rk4'])}, goes on losing a little."
+    )
+
+
+INTEGRATORS = Simulation(
+    id="integrators",
+    title="Four methods on one spring",
+    question="Two of these methods differ only in the order of two lines. How much worse is the worse one "
+    "after 5 s: a little, ten times, a hundred times?",
+    teaches="time step",
+    parameters=(
+        Parameter("omega", 2.0, "rad/s", "frequency of the spring, √(k/m)", low=0.01, high=1e4),
+        Parameter("amplitude", 1.0, "m", "where the mass is released", low=1e-6, high=1e6),
+        Parameter("speed", 0.0, "m/s", "velocity at the start", low=-1e6, high=1e6),
+        duration(5.0),
+        step(high=10.0),
+    ),
+    run=_run_integrators,
 )

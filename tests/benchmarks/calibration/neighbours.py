@@ -28,12 +28,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 ROOT = Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT)]
 
-from course.authoring.exercises.unprotected import LocalSubmission  # noqa: E402
-from course.authoring.exercises.variants import accepted_files, compose, solution_path  # noqa: E402
+from course.authoring.exercises.grading import (  # noqa: E402
+    LocalSubmission,
+    accepted_files,
+    compose,
+    solution_path,
+)
 from course.catalog.load import Catalog  # noqa: E402
-from course.scoring.checks.companions import words  # noqa: E402
-from course.scoring.judging.session import GradingSession, Submission  # noqa: E402
-from course.scoring.judging.terms import Terms  # noqa: E402
+from course.scoring.checks.collected import words  # noqa: E402
+from course.scoring.judging.session import (  # noqa: E402
+    GradingSession,
+    Submission,
+    Terms,
+)
 from course.scoring.verdict import Status  # noqa: E402
 
 if TYPE_CHECKING:

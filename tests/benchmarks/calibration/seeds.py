@@ -35,18 +35,21 @@ ROOT = Path(__file__).resolve().parents[3]
 if __name__ == "__main__":
     sys.path[:0] = [str(ROOT)]
 
-from course.authoring.exercises.diagnosis.confusion import code_of, made_from  # noqa: E402
-from course.authoring.exercises.mutants import judge, mutant_path  # noqa: E402
-from course.authoring.exercises.unprotected import LocalSubmission  # noqa: E402
-from course.authoring.exercises.variants import (  # noqa: E402
+from course.authoring.exercises.diagnosis import code_of, made_from  # noqa: E402
+from course.authoring.exercises.grading import (  # noqa: E402
+    LocalSubmission,
     accepted_files,
     compose,
     solution_path,
 )
+from course.authoring.exercises.mutants import judge, mutant_path  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
-from course.scoring.explain.words import OWN_WORDS  # noqa: E402
-from course.scoring.judging.session import GradingSession, Submission  # noqa: E402
-from course.scoring.judging.terms import Terms  # noqa: E402
+from course.scoring.explain.story import OWN_WORDS  # noqa: E402
+from course.scoring.judging.session import (  # noqa: E402
+    GradingSession,
+    Submission,
+    Terms,
+)
 from course.scoring.verdict import Status  # noqa: E402
 
 if TYPE_CHECKING:

@@ -35,19 +35,24 @@ sys.path[:0] = [str(Path(__file__).resolve().parents[3]), str(Path(__file__).res
 import inputs  # noqa: E402
 import msgspec  # noqa: E402
 
-from course.authoring.exercises.variants import solution_path  # noqa: E402
+from course.authoring.exercises.grading import solution_path  # noqa: E402
 from course.catalog.models import Exercise, Task  # noqa: E402
 from course.errors import CourseError  # noqa: E402
-from course.grading.intake.archives import RefusedError  # noqa: E402
-from course.grading.intake.reading import Reader  # noqa: E402
+from course.grading.intake.archives import (  # noqa: E402
+    Reader,
+    RefusedError,
+)
 from course.grading.intake.students import submission_from  # noqa: E402
 from course.isolation.deadline import Deadline  # noqa: E402
 from course.isolation.failures import StudentFailure  # noqa: E402
 from course.isolation.session import Connection, LoadRefusedError  # noqa: E402
 from course.sandbox.scene.loading import choose  # noqa: E402
 from course.sandbox.world.world import World  # noqa: E402
-from course.scoring.judging.session import GradingSession, Submission  # noqa: E402
-from course.scoring.judging.terms import Terms  # noqa: E402
+from course.scoring.judging.session import (  # noqa: E402
+    GradingSession,
+    Submission,
+    Terms,
+)
 from tests.contracts.boundary import test_spoilt_functions as spoiling  # noqa: E402
 from tests.unit.isolation.test_connection import LOADED, READY, Liar  # noqa: E402
 

@@ -33,13 +33,15 @@ ROWS = Path(__file__).with_name("misleading") / "rows.toml"
 LATIN = "# \N{LATIN SMALL LETTER E WITH ACUTE}\n"
 sys.path.insert(0, str(ROOT))
 
-from course.authoring.exercises.variants import compose, solution_path  # noqa: E402
+from course.authoring.exercises.grading import compose, solution_path  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
-from course.grading.exports.handout import checks_for_student  # noqa: E402
+from course.grading.exports.selection import checks_for_student  # noqa: E402
 from course.grading.intake.students import Entry  # noqa: E402
 from course.grading.running.batch import grade_all  # noqa: E402
-from course.scoring.judging.submission import Submission  # noqa: E402
-from course.scoring.judging.terms import Terms  # noqa: E402
+from course.scoring.judging.session import (  # noqa: E402
+    Submission,
+    Terms,
+)
 
 if TYPE_CHECKING:
     from course.scoring.verdict import Verdict

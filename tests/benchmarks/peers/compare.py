@@ -31,7 +31,7 @@ sys.path[:0] = [str(ROOT), str(HERE)]
 
 import here  # noqa: E402
 
-from course.authoring.exercises.variants import accepted_files, compose, mutant_files, solution_path  # noqa: E402
+from course.authoring.exercises.grading import accepted_files, compose, mutant_files, solution_path  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 
 if TYPE_CHECKING:

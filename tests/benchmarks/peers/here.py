@@ -18,7 +18,7 @@ import numpy as np
 sys.path[:0] = [str(Path(__file__).resolve().parents[3]), str(Path(__file__).resolve().parents[1])]
 
 
-from course.authoring.exercises.unprotected import LocalSubmission  # noqa: E402
+from course.authoring.exercises.grading import LocalSubmission  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.scoring.judging.session import check_files  # noqa: E402
 

@@ -13,8 +13,8 @@ import os
 import pytest
 
 from course.isolation.failures import IsolationError
+from course.isolation.levels import Level
 from course.isolation.probe import open_spawner
-from course.isolation.spawn import Level
 
 __all__ = ["require_level"]
 

@@ -13,9 +13,10 @@ import signal
 import socket
 import tomllib
 import uuid
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -24,14 +25,10 @@ import pytest
 from course.catalog.load import Catalog
 from course.catalog.locate import Content
 from course.isolation import launch
-from course.scoring.judging.session import GradingSession, Submission
-from course.scoring.judging.terms import Terms
+from course.scoring.judging.session import GradingSession, Submission, Terms
 from course.scoring.verdict import Verdict, for_student
 from tests.benchmarks.protection import descendants_cpu
 from tests.contracts.boundary.levels import require_level
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 ROOT = Path(__file__).resolve().parents[3]
 CORPUS = ROOT / "tests" / "attacks"

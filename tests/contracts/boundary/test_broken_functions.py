@@ -9,21 +9,17 @@ the checks is broken.
 from __future__ import annotations
 
 import ast
+from collections.abc import Iterator
 from functools import cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
-from course.authoring.exercises.variants import solution_path
+from course.authoring.exercises.grading import solution_path
 from course.catalog.load import Catalog
-from course.scoring.judging.session import GradingSession, Submission
-from course.scoring.judging.terms import Terms
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from course.catalog.models import Exercise
-    from course.scoring.verdict import CheckResult
+from course.catalog.models import Exercise
+from course.scoring.judging.session import GradingSession, Submission, Terms
+from course.scoring.verdict import CheckResult
 
 CATALOG = Catalog()
 #: What stands in the place of a function; ``own`` is the right one. Each check of its task waits for "slow",

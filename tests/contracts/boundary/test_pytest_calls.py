@@ -13,8 +13,9 @@ import re
 import sys
 import textwrap
 import tomllib
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
@@ -22,9 +23,6 @@ from course.errors import ContentError
 from course.scoring.checks.collected import CollectedChecks
 from course.scoring.failures import CheckFailed
 from course.scoring.verdict import Finding, Visibility
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
 
 _CHECKS = '''
     """Checks that tell through the submission what became of them."""

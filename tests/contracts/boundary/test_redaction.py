@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from course.isolation.spawn import Level
+from course.isolation.levels import Level
 from tests.benchmarks.redaction import SENDERS, trial
 from tests.contracts.boundary.levels import require_level
 from tests.turns import soak_unless

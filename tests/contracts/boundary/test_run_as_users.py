@@ -6,15 +6,12 @@ import html
 import json
 import platform
 import sys
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from tests.contracts.boundary.levels import require_level
 from tests.contracts.boundary.users import LEVELS_AND_USERS, ROOT, run_as
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="users and levels of Linux")
 
@@ -31,7 +28,7 @@ os.environ["COURSE_CONTENT"] = content
 from course.catalog.load import Catalog
 from course.errors import CourseError
 from course.grading.running.run import RunOptions, grade_class
-from course.scoring.judging.terms import Terms
+from course.scoring.judging.session import Terms
 from pathlib import Path
 
 def graded_at(level):

@@ -4,20 +4,15 @@ from __future__ import annotations
 
 import functools
 import itertools
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
 
 from course.authoring.audit import audit
-from course.authoring.exercises.grading import grade_sources
-from course.authoring.exercises.variants import accepted_files
+from course.authoring.exercises.grading import accepted_files, grade_sources
+from course.authoring.report import AuditReport
 from course.catalog.load import Catalog
+from course.catalog.models import Exercise
+from course.scoring.verdict import Verdict
 from tests.benchmarks.calibration.seeds import proven
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from course.authoring.report import AuditReport
-    from course.catalog.models import Exercise
-    from course.scoring.verdict import Verdict
 
 __all__ = ["CATALOG", "EACH", "EXERCISES", "IN_PART", "changed", "on_record", "programs", "wrong"]
 

@@ -2,34 +2,29 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import pytest
 
-from course.authoring.exercises.diagnosis import diagnoses
-from course.authoring.exercises.diagnosis.build import hypotheses_of
-from course.authoring.exercises.diagnosis.confusion import (
+from course.authoring.exercises import diagnosis
+from course.authoring.exercises.diagnosis import (
     Confusion,
     Reported,
     as_one,
     code_of,
     fate_of,
+    hypotheses_of,
     made_from,
     read_confusion,
 )
-from course.authoring.exercises.variants import solution_path
-from course.authoring.report import Findings
+from course.authoring.exercises.grading import solution_path
+from course.authoring.report import AuditReport, Findings
+from course.catalog.load import Catalog
 from course.grading import kit
 from course.ids import WARM_UPS
-from course.isolation.keeping import kept_sandboxes
-from course.progress.mistakes import NO_MISTAKE
-from course.scoring.checks.companions import words
+from course.isolation.probe import kept_sandboxes
+from course.progress.history import NO_MISTAKE
+from course.scoring.checks.collected import words
 from course.scoring.judging.session import GradingSession, Submission
 from tests.contracts.content.audited import CATALOG, EXERCISES, IN_PART, programs
-
-if TYPE_CHECKING:
-    from course.authoring.report import AuditReport
-    from course.catalog.load import Catalog
 
 
 @pytest.fixture(scope="module")
@@ -137,9 +132,9 @@ def test_the_audit_refuses_a_table_with_an_untrue_row_or_one_that_survives(
     exercise = catalog.exercise("integrators")
     rows = [Reported("rk4_step", ("EQUAL_WEIGHTS",), said, 1) for said in ("STAGES_NOT_CHAINED", "survives")]
     table = Confusion(made_from=made_from(catalog, exercise), rows={"public": (), "full": tuple(rows)})
-    monkeypatch.setattr(diagnoses, "read_confusion", lambda *_: table)
+    monkeypatch.setattr(diagnosis, "read_confusion", lambda *_: table)
     findings = Findings(catalog.content.root)
-    diagnoses.audit_diagnoses(catalog, exercise, findings)
+    diagnosis.audit_diagnoses(catalog, exercise, findings)
     assert [problem.message for problem in findings.sorted()] == [
         "rk4_step: no check fails for a program that is said to have EQUAL_WEIGHTS.",
         "rk4_step: programs with EQUAL_WEIGHTS are told STAGES_NOT_CHAINED, which is untrue.",

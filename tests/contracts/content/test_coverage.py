@@ -5,7 +5,7 @@ from __future__ import annotations
 from course.authoring.coverage import as_markdown, check_coverage, read_coverage, written_to
 from course.catalog.load import Catalog
 from course.catalog.locate import content
-from course.cli.author.coverage import is_command
+from course.cli.author.commands import is_command
 
 CATALOG = Catalog(content())
 DOCUMENT = read_coverage(CATALOG)

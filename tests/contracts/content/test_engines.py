@@ -16,11 +16,11 @@ import sys
 import pytest
 
 from course.engines import reference
+from course.engines.base import options_of
 from course.engines.compare import Request, compare
 from course.engines.process import EngineProcess
 from course.engines.registry import ENGINES, availability
-from course.engines.scenarios.scenario import BOXES, SCENARIOS
-from course.engines.settings import options_of
+from course.engines.scenarios import BOXES, SCENARIOS
 
 INSTALLED = [info.id for info in ENGINES.values() if availability(info).installed]
 

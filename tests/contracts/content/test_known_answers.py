@@ -8,23 +8,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, is_dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
 
+from course.authoring.exercises.grading import compose, solution_path
 from course.authoring.exercises.mutants import mutant_path
-from course.authoring.exercises.variants import compose, solution_path
 from course.catalog.load import Catalog
 from course.catalog.locate import content
 from course.grading import kit
-from course.scoring.explain.table import FILE, read_table
+from course.scoring.explain.story import TABLE, read_table
 from course.scoring.failures import OURS
-from course.scoring.judging.session import GradingSession, Submission
-from course.scoring.judging.terms import Terms
-
-if TYPE_CHECKING:
-    from course.scoring.verdict import CheckResult
+from course.scoring.judging.session import GradingSession, Submission, Terms
+from course.scoring.verdict import CheckResult
 
 CATALOG = Catalog()
 #: Ten thousand times what sums of some hundred doubles lose.
@@ -34,7 +31,7 @@ pytestmark = pytest.mark.usefixtures("sandboxes")
 ANSWERED = [
     exercise.id
     for exercise in CATALOG.exercises()
-    if (path := exercise.readme_path.with_name(FILE)).is_file() and read_table(path).answers
+    if (path := exercise.readme_path.with_name(TABLE)).is_file() and read_table(path).answers
 ]
 
 
@@ -44,7 +41,7 @@ def _told(exercise_id: str, step: int) -> dict[str, list[CheckResult]]:
     """
     exercise = CATALOG.exercise(exercise_id)
     solution = solution_path(CATALOG, exercise)
-    answered = read_table(exercise.readme_path.with_name(FILE)).answers
+    answered = read_table(exercise.readme_path.with_name(TABLE)).answers
     with GradingSession(exercise, CATALOG, scope="public", terms=Terms(home=True, timeout=5.0)) as session:
         checks = session.grade(Submission({exercise.module: solution.read_bytes()})).checks
         tasks = {check.task for check in checks if check.id in answered}

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from course.authoring.exercises.variants import solution_path
+from course.authoring.exercises.grading import solution_path
 from course.catalog.load import Catalog
 
 FOLDER = Path(__file__).resolve().parents[2] / "benchmarks" / "mended"

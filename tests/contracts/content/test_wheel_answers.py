@@ -11,20 +11,16 @@ from __future__ import annotations
 import ast
 import itertools
 import types
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
 from course.catalog.load import Catalog
+from course.catalog.models import Exercise
 from course.grading import kit
-from course.scoring.judging.session import GradingSession, Submission
-from course.scoring.judging.terms import Terms
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from course.catalog.models import Exercise
+from course.scoring.judging.session import GradingSession, Submission, Terms
 
 CATALOG = Catalog()
 pytestmark = pytest.mark.usefixtures("sandboxes")

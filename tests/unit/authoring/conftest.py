@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 
 from course.authoring.audit import audit
 from course.authoring.exercises.source import CheckSource, checks_in, parse
+from course.authoring.report import AuditProblem, AuditReport
 from course.catalog.load import Catalog
 from course.catalog.locate import content
+from course.catalog.models import Exercise
 from course.scoring.verdict import CheckResult, Status, Verdict, Visibility
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
-
-    from course.authoring.report import AuditProblem, AuditReport
-    from course.catalog.models import Exercise
 
 MINI = Path(__file__).parents[2] / "fixtures" / "mini_course"
 
@@ -119,7 +115,7 @@ def oracle() -> Oracle:
 @pytest.fixture
 def run(mini: Path, oracle: Oracle, monkeypatch: pytest.MonkeyPatch) -> Callable[..., AuditReport]:
     """Audit the copy with the oracle, but for the sandbox's scenes: no course has any of its own."""
-    monkeypatch.setattr("course.authoring.audit.scene_ids", lambda: ())
+    monkeypatch.setattr("course.sandbox.scene.loading.scene_ids", lambda: ())
     return lambda only=None: audit(Catalog(content()), only, grade=oracle.grade)
 
 

@@ -4,20 +4,16 @@ from __future__ import annotations
 
 import re
 import shutil
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
 from course.authoring.audit import audit
-from course.authoring.exercises.kill_table import write_page
+from course.authoring.exercises.proofs import write_page
+from course.authoring.report import AuditProblem, AuditReport
 from course.catalog.load import Catalog
 from course.errors import MissingCapabilityError, NotFoundError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
-
-    from course.authoring.report import AuditProblem, AuditReport
 
 TOML = "exercises/doubling/exercise.toml"
 README = "exercises/doubling/README.md"

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from course.authoring.audit import audit
 from course.authoring.exercises.grading import grade_sources
 from course.authoring.exercises.mutants import run_mutants
 from course.catalog.load import Catalog
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def edit(path: Path, old: str, new: str) -> None:

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import msgspec
 import pytest
 
 from course.authoring.audit import audit
+from course.authoring.report import AuditProblem, AuditReport
 from course.catalog.load import Catalog
 from course.scoring.failures import OURS
 from course.scoring.verdict import Problem, Status, Verdict
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from course.authoring.report import AuditProblem, AuditReport
 
 MUTANTS = "solutions/doubling/mutants.toml"
 Change = Callable[[Verdict], Verdict]

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import pytest
 
 from course.cli.frame.app import run
 from course.sandbox.scene.loading import FOLDER
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def answer(capsys: pytest.CaptureFixture[str], *line: str) -> tuple[int, dict[str, Any]]:
@@ -57,7 +55,7 @@ def test_a_scene_whose_text_has_a_formula_without_a_value_is_reported(
     text = (FOLDER / "head-on.toml").read_text("utf-8").replace("{speed}", "{sped}", 1)
     (tmp_path / "head-on.toml").write_text(text, "utf-8")
     monkeypatch.setattr("course.sandbox.scene.loading.FOLDER", tmp_path)
-    monkeypatch.setattr("course.authoring.audit.FOLDER", tmp_path)
+    monkeypatch.setattr("course.sandbox.scene.loading.FOLDER", tmp_path)
     code, body = answer(capsys, "author", "check", "head-on")
     (problem,) = body["problems"]
     assert (code, body["scenes"], problem["file"]) == (1, ["head-on"], str(tmp_path / "head-on.toml"))

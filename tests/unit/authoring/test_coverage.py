@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from course.authoring.coverage import as_markdown, check_coverage, read_coverage, written_to
+from course.authoring.report import AuditProblem
 from course.catalog.load import Catalog
 from course.catalog.locate import content
-from course.cli.author.coverage import is_command
+from course.cli.author.commands import is_command
 from course.cli.frame.app import run
 from course.errors import ContentError, NotFoundError
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from course.authoring.report import AuditProblem
 
 TABLE = """\
 format_version = 1

@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator
+from pathlib import Path
 
 import msgspec
 import pytest
 
-from course.authoring.exercises.grading import grade_sources
-from course.authoring.exercises.variants import accepted_files, compose, mutant_files, solution_path
+from course.authoring.exercises.grading import (
+    accepted_files,
+    compose,
+    grade_sources,
+    mutant_files,
+    solution_path,
+)
 from course.catalog.load import Catalog
+from course.grading.intake.students import Entry
 from course.grading.running.batch import Graded, Graders
 from course.scoring.judging.session import GradingSession, Submission
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from pathlib import Path
-
-    from course.grading.intake.students import Entry
-    from course.scoring.verdict import Verdict
+from course.scoring.verdict import Verdict
 
 #: What may come after a model solution, and the checks of "doubling" that see it.
 AFTER = {

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from course.authoring.lessons.cells import as_written, run_cells, run_lesson, update_outputs
 from course.errors import ContentError
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 HEAD = "+++\nid = 'a'\n+++\n\n"
 

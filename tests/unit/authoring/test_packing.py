@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
@@ -10,9 +10,6 @@ from course.authoring.packing import write_pack
 from course.catalog.load import Catalog
 from course.catalog.pack import read_pack
 from course.errors import ContentError, MissingCapabilityError, NotFoundError, UsageError
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def test_a_pack_holds_the_solution_and_its_prose(mini: Path, tmp_path: Path) -> None:

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
-from course.authoring.exercises import slow
-from course.authoring.exercises.points import write_points
+from course.authoring.exercises import files
+from course.authoring.exercises.files import write_points
 from course.catalog.load import Catalog
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 TOML = "exercises/doubling/exercise.toml"
 
@@ -69,13 +66,13 @@ def test_checks_that_are_slow_are_written_above_the_tasks(
     path = mini / TOML
     before = path.read_text()
     for times, line in (({"a": 0.31, "b": 0.02}, "slow = { a = 0.4 }\n"), ({"a": 0.02, "b": 0.02}, "")):
-        monkeypatch.setattr(slow, "measured", lambda *_, times=times: times)
-        assert slow.write_slow(Catalog(), Catalog().exercise("doubling")) == path
+        monkeypatch.setattr(files, "measured", lambda *_, times=times: times)
+        assert files.write_slow(Catalog(), Catalog().exercise("doubling")) == path
         assert path.read_text() == before.replace("\n\n[[task]]", f"\n{line}\n[[task]]", 1)
-        assert slow.write_slow(Catalog(), Catalog().exercise("doubling")) is None
+        assert files.write_slow(Catalog(), Catalog().exercise("doubling")) is None
 
 
 def test_what_is_measured_is_the_cpu_time_of_right_solutions(mini: Path) -> None:
-    most = slow.measured(Catalog(), Catalog().exercise("doubling"))
+    most = files.measured(Catalog(), Catalog().exercise("doubling"))
     assert most.keys() == {"double_of_three", "doublings_length"}
-    assert all(0 <= seconds < slow.QUICK for seconds in most.values())
+    assert all(0 <= seconds < files.QUICK for seconds in most.values())

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
 from course.authoring.audit import audit
 from course.authoring.exercises.files import BLANK
+from course.authoring.report import AuditReport
 from course.authoring.scaffold import Function, new_exercise, new_lesson, new_question
 from course.catalog.load import Catalog
 from course.errors import MissingCapabilityError, UsageError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
-
-    from course.authoring.report import AuditReport
 
 SOLVED = {
     "exercises/tripling/exercise.toml": ["Tripling", "Three times.", "Three times a number"],

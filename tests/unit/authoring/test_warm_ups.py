@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from course.authoring.audit import audit
-from course.authoring.exercises.diagnosis.build import build
+from course.authoring.exercises.diagnosis import build
 from course.authoring.scaffold import Function, new_warm_up
 from course.catalog.load import Catalog
 from course.cli.frame.app import run
 from course.errors import ContentError, UsageError
-from course.scoring.checks import companions
-from course.scoring.explain.table import read_table
-from course.scoring.explain.words import read_words
-
-if TYPE_CHECKING:
-    from pathlib import Path
+from course.scoring.checks import collected
+from course.scoring.explain.story import read_table, read_words
 
 WORDS = {
     "exercise.toml": ["Tripling", "the-way-back", "Three times.", "Three times a number"],
@@ -74,7 +70,7 @@ def fill(path: Path, words: list[str]) -> None:
 
 def rebuilt() -> None:
     catalog = Catalog()
-    companions._load.cache_clear()
+    collected._load.cache_clear()
     build(catalog, catalog.exercise("tripling"))
     read_table.cache_clear()
     read_words.cache_clear()

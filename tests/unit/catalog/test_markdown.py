@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from course.catalog import blocks as b
-from course.catalog.front_matter import split_front_matter
 from course.catalog.markdown import parse_lesson, read_blocks
+from course.catalog.reading import split_front_matter
 from course.errors import ContentError
 
 FILE = Path("a-lesson.md")

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from course.catalog.toml_lines import LineMap, parse_path, syntax_error_line
+from course.catalog.reading import LineMap, parse_path, syntax_error_line
 
 TEXT = '''\
 # a comment with = and [brackets]

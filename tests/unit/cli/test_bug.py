@@ -70,12 +70,12 @@ def test_a_report_names_nobody(course, somebody, monkeypatch, tmp_path):
 )  # fmt: skip
 def test_a_name_is_known_however_it_is_spelt(monkeypatch, written):
     """In a folder's name, with its accents apart, and as a string or an address has it."""
-    from course.cli.setup import bug
+    from course.cli.setup import doctor
 
-    monkeypatch.setattr(bug, "_places", lambda: [("/home/Jürgen", "~")])
+    monkeypatch.setattr(doctor, "_places", lambda: [("/home/Jürgen", "~")])
     names = [("Jürgen Planted", "<user>"), ("Jürgen", "<user>"), (HOST, "<machine>")]
-    monkeypatch.setattr(bug, "_names", lambda: names)
-    found = bug.redacted(written).casefold()
+    monkeypatch.setattr(doctor, "_names", lambda: names)
+    found = doctor.redacted(written).casefold()
     assert not [part for part in ("rgen", "planted") if part in found]
 
 
@@ -83,7 +83,7 @@ def test_the_name_in_full_is_one_of_them(somebody, monkeypatch):
     pwd = pytest.importorskip("pwd")
     from types import SimpleNamespace
 
-    from course.cli.setup.bug import redacted
+    from course.cli.setup.doctor import redacted
 
     monkeypatch.setattr(pwd, "getpwuid", lambda _: SimpleNamespace(pw_gecos="Ada Planted,,,", pw_name=USER))
     assert redacted("/media/Ada Planted/disk and adaptive") == "/media/<user>/disk and adaptive"

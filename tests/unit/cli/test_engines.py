@@ -13,7 +13,7 @@ from course.engines import compare as comparing
 from course.engines import reference
 from course.engines.registry import ENGINES, Availability
 from course.engines.results import Row
-from course.engines.scenarios.scenario import SCENARIOS
+from course.engines.scenarios import SCENARIOS
 
 MISSING = "pip install 'mujoco>=4.0'"
 

@@ -12,7 +12,7 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from course.catalog.load import Catalog
-from course.cli.frame.terminal.console import Console
+from course.cli.frame.console import Console
 from course.cli.quiz import screen
 from course.quizzing.attempt import mark
 from course.quizzing.bank import Bank

@@ -56,7 +56,7 @@ def test_a_scene_is_played_without_the_word_play(tmp_path: Path) -> None:
 
 
 def test_a_typo_in_the_menu_is_asked_about_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from course.cli.frame.terminal.console import Console
+    from course.cli.frame.console import Console
     from course.cli.sandbox import commands
 
     typed, played = iter(["99", "newton", "2", "never asked"]), []

@@ -7,8 +7,8 @@ import re
 
 import pytest
 
+from course.simulations.base import run
 from course.simulations.registry import CHAPTER, SIMULATIONS, get
-from course.simulations.settings import run
 
 
 def test_list_names_every_simulation_with_its_question(course):

@@ -9,9 +9,8 @@ import pytest
 from course.engines import compare as module
 from course.engines import reference
 from course.engines.compare import LADDER, Request, compare
-from course.engines.machine import Machine
 from course.engines.registry import Availability
-from course.engines.results import Reference, Row
+from course.engines.results import Machine, Reference, Row
 from course.errors import NotFoundError
 
 
@@ -116,7 +115,7 @@ def test_what_was_measured_otherwise_is_not_taken_for_it(stand, other):
 
 
 def test_another_version_another_machine_and_other_code_are_measured_anew(stand, monkeypatch):
-    from course.engines import cache
+    from course.engines import results
 
     request = Request(("mujoco",), ("bounce",))
     compare(request)
@@ -124,7 +123,7 @@ def test_another_version_another_machine_and_other_code_are_measured_anew(stand,
     assert {row.origin for row in compare(request).rows} == {"measured"}
     monkeypatch.setattr(module, "this_machine", lambda: Machine("Another", "one", 2, "3.11"))
     assert {row.origin for row in compare(request).rows} == {"measured"}
-    monkeypatch.setattr(cache, "code_digest", lambda: "other")
+    monkeypatch.setattr(results, "code_digest", lambda: "other")
     assert {row.origin for row in compare(request).rows} == {"measured"}
     assert {row.origin for row in compare(request).rows} == {"cached"}
 

@@ -9,8 +9,8 @@ import pytest
 
 from course.engines import reference
 from course.engines.compare import LADDER, QUICK_LADDER
-from course.figures import engine_comparison as module
-from course.figures.drawing.style import house_style
+from course.figures import engines as module
+from course.figures.style import house_style
 
 
 def words(figure):

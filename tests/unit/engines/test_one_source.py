@@ -11,11 +11,11 @@ from pathlib import Path
 
 import pytest
 
-from course.engines import reference, settings
+from course.engines import base, reference
 from course.engines.findings import chaos, same_algorithm
 from course.engines.registry import ENGINES
 from course.engines.results import DEFAULT, TUNED
-from course.engines.scenarios.scenario import SCENARIOS
+from course.engines.scenarios import SCENARIOS
 from course.figures import engines as drawn
 from course.physics.contact.models import SoftConvex, drop
 
@@ -65,7 +65,7 @@ def typed(page: str) -> set[str]:
 
 
 def _default(engine: str, key: str) -> str:
-    (one,) = [option for option in settings.options_of(engine).option if option.key == key]
+    (one,) = [option for option in base.options_of(engine).option if option.key == key]
     return one.default
 
 

@@ -12,9 +12,9 @@ import pytest
 from course import extras
 from course.engines import reference
 from course.engines import registry as module
-from course.engines.machine import this_machine
 from course.engines.registry import ENGINES, availability, get
-from course.engines.scenarios.scenario import SCENARIOS
+from course.engines.results import this_machine
+from course.engines.scenarios import SCENARIOS
 from course.errors import NotFoundError
 from course.extras import PARTS, Requirement, requirement_of
 

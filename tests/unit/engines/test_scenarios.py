@@ -7,11 +7,10 @@ import math
 import numpy as np
 import pytest
 
+from course.engines import scenarios
 from course.engines.adapters.pymunk import ADAPTER
-from course.engines.base import Body, Motion, Scene, energy, momentum
-from course.engines.scenarios import contact, motion
-from course.engines.scenarios.scenario import DT, IMPACTS, SCENARIOS, get
-from course.engines.settings import tuning
+from course.engines.base import Body, Motion, Scene, energy, momentum, tuning
+from course.engines.scenarios import DT, IMPACTS, SCENARIOS, get
 from course.errors import NotFoundError
 
 
@@ -70,8 +69,8 @@ def test_free_fall_tells_velocity_first_from_position_first(sign, percent):
 
 
 def test_the_pendulum_s_truth_is_the_pendulum_of_a_ball_that_turns_with_its_rod():
-    exact = motion._path(480, 1 / 240)
-    finer = motion._path(1920, 1 / 960)[::4]
+    exact = scenarios._path(480, 1 / 240)
+    finer = scenarios._path(1920, 1 / 960)[::4]
     # RK4 at 1 ms and at a quarter of that: what the comment at _FINE_S promises.
     assert np.abs(exact - finer).max() < 1e-11
     # From the horizontal, small times: the centre falls with g L / (L² + 2 r² / 5) times its lever.
@@ -84,7 +83,7 @@ def test_the_pendulum_s_truth_is_the_pendulum_of_a_ball_that_turns_with_its_rod(
 
 
 def test_the_pendulum_s_error_is_the_largest_on_the_way_not_the_last():
-    exact = motion._path(480, 1 / 240)
+    exact = scenarios._path(480, 1 / 240)
 
     def path(scene, t):
         i = round(t / scene.dt)
@@ -275,7 +274,7 @@ def test_the_wall_reports_the_fastest_ball_of_an_unbroken_row():
     outcome = get("thin-wall").run(written(until(50.0)), DT)
     assert (outcome.value, outcome.details["passed_at_m_s"]) == (50.0, 100.0)
     outcome = get("thin-wall").run(written(until(1e9)), DT)
-    assert (outcome.value, outcome.details["passed_at_m_s"]) == (contact.SPEEDS[-1], None)
+    assert (outcome.value, outcome.details["passed_at_m_s"]) == (scenarios.SPEEDS[-1], None)
 
 
 def test_energy_counts_motion_spin_and_height():
@@ -308,7 +307,7 @@ def test_pymunk_tuned_keeps_a_tonne_up_and_a_stack_still():
 
 
 def test_a_hundred_boxes_are_a_hundred_and_fit_the_plane():
-    scene = contact.boxes_scene(DT)
+    scene = scenarios.boxes_scene(DT)
     assert len(scene.bodies) == 100
     assert {body.position[1] for body in scene.bodies} == {0.0}
     world = ADAPTER.build(scene, {})

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from course.engines import reference, settings
+from course.engines import base, reference
 from course.engines.registry import ENGINES
-from course.engines.scenarios.scenario import BOXES, SCENARIOS
+from course.engines.scenarios import BOXES, SCENARIOS
 
 ROOT = Path(__file__).resolve().parents[3]
 PAIRS = [(engine, scenario) for engine in ENGINES for scenario in SCENARIOS]
@@ -28,12 +28,12 @@ def _script(name: str):
 
 
 def test_every_scenario_has_a_topic():
-    assert set(settings.TOPICS) == set(SCENARIOS)
+    assert set(base.TOPICS) == set(SCENARIOS)
 
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_every_option_says_what_it_does_where_that_is_written_and_what_is_tried(engine):
-    listed = settings.options_of(engine)
+    listed = base.options_of(engine)
     assert listed.documented.startswith("https://")
     keys = [option.key for option in listed.option]
     assert len(keys) == len(set(keys))
@@ -42,7 +42,7 @@ def test_every_option_says_what_it_does_where_that_is_written_and_what_is_tried(
         assert option.default
         assert len(option.does.split()) >= 4
         assert option.values
-        assert set(option.values) <= set(settings.TOPICS.values())
+        assert set(option.values) <= set(base.TOPICS.values())
         assert option.source == "" or option.source.startswith("https://")
     # Nobody reads a list of what is set without asking what is not.
     assert len(listed.left) >= 3
@@ -51,16 +51,16 @@ def test_every_option_says_what_it_does_where_that_is_written_and_what_is_tried(
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_no_solver_is_offered_more_than_the_budget(engine):
-    for option in settings.options_of(engine).option:
+    for option in base.options_of(engine).option:
         if option.key in ("iterations", "substeps"):
             tried = [value for values in option.values.values() for value in values]
-            assert max(tried) == settings.BUDGET
+            assert max(tried) == base.BUDGET
 
 
 @pytest.mark.parametrize(("engine", "scenario"), PAIRS)
 def test_what_was_chosen_is_one_of_the_combinations_that_were_tried(engine, scenario):
-    chosen = settings.choices()[engine][scenario]
-    tried = list(settings.candidates(engine, "stack" if scenario == BOXES else scenario))
+    chosen = base.choices()[engine][scenario]
+    tried = list(base.candidates(engine, "stack" if scenario == BOXES else scenario))
     assert chosen.options in tried
     assert chosen.tried == len(tried)
     assert tried[0] == {}
@@ -73,7 +73,7 @@ def test_the_reference_was_measured_with_what_was_chosen(engine, scenario):
     except LookupError:
         assert (engine, scenario) == ("pymunk", "diagonal")
         return
-    assert row.options == settings.choices()[engine][scenario].options
+    assert row.options == base.choices()[engine][scenario].options
     assert reference.row(engine, scenario, "default").options == {}
 
 
@@ -93,13 +93,13 @@ def test_no_engine_is_worse_well_set_than_as_it_comes(engine, scenario):
 
 def test_each_option_that_is_set_has_a_reason():
     for engine, scenario in PAIRS:
-        tuning = settings.tuning(engine, scenario)
+        tuning = base.tuning(engine, scenario)
         assert len(tuning.why) == len(tuning.options)
-    assert "iterations 100 instead of 10" in settings.tuning("pymunk", "stack").why[0]
+    assert "iterations 100 instead of 10" in base.tuning("pymunk", "stack").why[0]
 
 
 def test_the_boxes_are_stepped_as_the_stack_is():
-    for chosen in settings.choices().values():
+    for chosen in base.choices().values():
         assert chosen[BOXES] == chosen["stack"]
 
 

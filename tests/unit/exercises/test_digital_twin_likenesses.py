@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course.authoring.exercises.unprotected import LocalSubmission
+from course.authoring.exercises.grading import LocalSubmission
 from course.grading import kit
 
 ROOT = Path(__file__).resolve().parents[3]

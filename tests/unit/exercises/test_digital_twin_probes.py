@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course.authoring.exercises.unprotected import LocalSubmission
+from course.authoring.exercises.grading import LocalSubmission
 from course.grading import kit
 from course.scoring.explain import fingerprint, matching, read_table
 from course.scoring.explain.fingerprint import read
-from course.scoring.explain.table import is_right
+from course.scoring.explain.story import is_right
 
 ROOT = Path(__file__).resolve().parents[3]
 SOLUTION = ROOT / "solutions" / "digital-twin"

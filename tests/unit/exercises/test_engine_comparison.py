@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course.authoring.exercises.unprotected import LocalSubmission
+from course.authoring.exercises.grading import LocalSubmission
 from course.catalog.load import Catalog
 from course.grading import kit
 from course.scoring.judging.session import GradingSession, Submission

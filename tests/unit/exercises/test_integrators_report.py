@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course.figures.drawing.plots import render
+from course.figures.plots import render
 from course.grading import kit
 
 report = kit.companion("integrators", "report")

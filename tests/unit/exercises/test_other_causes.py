@@ -11,10 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from course.authoring.exercises.unprotected import LocalSubmission
-from course.authoring.exercises.variants import compose, solution_path
+from course.authoring.exercises.grading import LocalSubmission, compose, solution_path
 from course.catalog.load import Catalog
-from course.scoring.explain.calls import reached_from
+from course.scoring.explain.fingerprint import reached_from
 from course.scoring.judging.session import GradingSession, Submission
 
 AFRESH = Path(__file__).resolve().parents[2] / "benchmarks" / "mended" / "afresh"

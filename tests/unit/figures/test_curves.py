@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
 
 import numpy as np
 import pytest
 
-from course.authoring.exercises.variants import solution_path
+from course.authoring.exercises.grading import solution_path
 from course.catalog.load import Catalog
-from course.figures.drawing.curves import compared, marched, plot_of, read_curve, thinned
-from course.figures.drawing.plots import render
+from course.figures.described import compared, marched, plot_of, read_curve, thinned
+from course.figures.plots import render
 from course.physics.systems import Oscillator
-from course.scoring.judging.session import GradingSession, Submission
-from course.scoring.judging.terms import Terms
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
+from course.scoring.judging.session import GradingSession, Submission, Terms
 
 CATALOG = Catalog()
 T = np.linspace(0.0, 2.0, 41)

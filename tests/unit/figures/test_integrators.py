@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from course.figures import integrators
-from course.figures.drawing.style import METHODS
+from course.figures.style import METHODS
 from course.physics.invariants import convergence_order
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from course.engines import reference
 from course.engines.registry import ENGINES
-from course.figures import engines, how_contact_is_solved, sim_to_real, summary, twins
-from course.figures.drawing.style import house_style
+from course.figures import contact, engines, robots, sim_to_real
+from course.figures.style import house_style
 from course.physics.contact.models import Constraint
 
 
@@ -45,14 +45,14 @@ def test_an_error_of_the_reference_is_its_value_against_the_truth() -> None:
 
 
 def test_a_bounce_depends_on_its_phase() -> None:
-    plain = how_contact_is_solved.rebounds(Constraint(0.5))
+    plain = contact.rebounds(Constraint(0.5))
     assert 0.22 < plain.min() < 0.225
     assert 0.25 < plain.max() < 0.26
-    assert how_contact_is_solved.rebounds(Constraint(0.5, erp=0.2)).max() > 0.45
+    assert contact.rebounds(Constraint(0.5, erp=0.2)).max() > 0.45
 
 
 def test_measuring_keeps_a_copy_close_and_learning_the_friction_closer() -> None:
-    run = twins.followed()
+    run = sim_to_real.followed()
     end = {name: float(np.sqrt(np.mean(run[name][-200:] ** 2))) for name in ("model", "state", "learning")}
     assert end["learning"] < 0.01 < end["state"] < 0.05
     assert end["model"] > 10.0
@@ -60,14 +60,14 @@ def test_measuring_keeps_a_copy_close_and_learning_the_friction_closer() -> None
 
 
 def test_the_twin_brings_the_robot_back_to_its_speed() -> None:
-    speeds = twins.driven()
+    speeds = sim_to_real.driven()
     assert speeds["fixed"][-1] == pytest.approx(0.5 / 0.8, rel=1e-3)
     assert speeds["twin"][-200:].mean() == pytest.approx(1.0, abs=0.01)
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_the_learning_copy_finds_the_friction_whatever_the_noise(seed: int) -> None:
-    assert twins.followed(seed=seed)["friction"][-1] == pytest.approx(0.8, rel=0.05)
+    assert sim_to_real.followed(seed=seed)["friction"][-1] == pytest.approx(0.8, rel=0.05)
 
 
 def test_the_best_gain_of_a_perfect_simulation_never_settles_and_the_matched_one_nearly_does_best() -> None:
@@ -89,8 +89,8 @@ def test_a_late_integrator_is_unstable_beyond_half_pi_over_its_delay() -> None:
 
 
 def test_the_two_questions_have_different_worst_mistakes() -> None:
-    stop, bounce = summary.budgets().values()
+    stop, bounce = robots.budgets().values()
     assert max(stop, key=lambda name: stop[name]) == "delay of 50 ms left out"
     assert max(bounce, key=lambda name: bounce[name]) == "step of 10 ms"
     assert bounce["delay of 50 ms left out"] == bounce["friction 10 % too high"] == 0.0
-    assert list(stop) == list(summary.MISTAKES) == list(bounce)
+    assert list(stop) == list(robots.MISTAKES) == list(bounce)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from course.figures.drawing.described import Panel, Plot, Series
-from course.figures.drawing.plots import draw, render
-from course.figures.drawing.style import house_style
+from course.figures.described import Panel, Plot, Series
+from course.figures.plots import draw, render
+from course.figures.style import house_style
 
 X, Y = [0.0, 1.0, 2.0], [1.0, 3.0, 2.0]
 

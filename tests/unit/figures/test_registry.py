@@ -8,20 +8,18 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from matplotlib.text import Text
+from matplotlib.transforms import Bbox
 from PIL import Image, ImageFilter
 
 from course.errors import NotFoundError, UsageError
 from course.figures import registry
-from course.figures.drawing.style import METHODS, WIDTH_IN, house_style
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from matplotlib.transforms import Bbox
+from course.figures.style import METHODS, WIDTH_IN, house_style
 
 GOLDEN = Path(__file__).parents[2] / "fixtures" / "golden"
 GOLDEN_DPI = 50

@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 from course.errors import InternalError
-from course.figures.drawing.style import METHODS, house_style
-from course.figures.experiments import basic as simulations
-from course.simulations.base import Result
+from course.figures import experiments as simulations
+from course.figures.style import METHODS, house_style
+from course.simulations.base import Result, run
 from course.simulations.registry import get
-from course.simulations.settings import run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

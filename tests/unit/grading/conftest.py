@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 
 from course.catalog.load import Catalog
 from course.catalog.locate import chosen
+from course.catalog.models import Exercise
 from course.grading.running.snapshot import Snapshot, frozen
-from course.scoring.judging.session import GradingSession
-from course.scoring.judging.terms import Terms
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from course.catalog.models import Exercise
+from course.scoring.judging.session import GradingSession, Terms
 
 MINI = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
 

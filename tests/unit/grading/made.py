@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import subprocess
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
 
+from course.catalog.models import Exercise
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import GradedExercise, Key, Result
 from course.grading.intake.downloads import class_list
-from course.grading.intake.students import read_student
+from course.grading.intake.students import Entry, read_student
+from course.grading.running.grader import Config
 from course.scoring.judging.session import Submission
 from course.scoring.verdict import CheckResult, Problem, Status, Tolerance, Verdict, Visibility
-
-if TYPE_CHECKING:
-    import subprocess
-    from collections.abc import Callable, Iterator, Sequence
-    from pathlib import Path
-
-    from course.catalog.models import Exercise
-    from course.grading.intake.students import Entry
-    from course.grading.running.grader import Config
 
 SECRET = 1234.5678
 

@@ -5,10 +5,7 @@ from __future__ import annotations
 import itertools
 import re
 from html.parser import HTMLParser
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from pathlib import Path
+from pathlib import Path
 
 __all__ = ["Page", "faults", "read_page"]
 

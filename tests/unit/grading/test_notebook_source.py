@@ -93,7 +93,7 @@ def test_a_statement_that_changes_what_is_used_counts(statement: str) -> None:
 
 
 def test_generated_check_cells_never_count() -> None:
-    check = "from course.notebooks.nbgrader import points\npoints('springs', 'force')"
+    check = "from course.notebooks.magic import points\npoints('springs', 'force')"
     source = source_of(
         code("def force(k, x):\n    return points(k, x)", SOLUTION), code("%course_check springs", CHECK),
         code(check, CHECK),

@@ -3,23 +3,17 @@
 from __future__ import annotations
 
 import datetime as dt
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
+from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import PlatformIdentity, Result, SubmittedAt
-from course.grading.results.effective import Results
-from course.grading.results.late import Policy, lateness, parse_policy, read_policy, unknown_names
-from course.grading.results.override import lift, override
+from course.grading.results.effective import Results, lift, override
+from course.grading.results.late import Policy, lateness, parse_policy, read_policy, read_times, unknown_names
 from course.grading.results.roster import read_roster
-from course.grading.results.times import read_times
 from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, key, make_book
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from course.grading.gradebook.book import Gradebook
 
 DUE = dt.datetime(2026, 12, 1, 23, 59, tzinfo=dt.UTC)
 HOUR, DAY = 3600.0, 86_400.0

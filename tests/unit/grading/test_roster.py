@@ -5,27 +5,23 @@ from __future__ import annotations
 import csv
 import unicodedata
 from functools import partial
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
+from course.catalog.load import Catalog
 from course.errors import MissingCapabilityError, UsageError
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.records import Override, PlatformIdentity
 from course.grading.intake.downloads import class_list
-from course.grading.results.override import override
+from course.grading.results.effective import override
 from course.grading.results.roster import Person, read_roster
-from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions, grade_class
-from course.scoring.judging.terms import Terms
+from course.grading.running.snapshot import open_results
+from course.scoring.judging.session import Terms
 from tests.unit.grading.pages import faults, read_page
 from tests.unit.grading.running.test_run import right
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from course.catalog.load import Catalog
 
 pytestmark = pytest.mark.usefixtures("unpacked")
 

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import random
 import shutil
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from course.errors import IntegrityError, NotFoundError, UsageError
-from course.grading.gradebook.backup import back_up, backups
 from course.grading.gradebook.book import Gradebook
-from course.grading.gradebook.pages import raw_rows
 from course.grading.gradebook.records import (
     Decision,
     GradedExercise,
@@ -20,11 +18,8 @@ from course.grading.gradebook.records import (
     Result,
     SubmittedAt,
 )
-from course.grading.gradebook.salvage import salvage
+from course.grading.gradebook.salvage import back_up, backups, raw_rows, salvage
 from tests.unit.grading.test_gradebook import key, verdict
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 STUDENTS = 24
 PAGE = 4096

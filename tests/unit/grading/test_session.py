@@ -4,28 +4,22 @@ from __future__ import annotations
 
 import os
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import msgspec
 import numpy as np
 import pytest
 
+from course.catalog.load import Catalog
+from course.catalog.models import Exercise
 from course.errors import ContentError, MissingCapabilityError
 from course.grading import kit
+from course.scoring.checks.collected import Check
 from course.scoring.graders import grader_version
-from course.scoring.judging.session import GradingSession, Submission
-from course.scoring.judging.terms import Terms
+from course.scoring.judging.session import GradingSession, Submission, Terms
+from course.scoring.remote import RemoteSubmission
 from course.scoring.values import plain
-from course.scoring.verdict import Status, finite, for_student
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from course.catalog.load import Catalog
-    from course.catalog.models import Exercise
-    from course.scoring.checks.collected import Check
-    from course.scoring.remote import RemoteSubmission
-    from course.scoring.verdict import CheckResult, Verdict
+from course.scoring.verdict import CheckResult, Status, Verdict, finite, for_student
 
 
 def grade(session: GradingSession, source: bytes | str) -> Verdict:

@@ -9,28 +9,37 @@ import shutil
 import signal
 import subprocess
 import sys
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from course.catalog.load import Catalog
 from course.grading.gradebook.records import Result
 from course.grading.results.effective import Results
-from course.grading.similar.compare import Document, Group, Pair, _groups, _pairs, compare
-from course.grading.similar.fingerprints import LONGEST, RUN, WINDOW, Parser, Prints, fingerprints
-from course.grading.similar.page import _blocks, page
+from course.grading.similar import (
+    LONGEST,
+    RUN,
+    WINDOW,
+    Document,
+    Group,
+    Pair,
+    Parser,
+    Prints,
+    _blocks,
+    _groups,
+    _pairs,
+    compare,
+    fingerprints,
+    page,
+)
 from course.scoring.judging.session import Submission
 from tests.growth import LIMIT, growth
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.made import RIGHT, key, make_book
 from tests.unit.grading.pages import Page, faults
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
-
-    from course.catalog.load import Catalog
 
 ORIGINAL = '''
 def doublings(x, n):
@@ -141,7 +150,7 @@ def test_what_the_course_itself_has_is_recognised(tmp_path: Path, catalog: Catal
 
 def test_every_module_that_a_student_has_is_the_courses_own(tmp_path: Path, catalog: Catalog) -> None:
     """Another exercise's checks and what the lessons run, not only this exercise's files and the textbook."""
-    import course.simulations.experiments.chaos as shown
+    import course.simulations.experiments.dynamics as shown
 
     assert shown.__file__ is not None
     other = MINI / "exercises" / "halving" / "checks.py"
@@ -150,7 +159,10 @@ def test_every_module_that_a_student_has_is_the_courses_own(tmp_path: Path, cata
     with class_of(tmp_path, {**sources, "cy": OTHER}) as book:
         found = compare(Results(book), catalog, (), at_least=0.6)
     pairs = {(pair.first.label, pair.second.label) for pair in found.pairs}
-    assert pairs == {("ada", "course.simulations.experiments.chaos"), ("bob", "exercises/halving/checks.py")}
+    assert pairs == {
+        ("ada", "course.simulations.experiments.dynamics"),
+        ("bob", "exercises/halving/checks.py"),
+    }
 
 
 def test_many_copies_of_one_file_are_all_found_without_all_pairs(tmp_path: Path, catalog: Catalog) -> None:

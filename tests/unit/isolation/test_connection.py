@@ -9,8 +9,9 @@ import contextlib
 import socket
 import struct
 import threading
+from collections.abc import Callable
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,9 +23,6 @@ from course.isolation.levels import Exit, ticking
 from course.isolation.session import Connection, LoadRefusedError, RemoteFunction
 from course.physics import systems
 from course.printable import printable
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 _SOURCE = b"def f(x):\n    return x\n\nlast = 1\n"
 

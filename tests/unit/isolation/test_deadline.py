@@ -6,21 +6,20 @@ import contextlib
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
 from time import monotonic, sleep
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
 from course.isolation.deadline import Deadline, ProcessClock
 from course.isolation.failures import StudentFailure
+from course.isolation.levels import Level
 from course.isolation.session import Connection
-from course.isolation.spawn import Level, spawner
+from course.isolation.spawn import spawner
 from tests.contracts.boundary.levels import require_level
 from tests.contracts.boundary.users import LEVELS_AND_USERS, run_as
 from tests.turns import soak_unless
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="asks Linux for CPU times")
 

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
-from course.isolation import keeping
-from course.isolation.keeping import kept_sandboxes, open_sandbox
-from course.isolation.spawn import Level
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
+from course.isolation import probe
+from course.isolation.levels import Level
+from course.isolation.probe import kept_sandboxes, open_sandbox
 
 
 def sandbox_for(*arguments: Any, **limits: Any) -> Any:
@@ -45,8 +43,8 @@ def opened(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Sandbox]]:
         made.append(Sandbox())
         return made[-1]
 
-    monkeypatch.setattr(keeping, "open_spawner", new)
-    monkeypatch.setattr(keeping, "proves_itself", lambda one: one.proves)
+    monkeypatch.setattr(probe, "open_spawner", new)
+    monkeypatch.setattr(probe, "proves_itself", lambda one: one.proves)
     yield made
     assert {one.told.count("closed") for one in made} == {1}
 

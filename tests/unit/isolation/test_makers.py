@@ -15,8 +15,7 @@ from course.catalog.locate import ENVIRONMENT_VARIABLE, content
 from course.isolation import spawn
 from course.isolation.inside.worker import Worker
 from course.isolation.levels import TICK_S, Exit, Level
-from course.scoring.judging.session import GradingSession, Submission
-from course.scoring.judging.terms import Terms
+from course.scoring.judging.session import GradingSession, Submission, Terms
 
 MINI_COURSE = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
 

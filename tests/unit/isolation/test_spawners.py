@@ -9,25 +9,22 @@ import shutil
 import signal
 import sys
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 from time import monotonic, sleep
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
-from course.isolation import forked, launch, probe
+from course.isolation import launch, probe, spawn
 from course.isolation.deadline import Deadline
 from course.isolation.failures import IsolationError, StudentFailure
+from course.isolation.launch import View, view_for
 from course.isolation.levels import LIMITS, Level
-from course.isolation.plain import ProcessSpawner
 from course.isolation.probe import open_spawner
 from course.isolation.session import Connection
-from course.isolation.spawn import spawner
-from course.isolation.view import View, view_for
+from course.isolation.spawn import ProcessSpawner, spawner
 from tests.contracts.boundary.levels import require_level
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 linux_only = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
 
@@ -349,7 +346,7 @@ def test_no_level_between_the_bounds_is_an_error_that_gives_every_cause(
 
 def test_folders_above_a_path_are_named_outermost_first_and_none_inside_a_bind() -> None:
     paths = (Path("/opt/a/lib"), Path("/opt/a/lib/python"), Path("/usr/lib"))
-    assert forked._folders_above(paths) == [Path("/opt"), Path("/opt/a"), Path("/usr")]
+    assert spawn._folders_above(paths) == [Path("/opt"), Path("/opt/a"), Path("/usr")]
 
 
 def test_levels_are_ordered_from_weak_to_strong() -> None:

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import course
-from course.isolation import view
+from course.isolation import launch
 from course.isolation.failures import IsolationError
-from course.isolation.view import View, view_for
+from course.isolation.launch import View, view_for
 
 
 def _view(readable: list[Path], masked: list[Path]) -> View:
@@ -79,7 +79,7 @@ def test_a_course_chosen_by_the_environment_is_masked(tree: Path, monkeypatch: p
     chosen = tree / "usr" / "lib" / "course-content"
     (chosen / "solutions").mkdir(parents=True)
     monkeypatch.setenv("COURSE_CONTENT", str(chosen))
-    monkeypatch.setattr(view, "_SYSTEM", (str(tree / "usr" / "lib"),))
+    monkeypatch.setattr(launch, "_SYSTEM", (str(tree / "usr" / "lib"),))
     found = view_for(("numpy",))
     assert chosen in found.masked
     assert not _readable_under(found.expanded(), chosen / "solutions")

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
 
 from course.isolation.deadline import Deadline
 from course.isolation.failures import StudentFailure
-from course.isolation.levels import MAX_OUTPUT, Level, Limits
+from course.isolation.levels import MAX_OUTPUT, Level, Limits, Spawner
 from course.isolation.probe import open_spawner
 from course.isolation.session import Connection, LoadRefusedError
-from course.isolation.spawn import Spawner, spawner
+from course.isolation.spawn import spawner
 from course.physics import systems
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 
 @pytest.fixture(scope="module")

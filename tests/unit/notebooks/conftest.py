@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import pytest
 
 from course.catalog.load import Catalog
-from course.notebooks.building.cells import document
-from course.notebooks.building.exercises import exercise_cells
-
-if TYPE_CHECKING:
-    from course.catalog.models import Exercise
+from course.catalog.models import Exercise
+from course.notebooks.build import exercise_cells
+from course.notebooks.cells import document
 
 
 @pytest.fixture(scope="session")

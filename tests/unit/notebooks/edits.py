@@ -8,10 +8,8 @@ import itertools
 import json
 import random
 import re
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from collections.abc import Callable
+from typing import Any
 
 __all__ = ["edited"]
 

@@ -10,27 +10,22 @@ import subprocess
 import sys
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 import nbformat
 import pytest
 
 from course.catalog import blocks as b
+from course.catalog.load import Catalog
+from course.catalog.models import Exercise
 from course.errors import NotFoundError
 from course.handed_in.notebook import notebook_source
-from course.notebooks.build import Generated, generate
-from course.notebooks.building.exercises import exercise_cells
-from course.notebooks.building.layout import FOLDERS, WORKSPACE
-from course.notebooks.building.lowering import Lowering
-from course.notebooks.building.stub import pieces
+from course.notebooks.build import FOLDERS, WORKSPACE, Generated, exercise_cells, generate, pieces
+from course.notebooks.lowering import Lowering
 from course.notebooks.quiz import SEED, marked
-from course.notebooks.widgets.style import style
+from course.notebooks.widgets import style
 from course.quizzing.bank import Bank
-
-if TYPE_CHECKING:
-    from course.catalog.load import Catalog
-    from course.catalog.models import Exercise
 
 ROOT = Path(__file__).resolve().parents[3]
 

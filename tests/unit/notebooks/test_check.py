@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
@@ -15,13 +16,10 @@ from course.cli.frame import app
 from course.errors import NotFoundError, UsageError
 from course.handed_in.notebook import notebook_source
 from course.notebooks import check, magic
-from course.notebooks.building.exercises import exercise_notebook
-from course.notebooks.typed import module_of
+from course.notebooks.build import exercise_notebook
+from course.notebooks.checking import module_of
 from course.progress.history import fingerprint
 from course.progress.workspace import Workspace
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 pytestmark = pytest.mark.usefixtures("sandboxes")
 

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
 
+from course.catalog.load import Catalog
+from course.catalog.models import Exercise
 from course.handed_in.notebook import RECORD, NotebookSource, notebook_source, opened
 from course.physics import systems
 from course.scoring.judging.session import GradingSession, Submission
 from tests.unit.notebooks.edits import edited
-
-if TYPE_CHECKING:
-    from course.catalog.load import Catalog
-    from course.catalog.models import Exercise
 
 STEPS = ("explicit_euler_step", "semi_implicit_euler_step", "velocity_verlet_step", "rk4_step")
 

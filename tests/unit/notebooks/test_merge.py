@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import copy
 import json
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 
+from course.catalog.models import Exercise
 from course.handed_in.notebook import notebook_source
-from course.notebooks.building.cells import Cell, code, document, markdown
-from course.notebooks.building.exercises import exercise_cells
-from course.notebooks.building.merge import CannotMergeError, is_untouched, merged
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from course.catalog.models import Exercise
+from course.notebooks.build import exercise_cells
+from course.notebooks.cells import Cell, code, document, markdown
+from course.notebooks.merge import CannotMergeError, is_untouched, merged
 
 STUB = "def force(k, x):\n    raise NotImplementedError"
 MINE = "def force(k, x):\n    return -k * x"

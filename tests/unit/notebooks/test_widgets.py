@@ -15,12 +15,9 @@ pytest.importorskip("anywidget")
 from course.catalog.load import Catalog
 from course.cli.frame import app
 from course.errors import NotFoundError
-from course.notebooks.predicting import LessonPrediction, predict
+from course.notebooks.predicting import LessonPrediction, OngoingAttempt, predict, take
 from course.notebooks.sandbox import Film, play
-from course.notebooks.taking import OngoingAttempt, take
-from course.notebooks.widgets.predict import Predict
-from course.notebooks.widgets.sandbox import Sandbox
-from course.notebooks.widgets.take import QuizForm
+from course.notebooks.widgets import Predict, QuizForm, Sandbox
 from course.progress.workspace import Workspace
 from course.reading.parts import read_script
 from course.reading.record import InProgress

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -14,11 +13,9 @@ from course.physics.body import Body
 from course.physics.contact import Plane, Surface
 from course.physics.integrators import STEPPERS
 from course.physics.invariants import convergence_order
+from course.physics.recording import Recording
 from course.physics.simulator import Simulator, step_count
 from course.physics.state import RigidBodyState
-
-if TYPE_CHECKING:
-    from course.physics.recording import Recording
 
 few = settings(max_examples=15)
 

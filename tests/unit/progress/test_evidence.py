@@ -6,8 +6,7 @@ from datetime import UTC, datetime
 
 import pytest
 
-from course.progress.evidence import numbers_of
-from course.progress.history import check_data, history_of
+from course.progress.history import check_data, history_of, numbers_of
 from course.progress.store import Event
 from course.scoring.verdict import CheckResult, Status, Verdict, Visibility
 

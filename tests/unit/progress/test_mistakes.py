@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from datetime import UTC, datetime, timedelta
 
-from course.progress.history import check_data
-from course.progress.mistakes import mistakes_of
+from course.progress.history import check_data, mistakes_of
 from course.progress.store import Event
 from course.scoring.verdict import CheckResult, Verdict
 

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from course.catalog.questions import read_questions
 from course.quizzing.bank import Bank
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 SUM = """\
 format_version = 1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -11,11 +11,7 @@ from hypothesis import strategies as st
 
 from course.errors import UsageError
 from course.quizzing.answers import read_answers
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from course.quizzing.bank import Bank
+from course.quizzing.bank import Bank
 
 SEED = 2026  # sums: next, none, total, less; colours: grey, black, white, dark (snow)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -12,10 +12,7 @@ from hypothesis import strategies as st
 from course.catalog.questions import read_questions
 from course.errors import ContentError, NotFoundError
 from course.quizzing.bank import Bank, draw, same_answer, significant
-from course.quizzing.proof import faults_in
-
-if TYPE_CHECKING:
-    from pathlib import Path
+from course.quizzing.desk import faults_in
 
 
 def test_a_seed_means_the_same_questions_for_ever(bank: Bank) -> None:

@@ -8,7 +8,7 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from course.authoring.quiz_audit import audit_quiz
+from course.authoring.audit import audit_quiz
 from course.authoring.report import Findings
 from course.catalog.load import Catalog
 from course.physics import integrators as steppers

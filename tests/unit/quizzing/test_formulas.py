@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from course.catalog.formulas import Formula, FormulaError
+from course.catalog.questions import Formula, FormulaError
 
 
 def test_a_formula_is_computed_from_names() -> None:

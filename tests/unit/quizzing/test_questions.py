@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from course.catalog.questions import read_questions
 from course.errors import ContentError
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def broken(quiz: Path, old: str, new: str, name: str = "sums.toml") -> ContentError:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from course.authoring.quiz_audit import audit_quiz
+from course.authoring.audit import audit_quiz
 from course.errors import UngradableError
 from course.grading.quiz import grade_quiz, quiz_version, record_sha256, score_record
 from course.progress import quiz as progress
@@ -17,9 +18,6 @@ from course.progress.store import Store
 from course.quizzing.attempt import mark
 from course.quizzing.bank import MAX_SEED, Bank
 from course.scoring.verdict import Status
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def attempt(bank: Bank, seed: int, wrong: int = 0) -> dict[str, Any]:

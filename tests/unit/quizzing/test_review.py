@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from course.quizzing.review import GAP_DAYS, ROUNDS, due_after, schedule
+from course.quizzing.desk import GAP_DAYS, ROUNDS, due_after, schedule
 
 START = datetime(2026, 3, 2, 12).astimezone()
 

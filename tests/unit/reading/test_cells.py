@@ -8,9 +8,8 @@ import time
 import pytest
 
 from course.catalog.load import Catalog
-from course.reading.cells import STOPPED, CellRunner
+from course.reading.cells import STOPPED, CellRunner, textbook_for
 from course.reading.parts import Cell, read_script
-from course.reading.textbook import textbook_for
 
 
 def cell(order: int, source: str, *, hidden: bool = False) -> Cell:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime
 
 from course.progress.store import Event
-from course.reading.predictions import predictions_of, tally
+from course.reading.record import predictions_of, tally
 
 AT = datetime(2026, 11, 22, 10, tzinfo=UTC)
 

@@ -10,10 +10,8 @@ import pytest
 from course.catalog.load import Catalog
 from course.catalog.models import Lesson
 from course.progress.store import Store
-from course.reading.finding import find
-from course.reading.pages import Layout, Place, Row
 from course.reading.parts import read_script
-from course.reading.record import InProgress, Writer
+from course.reading.record import InProgress, Layout, Place, Row, Writer, find
 
 TEXT = """+++
 ignored = true

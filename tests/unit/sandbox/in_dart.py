@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 from xml.etree import ElementTree as ET
 
 import dartpy as dart
 import numpy as np
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 
 def ends(world_file: bytes, seconds: float) -> dict[str, np.ndarray]:

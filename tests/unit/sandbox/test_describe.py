@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from course.sandbox.runs.describe import account, sentence, sentences
-from course.sandbox.runs.running import run
+from course.sandbox.runs.running import account, run, sentence, sentences
 from course.sandbox.scene.loading import choose
-from course.sandbox.world.events import Event, Receipt
+from course.sandbox.world.accounts import Event, Receipt
 
 
 def contact(**more) -> Event:

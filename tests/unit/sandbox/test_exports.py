@@ -12,10 +12,9 @@ from xml.etree import ElementTree as ET
 import pytest
 
 from course.errors import UsageError
-from course.sandbox.exports.mjcf import damping_ratio, mjcf
-from course.sandbox.exports.sdf import VERSION, sdf, start_script
+from course.sandbox.exports.formats import VERSION, damping_ratio, mjcf, sdf, start_script
 from course.sandbox.scene.loading import choose, scene_ids
-from course.sandbox.scene.parts import layout
+from course.sandbox.scene.model import layout
 from course.sandbox.world.world import World
 
 EXPORTED = sorted(set(scene_ids()) - {"galton-board", "robot-boxes"})

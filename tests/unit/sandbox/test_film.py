@@ -8,8 +8,8 @@ import pytest
 from PIL import Image
 
 from course.errors import MissingCapabilityError, UsageError
-from course.sandbox.runs import film as films
-from course.sandbox.runs.film import Film
+from course.sandbox.runs import recording as films
+from course.sandbox.runs.recording import Film
 from course.sandbox.scene.loading import choose
 from course.sandbox.world.world import World
 

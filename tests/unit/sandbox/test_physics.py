@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from course.sandbox.runs.describe import sentence
+from course.sandbox.runs.running import sentence
 from course.sandbox.scene.loading import choose
 from course.sandbox.world.world import World
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import random
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -14,9 +14,6 @@ from course.errors import CourseError, IntegrityError, NotFoundError, UsageError
 from course.sandbox.runs.recording import Recording, read, replay
 from course.sandbox.scene.loading import choose
 from course.sandbox.world.world import World
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 NAMES = ["box-stack", "billiards-break", "robot-boxes", "restitution-row", "newtons-cradle", "head-on"]
 

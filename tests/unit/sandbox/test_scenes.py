@@ -11,7 +11,7 @@ import course
 from course.errors import ContentError, NotFoundError, UsageError
 from course.sandbox.runs.running import run
 from course.sandbox.scene.loading import FOLDER, choose, read_scene, scene_ids, scenes
-from course.sandbox.scene.parts import layout
+from course.sandbox.scene.model import layout
 
 GOOD = """format_version = 1
 id = "mine"

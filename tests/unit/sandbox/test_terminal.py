@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING, Any
+from collections.abc import Awaitable, Callable
+from typing import Any
 
 import pytest
+from textual.pilot import Pilot
 from textual.widgets import Input
 
 from course.errors import MissingCapabilityError
@@ -14,11 +16,6 @@ from course.sandbox.views.terminal import view as terminal
 from course.sandbox.views.terminal.app import SandboxApp
 from course.sandbox.views.terminal.asking import PageOverlay, QuestionOverlay
 from course.sandbox.world.world import World
-
-if TYPE_CHECKING:
-    from collections.abc import Awaitable, Callable
-
-    from textual.pilot import Pilot
 
 
 class Played(SandboxApp):

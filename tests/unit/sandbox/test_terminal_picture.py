@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from course.sandbox.scene.loading import choose
-from course.sandbox.views.terminal.camera import Camera
-from course.sandbox.views.terminal.picture import PAPER, Overlay, Picture, Spark, label_of
+from course.sandbox.views.terminal.picture import PAPER, Camera, Overlay, Picture, Spark, label_of
 from course.sandbox.world.world import World
 
 SIZE = (52, 19)

@@ -6,18 +6,15 @@ import contextlib
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 
 from course.sandbox.scene.loading import choose, scene_ids
-from course.sandbox.views.terminal.camera import Camera
+from course.sandbox.views.terminal.picture import Camera
 from course.sandbox.world.world import World
 from tests.terminals import Terminal, needs_tmux
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 pytestmark = [pytest.mark.soak, needs_tmux]
 

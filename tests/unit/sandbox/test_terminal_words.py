@@ -6,8 +6,17 @@ import numpy as np
 import pytest
 
 from course.sandbox.scene.loading import choose
-from course.sandbox.views.terminal.pace import Pacer, speed_in_words
-from course.sandbox.views.terminal.words import bars, clean, head, keys_line, panel, shown, wrapped
+from course.sandbox.views.terminal.words import (
+    Pacer,
+    bars,
+    clean,
+    head,
+    keys_line,
+    panel,
+    shown,
+    speed_in_words,
+    wrapped,
+)
 from course.sandbox.world.world import World
 
 

@@ -24,9 +24,8 @@ from course.errors import MissingCapabilityError, UsageError
 from course.extras import PARTS, require
 from course.sandbox.scene.loading import choose
 from course.sandbox.views.web import view as web
-from course.sandbox.views.web.app import STATIC, Guard, make_app
-from course.sandbox.views.web.messages import FRAME_HEAD
-from course.sandbox.views.web.session import MAX_PAGES, Session
+from course.sandbox.views.web.session import FRAME_HEAD, MAX_PAGES, Session
+from course.sandbox.views.web.view import STATIC, Guard, make_app
 from course.sandbox.world.world import World
 
 PORT, TOKEN = 8765, "a-token-of-some-length"

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from course.errors import MissingCapabilityError
 from course.sandbox.runs.running import run
 from course.sandbox.scene.loading import choose
-from course.sandbox.scene.settings import SETTINGS
+from course.sandbox.scene.rules import SETTINGS
 from course.sandbox.views.web.session import Page, Session
 from course.sandbox.world.world import World
 

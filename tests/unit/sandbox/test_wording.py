@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from course.errors import ContentError, UsageError
 from course.sandbox.runs.running import run
-from course.sandbox.scene.expression import evaluate
-from course.sandbox.scene.loading import FOLDER, choose, question, read_scene, scene_ids, values_of
-from course.sandbox.scene.predicting import compare, guess_of
-from course.sandbox.scene.settings import SETTINGS
-from course.sandbox.scene.wording import fill, used
+from course.sandbox.scene.expression import evaluate, fill, used
+from course.sandbox.scene.loading import (
+    FOLDER,
+    choose,
+    compare,
+    guess_of,
+    question,
+    read_scene,
+    scene_ids,
+    values_of,
+)
+from course.sandbox.scene.rules import SETTINGS
 from course.sandbox.views.story import Experiment
 from course.sandbox.world.world import World
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 #: Numbers that stand in a question or its explanation although nothing but an edit of the file changes them.
 FIXED = {

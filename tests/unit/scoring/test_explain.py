@@ -3,23 +3,31 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from time import process_time
 from types import SimpleNamespace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
 from course.errors import ContentError
-from course.scoring.explain.calls import calls_between, may_remember
-from course.scoring.explain.fingerprint import SAME, fingerprint, read
-from course.scoring.explain.story import Failure, common, story_of
-from course.scoring.explain.table import Row, Table, is_right, matching, read_table, write_table
-from course.scoring.explain.words import Diagnosis, Entry, Words, read_words
+from course.scoring.explain.fingerprint import SAME, calls_between, fingerprint, may_remember, read
+from course.scoring.explain.story import (
+    Diagnosis,
+    Entry,
+    Failure,
+    Row,
+    Table,
+    Words,
+    common,
+    is_right,
+    matching,
+    read_table,
+    read_words,
+    story_of,
+    write_table,
+)
 from course.scoring.judging.explaining import answer_numbers, tasks_asked
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 WORDS = Words(
     {

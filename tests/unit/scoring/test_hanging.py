@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 import signal
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 
-from course.authoring.exercises.slow import due
+from course.authoring.exercises.files import due
 from course.catalog import models
 from course.catalog.load import Catalog
 from course.isolation.deadline import Deadline
 from course.isolation.failures import StudentFailure
+from course.isolation.levels import Level
 from course.isolation.session import Connection
-from course.isolation.spawn import Level, spawner
-from course.scoring.judging.session import GradingSession, Submission
-from course.scoring.judging.terms import Terms
+from course.isolation.spawn import spawner
+from course.scoring.judging.session import GradingSession, Submission, Terms
+from course.scoring.verdict import CheckResult
 from tests.contracts.boundary.levels import require_level
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from course.scoring.verdict import CheckResult
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGUSR1"), reason="a worker cannot be asked here")
 

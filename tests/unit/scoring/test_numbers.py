@@ -6,7 +6,9 @@ import math
 
 import pytest
 
-from course.scoring.numbers import (
+from course.scoring.verdict import (
+    CheckResult,
+    Tolerance,
     format_input,
     format_pair,
     format_points,
@@ -15,7 +17,6 @@ from course.scoring.numbers import (
     in_points,
     numbers_of,
 )
-from course.scoring.verdict import CheckResult, Tolerance
 
 
 @pytest.mark.parametrize(

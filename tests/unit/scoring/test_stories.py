@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
-from course.authoring.exercises.variants import solution_path
+from course.authoring.exercises.grading import solution_path
 from course.catalog.load import Catalog
-from course.scoring.judging.session import GradingSession, Submission
-from course.scoring.judging.terms import Terms
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from course.scoring.verdict import CheckResult
+from course.scoring.judging.session import GradingSession, Submission, Terms
+from course.scoring.verdict import CheckResult
 
 CATALOG = Catalog()
 EXERCISE = CATALOG.exercise("collisions")

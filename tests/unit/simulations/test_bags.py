@@ -7,16 +7,13 @@ import sqlite3
 import struct
 import subprocess
 import sys
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
 from course.simulations import bags, streams
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 needs_rosbags = pytest.mark.skipif(not bags.available(), reason="the extra ros is not installed")
 

@@ -8,9 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from course.simulations.base import Result, Row
+from course.simulations.base import Result, Row, run
 from course.simulations.registry import CHAPTER, SIMULATIONS, get
-from course.simulations.settings import run
 
 LONGEST_HEADLINE = 74
 

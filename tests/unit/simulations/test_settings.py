@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from course.errors import NotFoundError, UsageError
+from course.simulations.base import describe, parse, run
 from course.simulations.registry import SIMULATIONS, get
-from course.simulations.settings import describe, parse, run
 
 
 def refused(name: str, *pairs: str) -> UsageError:

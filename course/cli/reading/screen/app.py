@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from textual.binding import Binding
 
 from course.cli.reading.screen.doing import TasksApp
+from course.cli.reading.screen.printing import Item
 from course.cli.reading.screen.telling import contents, keys_table
 from course.full_screen import TextOverlay
-from course.reading.pages import Place
-from course.reading.record import InProgress
-
-if TYPE_CHECKING:
-    from course.cli.reading.screen.printing import Item
-    from course.reading.parts import Question
-    from course.reading.record import Judgement
+from course.reading.parts import Question
+from course.reading.record import InProgress, Judgement, Place
 
 __all__ = ["ReaderApp"]
 
@@ -251,7 +247,7 @@ class ReaderApp(TasksApp):
         self.push_screen(Find(self._search), self._chosen)
 
     def _search(self, wanted: str) -> list[tuple[str, str]]:
-        from course.reading.finding import find
+        from course.reading.record import find
 
         self._wanted = wanted
         here = self.progress.script.lesson.id
@@ -266,7 +262,7 @@ class ReaderApp(TasksApp):
 
     def action_next_hit(self) -> None:
         """The next place in this lesson where the words are."""
-        from course.reading.finding import find
+        from course.reading.record import find
 
         if not self._wanted:
             self.say("/ searches for words.")

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import contextlib
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from textual.binding import Binding
 
+from course.cli.reading.screen.printing import Item
 from course.cli.reading.screen.running import Bench
 from course.cli.reading.screen.showing import LessonApp
 from course.errors import CourseError
-from course.reading.pages import Place
-
-if TYPE_CHECKING:
-    from course.cli.reading.screen.printing import Item
-    from course.reading.cells import CellOutput
-    from course.reading.parts import Cell
-    from course.reading.record import InProgress
+from course.reading.cells import CellOutput
+from course.reading.parts import Cell
+from course.reading.record import InProgress, Place
 
 __all__ = ["CellsApp"]
 

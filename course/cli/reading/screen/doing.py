@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import contextlib
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from textual.binding import Binding
 
 from course.catalog.blocks import Task
 from course.cli.reading.screen.cells import CellsApp
+from course.cli.reading.screen.printing import Item
 from course.cli.reading.screen.tasks import hint_is_named, line_to_mend
 from course.errors import CourseError
-
-if TYPE_CHECKING:
-    from course.cli.reading.screen.printing import Item
 
 __all__ = ["TasksApp"]
 

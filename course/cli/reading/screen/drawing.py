@@ -13,16 +13,14 @@ import subprocess
 import sys
 import tempfile
 import threading
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rich.text import Text
 
 from course.browser import opened
-from course.cli.frame.terminal.half_blocks import half_blocks
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from course.cli.frame.pictures import half_blocks
 
 __all__ = ["Drawer"]
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 from rich.cells import cell_len, set_cell_size
 from rich.segment import Segment
@@ -11,13 +11,8 @@ from rich.style import Style
 from textual.strip import Strip
 from textual.widget import Widget
 
-from course.reading.pages import Layout, Row
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from course.cli.reading.screen.printing import BlockRows, Item, ScreenPrinter
-    from course.reading.pages import Place
+from course.cli.reading.screen.printing import BlockRows, Item, ScreenPrinter
+from course.reading.record import Layout, Place, Row
 
 __all__ = ["Book", "Page", "Words"]
 

@@ -8,21 +8,18 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import msgspec
 
+from course.catalog.load import Catalog
+from course.catalog.models import Exercise
 from course.errors import CourseError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from concurrent.futures import ThreadPoolExecutor
-    from pathlib import Path
-
-    from course.catalog.load import Catalog
-    from course.catalog.models import Exercise
-    from course.progress.workspace import Workspace
+from course.progress.workspace import Workspace
 
 __all__ = ["Practice", "Standing"]
 

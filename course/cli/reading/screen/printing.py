@@ -6,31 +6,24 @@ here, and links can be followed.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
-from rich.console import Group
+from rich.console import Console, Group, RenderableType
 from rich.segment import Segment
 from rich.style import Style
 from rich.table import Table
 from rich.text import Text
 
 from course.catalog import blocks as b
-from course.cli.frame.terminal.code import Code
-from course.cli.reading.fancy import KEEP, FancyPrinter
-from course.cli.reading.screen.practice import Standing
+from course.catalog.load import Catalog
+from course.cli.frame.pictures import Code
+from course.cli.reading.lesson import KEEP, FancyPrinter
+from course.cli.reading.screen.practice import Practice, Standing
 from course.cli.reading.screen.tasks import standing_lines
-from course.reading.pages import Row
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from rich.console import Console, RenderableType
-
-    from course.catalog.load import Catalog
-    from course.cli.reading.screen.practice import Practice
-    from course.reading.parts import Cell, Question
-    from course.reading.record import InProgress
+from course.reading.parts import Cell, Question
+from course.reading.record import InProgress, Row
 
 __all__ = ["BlockRows", "Item", "ScreenPrinter"]
 

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import signal
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from time import perf_counter
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from concurrent.futures import ThreadPoolExecutor
-
-    from course.reading.cells import CellOutput, CellRunner
-    from course.reading.parts import Cell
-    from course.reading.record import InProgress
+from course.reading.cells import CellOutput, CellRunner
+from course.reading.parts import Cell
+from course.reading.record import InProgress
 
 __all__ = ["Bench"]
 

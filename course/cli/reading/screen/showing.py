@@ -3,36 +3,29 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Callable, Mapping, Sequence
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from rich.console import Console
+from rich.text import Text
+from textual.app import ComposeResult
 from textual.binding import Binding
+from textual.events import Resize
+from textual.geometry import Size
+from textual.timer import Timer
 
 from course.catalog import blocks as b
+from course.catalog.load import Catalog
+from course.cli.reading.screen.drawing import Drawer
 from course.cli.reading.screen.page import Book, Page, Words
 from course.cli.reading.screen.practice import Practice
-from course.cli.reading.screen.printing import ScreenPrinter
+from course.cli.reading.screen.printing import Item, ScreenPrinter
 from course.cli.reading.screen.telling import fitting, position, shortened, tail
 from course.full_screen import FullScreenApp
-from course.reading.pages import Place
-from course.reading.parts import read_script
-from course.reading.record import InProgress
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from rich.text import Text
-    from textual.app import ComposeResult
-    from textual.events import Resize
-    from textual.geometry import Size
-    from textual.timer import Timer
-
-    from course.catalog.load import Catalog
-    from course.cli.reading.screen.drawing import Drawer
-    from course.cli.reading.screen.printing import Item
-    from course.progress.store import Event
-    from course.reading.parts import Script
+from course.progress.store import Event
+from course.reading.parts import Script, read_script
+from course.reading.record import InProgress, Place
 
 __all__ = ["LessonApp"]
 

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from typing import Any
 
 import msgspec
 from rich.text import Text
 
-from course.cli.frame.terminal.console import STATUS_STYLE
-from course.cli.work.verdict.annotations import line_of, unread_line
-from course.scoring.numbers import numbers_of
-from course.scoring.verdict import CheckResult
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from course.cli.reading.screen.practice import Standing
+from course.cli.frame.console import STATUS_STYLE
+from course.cli.reading.screen.practice import Standing
+from course.cli.work.verdict import line_of, unread_line
+from course.scoring.verdict import CheckResult, numbers_of
 
 __all__ = ["hint_is_named", "line_to_mend", "standing_lines"]
 

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
 from course.catalog.blocks import Task
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from course.catalog.load import Catalog
-    from course.cli.reading.screen.practice import Practice
-    from course.cli.reading.screen.printing import BlockRows, ScreenPrinter
-    from course.reading.pages import Layout
-    from course.reading.parts import Script
-    from course.reading.record import InProgress
+from course.catalog.load import Catalog
+from course.cli.reading.screen.practice import Practice
+from course.cli.reading.screen.printing import BlockRows, ScreenPrinter
+from course.reading.parts import Script
+from course.reading.record import InProgress, Layout
 
 __all__ = ["contents", "fitting", "keys_table", "position", "shortened", "tail"]
 

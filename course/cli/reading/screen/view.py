@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import os
 import sys
-from typing import TYPE_CHECKING
 
+from course.catalog.load import Catalog
 from course.errors import CourseError
-from course.reading.record import Writer
-
-if TYPE_CHECKING:
-    from course.catalog.load import Catalog
-    from course.progress.store import Event
-    from course.progress.workspace import Workspace
-    from course.reading.record import InProgress
+from course.progress.store import Event
+from course.progress.workspace import Workspace
+from course.reading.record import InProgress, Writer
 
 __all__ = ["is_possible", "read"]
 

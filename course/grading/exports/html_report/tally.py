@@ -5,17 +5,13 @@ from __future__ import annotations
 import heapq
 from array import array
 from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
+from course.grading.gradebook.records import GradedExercise
 from course.grading.quiz import EXERCISE_ID as QUIZ
+from course.grading.results.effective import Effective
 from course.scoring.verdict import CheckResult, Status, Visibility
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
-
-    from course.grading.gradebook.records import GradedExercise
-    from course.grading.results.effective import Effective
 
 __all__ = ["CappedList", "CheckTally", "DiagnosisTally", "ExerciseTally", "Tally", "TaskTally"]
 

@@ -5,22 +5,15 @@ from __future__ import annotations
 import contextlib
 import itertools
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
 from urllib.parse import quote
 
-from course.grading.exports.cells import csv_bytes, number, write_bytes
-from course.grading.exports.html_report.class_page import class_page
-from course.grading.exports.html_report.index_page import index_page, index_row
-from course.grading.exports.html_report.rendering import MARKER
-from course.grading.exports.html_report.student_page import student_page
+from course.grading.exports.grades import csv_bytes, number, write_bytes
+from course.grading.exports.html_report.pages import MARKER, class_page, index_page, index_row, student_page
 from course.grading.exports.html_report.tally import Tally
 from course.grading.exports.selection import ExportOptions, Written, select
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-    from pathlib import Path
-
-    from course.grading.results.effective import Effective, Results
+from course.grading.results.effective import Effective, Results
 
 __all__ = ["write_html", "write_pages"]
 

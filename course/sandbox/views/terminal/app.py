@@ -2,34 +2,37 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
+from textual.app import ComposeResult
 from textual.binding import Binding
 from textual.containers import Horizontal
 from textual.geometry import Size
 
 from course.errors import UsageError
 from course.full_screen import FullScreenApp
-from course.sandbox.scene.settings import SETTINGS
+from course.sandbox.scene.loading import Chosen, Comparison
+from course.sandbox.scene.rules import SETTINGS
 from course.sandbox.views.story import Experiment, Narrator
-from course.sandbox.views.terminal.asking import PageOverlay, QuestionOverlay, comparison, help_pages
-from course.sandbox.views.terminal.hand import Pointer
-from course.sandbox.views.terminal.lines import Canvas, Lines
-from course.sandbox.views.terminal.pace import Pacer, speed_in_words
-from course.sandbox.views.terminal.stage import Stage
-from course.sandbox.views.terminal.words import KEYS, clean, head, keys_line, panel, setting, wrapped
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from textual.app import ComposeResult
-
-    from course.sandbox.scene.loading import Chosen
-    from course.sandbox.scene.predicting import Comparison
-    from course.sandbox.views.terminal.asking import Page
-    from course.sandbox.views.terminal.words import Line
-    from course.sandbox.world.world import World
+from course.sandbox.views.terminal.asking import Page, PageOverlay, QuestionOverlay, comparison, help_pages
+from course.sandbox.views.terminal.hand import Pointer, Stage
+from course.sandbox.views.terminal.words import (
+    KEYS,
+    Canvas,
+    Line,
+    Lines,
+    Pacer,
+    clean,
+    head,
+    keys_line,
+    panel,
+    setting,
+    speed_in_words,
+    wrapped,
+)
+from course.sandbox.world.world import World
 
 __all__ = ["SandboxApp"]
 

@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 from rich.table import Table
 from rich.text import Text
+from textual.app import ComposeResult
 from textual.binding import Binding
 from textual.containers import VerticalScroll
 from textual.widgets import Input, Static
 
 from course.full_screen import Field, Overlay, TextOverlay
 from course.printable import command
-from course.sandbox.scene.predicting import NO_GUESS, guess_of
+from course.sandbox.scene.loading import NO_GUESS, guess_of
+from course.sandbox.scene.model import Scene
 from course.sandbox.views.terminal.words import KEYS, clean
-
-if TYPE_CHECKING:
-    from textual.app import ComposeResult
-
-    from course.sandbox.scene.model import Scene
 
 __all__ = ["Page", "PageOverlay", "QuestionOverlay", "comparison", "help_pages"]
 

@@ -4,18 +4,13 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from course.errors import MissingCapabilityError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from course.sandbox.scene.loading import Chosen
-    from course.sandbox.scene.model import Scene
-    from course.sandbox.scene.predicting import Comparison
-    from course.sandbox.world.world import World
+from course.sandbox.scene.loading import Chosen, Comparison
+from course.sandbox.scene.model import Scene
+from course.sandbox.world.world import World
 
 __all__ = ["play"]
 

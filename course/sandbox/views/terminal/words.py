@@ -4,19 +4,82 @@ from __future__ import annotations
 
 import math
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
+from time import perf_counter
 
 import numpy as np
+from rich.color import Color
+from rich.segment import Segment
+from rich.style import Style
+from textual.geometry import Region
+from textual.strip import Strip
+from textual.widget import Widget
 
-from course.sandbox.scene.settings import SETTINGS
-from course.sandbox.views.terminal.pace import speed_in_words
+from course.sandbox.scene.rules import SETTINGS
+from course.sandbox.views.terminal.picture import Cells
+from course.sandbox.world.accounts import History, Receipt
+from course.sandbox.world.engine import Floats
+from course.sandbox.world.world import World
 
-if TYPE_CHECKING:
-    from course.sandbox.world.events import Receipt
-    from course.sandbox.world.ledger import Floats
-    from course.sandbox.world.world import History, World
+# ---
+# How much of a frame goes into stepping: keys and picture stay quick, however slow the physics is.
 
-__all__ = ["KEYS", "Line", "bars", "clean", "head", "keys_line", "panel", "shown", "wrapped"]
+
+#: Steps between looks at the clock.
+_CHUNK = 16
+#: The longest lag behind real time that is caught up, in s.
+_GAP = 0.1
+
+
+class Pacer:
+    """Lets a world follow real time as far as it can.
+
+    Args:
+        budget: of real time for the steps of one frame, in s.
+        clock: real time, in s.
+
+    Attributes:
+        pace: the share of the requested steps that was made lately, 0 to 1.
+    """
+
+    def __init__(self, world: World, budget: float, clock: Callable[[], float] = perf_counter) -> None:
+        self.pace = 1.0
+        self._world, self._budget, self._clock = world, budget, clock
+
+    def advance(self, dt: float, until: float | None = None) -> None:
+        """Step for this long, but no longer than a frame has time for.
+
+        Args:
+            dt: real time since the last frame, in s.
+            until: simulated time at which to stop, in s.
+        """
+        world = self._world
+        dt = min(dt, _GAP)
+        if world.paused or dt <= 0.0:
+            return
+        if until is not None:
+            dt = min(dt, max(0.0, until - world.t) / world.speed)
+        parts = max(1, math.ceil(dt * world.speed / world.settings["step"] / _CHUNK))
+        began, made = self._clock(), parts
+        for number in range(1, parts + 1):
+            world.advance(dt / parts)
+            if self._clock() - began > self._budget:
+                made = number
+                break
+        self.pace += 0.1 * (made / parts - self.pace)
+
+
+def speed_in_words(speed: float) -> str:
+    """How fast time passes: "real time", "2 x real time", "1/8 of real time"."""
+    if abs(speed - 1.0) < 1e-9:
+        return "real time"
+    if speed > 1.0:
+        return f"{speed:.3g} x real time"
+    return f"1/{1 / speed:.0f} of real time"
+
+
+# ---
+
 
 #: A line is pieces of text, each with a style: "", "bold", "dim" or a colour as #rrggbb.
 Line = tuple[tuple[str, str], ...]
@@ -222,3 +285,121 @@ def setting(key: str, value: float) -> str:
         return f"{1000 * value:.3g} ms"
     unit = SETTINGS[key].unit
     return f"{value:.4g}" if unit == "1" else f"{value:.4g} {unit}"
+
+
+# ---
+# Two widgets that send only what changed: a canvas of cells and a few lines of text.
+
+
+#: Pairs of colours kept; a scene has some hundreds.
+_STYLES = 8192
+_PLAIN = Style()
+
+
+class Canvas(Widget):
+    """Shows cells; sends the rows that differ from the last frame, from first to last difference."""
+
+    DEFAULT_CSS = "Canvas { width: 1fr; height: 1fr; }"
+    ALLOW_SELECT = False
+
+    def __init__(self, *, colour: bool, id: str | None = None) -> None:  # noqa: A002
+        super().__init__(id=id)
+        #: Rows sent so far; read by measurements.
+        self.sent = 0
+        self._colour = colour
+        self._cells: Cells | None = None
+        self._styles: dict[int, Style] = {}
+
+    def show(self, cells: Cells) -> None:
+        """The next frame."""
+        changes = cells.changes(self._cells)
+        self._cells = cells
+        if changes:
+            self.sent += len(changes)
+            self.refresh(*(Region(first, row, count, 1) for row, first, count in changes))
+
+    @property
+    def cells(self) -> Cells | None:
+        """The frame that is shown."""
+        return self._cells
+
+    def render_line(self, y: int) -> Strip:
+        """One row of cells."""
+        cells, width = self._cells, self.size.width
+        if cells is None or y >= cells.char.shape[0]:
+            return Strip.blank(width)
+        text = cells.char[y].astype("<u4").tobytes().decode("utf-32-le")
+        if not self._colour:
+            return Strip([Segment(text, _PLAIN)], len(text)).adjust_cell_length(width, _PLAIN)
+        keys = cells.ink[y].astype(np.int64) << 24 | cells.paper[y]
+        starts = [0, *(np.flatnonzero(np.diff(keys)) + 1).tolist(), len(text)]
+        pairs = keys[starts[:-1]].tolist()
+        strip = Strip(
+            [
+                Segment(text[a:b], self._style(key))
+                for a, b, key in zip(starts[:-1], starts[1:], pairs, strict=True)
+            ],
+            len(text),
+        )
+        return strip if len(text) == width else strip.adjust_cell_length(width, _PLAIN)
+
+    def _style(self, key: int) -> Style:
+        style = self._styles.get(key)
+        if style is None:
+            if len(self._styles) >= _STYLES:
+                self._styles.clear()
+            style = self._styles[key] = Style(color=_colour(key >> 24), bgcolor=_colour(key & 0xFFFFFF))
+        return style
+
+
+class Lines(Widget):
+    """Shows lines of text, and sends those that changed.
+
+    Args:
+        ink, paper: colours; None for the terminal's own.
+    """
+
+    ALLOW_SELECT = False
+
+    def __init__(self, ink: str | None, paper: str | None, id: str | None = None) -> None:  # noqa: A002
+        super().__init__(id=id)
+        self._base = Style(color=ink, bgcolor=paper)
+        self._in_colour = ink is not None
+        self._lines: list[Line] = []
+        self._named: dict[str, Style] = {}
+
+    @property
+    def text(self) -> str:
+        """The lines, without styles."""
+        return "\n".join("".join(piece for piece, _ in line) for line in self._lines)
+
+    def show(self, lines: Sequence[Line]) -> None:
+        """Replace the lines."""
+        before, self._lines = self._lines, list(lines)
+        width, height = self.size
+        most = max(len(before), len(self._lines))
+        changed = [
+            row
+            for row in range(min(most, height))
+            if row >= len(before) or row >= len(self._lines) or before[row] != self._lines[row]
+        ]
+        if changed:
+            self.refresh(*(Region(0, row, width, 1) for row in changed))
+
+    def render_line(self, y: int) -> Strip:
+        """One line."""
+        width = self.size.width
+        if y >= len(self._lines):
+            return Strip.blank(width, self._base)
+        pieces = [Segment(text, self._style(style)) for text, style in self._lines[y] if text]
+        return Strip(pieces).adjust_cell_length(width, self._base)
+
+    def _style(self, name: str) -> Style:
+        if name not in self._named:
+            own = "" if name.startswith("#") and not self._in_colour else name
+            self._named[name] = self._base + Style.parse(own)
+        return self._named[name]
+
+
+def _colour(value: int) -> Color:
+    return Color.from_rgb(value >> 16, value >> 8 & 255, value & 255)

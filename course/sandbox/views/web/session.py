@@ -8,25 +8,234 @@ from __future__ import annotations
 import asyncio
 import math
 from collections import deque
+from collections.abc import Callable
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Annotated, Any, Literal
 
 import msgspec
+import numpy as np
+from msgspec import Meta
 
 from course.errors import CourseError, UsageError
-from course.sandbox.scene.settings import SETTINGS
+from course.sandbox.scene.loading import Chosen, Comparison
+from course.sandbox.scene.model import Part
+from course.sandbox.scene.rules import SETTINGS
 from course.sandbox.views.story import Experiment, Narrator
-from course.sandbox.views.web import messages
+from course.sandbox.world.engine import Floats
+from course.sandbox.world.world import World
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+# ---
+# Messages between a page and the world: small JSON requests one way, float32 frames the other.
 
-    from course.sandbox.scene.loading import Chosen
-    from course.sandbox.scene.parts import Part
-    from course.sandbox.scene.predicting import Comparison
-    from course.sandbox.world.world import World
 
-__all__ = ["MAX_PAGES", "Page", "Session"]
+#: Bytes of one request. The longest that a page ever sends has about 150.
+MAX_REQUEST = 1024
+#: Requests a second that a page may keep up, and how many at once: a page sends one pointer position for
+#: each of its frames, and slider moves on top.
+_RATE, _BURST = 200.0, 300.0
+#: float32 numbers in front of the bodies; ``world.js`` reads them by the same names.
+FRAME_HEAD = 21
+#: Columns of the past: time, five energies, two momenta.
+_PAST = ("t", "kinetic", "potential", "contacts", "friction", "rods", "residual", "px", "py")
+
+Number = float
+Name = Annotated[str, Meta(max_length=60)]
+
+
+class _Request(msgspec.Struct, forbid_unknown_fields=True, tag_field="do"):
+    """One request of a page; ``do`` says which."""
+
+
+class Grab(_Request, tag="grab"):
+    """Take what is nearest."""
+
+    x: Number
+    y: Number
+    reach: Number = 0.3
+
+
+class Drag(_Request, tag="drag"):
+    """Move the hand."""
+
+    x: Number
+    y: Number
+
+
+class Release(_Request, tag="release"):
+    """Let go."""
+
+
+class Throw(_Request, tag="throw"):
+    """Give what is nearest a velocity."""
+
+    x: Number
+    y: Number
+    vx: Number
+    vy: Number
+    reach: Number = 0.3
+
+
+class Push(_Request, tag="push"):
+    """Change the velocity of a body that is known by name, as keys do."""
+
+    name: Name
+    vx: Number
+    vy: Number
+
+
+class Spawn(_Request, tag="spawn"):
+    """A new body."""
+
+    shape: Literal["circle", "box"]
+    x: Number
+    y: Number
+
+
+class Set(_Request, tag="set"):
+    """Change a setting."""
+
+    key: Annotated[str, Meta(max_length=40)]
+    value: Number
+
+
+class Pause(_Request, tag="pause"):
+    """Stop time, or let it run."""
+
+    on: bool
+
+
+class Speed(_Request, tag="speed"):
+    """How many simulated seconds a second."""
+
+    value: Annotated[float, Meta(ge=0.001, le=10.0)]
+
+
+class Step(_Request, tag="step"):
+    """Single steps."""
+
+    count: Annotated[int, Meta(ge=1, le=50)] = 1
+
+
+class Reset(_Request, tag="reset"):
+    """The scene from its start."""
+
+
+class Guess(_Request, tag="guess"):
+    """The answer to the scene's question; None to go without."""
+
+    value: Number | None
+
+
+class Watch(_Request, tag="watch"):
+    """Whether the page is visible. The world waits while it is hidden."""
+
+    on: bool
+
+
+Request = Grab | Drag | Release | Throw | Push | Spawn | Set | Pause | Speed | Step | Reset | Guess | Watch
+
+_DECODER: msgspec.json.Decoder[Request] = msgspec.json.Decoder(Request)
+
+
+def read(data: str | bytes) -> Request:
+    """One request.
+
+    Raises:
+        ValueError: it is too long or is none; the text says why, in one line.
+    """
+    raw = data.encode("utf-8", "replace") if isinstance(data, str) else data
+    if len(raw) > MAX_REQUEST:
+        raise ValueError(f"A request has at most {MAX_REQUEST} bytes.")
+    try:
+        return _DECODER.decode(raw)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise ValueError(f"Not understood: {str(error)[:160]}") from error
+
+
+class Allowance:
+    """How many requests a page may still send: a bucket that fills with time.
+
+    Args:
+        now: in s, on any clock.
+
+    Attributes:
+        refused: requests that were too many since the page was last well within its rate.
+    """
+
+    def __init__(self, now: float) -> None:
+        self.refused = 0
+        self._left, self._then = _BURST, now
+
+    def take(self, now: float) -> bool:
+        """True if one more is within the rate."""
+        self._left = min(_BURST, self._left + (now - self._then) * _RATE)
+        self._then = now
+        if self._left < 1.0:
+            self.refused += 1
+            return False
+        self._left -= 1.0
+        # A page that was over its rate is told so again only after it has been quiet for a while.
+        self.refused = 0 if self._left > _BURST / 2 else self.refused
+        return True
+
+
+def frame(world: World, pace: float) -> bytes:
+    """Where everything is, as little-endian float32.
+
+    ``FRAME_HEAD`` numbers: 1, version, t, pace, bodies, joints, whether a body is held, the four of
+    the hand, kinetic, potential, contacts, friction, rods, residual, momentum x and y, angular momentum, row
+    of the body that is held or -1. Then x, y, angle, vx, vy of each body, then the two ends of each joint.
+
+    Args:
+        pace: simulated seconds per second that were really made, as a part of those asked for.
+    """
+    shot, receipt, (px, py, angular) = world.snapshot(), world.receipt, world.momentum
+    held = world.held
+    row = next((i for i, part in enumerate(world.parts) if part.name == held), -1) if held else -1
+    head = [
+        *(1.0, shot.version, shot.t, pace, len(shot.x), len(shot.joints), shot.hand is not None),
+        *(shot.hand or (0.0, 0.0, 0.0, 0.0)),
+        *(
+            receipt.kinetic,
+            receipt.potential,
+            receipt.contacts,
+            receipt.friction,
+            receipt.rods,
+            receipt.residual,
+        ),
+        *(px, py, angular, row),
+    ]
+    bodies = np.stack([shot.x, shot.y, shot.angle, shot.vx, shot.vy], axis=1)
+    return _packed(np.concatenate([np.array(head), bodies.ravel(), shot.joints.ravel()]))
+
+
+def past(world: World, most: int = 900) -> bytes:
+    """The past, for plots in a page that opened later.
+
+    3, version, rows, columns, and then rows of t, kinetic, potential, contacts, friction, rods, residual, px
+    and py.
+
+    Args:
+        most: rows at most; the last ones, about 60 of them a second.
+    """
+    history = world.history
+    table = np.stack([getattr(history, name)[-most:] for name in _PAST], axis=1)
+    return _packed(np.concatenate([np.array([3.0, world.version, *table.shape]), table.ravel()]))
+
+
+def _packed(numbers: Floats) -> bytes:
+    # What does not fit a float32 becomes infinite, which a page does not draw.
+    with np.errstate(over="ignore"):
+        return numbers.astype("<f4").tobytes()
+
+
+def finite(value: float | None) -> float | None:
+    """A number as JSON can carry it."""
+    return value if value is not None and math.isfinite(value) else None
+
+
+# ---
+
 
 #: Pages that may look at one world at a time.
 MAX_PAGES = 8
@@ -58,7 +267,7 @@ class Page:
     def __init__(self, now: float) -> None:
         self.watching = True
         self.lost = False
-        self.allowance = messages.Allowance(now)
+        self.allowance = Allowance(now)
         self._texts: deque[str | bytes] = deque()
         self._frame: bytes | None = None
         self._news = asyncio.Event()
@@ -144,8 +353,8 @@ class Session:
         page = Page(self._clock())
         page.tell(_json(self._introduction()))
         page.tell(_json(self._bodies()))
-        page.tell(messages.past(self.world))
-        page.show(messages.frame(self.world, self._pace))
+        page.tell(past(self.world))
+        page.show(frame(self.world, self._pace))
         self.pages.append(page)
         self._wake.set()
         return page
@@ -165,7 +374,7 @@ class Session:
                 page.let_go()
             return
         try:
-            self._do(page, messages.read(data))
+            self._do(page, read(data))
         except UsageError as error:
             page.tell(_json({"type": "error", "message": error.message}))
         except ValueError as error:
@@ -180,49 +389,49 @@ class Session:
 
     # -- requests --------------------------------------------------------------------------------
 
-    def _do(self, page: Page, request: messages.Request) -> None:  # noqa: C901, PLR0912 - one line for each
+    def _do(self, page: Page, request: Request) -> None:  # noqa: C901, PLR0912 - one line for each
         world = self.world
         match request:
-            case messages.Grab(x, y, reach):
+            case Grab(x, y, reach):
                 if world.grab(x, y, reach):
                     self._holder = page
                     self.experiment.touch()
-            case messages.Drag(x, y):
+            case Drag(x, y):
                 if self._holder is page:
                     world.drag(x, y)
-            case messages.Release():
+            case Release():
                 self._drop(page)
-            case messages.Throw(x, y, vx, vy, reach):
+            case Throw(x, y, vx, vy, reach):
                 if world.throw(x, y, vx, vy, reach):
                     self.experiment.touch()
-            case messages.Push(name, vx, vy):
+            case Push(name, vx, vy):
                 self._push(name, vx, vy)
-            case messages.Spawn(shape, x, y):
+            case Spawn(shape, x, y):
                 world.spawn(shape, x, y)
                 self.experiment.touch()
-            case messages.Set(key, value):
+            case Set(key, value):
                 world.set(key, value)
                 self.experiment.changed()
-            case messages.Pause(on):
+            case Pause(on):
                 world.paused = on
                 if not on:
                     self.experiment.answer(None)
-            case messages.Speed(value):
+            case Speed(value):
                 world.speed = value
-            case messages.Step(count):
+            case Step(count):
                 self.experiment.answer(None)
                 world.paused = True
                 world.step(count)
-            case messages.Reset():
+            case Reset():
                 self._holder = None
                 world.reset()
                 self.experiment.again()
                 self._narrator.forget()
                 self._tell({"type": "events", "events": [], "anew": True})
-            case messages.Guess(value):
+            case Guess(value):
                 self.experiment.answer(value)
                 world.paused = False
-            case messages.Watch(on):
+            case Watch(on):
                 page.watching = on
 
     def _push(self, name: str, vx: float, vy: float) -> None:
@@ -283,7 +492,7 @@ class Session:
         seen = (self.world.ticks, self.world.version, self.world.held)
         if seen != self._seen or not self._moves():
             self._seen = seen
-            data = messages.frame(self.world, self._pace)
+            data = frame(self.world, self._pace)
             for page in self.pages:
                 if page.watching:
                     page.show(data)
@@ -364,7 +573,7 @@ def _body(part: Part) -> dict[str, Any]:
         "radius": part.radius,
         "fixed": part.fixed,
         "colour": part.colour,
-        "mass": messages.finite(part.mass),
+        "mass": finite(part.mass),
         "track": part.wheels.track if part.wheels else 0.0,
     }
 

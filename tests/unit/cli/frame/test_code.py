@@ -9,7 +9,7 @@ import pytest
 from rich.console import Console
 
 from course.catalog.load import Catalog
-from course.cli.frame.terminal.code import Code
+from course.cli.frame.pictures import Code
 from course.reading.parts import read_script
 
 MARK = "↳ "

@@ -10,8 +10,8 @@ import re
 import msgspec
 import pytest
 
+from course.cli.frame.console import Console, Settings
 from course.cli.frame.replies import Bare, encode
-from course.cli.frame.terminal.console import Console, Settings
 from course.errors import InternalError
 
 

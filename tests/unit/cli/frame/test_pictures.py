@@ -12,9 +12,9 @@ from matplotlib.image import imread
 from PIL import Image
 from rich.console import Console
 
-from course.cli.frame.terminal.pictures import InlinePicture, picture
-from course.figures.drawing.described import Panel, Plot, Series
-from course.figures.drawing.plots import draw, render
+from course.cli.frame.pictures import InlinePicture, picture
+from course.figures.described import Panel, Plot, Series
+from course.figures.plots import draw, render
 from course.figures.terminal import in_cells
 
 PLOT = Plot(

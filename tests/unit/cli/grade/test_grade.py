@@ -7,16 +7,13 @@ import io
 import json
 import os
 import re
+import subprocess
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 
 from tests.command_line import as_process, in_process
-
-if TYPE_CHECKING:
-    import subprocess
 
 ROOT = Path(__file__).resolve().parents[4]
 MINI = ROOT / "tests" / "fixtures" / "mini_course"

@@ -15,7 +15,7 @@ import pytest
 
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import PlatformIdentity, SubmittedAt
-from course.grading.similar.compare import Similar
+from course.grading.similar import Similar
 from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, make_book
 from tests.unit.grading.test_results import DAY, DUE, POLICY
 
@@ -219,7 +219,7 @@ def test_a_share_is_a_part_of_one_or_a_percentage(course, out: Path, monkeypatch
         asked.append(at_least)
         return Similar()
 
-    monkeypatch.setattr("course.grading.similar.compare.compare", compare)
+    monkeypatch.setattr("course.grading.similar.compare", compare)
     assert course("grade", "similar", "out", "--share", text).code == 0
     assert course("grade", "similar", "out").code == 0
     assert asked == [0.25, 0.6]

@@ -5,22 +5,18 @@ from __future__ import annotations
 import dataclasses
 import json
 import shutil
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator
+from pathlib import Path
 
 import pytest
 
+from course.grading.intake.students import Entry
 from course.grading.running import batch
+from course.grading.running.batch import Graded
+from course.scoring.judging.session import Terms
 from course.scoring.verdict import Problem
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.running.test_run import right
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from pathlib import Path
-
-    from course.grading.intake.students import Entry
-    from course.grading.running.batch import Graded
-    from course.scoring.judging.terms import Terms
 
 pytestmark = pytest.mark.usefixtures("unpacked")
 

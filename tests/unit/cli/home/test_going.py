@@ -7,12 +7,11 @@ import re
 import pytest
 
 from course.catalog.load import Catalog
-from course.cli.frame.terminal.console import Console
+from course.cli.frame.console import Console
 from course.progress.quiz import DONE, START
 from course.progress.store import Store
-from course.reading.pages import Place
 from course.reading.parts import read_script
-from course.reading.record import InProgress
+from course.reading.record import InProgress, Place
 
 
 def record(workspace):

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
 from course.progress.store import Store
 from tests.unit.cli.notebook.test_notebook import GOOD, OTHER, write_into
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 WRONG = "def double(x):\n    'wrong'"
 
@@ -173,8 +170,8 @@ def test_a_report_on_a_notebook_names_its_cells(course, notebook):
 def test_a_watch_of_a_notebook_grades_each_save(course, notebook):
     import io
 
+    from course.cli.frame.console import Console, Settings
     from course.cli.frame.here import Here
-    from course.cli.frame.terminal.console import Console, Settings
     from course.cli.work import checking
     from course.cli.work.watching import Watcher
 

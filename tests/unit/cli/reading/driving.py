@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING, Any
+from collections.abc import Awaitable, Callable
+from typing import Any
 
 import pytest
 
-if TYPE_CHECKING:
-    from collections.abc import Awaitable, Callable
-
-    from course.cli.reading.screen.app import ReaderApp
+from course.cli.reading.screen.app import ReaderApp
 
 __all__ = ["drive", "screen", "settled"]
 

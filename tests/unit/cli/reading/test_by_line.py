@@ -4,24 +4,21 @@ from __future__ import annotations
 
 import io
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 
 from course.catalog.blocks import Prediction
 from course.catalog.load import Catalog
+from course.cli.frame.console import Console, Settings, install
 from course.cli.frame.here import Here
-from course.cli.frame.terminal.console import Console, Settings, install
 from course.cli.reading.by_line import LineReader
 from course.cli.reading.lesson import Reader, paginate
 from course.progress.workspace import Workspace
 from course.reading.parts import read_script
-from course.reading.predictions import predictions_of
+from course.reading.record import predictions_of
 from tests.unit.cli.reading.test_each_fact_once import repeated
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from pathlib import Path
 
 pytestmark = pytest.mark.usefixtures("sandboxes")
 CATALOG = Catalog()

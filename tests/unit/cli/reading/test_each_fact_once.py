@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
-from course.authoring.exercises.variants import solution_path
+from course.authoring.exercises.grading import solution_path
 from course.catalog.load import Catalog
 from course.cli.frame import app
-from course.cli.reading.plain import sentences
-
-if TYPE_CHECKING:
-    from pathlib import Path
+from course.cli.reading.lesson import sentences
 
 CATALOG = Catalog()
 EXERCISE = "integrators"

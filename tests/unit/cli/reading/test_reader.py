@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 import time
-from typing import TYPE_CHECKING, Any
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
 
 import pytest
 from textual.events import Key
@@ -12,19 +14,14 @@ from textual.events import Key
 from course.catalog import blocks as b
 from course.catalog.load import Catalog
 from course.cli.frame.app import run
-from course.cli.frame.terminal.half_blocks import half_blocks
+from course.cli.frame.pictures import half_blocks
 from course.cli.reading.screen import showing
 from course.cli.reading.screen.app import ReaderApp
 from course.cli.reading.screen.asking import Edit
 from course.cli.reading.screen.telling import fitting
 from course.progress.store import Store
-from course.reading.pages import Place
-from course.reading.record import Writer
+from course.reading.record import Place, Writer
 from tests.unit.cli.reading.driving import drive, screen, settled
-
-if TYPE_CHECKING:
-    from collections.abc import Awaitable, Callable
-    from pathlib import Path
 
 LESSON = "numerical-integration"
 #: What the issue of this reader asks for: a key's screen at 200 columns, in s of this process's own time.

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Awaitable, Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import pytest
 
-from course.authoring.exercises.variants import solution_path
+from course.authoring.exercises.grading import solution_path
 from course.catalog import blocks as b
 from course.catalog.load import Catalog
 from course.cli.reading.screen.app import ReaderApp
@@ -16,10 +18,6 @@ from course.cli.reading.screen.practice import Practice
 from course.progress.workspace import Workspace
 from course.reading.parts import read_script, words_of
 from tests.unit.cli.reading.driving import drive, screen
-
-if TYPE_CHECKING:
-    from collections.abc import Awaitable, Callable
-    from pathlib import Path
 
 LESSON, TASK = "numerical-integration", "which-line-first"
 CHECK = {

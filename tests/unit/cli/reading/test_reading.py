@@ -12,10 +12,8 @@ import pytest
 from rich.console import Console
 
 from course.catalog.models import Lesson
-from course.cli.frame.terminal.pictures import InlinePicture, protocol_of
-from course.cli.reading.lesson import Reader
-from course.cli.reading.plain import sentences
-from course.cli.reading.words import value_spoken, value_text
+from course.cli.frame.pictures import InlinePicture, protocol_of
+from course.cli.reading.lesson import Reader, sentences, value_spoken, value_text
 from course.errors import NotFoundError
 
 TEXT = """+++

@@ -11,7 +11,7 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from course.cli.work.verdict.annotations import github
+from course.cli.work.verdict import github
 from tests.command_line import in_process
 
 #: What the runner puts back, in its order: ActionCommand.cs of actions/runner.
@@ -145,7 +145,7 @@ def test_an_unknown_format_is_refused(course, write):
 def test_a_line_in_a_notebook_is_that_of_its_text():
     from types import SimpleNamespace
 
-    from course.cli.work.verdict.annotations import _line_of
+    from course.cli.work.verdict import _line_of
 
     text = '{"cells": [\n  {"source": [\n    "def double(x):\\n",\n    "    return x\\n"\n]}]}'
     work = SimpleNamespace(notebook=object(), data=text.encode())
@@ -156,7 +156,7 @@ def test_a_line_in_a_notebook_is_that_of_its_text():
 def test_a_line_that_raised_goes_before_the_one_that_defines():
     from types import SimpleNamespace
 
-    from course.cli.work.verdict.annotations import _line_of
+    from course.cli.work.verdict import _line_of
 
     work = SimpleNamespace(notebook=None, data=b"def double(x):\n    return x / 0\n")
     trace = "doubling.py:2 in double\n    return x / 0"
@@ -254,8 +254,8 @@ def test_a_workflow_obeys_nothing_that_strangers_say(monkeypatch):
     """A folder called as a command was one in every list of a run, and so was what an exception said."""
     import io
 
-    from course.cli.frame.terminal.console import Console
-    from course.cli.work.verdict.annotations import _shown
+    from course.cli.frame.console import Console
+    from course.cli.work.verdict import _shown
 
     monkeypatch.setenv("GITHUB_ACTIONS", "true")
     out, err = io.StringIO(), io.StringIO()

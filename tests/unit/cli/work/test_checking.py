@@ -214,7 +214,7 @@ def curved(monkeypatch):
     import numpy as np
 
     from course.cli.work import checking
-    from course.figures.drawing.curves import compared
+    from course.figures.described import compared
     from tests.unit.cli.conftest import FakeSession
 
     def opened(exercise, catalog):

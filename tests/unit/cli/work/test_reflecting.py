@@ -7,7 +7,7 @@ import io
 import pytest
 
 from course.catalog.load import Catalog
-from course.cli.frame.terminal.console import Console
+from course.cli.frame.console import Console
 from course.errors import ContentError
 
 RUBRIC = """format_version = 1

@@ -8,8 +8,8 @@ import msgspec
 import pytest
 
 from course.catalog.models import Exercise, Task
-from course.cli.frame.terminal.console import Console, Settings
-from course.cli.work.verdict.screen import show_verdict
+from course.cli.frame.console import Console, Settings
+from course.cli.work.verdict import show_verdict
 from course.scoring.verdict import CheckResult, Divergence, Status, Tolerance, Verdict
 
 EXERCISE = Exercise(

@@ -11,8 +11,8 @@ import time
 
 import pytest
 
+from course.cli.frame.console import Console, Settings
 from course.cli.frame.here import Here
-from course.cli.frame.terminal.console import Console, Settings
 from course.cli.work import checking
 from course.cli.work.watching import Watcher, saves
 

@@ -10,35 +10,29 @@ import shutil
 import signal
 import threading
 import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 import pytest
 
 from course.catalog.load import Catalog
 from course.catalog.locate import content
+from course.catalog.models import Exercise
 from course.cli.frame.app import run as course
 from course.errors import CourseError, MissingCapabilityError, UsageError
 from course.grading.cluster import connect, coordinator, worker
-from course.grading.cluster.coordinator import LostBatch, grade_on
-from course.grading.cluster.messages import FORMAT, Answers, Batch, decode_answers, decode_batch, encode
+from course.grading.cluster.coordinator import LostBatch, Outcome, grade_on
+from course.grading.cluster.worker import FORMAT, Answers, Batch, decode_answers, decode_batch, encode
 from course.grading.intake.students import Entry
 from course.grading.running.batch import MAX_TRIES, Graded
 from course.grading.running.grader import Answer, Job
 from course.grading.running.snapshot import Snapshot, in_use
 from course.scoring.graders import grader_version
-from course.scoring.judging.session import Submission
-from course.scoring.judging.terms import Terms
+from course.scoring.judging.session import GradingSession, Submission, Terms
 from course.scoring.verdict import Problem, Verdict
 from tests.unit.grading.made import stillborn
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from course.catalog.models import Exercise
-    from course.grading.cluster.coordinator import Outcome
-    from course.scoring.judging.session import GradingSession
 
 ROOT = Path(__file__).resolve().parents[4]
 MINI = ROOT / "tests" / "fixtures" / "mini_course"

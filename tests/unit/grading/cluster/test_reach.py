@@ -10,18 +10,15 @@ import socket
 import ssl
 import threading
 import time
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
 
 import pytest
 
+from course.catalog.load import Catalog
 from course.errors import CourseError, MissingCapabilityError, UsageError
 from course.grading.running.run import RunOptions, grade_class
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
-
-    from course.catalog.load import Catalog
 
 pytestmark = pytest.mark.skipif(
     any(importlib.util.find_spec(name) is None for name in ("distributed", "cryptography")),
@@ -114,7 +111,7 @@ def said(address: str, settings: dict[str, Any]) -> CourseError | None:
     import dask
     import distributed  # noqa: F401 - brings its settings
 
-    from course.grading.cluster.reach import check_scheduler
+    from course.grading.cluster.connect import check_scheduler
 
     none = {"ca-file": None, "client.cert": None, "client.key": None}
     known = {f"distributed.comm.tls.{name}": value for name, value in (none | settings).items()}

@@ -10,7 +10,9 @@ import subprocess
 import sys
 import tomllib
 import zipfile
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
 
 import pytest
 from packaging.requirements import Requirement
@@ -21,17 +23,12 @@ from course.errors import MissingCapabilityError
 from course.grading.container import inside
 from course.grading.container.inside import SNAPSHOT, main
 from course.grading.container.packing import write_autograder
+from course.grading.intake.students import Entry
+from course.grading.running.batch import Graded
 from course.grading.running.snapshot import Snapshot
+from course.scoring.judging.session import Terms
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.running.test_run import right
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
-
-    from course.grading.intake.students import Entry
-    from course.grading.running.batch import Graded
-    from course.scoring.judging.terms import Terms
 
 WRONG = b"\ndef double(x):\n    print('I saw', x)\n    return x\n"
 #: A hidden input of the miniature course, and what is expected of it.

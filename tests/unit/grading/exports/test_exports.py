@@ -7,16 +7,16 @@ import dataclasses
 import io
 import json
 import re
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from xml.etree import ElementTree as ET
 
 import pytest
 
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
-from course.grading.exports.cells import is_safe, number, replacing, safe_cell
 from course.grading.exports.formats import FORMATS, export
-from course.grading.exports.lines import utc
+from course.grading.exports.grades import is_safe, number, replacing, safe_cell, utc
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.records import Override, SubmittedAt
 from course.grading.results.effective import Results
@@ -33,9 +33,6 @@ from tests.unit.grading.made import (
     read_by_php,
 )
 from tests.unit.grading.test_results import POLICY
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 JUNIT = Path(__file__).resolve().parents[3] / "fixtures" / "junit.xsd"
 OPTIONS = ExportOptions(("doubling",), {"doubling": "4711"}, zeros=True)

@@ -9,22 +9,21 @@ import hashlib
 import io
 import re
 import statistics
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import msgspec
 import pytest
 
 from course.errors import MissingCapabilityError
-from course.grading.exports.cells import number, safe_cell
 from course.grading.exports.formats import export
-from course.grading.exports.html_report.class_page import class_page
-from course.grading.exports.html_report.rendering import macro, script
+from course.grading.exports.grades import number, safe_cell
+from course.grading.exports.html_report.pages import class_page, macro, script
 from course.grading.exports.html_report.tally import MOST_ROWS, Tally
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.records import Key, Override, Result, SubmittedAt
 from course.grading.results.effective import Results
 from course.grading.results.roster import Person, Roster
-from course.grading.running.folder import open_results
+from course.grading.running.snapshot import open_results
 from course.printable import one_line
 from course.scoring.verdict import Problem, Status
 from tests.unit.grading.made import (
@@ -43,9 +42,6 @@ from tests.unit.grading.made import (
 )
 from tests.unit.grading.pages import faults, read_page
 from tests.unit.grading.test_results import DUE, POLICY
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 #: Names of one sort more: longer than any screen, from right to left, markup inside markup.
 NAMES = [*HOSTILE, "y" * 10_000, "אבי כהן", "محمد", "</bdi><b>bold", '" onclick="x', "&lt;", "`code`"]

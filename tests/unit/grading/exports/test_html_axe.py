@@ -5,7 +5,9 @@ from __future__ import annotations
 import importlib.util
 import shutil
 import subprocess
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -13,16 +15,11 @@ from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.records import GradedExercise, Override, Result, SubmittedAt
 from course.grading.results.effective import Results
-from course.grading.similar.compare import Document, Group, Pair, Similar
-from course.grading.similar.fingerprints import Parser
-from course.grading.similar.page import page as similar_page
+from course.grading.similar import Document, Group, Pair, Parser, Similar
+from course.grading.similar import page as similar_page
 from tests.unit.grading.exports.test_html import quiz_verdict
 from tests.unit.grading.made import BROKEN, HALF, HOSTILE, REFUSED, RIGHT, WRONG, digest, key, make_book
 from tests.unit.grading.test_results import DUE, POLICY
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
 
 pytestmark = pytest.mark.soak
 

@@ -8,15 +8,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from course.grading.exports.html_report.charts import (
+from course.grading.exports.html_report.pages import (
     duration,
     duration_bins,
+    macro,
     mark_of,
     percent,
     score_bins,
+    when,
 )
-from course.grading.exports.html_report.rendering import macro
-from course.grading.exports.html_report.words import when
 from course.grading.results.late import in_days
 from tests.unit.grading.pages import Page
 

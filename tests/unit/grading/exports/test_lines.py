@@ -5,18 +5,15 @@ from __future__ import annotations
 import csv
 import io
 import json
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import msgspec
 from hypothesis import given
 from hypothesis import strategies as st
 
-from course.grading.exports.lines import safe_cell, write_csv, write_jsonl
+from course.grading.exports.grades import safe_cell, write_csv, write_jsonl
 from course.grading.results.effective import Results
 from tests.unit.grading.made import REFUSED, RIGHT, make_book
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 @given(st.text(alphabet=st.characters(exclude_categories=["Cs"])))

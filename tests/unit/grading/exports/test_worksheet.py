@@ -5,25 +5,22 @@ from __future__ import annotations
 import csv
 import io
 import shutil
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import pytest
 
+from course.catalog.load import Catalog
 from course.errors import UsageError
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
-from course.grading.results.override import override
+from course.grading.results.effective import override
 from course.grading.results.roster import read_roster
-from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions, grade_class
-from course.scoring.judging.terms import Terms
+from course.grading.running.snapshot import open_results
+from course.scoring.judging.session import Terms
 from tests.unit.grading.made import read_by_php
 from tests.unit.grading.running.test_run import right
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from course.catalog.load import Catalog
 
 HEADINGS = [
     "Identifier", "Full name", "Email address", "Status", "Grade", "Maximum Grade", "Grade can be changed",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import datetime as dt
 import importlib.util
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
 
@@ -13,9 +13,6 @@ from course.grading.gradebook.records import PlatformIdentity
 from course.grading.intake.downloads import ClassList, class_list
 from course.grading.intake.students import read_student
 from tests.unit.grading.intake.test_intake import archive
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 SOURCE = b"def double(x):\n    return 2 * x\n"
 

@@ -7,21 +7,17 @@ import json
 import os
 import stat
 import zipfile
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
+from course.catalog.load import Catalog
+from course.catalog.models import Exercise
 from course.errors import NotFoundError
 from course.grading.intake.downloads import Place, Student, class_list
 from course.grading.intake.students import MAX_FILE, Entry, read_student
 from tests.unit.grading.made import read_class
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
-
-    from course.catalog.load import Catalog
-    from course.catalog.models import Exercise
 
 SOURCE = b"def double(x):\n    return 2 * x\n"
 

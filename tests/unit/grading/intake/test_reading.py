@@ -7,27 +7,23 @@ import os
 import subprocess
 import sys
 import zipfile
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
 
 import pytest
 
+from course.catalog.models import Exercise
 from course.errors import UngradableError
-from course.grading.intake import reading, students
-from course.grading.intake.archives import RefusedError
+from course.grading.intake import archives, students
+from course.grading.intake.archives import Reader, RefusedError
 from course.grading.intake.downloads import Place, Student
-from course.grading.intake.reading import Reader
 from course.grading.quiz import grade_quiz
 from course.handed_in.cells import MAX_CELLS
 from course.handed_in.notebook import MAX_NOTES, notebook_source
 from course.quizzing.bank import Bank
 from tests.benchmarks.fuzz.run import run
 from tests.growth import LIMIT, growth
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from pathlib import Path
-
-    from course.catalog.models import Exercise
 
 _DOUBLE = "def double(x):\n    return 2 * x\n"
 
@@ -81,14 +77,14 @@ def test_an_escaped_line_end_in_a_string_moves_no_magic() -> None:
 @pytest.fixture
 def strict() -> Iterator[Reader]:
     """With little time and memory, so that a test need not use up what honest files may."""
-    found = Reader(reading._Limits(cpu_s=1, wall_s=60, memory=512 << 20))
+    found = Reader(archives._Limits(cpu_s=1, wall_s=60, memory=512 << 20))
     yield found
     found.close()
 
 
 @pytest.fixture
 def impatient() -> Iterator[Reader]:
-    found = Reader(reading._Limits(cpu_s=60, wall_s=1.0))
+    found = Reader(archives._Limits(cpu_s=60, wall_s=1.0))
     yield found
     found.close()
 
@@ -125,7 +121,7 @@ def test_the_wall_clock_ends_a_reader_that_uses_no_time(impatient: Reader, doubl
 
 def test_the_process_that_reads_loads_nothing_that_grades() -> None:
     """Each bomb ends one, and the next took three times as long to start."""
-    code = "import course.grading.intake.reading, sys; print({'numpy', 'pytest'} & set(sys.modules))"
+    code = "import course.grading.intake.archives, sys; print({'numpy', 'pytest'} & set(sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "set()"
 
@@ -134,7 +130,7 @@ def test_more_than_an_answer_may_be_is_not_taken(
     strict: Reader, doubling: Exercise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     strict.notebook(_notebook(_DOUBLE), doubling, "a.ipynb")
-    monkeypatch.setattr(reading, "MAX_ANSWER", 10)
+    monkeypatch.setattr(archives, "MAX_ANSWER", 10)
     with pytest.raises(RefusedError, match=r"b\.ipynb"):
         strict.notebook(_notebook(_DOUBLE), doubling, "b.ipynb")
 

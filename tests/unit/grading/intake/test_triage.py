@@ -7,30 +7,27 @@ import json
 import os
 import sys
 import zipfile
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import pytest
 
+from course.catalog.load import Catalog
+from course.catalog.models import Exercise
 from course.errors import MissingCapabilityError, NotFoundError, UngradableError, UsageError
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.book import Gradebook
 from course.grading.intake import students, triage
+from course.grading.intake.students import Entry
 from course.grading.intake.triage import Candidate, found_for
-from course.grading.results.override import override
+from course.grading.results.effective import override
 from course.grading.running.assign import assign, named, proposals, unsettled
-from course.grading.running.folder import open_results, previewed
 from course.grading.running.run import RunOptions, grade_class
-from course.scoring.judging.terms import Terms
+from course.grading.running.snapshot import open_results, previewed
+from course.scoring.judging.session import Terms
 from tests.unit.grading.made import read_class
 from tests.unit.grading.running.test_run import right
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from course.catalog.load import Catalog
-    from course.catalog.models import Exercise
-    from course.grading.intake.students import Entry
 
 pytestmark = pytest.mark.usefixtures("unpacked")
 

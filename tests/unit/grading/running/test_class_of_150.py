@@ -13,26 +13,25 @@ import json
 import zipfile
 from collections import Counter
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
+from course.catalog.load import Catalog
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
 from course.grading.results.roster import read_roster
-from course.grading.running import folder
+from course.grading.running import snapshot
 from course.grading.running.assign import assign, proposals, unsettled
 from course.grading.running.batch import grade_all
-from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions, grade_class
-from course.scoring.judging.terms import Terms
+from course.grading.running.snapshot import open_results
+from course.scoring.judging.session import Terms
 from tests.unit.grading.running.test_run import right
 from tests.unit.grading.test_roster import rows
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    from course.catalog.load import Catalog
     from course.grading.running.run import GradeAll
 
 #: ``double`` is right, which is 4 of 10 points, and ``doublings`` wrong; every third student has both wrong.
@@ -213,7 +212,7 @@ def graded_and_settled(
 def test_every_enrolled_student_has_one_row_and_triage_settles_the_rest(
     tmp_path: Path, catalog: Catalog, layout: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(folder, "write_pages", lambda *_: None)  # 1,500 pages, which other tests look at
+    monkeypatch.setattr(snapshot, "write_pages", lambda *_: None)  # 1,500 pages, which other tests look at
     graded_and_settled(tmp_path, catalog, layout, right)
 
 

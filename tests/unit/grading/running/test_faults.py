@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import shutil
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import pytest
 
 from course.catalog.load import Catalog
 from course.grading.gradebook.book import Gradebook
 from course.grading.running.run import RunOptions, grade_class
-from course.scoring.judging.terms import Terms
+from course.scoring.judging.session import Terms
+from course.scoring.verdict import Verdict
 from tests.unit.grading.conftest import MINI
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
-
-    from course.scoring.verdict import Verdict
 
 
 @pytest.fixture

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import pytest
 
+from course.catalog.load import Catalog
 from course.grading.running import grader
 from course.grading.running.grader import Config, Job
-from course.isolation.keeping import kept_sandboxes
+from course.isolation.probe import kept_sandboxes
 from course.scoring.judging import session
-from course.scoring.judging.terms import Terms
-
-if TYPE_CHECKING:
-    from course.catalog.load import Catalog
+from course.scoring.judging.session import Terms
 
 ORDER = ("doubling", "halving", "doubling", "doubling", "halving")
 

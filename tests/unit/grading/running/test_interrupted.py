@@ -3,27 +3,23 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator
+from pathlib import Path
 
 import pytest
 
+from course.catalog.load import Catalog
 from course.errors import MissingCapabilityError
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
+from course.grading.intake.students import Entry
 from course.grading.results.roster import read_roster
-from course.grading.running.folder import export_all, open_results
+from course.grading.running.batch import Graded
 from course.grading.running.run import RunOptions, grade_class
+from course.grading.running.snapshot import export_all, open_results
+from course.scoring.judging.session import Terms
 from tests.command_line import in_process
 from tests.unit.grading.running.test_run import make_class, right
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from pathlib import Path
-
-    from course.catalog.load import Catalog
-    from course.grading.intake.students import Entry
-    from course.grading.running.batch import Graded
-    from course.scoring.judging.terms import Terms
 
 pytestmark = pytest.mark.usefixtures("unpacked")
 #: Sentences about somebody who handed in, of which none may be said of a student who waits.

@@ -5,28 +5,23 @@ from __future__ import annotations
 import shutil
 import subprocess
 import sys
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator
+from pathlib import Path
 
 import pytest
 
 from course.catalog.load import Catalog
 from course.errors import IntegrityError, MissingCapabilityError
-from course.grading.exports.lines import grade_line
+from course.grading.exports.grades import grade_line
 from course.grading.gradebook.records import Key, Result
-from course.grading.results.effective import Results
-from course.grading.results.override import override
+from course.grading.intake.students import Entry
+from course.grading.results.effective import Results, override
 from course.grading.running.batch import Graded
 from course.grading.running.rerun import RerunOptions, rerun
 from course.scoring.graders import grader_version
+from course.scoring.judging.session import Terms
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, key, make_book
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from pathlib import Path
-
-    from course.grading.intake.students import Entry
-    from course.scoring.judging.terms import Terms
 
 pytestmark = pytest.mark.usefixtures("unpacked")
 

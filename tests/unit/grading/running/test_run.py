@@ -8,34 +8,30 @@ import shutil
 import signal
 import subprocess
 import zipfile
+from collections.abc import Iterable, Iterator
 from functools import partial
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, Any
 
 import msgspec
 import pytest
 
 from course.catalog.load import Catalog
 from course.catalog.locate import chosen
+from course.catalog.models import Exercise
 from course.errors import InternalError, MissingCapabilityError, UsageError
 from course.grading.gradebook.book import Gradebook
-from course.grading.results.override import override
+from course.grading.intake.students import Entry
+from course.grading.results.effective import override
 from course.grading.running import batch
 from course.grading.running.batch import MAX_TRIES, Graded, grade_all
-from course.grading.running.folder import open_results
 from course.grading.running.grader import Answer
-from course.grading.running.run import RunOptions, grade_class
-from course.scoring.judging.terms import Terms
+from course.grading.running.run import RunOptions, Summary, grade_class
+from course.grading.running.snapshot import open_results
+from course.scoring.judging.session import Terms
 from course.scoring.verdict import Verdict
 from tests.command_line import as_process, in_process
 from tests.unit.grading.made import read_class, stillborn
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from course.catalog.models import Exercise
-    from course.grading.intake.students import Entry
-    from course.grading.running.summary import Summary
 
 pytestmark = pytest.mark.usefixtures("unpacked")
 

@@ -1,1 +1,0 @@
-"""Proofs of the diagnoses: hypotheses, their words, and the diagnosis of each wrong program."""

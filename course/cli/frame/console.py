@@ -1,0 +1,588 @@
+"""The only place that prints.
+
+Three shapes of output, decided once per run:
+
+- fancy: a terminal; wrapped to its width, coloured unless NO_COLOR says otherwise;
+- plain: a pipe, a log, ``--plain`` or TERM=dumb; one fact a line, no boxes, no colour, no motion;
+- json: one object on standard output, and every word meant for a person on standard error.
+
+Rich is imported only for the first. Commands call ``current()`` and never ``print``.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import shutil
+import sys
+import textwrap
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TextIO, cast
+
+from course.errors import InternalError
+from course.printable import steady, unheeded
+
+if TYPE_CHECKING:
+    import msgspec
+    from rich.console import Console as RichConsole
+    from rich.text import Text
+
+    from course.figures.registry import Builder
+
+
+# ---
+# An output stream whose reader may go away.
+
+
+class Stream:
+    """A text stream whose reader may go away: ``course lessons | head -1`` is not an error."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._open = True
+
+    def write(self, text: str) -> int:
+        self._unless_gone(lambda: self._stream.write(text))
+        return len(text)
+
+    def write_bytes(self, data: bytes) -> None:
+        """Write UTF-8 bytes as they are, whatever encoding the stream has."""
+        binary = getattr(self._stream, "buffer", None)
+        if binary is None:
+            self.write(data.decode("utf-8"))
+            return
+        self.flush()
+        self._unless_gone(lambda: binary.write(data))
+        self._unless_gone(binary.flush)
+
+    def flush(self) -> None:
+        self._unless_gone(self._stream.flush)
+
+    def _unless_gone(self, action: Callable[[], Any]) -> None:
+        """Do something with the stream, unless its reader is gone."""
+        if not self._open:
+            return
+        try:
+            action()
+        except BrokenPipeError:
+            self._open = False
+            # The interpreter flushes the real stream once more when it exits; give it somewhere to go.
+            with contextlib.suppress(OSError, ValueError):
+                null = os.open(os.devnull, os.O_WRONLY)
+                os.dup2(null, self._stream.fileno())
+                os.close(null)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+
+# ---
+# Text on its way to a terminal: made harmless, wrapped between words, styled.
+
+
+Piece = str | tuple[str, str]
+
+
+def filled(row: str, width: int, margin: str = "", hanging: int = 0) -> str:
+    """One row as several, broken between words only."""
+    wrapper = textwrap.TextWrapper(width, margin, margin + " " * hanging)
+    wrapper.break_long_words = wrapper.break_on_hyphens = False
+    return wrapper.fill(row)
+
+
+def bare(piece: Piece) -> str:
+    """A piece without its style."""
+    return harmless(piece if isinstance(piece, str) else piece[0])
+
+
+def rich_text(pieces: Sequence[Piece]) -> Text:
+    """Pieces as one Rich text."""
+    from rich.text import Text
+
+    text = Text()
+    for piece in pieces:
+        text.append(bare(piece), None if isinstance(piece, str) else piece[1])
+    return text
+
+
+def harmless(text: str) -> str:
+    """Text without control codes or workflow commands: a student's own text is shown, never obeyed."""
+    return unheeded(steady(text.replace("\r\n", "\n")))
+
+
+# ---
+
+
+#: Long lines of prose are hard to read however wide the window is.
+MAX_WIDTH = 100
+#: Columns below which a table folds its cells until they cannot be read.
+_NARROW = 60
+#: Work that takes less than this shows nothing while it runs. In s.
+PATIENCE = 0.5
+
+_GO_ON = " Enter goes on, q stops: "
+
+#: Colour repeats what a word already says; it never says anything alone.
+STATUS_STYLE = {
+    "pass": "green",
+    "fail": "red",
+    "error": "red",
+    "timeout": "red",
+    "memory": "red",
+    "crash": "red",
+    "skip": "yellow",
+    "ungradable": "red",
+    "grader_error": "magenta",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """The global options, as they were given anywhere on the command line."""
+
+    json: bool = False
+    plain: bool = False
+    quiet: bool = False
+    directory: str | None = None
+
+
+class Console:
+    """Prints in the shape that this run asks for.
+
+    Args:
+        settings: the global options.
+        stdout, stderr: where to; the process's own by default.
+        environ: the environment; the process's own by default.
+    """
+
+    def __init__(
+        self,
+        settings: Settings | None = None,
+        *,
+        stdout: TextIO | None = None,
+        stderr: TextIO | None = None,
+        environ: dict[str, str] | None = None,
+    ) -> None:
+        self.settings = settings or Settings()
+        self._environ = dict(os.environ) if environ is None else environ
+        for stream in (sys.stdout, sys.stderr):
+            # A console that cannot show a character shows a question mark, not a traceback.
+            if hasattr(stream, "reconfigure"):
+                stream.reconfigure(errors="replace")
+        self._out = Stream(stdout or sys.stdout)
+        self._err = Stream(stderr or sys.stderr)
+        self._human: Stream = self._err if self.settings.json else self._out
+        self.fancy = self._is_fancy()
+        self._rich: RichConsole | None = None
+        self.emitted = False
+        #: Set while ``course go`` runs a command.
+        self.led = False
+
+    @property
+    def json(self) -> bool:
+        """True if the run answers with one JSON object."""
+        return self.settings.json
+
+    @property
+    def plain(self) -> bool:
+        """True if there are no boxes, no colour and no motion."""
+        return not self.fancy
+
+    @property
+    def quiet(self) -> bool:
+        """True if only the result and errors are wanted."""
+        return self.settings.quiet
+
+    @property
+    def interactive(self) -> bool:
+        """True if a user is there to answer a question."""
+        return not self.json and sys.stdin is not None and sys.stdin.isatty()
+
+    @property
+    def converses(self) -> bool:
+        """True if a user reads the words of the run on a terminal and can answer them there."""
+        return self.interactive and not self.quiet and bool(self._human.isatty())
+
+    @property
+    def motion(self) -> bool:
+        """True if something may move while there is work, on a terminal only."""
+        return self.fancy and not self.quiet and bool(self._human.isatty())
+
+    @property
+    def draws(self) -> bool:
+        """True if the output can show a picture made of half blocks: many colours, and the letter itself."""
+        if not self.fancy or self.quiet or self.rich().no_color:
+            return False
+        encoding = getattr(self._human, "encoding", None) or ""
+        return self.rich().color_system in {"256", "truecolor"} and encoding.lower().startswith("utf")
+
+    @property
+    def wraps(self) -> bool:
+        """True on a terminal without layout, where words wrap; --plain keeps each fact on one line."""
+        return self.plain and not (self.settings.plain or self.json) and bool(self._human.isatty())
+
+    @property
+    def width(self) -> int:
+        """Columns to write in."""
+        return self.rich().width if self.fancy else min(self.terminal_width, MAX_WIDTH)
+
+    @property
+    def terminal_width(self) -> int:
+        """Columns of the terminal, or the value of COLUMNS."""
+        return shutil.get_terminal_size().columns
+
+    @property
+    def height(self) -> int:
+        """Lines of the terminal, or the value of LINES."""
+        return shutil.get_terminal_size().lines
+
+    def _is_fancy(self) -> bool:
+        if self.settings.json or self.settings.plain or self._environ.get("TERM") == "dumb":
+            return False
+        return bool(self._environ.get("FORCE_COLOR")) or self._human.isatty()
+
+    def rich(self) -> RichConsole:
+        """The Rich console behind a fancy run; in the other shapes one without colour or markup."""
+        if self._rich is None:
+            from rich.console import Console as RichConsole
+
+            self._rich = RichConsole(
+                file=cast("TextIO", self._human),
+                force_terminal=self.fancy,
+                no_color=True if self.plain or self._environ.get("NO_COLOR") else None,
+                markup=False,
+                emoji=False,
+                highlight=False,
+            )
+        # The window may change while a long command runs.
+        self._rich.width = max(20, min(self.terminal_width, MAX_WIDTH))
+        return self._rich
+
+    # -- what a person reads -------------------------------------------------------------------------
+
+    def line(self, *pieces: Piece, indent: int = 0) -> None:
+        """One line of the answer: strings, or (string, style) pairs, joined as they are.
+
+        Words wrap at the width of the window. An address or a path that is longer stays in one piece, so that
+        it can be copied.
+        """
+        if not self.fancy:
+            self._fact("".join(bare(piece) for piece in pieces), indent)
+            return
+        from rich.padding import Padding
+
+        text = rich_text(pieces)
+        if max(map(len, text.plain.split()), default=0) > self.width - indent:
+            self.rich().print(rich_text((" " * indent, *pieces)), soft_wrap=True)
+        else:
+            self.rich().print(Padding(text, (0, 0, 0, indent)) if indent else text)
+
+    def _fact(self, text: str, indent: int = 0, hanging: int = 0) -> None:
+        """A line of plain output; on a terminal it wraps between words, and nowhere else."""
+        margin = " " * indent
+        rows = text.split("\n") if self.wraps else []
+        if not any(len(row) + indent > self.width for row in rows):
+            self._human.write(f"{margin}{text}\n")
+            return
+        self._human.write("".join(f"{filled(row, self.width, margin, hanging)}\n" for row in rows))
+
+    def blank(self) -> None:
+        """An empty line, if the output has a layout."""
+        if not self.quiet:
+            self._human.write("\n")
+
+    def heading(self, text: str, aside: str = "") -> None:
+        """A line that names what follows it."""
+        pieces: list[Piece] = [(text, "bold")]
+        if aside:
+            pieces.append((f"  {aside}", "dim") if self.fancy else f": {aside}")
+        self.line(*pieces)
+
+    def item(self, label: str, *pieces: Piece, style: str = "", indent: int = 2, width: int = 0) -> None:
+        """A short label and a text beside it; in a terminal the text wraps under itself."""
+        label = harmless(label)
+        if not self.fancy:
+            self._fact(f"{label}: " + "".join(bare(p) for p in pieces), indent, hanging=2)
+            return
+        from rich.padding import Padding
+        from rich.table import Table
+        from rich.text import Text
+
+        grid = Table.grid(padding=(0, 2, 0, 0))
+        grid.add_column(no_wrap=True, min_width=width or len(label))
+        grid.add_column(overflow="fold")
+        grid.add_row(Text(label, style=style), rich_text(pieces))
+        self.rich().print(Padding(grid, (0, 0, 0, indent)))
+
+    def table(self, headers: Sequence[str], rows: Sequence[Sequence[Piece]]) -> None:
+        """Rows under headings; facts under a row's name in a narrow window, one line each in plain output."""
+        if not self.fancy:
+            for row in rows:
+                facts = [
+                    f"{head}: {bare(cell)}" for head, cell in zip(headers, row, strict=True) if bare(cell)
+                ]
+                self._fact("; ".join(facts), hanging=2)
+            return
+        if self.width < _NARROW:
+            self._facts(headers, rows)
+            return
+        from rich import box
+        from rich.table import Table
+
+        table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1))
+        for index, head in enumerate(headers):
+            table.add_column(head, overflow="fold", no_wrap=index == 0)  # the first is an id that people copy
+        for row in rows:
+            table.add_row(*(rich_text((cell,)) for cell in row))
+        self.rich().print(table)
+
+    def table_or_facts(self, headers: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+        """The rows as a table or, where it is too wide for the window, each fact under its row's name."""
+        width = sum(max(map(len, column)) + 3 for column in zip(headers, *rows, strict=True))
+        if self.plain or width <= self.width:
+            self.table(headers, rows)
+        else:
+            self._facts(headers, rows)
+
+    def _facts(self, headers: Sequence[str], rows: Sequence[Sequence[Piece]]) -> None:
+        for first, *rest in rows:
+            self.line(first)
+            facts = [
+                f"{head} {bare(cell)}" for head, cell in zip(headers[1:], rest, strict=True) if bare(cell)
+            ]
+            self.line(", ".join(facts), indent=2)
+
+    def figure(self, make: Builder) -> None:
+        """Draw a figure as well as this terminal can show it; nothing where it cannot.
+
+        Args:
+            make: draws it; called in the house style, and only if there is somewhere to show it.
+        """
+        if not self.fancy or self.quiet:
+            return
+        from course.cli.frame.pictures import picture
+
+        shown = picture(self.rich(), self._environ, make, self.width)
+        if shown is not None:
+            self.rich().print(shown)
+
+    def block(self, text: str, language: str = "", indent: int = 0) -> None:
+        """Text shown exactly as it is: code, a diff, a traceback."""
+        text = harmless(text)
+        if not self.fancy:
+            for row in text.splitlines():
+                self._human.write(" " * indent + row + "\n")
+            return
+        from rich.padding import Padding
+        from rich.text import Text
+
+        from course.cli.frame.pictures import Code
+
+        self.rich().print(Padding(Code(text, language) if language else Text(text), (0, 0, 0, indent)))
+
+    def note(self, *pieces: Piece, indent: int = 0) -> None:
+        """Advice and next steps; ``--quiet`` drops it."""
+        if not self.quiet:
+            self.line(*pieces, indent=indent)
+
+    def next(self, step: str) -> None:
+        """The command that comes next, unless ``course go`` leads on and names it."""
+        if not self.led:
+            self.note(f"Next: {step}")
+
+    def warn(self, text: str) -> None:
+        """A warning, which is not a failure; on standard error."""
+        self._aside(f"Note: {text}")
+
+    def error(self, message: str, help: str = "") -> None:  # noqa: A002
+        """What went wrong, and below it what to do; on standard error."""
+        self._out.flush()
+        self._aside(message)
+        if help:
+            self._aside(help)
+        self._err.flush()
+
+    def _aside(self, text: str) -> None:
+        """Words on standard error; on a terminal a line that is too long for it wraps between words."""
+        rows = harmless(text).split("\n")
+        if self._err.isatty() and not (self.settings.plain or self.settings.json):
+            width = min(self.terminal_width, MAX_WIDTH)
+            rows = [filled(row, width) if len(row) > width else row for row in rows]
+        self._err.write("\n".join(rows) + "\n")
+
+    def raw(self, text: str) -> None:
+        """Text that already has its layout (a help page)."""
+        self._human.write(text)
+
+    # -- what a script reads ---------------------------------------------------------------------------
+
+    def emit(self, body: msgspec.Struct) -> None:
+        """Write the one object of a ``--json`` run; does nothing in the other shapes."""
+        if not self.json:
+            return
+        if self.emitted:
+            raise InternalError("A command tried to print a second JSON object.")
+        from course.cli.frame.replies import encode
+
+        self.emitted = True
+        self._out.write_bytes(encode(body) + b"\n")
+
+    def emit_line(self, body: msgspec.Struct) -> None:
+        """Write one line of JSON Lines, for the two commands that answer with several."""
+        from course.cli.frame.replies import encode
+
+        self.emitted = True
+        self._out.write_bytes(encode(body) + b"\n")
+
+    # -- asking and waiting ------------------------------------------------------------------------------
+
+    def confirm(self, question: str) -> bool:
+        """Ask a yes-or-no question. Without a user to answer it, the answer is no."""
+        if not self.interactive:
+            return False
+        self._out.write(f"{question} [y/N] ")
+        self._out.flush()
+        return sys.stdin.readline().strip().lower() in {"y", "yes"}
+
+    def ask(self, question: str) -> str | None:
+        """What the user types on one line, without surrounding space; None at the end of the input."""
+        self._out.write(self._wrapped(question))
+        self._out.flush()
+        answer = sys.stdin.readline()
+        return answer.strip() if answer else None
+
+    def _wrapped(self, question: str) -> str:
+        """A question in lines that break between words; what is typed stands beside the last one."""
+        if len(question) < self.terminal_width or not self._out.isatty():
+            return question
+        return filled(question.rstrip(), max(20, self.terminal_width - 1)) + " "
+
+    def go_on(self, where: str) -> bool:
+        """Wait for Enter; q, n, or the end of the input, means no. Anything else is asked about again."""
+        question = f"{where}{_GO_ON}".lstrip()
+        while True:
+            answer = self.ask(question)
+            if answer is None or answer.lower() in {"q", "quit", "n", "no"}:
+                return False
+            if answer.lower() in {"", "y", "yes"}:
+                return True
+            question = f"{answer[:20]!r} was not run: this is not the shell yet.{_GO_ON}"
+
+    def pause(self, where: str) -> bool:
+        """Wait for Enter on a terminal that a person reads; elsewhere there is nothing to wait for."""
+        if not (self.motion and self.interactive):
+            return True
+        rows = self._wrapped(f"{where}{_GO_ON}").count("\n") + 1
+        going = self.go_on(where)
+        self._human.write("\x1b[A\x1b[2K" * rows)  # the question is answered: what follows takes its lines
+        return going
+
+    @contextlib.contextmanager
+    def paged(self) -> Iterator[None]:
+        """Stop after each screenful of the output inside, where a person reads it; q skips the rest."""
+        if not (self.motion and self.interactive):
+            yield
+            return
+        human, held, rich = self._human, io.StringIO(), self.rich()
+        self._human, rich.file = Stream(held), held
+        try:
+            yield
+        finally:
+            self._human, rich.file = human, cast("TextIO", human)
+        rows = held.getvalue().splitlines(keepends=True)
+        height = max(3, self.height - 1)
+        for start in range(0, len(rows), height):
+            if start and not self.pause(f"{start} of {len(rows)} lines."):
+                return
+            human.write("".join(rows[start : start + height]))
+
+    @contextlib.contextmanager
+    def working(self, what: str) -> Iterator[None]:
+        """Show that something runs, once it has taken half a second, on a terminal only."""
+        if not self.motion:
+            yield
+            return
+        status = self.rich().status(what, spinner="line")
+        timer = threading.Timer(PATIENCE, status.start)
+        timer.daemon = True
+        timer.start()
+        try:
+            yield
+        finally:
+            timer.cancel()
+            timer.join()
+            status.stop()
+
+    def flush(self) -> None:
+        """Flush everything."""
+        self._out.flush()
+        self._err.flush()
+
+
+_installed: Console | None = None
+
+
+def install(console: Console) -> Console:
+    """Make ``console`` the one that ``current`` gives; one run of the program has one."""
+    global _installed  # noqa: PLW0603 - one process, one terminal
+    _installed = console
+    return console
+
+
+def current() -> Console:
+    """The console of this run."""
+    return _installed if _installed is not None else install(Console())
+
+
+# ---
+# Shows the progress of long work, and about how long the rest will take.
+
+
+@contextlib.contextmanager
+def meter(console: Console) -> Iterator[Callable[[int, int, str], None]]:
+    """A function to call with steps done, steps in all, and what is being done now.
+
+    A terminal shows a bar with an estimate once the work has taken half a second, and removes it at the end.
+    Elsewhere, after the same patience, a line is written whenever the work turns to something new: the part
+    of its name before a colon.
+    """
+    if console.quiet:
+        yield lambda _done, _total, _what: None
+    elif console.fancy:
+        with _bar(console) as step:
+            yield step
+    else:
+        seen: set[str] = set()
+        started = time.monotonic()
+
+        def say(done: int, total: int, what: str) -> None:
+            topic = what.partition(":")[0]
+            if what and topic not in seen and time.monotonic() - started > PATIENCE:
+                seen.add(topic)
+                console.note(f"Working on {topic}: {done} of {total} steps done.")
+
+        yield say
+
+
+@contextlib.contextmanager
+def _bar(console: Console) -> Iterator[Callable[[int, int, str], None]]:
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    started = time.monotonic()
+    columns = (BarColumn(bar_width=20), TextColumn("{task.completed}/{task.total}"), TimeRemainingColumn())
+    progress = Progress(*columns, TextColumn("{task.description}"), console=console.rich(), transient=True)
+    task = progress.add_task("", total=None)
+
+    def step(done: int, total: int, what: str) -> None:
+        if not progress.live.is_started and time.monotonic() - started > PATIENCE:
+            progress.start()
+        progress.update(task, completed=done, total=total, description=what)
+
+    try:
+        yield step
+    finally:
+        progress.stop()

@@ -1,1 +1,0 @@
-"""The screen: printing and paging, its text, pictures, progress bars, a pipe whose reader goes away."""

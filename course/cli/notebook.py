@@ -1,0 +1,426 @@
+"""``course notebook``: the course in Jupyter, and notebooks checked like files."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Iterable
+from functools import partial
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import typer
+
+from course.browser import invite
+from course.catalog.load import Catalog
+from course.catalog.models import CourseRef, Exercise
+from course.cli.frame.completion import choice_of, exercise_ids, notebook_ids
+from course.cli.frame.console import (
+    Console,
+    current,
+)
+from course.cli.frame.here import Here, cwd, find_workspace, load_catalog, write
+from course.cli.frame.replies import Backup, Envelope
+from course.cli.work import checking
+from course.cli.work.replies import Check
+from course.cli.work.verdict import show_verdict
+from course.errors import CourseError, NotFoundError, UngradableError, UsageError
+from course.extras import require
+from course.handed_in.cells import code_cells, read_notebook
+from course.notebooks.build import FOLDERS, NBGRADER, WORKSPACE, Generated, Layout, generate
+from course.notebooks.merge import CannotMergeError, is_untouched, merged
+from course.notebooks.server import executed
+from course.progress.workspace import write_atomically
+
+# ---
+# The replies of ``course notebook ... --json``, as types.
+
+
+class NotebookFile(msgspec.Struct, frozen=True, kw_only=True):
+    """One notebook and what was done.
+
+    ``action`` is "written" (there was none), "current" (nothing newer), "replaced" (the student had written
+    nothing in it), "merged" (the newer one with the student's work in it), "beside" (``new`` is the newer
+    one, ``path`` as it was, ``reason`` why) or, from ``course open``, "kept" (there was one; it was not
+    opened).
+    """
+
+    kind: str
+    id: str
+    path: str
+    action: str
+    new: str | None = None
+    reason: str = ""
+    backup: Backup | None = None
+
+
+class Notebook(Envelope, tag="course.notebook/1", frozen=True, kw_only=True):
+    """``build`` and ``update``."""
+
+    course: CourseRef
+    folder: str
+    files: tuple[NotebookFile, ...]
+
+
+class NotebookOpen(Envelope, tag="course.open/1", frozen=True, kw_only=True):
+    """``course open``, printed once ``address`` works; the command goes on until it is ended."""
+
+    course: CourseRef
+    folder: str
+    files: tuple[NotebookFile, ...]
+    address: str
+
+
+class NotebookCheck(Envelope, tag="course.notebook-check/1", frozen=True, kw_only=True):
+    """``check``: ``result`` is what ``course check`` gives, with cells for lines."""
+
+    file: str
+    result: Check
+
+
+# ---
+# ``course notebook check``: the public checks on a notebook's functions, with cells for line numbers.
+
+
+def check_file(console: Console, file: Path, exercise_id: str | None, *, verbose: bool) -> int:
+    """Check one notebook, show what was found, and give the exit code.
+
+    Raises:
+        UngradableError: it is not a notebook, or has nothing to check.
+        NotFoundError: there is no such file or exercise, or the exercise is not clear.
+    """
+    from course.handed_in.notebook import notebook_source
+
+    path = cwd() / file.expanduser()
+    if not path.exists():
+        raise NotFoundError(
+            f"There is no file {file}.", help="`course notebook build` writes notebooks.", code="no_file"
+        )
+    data = read_notebook(path)
+    here, catalog = _course()
+    exercise = _exercise(catalog, path, data, exercise_id)
+    module = notebook_source(data, exercise, file.name)
+    with console.working(f"Checking {exercise.id}"):
+        begin = time.perf_counter()
+        with checking.open_session(exercise, catalog) as session:
+            verdict = checking.grade_once(session, module.submission(exercise))
+        seconds = time.perf_counter() - begin
+    if here is not None and path.is_relative_to(here.workspace.root):
+        checking.record_verdict(here, exercise, module.source, verdict, seconds)
+    problem = checking.error_without_checks(verdict)
+    if problem is not None:
+        raise problem
+    show_verdict(console, exercise, verdict, verbose=verbose)
+    for warning in here.warnings if here else ():
+        console.warn(warning)
+    course = catalog.ref
+    reply = checking.reply_to(course, verdict, f"course notebook check {file}")
+    console.emit(NotebookCheck(ok=reply.ok, exit_code=reply.exit_code, file=str(path), result=reply))
+    return reply.exit_code
+
+
+def _course() -> tuple[Here | None, Catalog]:
+    here = find_workspace()
+    return here, here.catalog if here is not None else load_catalog()
+
+
+def _exercise(catalog: Catalog, path: Path, data: bytes, wanted: str | None) -> Exercise:
+    """A notebook's exercise: the given one, or the one that its cells, its name or its functions show."""
+    from course.handed_in.notebook import notebook_source
+
+    if wanted is not None:
+        return catalog.exercise(wanted)
+    exercises = catalog.exercises()
+    marks = [cell.tags.get("exercise") for cell in code_cells(data, path.name)]
+    for exercise in exercises:
+        if exercise.id in marks:
+            return exercise
+    module = f"{path.stem}.py"
+    for exercise in exercises:
+        if path.stem == exercise.id or module == exercise.module:
+            return exercise
+    for exercise in exercises:
+        try:
+            notebook_source(data, exercise)
+        except UngradableError:
+            continue
+        return exercise
+    raise NotFoundError(
+        f"{path.name} does not say which exercise it is about, and defines no function of any.",
+        help="Say which with --exercise.",
+        code="which_exercise",
+    )
+
+
+# ---
+# Notebooks on disk. Students' work is never overwritten, and a copy of every replaced file is kept.
+
+
+def place(out: Path | None) -> tuple[Path, Layout]:
+    """The folder that notebooks go into, and where in it each lies."""
+    if out is not None:
+        return cwd() / out.expanduser(), FOLDERS
+    here = find_workspace()
+    return (cwd() / "notebooks", FOLDERS) if here is None else (here.workspace.root, WORKSPACE)
+
+
+def put(folder: Path, notebook: Generated, *, update: bool = True) -> NotebookFile:
+    """Write a notebook, or bring an existing one up to date.
+
+    Args:
+        update: an existing one; False leaves it alone, whatever it holds.
+
+    Raises:
+        UsageError: the existing file cannot be read, or no copy of it can be kept.
+        MissingCapabilityError: the folder cannot be written.
+    """
+
+    path = folder / notebook.path
+    said = partial(NotebookFile, kind=notebook.kind, id=notebook.id, path=str(path))
+    if not path.exists():
+        write_atomically(path, notebook.data)
+        return said(action="written")
+    if not update:
+        return said(action="kept")
+    old = read_notebook(path)
+    try:
+        data = merged(old, notebook.data)
+    except CannotMergeError as problem:
+        beside = path.with_name(f"{path.stem}.new{path.suffix}")
+        written = write(beside, notebook.data, why="notebook")
+        return said(action="beside", new=str(beside), reason=str(problem), backup=written.backup)
+    if data == old:
+        return said(action="current")
+    action = "replaced" if is_untouched(old) else "merged"
+    return said(action=action, backup=write(path, data, why="notebook").backup)
+
+
+# ---
+
+
+app = typer.Typer(
+    help="Get lessons and exercises as Jupyter notebooks.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+FORMATS = ("jupyter", "nbgrader")
+Ids = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="[ID]...",
+        help="Lessons, exercises, quiz or sandbox; everything if left out.",
+        autocompletion=notebook_ids,
+    ),
+]
+Out = Annotated[
+    Path | None,
+    typer.Option(
+        "--out", metavar="DIR", help="Where; if left out, the workspace, and outside of one notebooks/."
+    ),
+]
+
+
+@app.command(epilog="Example: course notebook build numerical-integration integrators")
+def build(
+    ids: Ids = None,
+    out: Out = None,
+    executed: Annotated[
+        bool, typer.Option("--executed", help="Run each one first, so that it opens with its outputs.")
+    ] = False,
+    form: Annotated[
+        str,
+        typer.Option(
+            "--format",
+            metavar="FORMAT",
+            help="jupyter, or nbgrader for an nbgrader site.",
+            autocompletion=choice_of(*FORMATS),
+        ),
+    ] = "jupyter",
+) -> int:
+    """Write notebooks.
+
+    Work in an existing notebook is kept: newer text is put around it, or the newer notebook beside it.
+    """
+    console = current()
+    if form not in FORMATS:
+        raise UsageError(f"--format {form}: there is {' and '.join(FORMATS)}.", code="unknown_format")
+    if form == "nbgrader":
+        return _build_nbgrader(console, ids or [], out, executed=executed)
+
+    if executed:
+        require("notebook", "nbclient", "ipykernel", what="--executed")
+    catalog = load_catalog()
+    folder, layout = place(out)
+    notebooks: Iterable[Generated] = generate(catalog, ids or [], layout)
+    if executed:
+        notebooks = (_executed(console, notebook) for notebook in notebooks)
+    return _write(console, catalog, folder, notebooks)
+
+
+@app.command(epilog="Example: course notebook update")
+def update(ids: Ids = None, out: Out = None) -> int:
+    """Bring existing notebooks up to date.
+
+    Your work stays: cells you edited and cells you added. Where newer text cannot be put around it, the
+    newer notebook is put beside yours as NAME.new.ipynb. A copy of every replaced file is kept.
+    """
+
+    console, catalog = current(), load_catalog()
+    folder, layout = place(out)
+    there = [
+        notebook for notebook in generate(catalog, ids or [], layout) if (folder / notebook.path).exists()
+    ]
+    if not there:
+        raise NotFoundError(
+            f"There is no notebook of the course in {folder}.",
+            help="`course notebook build` writes them.",
+            code="no_notebooks",
+        )
+    return _write(console, catalog, folder, there)
+
+
+@app.command(epilog="Example: course notebook check integrators/integrators.ipynb")
+def check(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A notebook with an exercise's functions.")],
+    exercise: Annotated[
+        str | None,
+        typer.Option(
+            "--exercise",
+            metavar="EXERCISE",
+            help="Which exercise, if the notebook does not say it.",
+            autocompletion=exercise_ids,
+        ),
+    ] = None,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", "-v", help="Show tracebacks and all that your code printed.")
+    ] = False,
+) -> int:
+    """Run the public checks on a notebook.
+
+    Runs the functions of the notebook, as a grading run does, not the notebook itself. Exit code 0 if every
+    check passes, 1 if one does not, 3 if nothing could be checked.
+    """
+
+    return check_file(current(), file, exercise, verbose=verbose)
+
+
+# -- writing ---------------------------------------------------------------------------------------------
+
+
+def _build_nbgrader(console: Console, ids: list[str], out: Path | None, *, executed: bool) -> int:
+    from course.notebooks.magic import nbgrader_notebook
+
+    if executed:
+        raise UsageError(
+            "--format nbgrader --executed: nbgrader runs notebooks itself.",
+            help="Leave one of the two out.",
+            code="executed_nbgrader",
+        )
+    catalog = load_catalog()
+    exercises = [catalog.exercise(name) for name in ids] if ids else list(catalog.exercises())
+    notebooks = (
+        Generated("nbgrader", one.id, NBGRADER.exercise(one), nbgrader_notebook(catalog, one))
+        for one in exercises
+    )
+    folder = cwd() / (out.expanduser() if out else Path("nbgrader"))
+    code = _write(console, catalog, folder, notebooks)
+    console.note(
+        "The score that counts is `course grade run`'s: in nbgrader a student's code can forge its own."
+    )
+    return code
+
+
+def _executed(console: Console, notebook: Generated) -> Generated:
+    from dataclasses import replace
+
+    with console.working(f"Running {notebook.path}"):
+        return replace(notebook, data=executed(notebook.data, str(notebook.path)))
+
+
+def _write(console: Console, catalog: Catalog, folder: Path, notebooks: Iterable[Generated]) -> int:
+    """Put every notebook where it belongs, and say what was done."""
+    files = []
+    for notebook in notebooks:
+        try:
+            files.append(put(folder, notebook))
+        except OSError as error:
+            raise CourseError(f"{folder / notebook.path}: {error.strerror or error}.") from error
+        console.line(_sentence(folder, files[-1]))
+    changed = sum(file.action != "current" for file in files)
+    count = "1 notebook" if len(files) == 1 else f"{len(files)} notebooks"
+    new = f"{changed} of them new or changed"
+    if len(files) == 1:
+        new = "new or changed" if changed else "not changed"
+    console.line((f"{count} in {folder}, {new}.", "bold"))
+    console.note(f"Open them with: jupyter lab {folder}")
+    console.emit(
+        Notebook(
+            course=catalog.ref,
+            folder=str(folder),
+            files=tuple(files),
+        )
+    )
+    return 0
+
+
+def _sentence(folder: Path, file: NotebookFile) -> str:
+    def shown(path: str) -> str:
+        full = Path(path)
+        return full.relative_to(folder).as_posix() if full.is_relative_to(folder) else path
+
+    kept = f" The old one is kept at {shown(file.backup.backup)}." if file.backup else ""
+    said = {
+        "written": "written.",
+        "current": "up to date.",
+        "replaced": "replaced by the newer one; nothing of yours was in it.",
+        "merged": "newer text was put around your work.",
+        "beside": f"not changed, since {file.reason}; the newer one is {shown(file.new or '')}.",
+    }
+    return f"{shown(file.path)}: {said[file.action]}{kept}"
+
+
+# ---
+# ``course open``: JupyterLab on a notebook of the course.
+
+
+def open_notebook(
+    wanted: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[ID]",
+            help="A lesson, an exercise, quiz or sandbox; all of them if left out.",
+            autocompletion=notebook_ids,
+        ),
+    ] = None,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="Only print the address; nothing is opened.")
+    ] = False,
+) -> int:
+    """Open a notebook in JupyterLab.
+
+    A missing notebook is written first, in the workspace, or outside of one in notebooks/. An existing one is
+    not changed: `course notebook update` brings newer text. Ctrl+C ends it.
+    """
+    from course.notebooks.server import started
+
+    console = current()
+    require("notebook", "jupyterlab", "ipykernel", what="Opening a notebook")
+    catalog = load_catalog()
+    folder, layout = place(None)
+    files = [put(folder, one, update=False) for one in generate(catalog, [wanted] if wanted else [], layout)]
+    shown = Path(files[0].path) if wanted else folder
+    relative = shown.relative_to(folder).as_posix() if wanted else ""
+    with contextlib.suppress(KeyboardInterrupt), contextlib.ExitStack() as stack:
+        with console.working("Starting JupyterLab"):
+            lab = stack.enter_context(started(folder, relative))
+        console.line(f"{shown} is at {lab.address}")
+        invite(lab.address, console.note, show=not no_browser)
+        console.emit(
+            NotebookOpen(course=catalog.ref, folder=str(folder), files=tuple(files), address=lab.address)
+        )
+        console.flush()  # whoever reads a file or a pipe needs the address now
+        lab.wait()
+    return 0

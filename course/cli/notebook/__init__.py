@@ -1,1 +1,0 @@
-"""``course notebook``: the course in Jupyter."""

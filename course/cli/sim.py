@@ -1,0 +1,406 @@
+"""``course sim``: runs simulations, and shows their numbers beside those of theory."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import msgspec
+import typer
+
+from course.cli.frame import here
+from course.cli.frame.completion import simulation_ids, simulation_settings
+from course.cli.frame.console import Console, current
+from course.cli.frame.replies import Envelope, WrittenFile
+from course.errors import UsageError
+from course.simulations.base import Result, Row, Simulation
+from course.simulations.registry import CHAPTER, SIMULATIONS, get
+
+if TYPE_CHECKING:
+    from course.figures.registry import Builder
+
+
+# ---
+# The files that ``course sim`` writes: a table and a figure.
+
+
+def table(result: Result) -> bytes:
+    """The series of a run as CSV: a line of names with units, then every sample, every digit."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(f"{column.name} [{column.unit}]" for column in result.columns)
+    for row in zip(*(column.values.tolist() for column in result.columns), strict=True):
+        writer.writerow(map(repr, row))
+    return text.getvalue().encode()
+
+
+def figure(result: Result, kind: str) -> bytes:
+    """The figure of a run as a PNG, SVG or PDF file; the same run gives the same bytes."""
+    from course.figures.experiments import render
+
+    return render(result, kind)
+
+
+def builder(result: Result) -> Builder:
+    """Draws the figure of a run, for a screen."""
+
+    def make() -> Any:
+        from course.figures.experiments import draw
+
+        return draw(result)
+
+    return make
+
+
+# ---
+# The replies of ``course sim ... --json``, as types.
+
+
+Value = float | int | str
+
+
+class SimParameter(msgspec.Struct, frozen=True, kw_only=True):
+    """Something ``--set`` can set. ``low`` and ``high`` are None for words, ``choices`` empty for numbers.
+
+    ``above`` is True if the lower end itself is not allowed. ``unit`` is "" for words, "1" for pure numbers.
+    """
+
+    name: str
+    unit: str
+    default: Value
+    meaning: str
+    low: float | None = None
+    high: float | None = None
+    above: bool = False
+    choices: tuple[str, ...] = ()
+
+
+class SimEntry(msgspec.Struct, frozen=True, kw_only=True):
+    """A simulation in a list: the student answers ``question`` before the run."""
+
+    id: str
+    title: str
+    question: str
+    teaches: str
+    parameters: tuple[SimParameter, ...]
+
+
+class SimList(Envelope, tag="course.sim-list/1", frozen=True, kw_only=True):
+    simulations: tuple[SimEntry, ...]
+
+
+class SimRow(msgspec.Struct, frozen=True, kw_only=True):
+    """A measured number; ``theory`` and ``error`` are None where nothing is known in closed form.
+
+    "nan" means that it did not happen; for ``theory``, that it must not.
+    """
+
+    quantity: str
+    simulated: float
+    theory: float | None
+    error: float | None
+    unit: str
+    source: str
+
+
+class SimSetting(msgspec.Struct, frozen=True):
+    """A parameter and its value."""
+
+    value: Value
+    unit: str
+
+
+class Sim(Envelope, tag="course.sim/1", frozen=True, kw_only=True):
+    """One run."""
+
+    simulation: str
+    title: str
+    question: str
+    settings: dict[str, SimSetting]
+    results: tuple[SimRow, ...]
+    finding: str
+    plot: WrittenFile | None = None
+    csv: WrittenFile | None = None
+
+
+class SimAll(Envelope, tag="course.sim-all/1", frozen=True, kw_only=True):
+    """``run --all``: the introductory simulations in order, and what they show together."""
+
+    results: tuple[Sim, ...]
+    concepts: tuple[str, ...]
+    insights: tuple[str, ...]
+
+
+# ---
+
+
+app = typer.Typer(
+    help="Run a simulation and compare with theory.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+#: The common finding of the introductory simulations.
+CONCEPTS = (
+    "A body is its mass and its state: where it is and how it moves, to which rotation adds two more.",
+    "Forces add up and give it an acceleration, a = F / m; nothing else does.",
+    "An integrator turns accelerations into motion, step by step, and each one errs in its own way.",
+    "Contact is a model of its own: a size, a moment at which surfaces touch, an impulse and a restitution.",
+    "A fall, a throw, a collision and a spring need the same parts, put together differently.",
+    "N steps make N + 1 samples, the start included, and sample i belongs to the time i h.",
+)
+INSIGHTS = (
+    "Compare with a closed form where there is one, sample by sample and at the same instant.",
+    "The method decides what kind of error you get; the step decides how much of it and, past a limit, "
+    "whether there is an answer at all.",
+    "A smaller step cannot repair a model that leaves something out: air, a radius, a rebound.",
+    "Energy and momentum reveal an error even where no closed form exists.",
+)
+
+
+@app.command("list", epilog="Example: course sim list free-fall")
+def list_simulations(
+    name: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="NAME", help="Only this one, with all its parameters.", autocompletion=simulation_ids
+        ),
+    ] = None,
+) -> int:
+    """List the simulations.
+
+    Each has a question. Answer it before you run the simulation.
+    """
+
+    console = current()
+    simulations = [get(one) for one in ((name,) if name else SIMULATIONS)]
+    for simulation in simulations:
+        _describe(console, simulation, whole=name is not None)
+    example = name or CHAPTER[0]
+    console.note(("Next: " + (f"course sim run {example}" if name else f"course sim list {example}"), "bold"))
+    console.emit(SimList(simulations=tuple(_entry(simulation) for simulation in simulations)))
+    return 0
+
+
+def _describe(console: Console, simulation: Simulation, *, whole: bool) -> None:
+    """One simulation: its subject, its question, its parameters."""
+    from course.simulations.base import describe
+
+    console.heading(simulation.id, simulation.title)
+    console.item("shows", simulation.teaches, width=5)
+    console.item("guess", simulation.question, width=5)
+    if whole:
+        for parameter in simulation.parameters:
+            console.item("set", describe(parameter), width=5)
+    if console.fancy:
+        console.blank()
+
+
+@app.command(epilog="Example: course sim run free-fall --set height=20 --plot fall.png")
+def run(
+    name: Annotated[
+        str | None,
+        typer.Argument(metavar="NAME", help="See `course sim list`.", autocompletion=simulation_ids),
+    ] = None,
+    everything: Annotated[
+        bool,
+        typer.Option("--all", help="Run the four of the introduction, in order, and say what they show."),
+    ] = False,
+    settings: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Set a parameter; repeatable.",
+            autocompletion=simulation_settings,
+        ),
+    ] = None,
+    plot: Annotated[
+        Path | None, typer.Option("--plot", metavar="FILE", help="Write the figure: .png, .svg or .pdf.")
+    ] = None,
+    csv: Annotated[
+        Path | None, typer.Option("--csv", metavar="FILE", help="Write every sample as a table.")
+    ] = None,
+) -> int:
+    """Run a simulation, or the four of the introduction.
+
+    Shows the results beside theory, with the error and the unit, and what they mean. If a file is replaced, a
+    copy of it is kept.
+    """
+    console, pairs = current(), settings or []
+    if everything:
+        if name is not None or pairs:
+            extra = name if name is not None else f"--set {pairs[0]}"
+            raise UsageError(
+                f"{extra}: --all runs all four with their defaults.",
+                help="Leave one of the two out.",
+                code="all_and_one",
+            )
+        return _run_all(console, plot, csv)
+    if name is None:
+        raise UsageError(
+            "Which simulation?", help="Name one, or give --all; `course sim list` shows them.", code="no_name"
+        )
+    reply = _run_one(console, name, pairs, plot, csv)
+    console.emit(reply)
+    return 0
+
+
+def _run_all(console: Console, plot: Path | None, csv: Path | None) -> int:
+    replies = []
+    for name in CHAPTER:
+        plot_to = here.inserted(plot, name) if plot else None
+        csv_to = here.inserted(csv, name) if csv else None
+        replies.append(_run_one(console, name, [], plot_to, csv_to))
+        console.blank()
+    for title, lines in (("What this showed", CONCEPTS), ("What to take along", INSIGHTS)):
+        console.heading(title)
+        for text in lines:
+            console.item("-", text) if console.fancy else console.line(f"- {text}", indent=2)
+    console.emit(SimAll(results=tuple(replies), concepts=CONCEPTS, insights=INSIGHTS))
+    return 0
+
+
+def _run_one(console: Console, name: str, pairs: Sequence[str], plot: Path | None, csv: Path | None) -> Sim:
+    """Run, show and write one simulation."""
+    from course.simulations.base import run as run_simulation
+
+    simulation = get(name)
+    plot = here.target(plot, "--plot", here.FORMATS) if plot else None
+    csv = here.target(csv, "--csv", ("csv",)) if csv else None
+    with console.working(f"Running {simulation.id}"):
+        result = run_simulation(simulation, pairs)
+    _show(console, simulation, result)
+    plotted = written = None
+    if plot:
+        with console.working("Drawing"):
+            picture = figure(result, plot.suffix.lower().removeprefix("."))
+        plotted = _written(console, here.write(plot, picture))
+    if csv:
+        written = _written(console, here.write(csv, table(result)))
+    return _reply(simulation, result, plotted, written)
+
+
+def _written(console: Console, file: WrittenFile) -> WrittenFile:
+    if file.backup:
+        console.line(f"There was a file of that name; it is kept at {file.backup.backup}.")
+    console.line(f"Wrote {file.path}")
+    return file
+
+
+# -- on the screen ---------------------------------------------------------------------------------------
+
+
+def _show(console: Console, simulation: Simulation, result: Result) -> None:
+    """Heading, settings, the table, the finding."""
+    if not console.quiet:
+        console.heading(simulation.title)
+        changed = [p.name for p in simulation.parameters if result.settings[p.name] != p.default]
+        console.line((_settings(simulation, result), "dim"))
+        if changed:
+            console.line(f"Changed: {', '.join(changed)}.")
+        console.figure(builder(result))
+        console.table_or_facts(_HEADS, [_cells(row) for row in result.rows])
+    console.line((result.finding, "bold"))
+
+
+_HEADS = ("Measured", "Simulated", "Theory", "Error")
+
+
+def _settings(simulation: Simulation, result: Result) -> str:
+    """All settings in a line: "height 10 m, step 0.01 s"."""
+    parts = []
+    for parameter in simulation.parameters:
+        value = result.settings[parameter.name]
+        number = value if isinstance(value, str) else f"{value:.6g}"
+        parts.append(f"{parameter.name} {_with_unit(number, parameter.unit)}")
+    return ", ".join(parts)
+
+
+def _cells(row: Row) -> tuple[str, str, str, str]:
+    """A row as text: simulated and theory to the same digit, and the error as a number of its own."""
+    places = _places(row.simulated, row.theory)
+    theory = "" if row.theory is None else _number(row.theory, row.unit, places)
+    error = row.error
+    if error is None:
+        shown = ""
+    elif abs(error) < 1e-11 * max(abs(row.theory or 0.0), 1e-3):
+        shown = "0" if error == 0 else "round-off"
+    else:
+        shown = _with_unit(f"{error:+#.3g}", row.unit)
+    return row.quantity, _number(row.simulated, row.unit, places), theory, shown
+
+
+def _places(*values: float | None) -> str:
+    """A format that gives the largest of the values five digits and all of them the same decimals."""
+    sizes = [abs(value) for value in values if value is not None and math.isfinite(value)]
+    largest = max(sizes, default=0.0)
+    if not 1e-4 <= largest < 1e6 or all(size == round(size) for size in sizes):
+        return ".5g"
+    return f".{max(0, 4 - math.floor(math.log10(largest)))}f"
+
+
+def _number(value: float, unit: str, places: str) -> str:
+    if math.isnan(value):
+        return "never"
+    if math.isinf(value):
+        return "beyond all numbers"
+    text = f"{0.0 if abs(value) < 1e-11 else value:{places}}"
+    return _with_unit(text, unit)
+
+
+def _with_unit(text: str, unit: str) -> str:
+    return f"{text} {unit}" if unit not in ("", "1") else text
+
+
+# -- for scripts -----------------------------------------------------------------------------------------
+
+
+def _entry(simulation: Simulation) -> SimEntry:
+    return SimEntry(
+        id=simulation.id,
+        title=simulation.title,
+        question=simulation.question,
+        teaches=simulation.teaches,
+        parameters=tuple(
+            SimParameter(
+                name=p.name,
+                unit=p.unit,
+                default=p.default,
+                meaning=p.meaning,
+                low=None if p.choices else p.low,
+                high=None if p.choices else p.high,
+                above=p.above,
+                choices=p.choices,
+            )
+            for p in simulation.parameters
+        ),
+    )
+
+
+def _reply(simulation: Simulation, result: Result, plot: WrittenFile | None, csv: WrittenFile | None) -> Sim:
+    return Sim(
+        simulation=simulation.id,
+        title=simulation.title,
+        question=simulation.question,
+        settings={p.name: SimSetting(result.settings[p.name], p.unit) for p in simulation.parameters},
+        results=tuple(
+            SimRow(
+                quantity=row.quantity,
+                simulated=float(row.simulated),
+                theory=row.theory,
+                error=row.error,
+                unit=row.unit,
+                source=row.source,
+            )
+            for row in result.rows
+        ),
+        finding=result.finding,
+        plot=plot,
+        csv=csv,
+    )

@@ -1,1 +1,0 @@
-"""``course sim``: simulations, with their numbers beside those of theory."""

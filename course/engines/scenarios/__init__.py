@@ -1,1 +1,0 @@
-"""Small tests with known right answers, the same for every engine: ``scenario`` lists them all."""

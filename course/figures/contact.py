@@ -1,0 +1,287 @@
+"""Figures of the lesson on contact: a pair that passes or parts, a wall that is missed, a stack."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from course.figures.style import METHODS, PALETTE, new_figure, note, title
+from course.physics.body import Body
+from course.physics.contact import Surface
+from course.physics.contact.models import Constraint, Penalty, SoftConvex, drop, erp_cfm, slide_across
+from course.physics.rotation import ROTATION_STEPPERS, Spin, kinetic_energy
+from course.physics.simulator import Simulator
+from course.physics.solver import iterations_to, stack_impulses
+from course.physics.state import RigidBodyState
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    Array = NDArray[np.float64]
+
+
+#: What the figures show and the captions quote: diameter of the ball, thickness of the wall (m), step (s).
+BALL_M, WALL_M, STEP_S = 0.02, 0.02, 0.01
+STACKS = (2, 5, 10, 20)
+
+
+def head_on(restitution: float | None) -> tuple[Array, Array]:
+    """Times (n + 1,) and positions (n + 1, 2), m, of two balls of radius 0.5 m; None: they pass through."""
+    starts = (RigidBodyState.of([x, 0, 0], [v, 0, 0]) for x, v in ((-5.0, 2.0), (5.0, -2.0)))
+    bodies = [Body.sphere(1.0, 0.5, start) for start in starts]
+    surface = Surface(0.0 if restitution is None else restitution)
+    engine = Simulator(
+        bodies, h=0.01, gravity=0.0, ground=None, surface=surface, contacts=restitution is not None
+    )
+    record = engine.run(5.0)
+    return record.t, record.position[:, :, 0]
+
+
+def pair() -> Figure:
+    """Two balls head on: without contact they trade places, with it they part at e times their speed."""
+    figure, (left, right) = new_figure(3.6, 1, 2, sharex=True, sharey=True)
+    t, x = head_on(None)
+    _two(left, t, x, "-")
+    left.set_title("No contact: they change sides")
+    for e, line in ((1.0, "-"), (0.5, "--"), (0.0, ":")):
+        t, x = head_on(e)
+        _two(right, t, x, line)
+        right.text(4.95, x[-1, 1] + 0.25, f"e = {e:g}", ha="right", fontsize=8.5)
+    right.set_title("Contact: they touch and part")
+    note(left, "through\neach other\nat 2.5 s", (2.5, 0.0), (3.4, -1.0), PALETTE["black"])
+    note(right, "touch at\n2.25 s,\n1 m apart", (2.25, -0.5), (0.2, -1.0), PALETTE["black"])
+    for axes in (left, right):
+        axes.text(0.1, -5.9, "ball 1", color=PALETTE["blue"], fontweight="bold", fontsize=8.5)
+        axes.text(0.1, 5.4, "ball 2", color="#B34F00", fontweight="bold", fontsize=8.5)
+        axes.set_xlabel("time (s)")
+    left.set(xlim=(0, 5), ylim=(-6.8, 6.8))
+    left.set_ylabel("position (m)")
+    title(figure, "Both pictures end with the balls far apart; only one has a collision in it")
+    return figure
+
+
+def _two(axes: Axes, t: Array, x: Array, line: str) -> None:
+    for k, color in enumerate((PALETTE["blue"], PALETTE["vermillion"])):
+        axes.plot(t, x[:, k], color=color, linestyle=line)
+
+
+def passed(speed: float, h: float = STEP_S, tries: int = 500) -> float:
+    """Share of starts from which a ball gets past the wall without touching it at any sample."""
+    reach = BALL_M + WALL_M  # from first to last touch, as the centre travels
+    # The centre enters this stretch somewhere within its first step there.
+    first = (np.arange(tries) + 0.5) / tries * speed * h
+    return float(np.mean(first > reach))
+
+
+def tunnelling() -> Figure:
+    """How often a wall is missed, over the speed, for three steps."""
+    figure, (axes,) = new_figure(3.5)
+    speeds = np.linspace(0.05, 24.0, 480)
+    for parts, line, color, aside in (
+        (1, "-", "vermillion", 4),
+        (2, "--", "orange", 4),
+        (4, "-.", "sky", -16),
+    ):
+        h = STEP_S / parts
+        share = [100 * passed(float(v), h) for v in speeds]
+        axes.plot(speeds, share, color=PALETTE[color], linestyle=line, linewidth=2.0)
+        at = 23.6
+        axes.text(at, 100 * passed(at, h) + aside, f"h = {1000 * h:g} ms", ha="right", fontsize=8.5)
+    axes.axhline(0.0, color=PALETTE["blue"], linewidth=2.4)
+    axes.text(
+        1.0, -7.5, "time of impact: never misses", color=PALETTE["blue"], fontweight="bold", fontsize=8.5
+    )
+    limit = (BALL_M + WALL_M) / STEP_S
+    note(axes, f"{limit:g} m/s: one step\nspans wall and ball", (limit, 0.0), (0.6, 32.0), PALETTE["black"])
+    axes.set(xlim=(0, 24), ylim=(-12, 100))
+    axes.set_xlabel("speed of the ball (m/s)")
+    axes.set_ylabel("starts that miss the wall (%)")
+    title(figure, "A check once a step misses a wall that the ball jumps over")
+    return figure
+
+
+def stacks() -> Figure:
+    """The weight that the ground does not carry yet, over the solver's iterations, for four stacks."""
+    figure, (axes,) = new_figure(4.0)
+    looks = (
+        (PALETTE["sky"], ":"),
+        (PALETTE["green"], "-."),
+        (PALETTE["orange"], "--"),
+        (PALETTE["blue"], "-"),
+    )
+    for boxes, (color, line) in zip(STACKS, looks, strict=True):
+        needed = iterations_to(boxes)
+        carried = stack_impulses(boxes, needed + needed // 3)[:, 0] / boxes
+        done = np.arange(1, carried.size)
+        axes.plot(done, 100 * (1 - carried[1:]), color=color, linestyle=line, linewidth=1.8)
+        axes.plot([needed], [1.0], marker="o", color=PALETTE["black"], markersize=5)
+        axes.text(needed * 0.93, 0.72, f"{needed}", ha="right", fontsize=8.5, fontweight="bold")
+    for boxes, x, y in ((2, 1.7, 5.6), (5, 6.6, 12.0), (10, 21.0, 18.0), (20, 68.0, 27.0)):
+        axes.text(x, y, f"{boxes} boxes", fontsize=8.5)
+    axes.axhline(1.0, color=PALETTE["black"], linewidth=0.8)
+    axes.set(xscale="log", yscale="log", xlim=(1, 1100), ylim=(0.4, 110))
+    axes.set_xlabel("iterations of the solver (number)")
+    axes.set_ylabel("weight not yet carried by the ground (%)")
+    title(figure, "Twice as high takes four times as many iterations")
+    return figure
+
+
+# ---
+# Figures of the lesson on contact models: a ball at rest, a bounce at every phase, friction from above.
+
+
+_STEP_S, _G = 0.01, 9.81
+_STIFFNESS, _DAMPING = 1e4, 20.0  # N/m and N s/m under a ball of 1 kg
+#: Where in a step the ball arrives, as shares of it.
+PHASES = (np.arange(80) + 0.5) / 80
+
+
+def rest() -> Figure:
+    """How deep a ball lies in the floor, over time, for four contact models."""
+    figure, (axes,) = new_figure(3.4)
+    erp, cfm = erp_cfm(_STIFFNESS, _DAMPING, _STEP_S)
+    models = (
+        ("penalty spring", Penalty(_STIFFNESS, _DAMPING), "vermillion", "-", 0.125, 1.5),
+        ("ERP and CFM of that spring", Constraint(erp=erp, cfm=cfm), "blue", "--", 0.225, 1.15),
+        ("soft convex (MuJoCo)", SoftConvex(), "green", "-.", 0.245, 0.5),
+        ("constraint", Constraint(), "black", "-", 0.245, 0.09),
+    )
+    for name, model, color, line, x, y in models:
+        gaps, _ = drop(model, 0.0, 0.0, _STEP_S, 40, _G)
+        depth = -1000 * gaps
+        axes.plot(_STEP_S * np.arange(depth.size), depth, color=PALETTE[color], linestyle=line, linewidth=1.8)
+        axes.text(x, y, name, fontsize=8.5, fontweight="bold", color=_INK.get(color, PALETTE[color]))
+    axes.set(xlim=(0, 0.4), ylim=(1.85, -0.1), xticks=[0.0, 0.1, 0.2, 0.3, 0.4])
+    axes.set_xlabel("time since the ball was laid down (s)")
+    axes.set_ylabel("depth in the floor (mm)")
+    title(figure, "How deep a resting ball lies depends on the contact model")
+    return figure
+
+
+_INK = {"vermillion": "#B34F00", "green": "#007A58"}  # dark enough for letters
+
+
+def rebounds(model: Constraint, parts: Array = PHASES, h: float = _STEP_S) -> Array:
+    """First rebounds, as shares of the height, of a ball dropped from 1 m and a fraction of a step more."""
+    tops = []
+    for part in parts:
+        height = 1.0 + float(part) * h * math.sqrt(2 * _G)
+        gaps, speeds = drop(model, height, 0.0, h, round(1.1 / h), _G)
+        tops.append(float(gaps[int(np.argmax(speeds > 0)) :].max()) / height)
+    return np.array(tops)
+
+
+def phases() -> Figure:
+    """The rebound over the phase of the step: exact, looked at once a step, and with correction."""
+    figure, (axes,) = new_figure(3.6)
+    plain, corrected = rebounds(Constraint(0.5)), rebounds(Constraint(0.5, erp=0.2))
+    for values, color, line in ((plain, "blue", "-"), (corrected, "vermillion", "--")):
+        # The tooth's edge is a jump, so no line is drawn across it.
+        broken = np.where(np.abs(np.diff(values, prepend=values[0])) > 0.02, np.nan, values)
+        axes.plot(PHASES, broken, color=PALETTE[color], linestyle=line, linewidth=1.8)
+    axes.axhline(0.25, color=PALETTE["black"], linewidth=1.2)
+    axes.text(0.99, 0.257, "event-driven: 0.25", ha="right", fontsize=8.5, fontweight="bold")
+    axes.text(
+        0.99, 0.188, "once a step, no correction", ha="right", fontsize=8.5, fontweight="bold",
+        color=PALETTE["blue"],
+    )  # fmt: skip
+    axes.text(
+        0.62, 0.43, "ERP 0.2 in the velocity", fontsize=8.5, fontweight="bold", color=_INK["vermillion"]
+    )
+    axes.set(xlim=(-0.01, 1.0), ylim=(0.16, 0.5))
+    axes.set_xlabel("start, in parts of a step's fall (no unit)")
+    axes.set_ylabel("rebound (share of the height)")
+    title(figure, "How high a ball bounces depends on when the engine looks")
+    return figure
+
+
+def cone() -> Figure:
+    """Paths of a sliding block from above, with a friction cone and with two pyramids."""
+    figure, (axes,) = new_figure(4.2)
+    shapes = (
+        ("cone", "cone", "blue", "-", "o"),
+        ("outer", "pyramid around it", "vermillion", "--", "s"),
+        ("inner", "pyramid within it", "green", "-.", "^"),
+    )
+    for degrees in (0, 20, 45, 70, 90):
+        for limit, name, color, line, mark in shapes:
+            path = slide_across(math.radians(degrees), 2.0, 0.3, 0.001, limit=limit)
+            label = name if degrees == 20 else None
+            axes.plot(*path.T, color=PALETTE[color], linestyle=line, linewidth=1.8, label=label)
+            axes.plot(*path[-1], color=PALETTE[color], marker=mark, markersize=5)
+    turn = np.radians(np.arange(91))
+    reach = 2.0**2 / (2 * 0.3 * _G)
+    axes.plot(reach * np.cos(turn), reach * np.sin(turn), color=PALETTE["grey"], linewidth=0.8)
+    axes.text(0.70, 0.14, "v² / (2 μ g)", fontsize=8.5, color=PALETTE["grey"])
+    axes.set(xlim=(-0.03, 1.15), ylim=(-0.03, 0.74), aspect="equal")
+    axes.legend(loc="upper right", handlelength=3.0, title="friction by a")
+    axes.set_xlabel("x, an axis of the pyramid (m)")
+    axes.set_ylabel("y (m)")
+    title(figure, "Along its diagonal a friction pyramid is too strong or too weak")
+    return figure
+
+
+# ---
+# Figure of the lesson on how an engine works: a free body that turns over, and three ways to follow it.
+
+
+#: What the figure shows and the lesson quotes: kg m², rad/s in the body's axes, s.
+INERTIA = (1.0, 2.0, 3.0)
+SPIN = (0.01, 5.0, 0.01)
+WORLD_STEP_S, DURATION_S = 0.01, 20.0
+
+
+def free_spin(method: str) -> tuple[Array, Array, Array]:
+    """Times (n + 1,), angular velocities (n + 1, 3) and quaternion lengths (n + 1,) of a free body."""
+    n = round(DURATION_S / WORLD_STEP_S)
+    t = np.linspace(0.0, n * WORLD_STEP_S, n + 1)
+    inertia, no_torque = np.array(INERTIA), np.zeros(3)
+    spin = Spin(np.array([1.0, 0.0, 0.0, 0.0]), np.array(SPIN))
+    spins, lengths = [spin.angular_velocity], [1.0]
+    for _ in range(n):
+        spin = ROTATION_STEPPERS[method].advance(inertia, spin, no_torque, WORLD_STEP_S)
+        spins.append(spin.angular_velocity)
+        lengths.append(float(np.linalg.norm(spin.orientation)))
+    return t, np.array(spins), np.array(lengths)
+
+
+def turning_over() -> Figure:
+    """Angular velocity about the three axes, and the energy by three methods."""
+    figure, (above, below) = new_figure(5.0, 2, 1, sharex=True)
+    figure.subplots_adjust(hspace=0.26)
+    t, w, _ = free_spin("split")
+    # The second axis tells the story; the other two only lend it their energy.
+    looks = ((PALETTE["sky"], ":", 1.4), (PALETTE["blue"], "-", 2.0), (PALETTE["purple"], "--", 1.2))
+    for k, (color, line, width) in enumerate(looks):
+        above.plot(t, w[:, k], color=color, linestyle=line, linewidth=width)
+    above.axhline(0.0, color=PALETTE["black"], linewidth=0.8)
+    above.set_title("No torque, and yet the body flips over")
+    above.set_ylabel("angular velocity (rad/s)")
+    above.set(xlim=(0, DURATION_S), ylim=(-7.4, 7.4))
+    above.text(0.25, 5.7, "about the middle axis", color=PALETTE["blue"], fontweight="bold", fontsize=8.5)
+    flip = int(np.flatnonzero(np.diff(np.sign(w[:, 1])))[0])
+    note(above, "flips over", (float(t[flip]), 0.0), (4.0, 2.9), PALETTE["black"])
+    late = flip + 35
+    note(above, "the other two", (float(t[late]), w[late, 0]), (4.0, -2.9), PALETTE["black"])
+    for method in ("explicit_euler", "rk4", "split"):
+        _, spins, _ = free_spin(method)
+        gained = 100 * (kinetic_energy(INERTIA, spins) / kinetic_energy(INERTIA, spins[0]) - 1)
+        look = METHODS.get(method, METHODS["velocity_verlet"])
+        below.plot(t, gained, color=look.color, linestyle=look.line)
+        if method == "explicit_euler":
+            below.text(9.2, 15.5, look.name, color=look.ink, fontweight="bold", ha="right")
+            below.text(19.8, gained[-1] + 1.5, f"+{gained[-1]:.0f} %", color=look.ink, ha="right")
+    below.text(
+        19.8, 1.6, "Runge-Kutta 4 and split rotations", color=METHODS["velocity_verlet"].ink,
+        fontweight="bold", ha="right",
+    )  # fmt: skip
+    below.set_title("Only explicit Euler adds energy")
+    below.set(ylim=(-3, 34), xticks=range(0, 21, 5))
+    below.set_ylabel("energy gained (%)")
+    below.set_xlabel("time (s)")
+    title(figure, "A free body flips over by itself, and explicit Euler adds energy each time")
+    return figure

@@ -1,1 +1,0 @@
-"""Building the course's notebooks, cell by cell, and merging a newer notebook with an older one."""

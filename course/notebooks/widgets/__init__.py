@@ -1,1 +1,0 @@
-"""Live widgets in a cell: the sandbox, a prediction, the quiz. Only these modules import anywidget."""

@@ -1,0 +1,587 @@
+"""A scene as an SDF world, which Gazebo Sim reads.
+
+Free bodies slide on rails and turn on a hinge, so that they stay in the plane; bodies connected by joints are
+links of one model, and each other body is its own model. SDF has restitution and friction for each surface,
+and the physics engine combines those of a pair. ``gazebo_start.py``, which must be in the world's folder,
+sets the velocities at the start.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+from course.errors import UsageError
+from course.sandbox.scene.loading import Chosen
+from course.sandbox.scene.model import Joint, Part, layout
+
+# ---
+# Shared by all exports: the plane becomes a vertical slice of space, and bodies get a depth.
+#
+# x stays x, y becomes z (up), and y, the third dimension, is held or left alone.
+
+
+#: Half the depth of every body, in m, because bodies that are flat here need a depth there.
+DEPTH = 0.05
+#: Replaces an infinite moment of inertia, as a multiple of the mass, in m².
+_NEVER_TURNS = 1e6
+
+
+def checked_parts(chosen: Chosen, target: str) -> tuple[Part, ...]:
+    """The bodies of a scene, if another engine can create all of them at the start.
+
+    Raises:
+        UsageError: some appear only later, or are driven by wheels.
+    """
+    parts = layout(chosen.scene)
+    for part in parts:
+        problem = "lets bodies in one by one" if part.appears else "drives on wheels" if part.wheels else ""
+        if problem:
+            raise UsageError(
+                f"{chosen.scene.id} {problem}, and {target} describes only how a world begins.",
+                help="Export another scene, or a copy of this one without that.",
+                code="cannot_export",
+            )
+    return parts
+
+
+def gravity_of(chosen: Chosen) -> tuple[float, float]:
+    """Gravity in the plane, in m/s², with the setting if there is one."""
+    gx, gy = chosen.scene.gravity
+    size = math.hypot(gx, gy)
+    wanted = chosen.settings.get("gravity", size)
+    return (gx * wanted / size, gy * wanted / size) if size else (0.0, -wanted)
+
+
+def surface_of(chosen: Chosen, part: Part) -> tuple[float, float]:
+    """Restitution and friction of a body, with the settings if there are any."""
+    if part.fixed:
+        return part.restitution, part.friction
+    settings = chosen.settings
+    return settings.get("restitution", part.restitution), settings.get("friction", part.friction)
+
+
+def moment_3d(part: Part) -> tuple[float, float, float]:
+    """Moments about x, about the axis out of the plane, and about z; in kg m².
+
+    Only the middle one acts in the plane. Engines insist that none is larger than the other two together,
+    which these never are.
+    """
+    turning = part.moment if math.isfinite(part.moment) else _NEVER_TURNS * part.mass
+    across = turning / 2 + part.mass * DEPTH**2 / 3
+    return across, turning, across
+
+
+def number(value: float) -> str:
+    """A float in the fewest digits that read back as the same float."""
+    value = float(value) + 0.0  # no minus zero
+    return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+
+
+# ---
+# How bodies are constrained in an SDF world: by rails that keep them in the plane, or by the scene's joints.
+#
+# Gazebo's engine builds a model as a tree: each link is the child of one joint (gz-physics issue 25). So a
+# body that nothing holds slides on two rails, along x and along z, and turns on the second; what hangs from
+# it, or from the world, hangs by hinges, and a rod is a light link between two of them.
+
+
+#: Mass of a rail and of a rod, as shares of what they carry: the motion changes by as much at most, and a
+#: double still has ten digits of the sum.
+_RAIL, _ROD = 1e-6, 1e-3
+
+
+@dataclass(frozen=True, slots=True)
+class LightLink:
+    """An auxiliary link: a rail or a rod.
+
+    Attributes:
+        x, z, pitch: of its middle, m and rad.
+        mass, moment: kg, and kg m² about each axis.
+    """
+
+    name: str
+    x: float
+    z: float
+    pitch: float
+    mass: float
+    moment: float
+
+
+@dataclass(frozen=True, slots=True)
+class SdfJoint:
+    """One joint of SDF.
+
+    Attributes:
+        kind: prismatic or revolute.
+        parent, child: links of the model; the parent may be "world".
+        axis: in the model's frame.
+        place: of the joint in the child's frame, (x, z), m.
+        speed: at the start, m/s or rad/s.
+    """
+
+    name: str
+    kind: str
+    parent: str
+    child: str
+    axis: tuple[int, int, int]
+    place: tuple[float, float] = (0.0, 0.0)
+    speed: float = 0.0
+
+
+@dataclass(slots=True)
+class Assembly:
+    """One model: bodies connected by joints, with those joints and their auxiliary links."""
+
+    bodies: list[Part] = field(default_factory=list)
+    light: list[LightLink] = field(default_factory=list)
+    held: list[SdfJoint] = field(default_factory=list)
+
+
+def assemblies(parts: Sequence[Part], joints: Sequence[Joint]) -> Iterator[Assembly]:
+    """The movable bodies of a scene as models, one for each connected group, in the scene's order.
+
+    Raises:
+        UsageError: joints close a chain.
+    """
+    by_name = {part.name: part for part in parts}
+    left = dict.fromkeys(part.name for part in parts if not part.fixed)
+    unused = list(joints)
+    while left:
+        made = Assembly()
+        root = next(iter(left))
+        for joint in unused:  # a group that hangs from the world begins where it does
+            free = [name for name in (joint.a, joint.b) if name in left]
+            if len(free) == 1 and _connected(root, free[0], unused, by_name):
+                root = free[0]
+                unused.remove(joint)
+                _hang(made, joint, by_name, by_name[root])
+                break
+        else:
+            _on_rails(made, by_name[root])
+        del left[root]
+        queue = [root]
+        while queue:
+            at = queue.pop(0)
+            for joint in [joint for joint in unused if at in (joint.a, joint.b)]:
+                unused.remove(joint)
+                other = joint.b if joint.a == at else joint.a
+                if other not in left:
+                    raise UsageError(
+                        f"The joint of {joint.a} and {joint.b} closes a chain; Gazebo holds only trees.",
+                        help="Export the scene with --format mjcf, or a copy of it without that joint.",
+                        code="cannot_export",
+                    )
+                _hang(made, joint, by_name, by_name[other])
+                del left[other]
+                queue.append(other)
+        yield made
+
+
+def _connected(a: str, b: str, joints: Sequence[Joint], parts: dict[str, Part]) -> bool:
+    """Whether joints lead from one movable body to another without passing through a fixed one."""
+    seen, queue = {a}, [a]
+    while queue:
+        at = queue.pop()
+        for joint in joints:
+            if at in (joint.a, joint.b):
+                other = joint.b if joint.a == at else joint.a
+                if other not in seen and not parts[other].fixed:
+                    seen.add(other)
+                    queue.append(other)
+    return b in seen
+
+
+def _on_rails(made: Assembly, body: Part) -> None:
+    """Hold a body in the plane: two slides and, unless it must not turn, a hinge."""
+    made.bodies.append(body)
+    mass = _RAIL * body.mass
+    turns = math.isfinite(body.moment)
+    names = [f"{body.name}-rail-x", f"{body.name}-rail-z"] if turns else [f"{body.name}-rail-x"]
+    made.light += [LightLink(name, body.x, body.y, 0.0, mass, mass * DEPTH**2) for name in names]
+    chain = ["world", *names, body.name]
+    joints = [("x", "prismatic", (1, 0, 0), body.vx), ("z", "prismatic", (0, 0, 1), body.vy)]
+    if turns:
+        joints.append(("turn", "revolute", (0, -1, 0), body.spin))
+    made.held += [
+        SdfJoint(f"{body.name}-{name}", kind, parent, child, axis, speed=speed)
+        for (name, kind, axis, speed), parent, child in zip(joints, chain, chain[1:], strict=False)
+    ]
+
+
+def _hang(made: Assembly, joint: Joint, parts: dict[str, Part], body: Part) -> None:
+    """Hang a body from a joint's other body, which is fixed or in the model already."""
+    made.bodies.append(body)
+    on_a = joint.a == body.name
+    other = parts[joint.b if on_a else joint.a]
+    near, far = (joint.anchor_a, joint.anchor_b) if on_a else (joint.anchor_b, joint.anchor_a)
+    parent, rate = ("world", 0.0) if other.fixed else (other.name, other.spin)
+    name, turn = f"{other.name}-{body.name}", (0, -1, 0)
+    if joint.kind == "pivot":
+        made.held.append(SdfJoint(name, "revolute", parent, body.name, turn, near, body.spin - rate))
+        return
+    (ax, az), (avx, avz) = _point(other, far)
+    (bx, bz), (bvx, bvz) = _point(body, near)
+    dx, dz = bx - ax, bz - az
+    length = math.hypot(dx, dz)
+    swing = (dx * (bvz - avz) - dz * (bvx - avx)) / length**2
+    mass = _ROD * body.mass
+    rod = f"rod-{name}"
+    made.light.append(
+        LightLink(rod, (ax + bx) / 2, (az + bz) / 2, math.atan2(dx, dz), mass, mass * length**2 / 12)
+    )
+    made.held += [
+        SdfJoint(f"{rod}-top", "revolute", parent, rod, turn, (0.0, -length / 2), swing - rate),
+        SdfJoint(f"{rod}-end", "revolute", rod, body.name, turn, near, body.spin - swing),
+    ]
+
+
+def _point(part: Part, anchor: tuple[float, float]) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Where a point of a body is at the start, m, and how fast it moves, m/s."""
+    c, s = math.cos(part.angle), math.sin(part.angle)
+    rx, rz = c * anchor[0] - s * anchor[1], s * anchor[0] + c * anchor[1]
+    return (part.x + rx, part.y + rz), (part.vx - part.spin * rz, part.vy + part.spin * rx)
+
+
+# ---
+
+
+VERSION = "1.9"
+#: The file that gives a world its velocities at the start.
+START = "gazebo_start.py"
+_NOTE = " Written by `course sandbox export`. A plane in space: x is x, z is up, y is held. "
+_NOTE_START = (
+    f" Velocities at the start are set by {START}, which Gazebo finds by GZ_SIM_SYSTEM_PLUGIN_PATH. "
+)
+#: The systems that Gazebo Sim loads when a world names none; a world that names one has to name them all.
+_SYSTEMS = (
+    ("physics", "Physics"),
+    ("user-commands", "UserCommands"),
+    ("scene-broadcaster", "SceneBroadcaster"),
+)
+
+
+def sdf(chosen: Chosen) -> bytes:
+    """The scene as an SDF file.
+
+    Raises:
+        UsageError: it holds something that has no counterpart.
+    """
+    scene = chosen.scene
+    parts = checked_parts(chosen, "SDF")
+    models = list(assemblies(parts, scene.joint))
+    root = ET.Element("sdf", version=VERSION)
+    root.append(ET.Comment(_NOTE))
+    if any(_moves(model) for model in models):
+        root.append(ET.Comment(_NOTE_START))
+    world = ET.SubElement(root, "world", name=scene.id)
+    # Gazebo Sim takes its engine from a plugin, not from this type, which SDF wants to be there.
+    physics = ET.SubElement(world, "physics", name="fixed-step", type="ignored")
+    _text(physics, "max_step_size", number(chosen.settings.get("step", scene.step)))
+    _text(physics, "real_time_factor", "1")
+    for file, name in _SYSTEMS:
+        _plugin(world, file, name)
+    gx, gy = gravity_of(chosen)
+    _text(world, "gravity", f"{number(gx)} 0 {number(gy)}")
+    _add_light(world)
+    for part in parts:
+        if part.fixed:
+            model = ET.SubElement(world, "model", name=part.name)
+            _text(model, "static", "true")
+            _add_link(model, chosen, part)
+    for assembly in models:
+        _add_assembly(world, chosen, assembly)
+    ET.indent(root)
+    data: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    return data + b"\n"
+
+
+def start_script(world: bytes) -> bytes | None:
+    """The content of ``START``, a file beside the world; None if all its bodies start at rest."""
+    if START.encode() not in world:
+        return None
+    return Path(__file__).with_name(START).read_bytes()
+
+
+def _moves(assembly: Assembly) -> bool:
+    return any(held.speed for held in assembly.held)
+
+
+def _plugin(parent: ET.Element, file: str, name: str) -> ET.Element:
+    return ET.SubElement(parent, "plugin", filename=f"gz-sim-{file}-system", name=f"gz::sim::systems::{name}")
+
+
+def _add_light(world: ET.Element) -> None:
+    light = ET.SubElement(world, "light", name="sun", type="directional")
+    for tag, text in (
+        ("cast_shadows", "true"),
+        ("pose", "0 -10 10 0 0 0"),
+        ("diffuse", "0.9 0.9 0.9 1"),
+        ("specular", "0.2 0.2 0.2 1"),
+        ("direction", "0.3 0.7 -0.6"),
+    ):
+        _text(light, tag, text)
+
+
+def _add_assembly(world: ET.Element, chosen: Chosen, assembly: Assembly) -> None:
+    """A model whose links stand where their bodies do, the joints that hold them, and their velocities."""
+    model = ET.SubElement(world, "model", name=assembly.bodies[0].name)
+    if len(assembly.bodies) > 1:
+        _text(model, "self_collide", "true")
+    for light in assembly.light:
+        _add_light_link(model, light)
+    for part in assembly.bodies:
+        _add_link(model, chosen, part)
+    for held in assembly.held:
+        _add_joint(model, held)
+    if _moves(assembly):
+        plugin = _plugin(model, "python-system-loader", "PythonSystemLoader")
+        _text(plugin, "module_name", START.removesuffix(".py"))
+        moving = [held for held in assembly.held if held.speed]
+        _text(plugin, "joints", " ".join(held.name for held in moving))
+        for held in moving:
+            _text(plugin, held.name, number(held.speed))
+
+
+def _add_light_link(model: ET.Element, light: LightLink) -> None:
+    link = ET.SubElement(model, "link", name=light.name)
+    _text(link, "pose", f"{number(light.x)} 0 {number(light.z)} 0 {number(light.pitch)} 0")
+    _add_inertial(link, light.mass, (light.moment,) * 3)
+
+
+def _add_inertial(link: ET.Element, mass: float, moments: tuple[float, float, float]) -> None:
+    inertial = ET.SubElement(link, "inertial")
+    _text(inertial, "mass", number(mass))
+    inertia = ET.SubElement(inertial, "inertia")
+    for tag, moment in zip(("ixx", "iyy", "izz"), moments, strict=True):
+        _text(inertia, tag, number(moment))
+    for tag in ("ixy", "ixz", "iyz"):
+        _text(inertia, tag, "0")
+
+
+def _add_joint(model: ET.Element, held: SdfJoint) -> None:
+    joint = ET.SubElement(model, "joint", name=held.name, type=held.kind)
+    _text(joint, "pose", f"{number(held.place[0])} 0 {number(held.place[1])} 0 0 0")
+    _text(joint, "parent", held.parent)
+    _text(joint, "child", held.child)
+    axis = ET.SubElement(joint, "axis")
+    _text(axis, "xyz", " ".join(map(str, held.axis))).set("expressed_in", "__model__")
+    limit = ET.SubElement(axis, "limit")
+    _text(limit, "lower", "-1e16")  # SDF's own way to say that there is none
+    _text(limit, "upper", "1e16")
+
+
+def _text(parent: ET.Element, tag: str, text: str) -> ET.Element:
+    element = ET.SubElement(parent, tag)
+    element.text = text
+    return element
+
+
+def _pose(part: Part) -> str:
+    # Counter-clockwise, seen with x to the right and z up, is a turn about -y.
+    return f"{number(part.x)} 0 {number(part.y)} 0 {number(-part.angle)} 0"
+
+
+def _add_link(model: ET.Element, chosen: Chosen, part: Part) -> None:
+    link = ET.SubElement(model, "link", name=part.name)
+    _text(link, "pose", _pose(part))
+    if not part.fixed:
+        _add_inertial(link, part.mass, moment_3d(part))
+    restitution, friction = surface_of(chosen, part)
+    for kind in ("collision", "visual"):
+        element = ET.SubElement(link, kind, name=f"{part.name}-{kind}")
+        if part.shape == "segment":
+            (ax, ay), (bx, by) = part.outline
+            tilt = math.atan2(bx - ax, by - ay)
+            _text(element, "pose", f"{number((ax + bx) / 2)} 0 {number((ay + by) / 2)} 0 {number(tilt)} 0")
+        elif part.shape == "polygon" and part.size is None:
+            # An outline is drawn in x and y and raised along z; here it has to lie in x and z.
+            _text(element, "pose", f"0 {number(DEPTH)} 0 {number(math.pi / 2)} 0 0")
+        _add_geometry(ET.SubElement(element, "geometry"), part)
+        if kind == "collision":
+            surface = ET.SubElement(element, "surface")
+            _text(ET.SubElement(surface, "bounce"), "restitution_coefficient", number(restitution))
+            ode = ET.SubElement(ET.SubElement(surface, "friction"), "ode")
+            _text(ode, "mu", number(friction))
+            _text(ode, "mu2", number(friction))
+        else:
+            colour = " ".join(f"{int(part.colour[i : i + 2], 16) / 255:.3f}" for i in (1, 3, 5)) + " 1"
+            material = ET.SubElement(element, "material")
+            _text(material, "ambient", colour)
+            _text(material, "diffuse", colour)
+
+
+def _add_geometry(geometry: ET.Element, part: Part) -> None:
+    if part.shape == "circle":
+        _text(ET.SubElement(geometry, "sphere"), "radius", number(part.radius))
+    elif part.shape == "segment":
+        (ax, ay), (bx, by) = part.outline
+        capsule = ET.SubElement(geometry, "capsule")
+        _text(capsule, "radius", number(part.radius))
+        _text(capsule, "length", number(math.hypot(bx - ax, by - ay)))
+    elif part.size is not None:
+        size = f"{number(part.size[0])} {number(2 * DEPTH)} {number(part.size[1])}"
+        _text(ET.SubElement(geometry, "box"), "size", size)
+    else:
+        polyline = ET.SubElement(geometry, "polyline")
+        for x, y in (*part.outline, part.outline[0]):
+            _text(polyline, "point", f"{number(x)} {number(y)}")
+        _text(polyline, "height", number(2 * DEPTH))
+
+
+# ---
+# A scene as MJCF, MuJoCo's own format.
+#
+# Each movable body gets two slides and a hinge, which make a plane. MuJoCo has no coefficient of restitution:
+# its contacts are springs with damping, and the damping is chosen so that one contact of two bodies rebounds
+# as the scene says. It takes the larger friction of a pair where this engine multiplies, so every pair that
+# can touch is listed with its own numbers.
+
+
+_MJCF_NOTE = (
+    " Written by `course sandbox export`. A plane in space: x is x, z is up, y is held. Velocities at the"
+    " start are in the key frame `start`: load it with mj_resetDataKeyframe. "
+)
+#: Frequency of a contact's spring times the step: a contact lasts a dozen steps, which suits MuJoCo's solver.
+_STIFF = 0.25
+#: The weight of the spring against the solver in a contact; close to 1 is rigid.
+_IMPEDANCE = "0.999 0.999 0.001"
+_MOST_PAIRS = 5000
+
+
+def mjcf(chosen: Chosen) -> bytes:
+    """The scene as an MJCF file.
+
+    Raises:
+        UsageError: it holds something that has no counterpart, or too many pairs of bodies.
+    """
+    scene = chosen.scene
+    parts = checked_parts(chosen, "MJCF")
+    step = chosen.settings.get("step", scene.step)
+    gx, gy = gravity_of(chosen)
+    root = ET.Element("mujoco", model=scene.id)
+    root.append(ET.Comment(_MJCF_NOTE))
+    ET.SubElement(root, "compiler", angle="radian", autolimits="true", inertiafromgeom="false")
+    ET.SubElement(
+        root, "option", timestep=number(step), gravity=f"{number(gx)} 0 {number(gy)}", cone="elliptic"
+    )
+    assets = ET.SubElement(root, "asset")
+    world = ET.SubElement(root, "worldbody")
+    bodies = {part.name: _add_body(world, assets, part) for part in parts}
+    if scene.floor is not None:
+        world.append(ET.Comment(" Seen from above: the floor's friction has no counterpart, bodies glide. "))
+    _add_pairs(root, chosen, parts, step)
+    _add_joints(root, bodies, scene.joint)
+    _add_start(root, parts)
+    ET.indent(root)
+    data: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    return data + b"\n"
+
+
+def damping_ratio(restitution: float) -> float:
+    """The damping of a spring that returns a mass with this fraction of its speed, 0 to 1.
+
+    Half a period of a damped spring leaves exp(-pi zeta / sqrt(1 - zeta²)) of the speed; solved for zeta.
+    Source: Nagurka and Huang, "A mass-spring-damper model of a bouncing ball", 2004.
+    """
+    if restitution <= 0.0:
+        return 1.0
+    log = math.log(min(restitution, 1.0))
+    return -log / math.hypot(math.pi, log)
+
+
+def _add_body(world: ET.Element, assets: ET.Element, part: Part) -> ET.Element:
+    body = ET.SubElement(world, "body", name=part.name, pos=f"{number(part.x)} 0 {number(part.y)}")
+    # Counter-clockwise, seen with x to the right and z up, is a turn about -y.
+    body.set("axisangle", f"0 -1 0 {number(part.angle)}")
+    if not part.fixed:
+        # Slides go along the world's axes, which in the body's frame are turned back.
+        c, s = math.cos(part.angle), math.sin(part.angle)
+        for axis, (ax, az) in (("x", (c, -s)), ("z", (s, c))):
+            slide = ET.SubElement(body, "joint", name=f"{part.name}-{axis}", type="slide")
+            slide.set("axis", f"{number(ax)} 0 {number(az)}")
+        if math.isfinite(part.moment):
+            ET.SubElement(body, "joint", name=f"{part.name}-turn", type="hinge", axis="0 -1 0")
+        moments = " ".join(number(moment) for moment in moment_3d(part))
+        ET.SubElement(body, "inertial", pos="0 0 0", mass=number(part.mass), diaginertia=moments)
+    geom = ET.SubElement(body, "geom", name=part.name, contype="0", conaffinity="0", rgba=_rgba(part.colour))
+    if part.shape == "circle":
+        # In the plane a sphere is a disc, and spheres touch in one point.
+        geom.attrib |= {"type": "sphere", "size": number(part.radius)}
+    elif part.shape == "segment":
+        (ax, ay), (bx, by) = part.outline
+        ends = " ".join(map(number, (ax, 0.0, ay, bx, 0.0, by)))
+        geom.attrib |= {"type": "capsule", "size": number(part.radius), "fromto": ends}
+    elif part.size is not None:
+        size = " ".join(map(number, (part.size[0] / 2, DEPTH, part.size[1] / 2)))
+        geom.attrib |= {"type": "box", "size": size}
+    else:
+        corners = [(x, y, z) for y in (-DEPTH, DEPTH) for x, z in part.outline]
+        vertices = " ".join(number(value) for corner in corners for value in corner)
+        ET.SubElement(assets, "mesh", name=part.name, vertex=vertices)
+        geom.attrib |= {"type": "mesh", "mesh": part.name}
+    return body
+
+
+def _add_pairs(root: ET.Element, chosen: Chosen, parts: tuple[Part, ...], step: float) -> None:
+    """Every pair that can touch, with the products of their restitution and friction."""
+    apart = {frozenset((joint.a, joint.b)) for joint in chosen.scene.joint if not joint.touch}
+    pairs = [
+        (a, b)
+        for a, b in itertools.combinations(parts, 2)
+        if not (a.fixed and b.fixed) and frozenset((a.name, b.name)) not in apart
+    ]
+    if len(pairs) > _MOST_PAIRS:
+        raise UsageError(
+            f"{chosen.scene.id} has {len(pairs)} pairs that may touch; an export holds {_MOST_PAIRS}.",
+            help="Export a scene with fewer bodies.",
+            code="cannot_export",
+        )
+    contact = ET.SubElement(root, "contact")
+    frequency = _STIFF / step
+    for a, b in pairs:
+        (e_a, mu_a), (e_b, mu_b) = surface_of(chosen, a), surface_of(chosen, b)
+        sliding = max(mu_a * mu_b, 1e-5)  # zero is refused
+        pair = ET.SubElement(contact, "pair", geom1=a.name, geom2=b.name, condim="3")
+        pair.set("friction", f"{number(sliding)} {number(sliding)} 0.005 0.0001 0.0001")
+        # Written with a minus sign: stiffness and damping themselves, per unit of mass.
+        damping = 2.0 * damping_ratio(e_a * e_b) * frequency
+        pair.set("solref", f"{number(-frequency * frequency)} {number(-max(damping, 1e-9))}")
+        pair.set("solimp", _IMPEDANCE)
+
+
+def _add_joints(root: ET.Element, bodies: dict[str, ET.Element], joints: tuple[Joint, ...]) -> None:
+    """Rods are tendons that keep their length, pivots are connections."""
+    if not joints:
+        return
+    tendons, equality = ET.SubElement(root, "tendon"), ET.SubElement(root, "equality")
+    for i, joint in enumerate(joints, 1):
+        if joint.kind == "pivot":
+            place = f"{number(joint.anchor_a[0])} 0 {number(joint.anchor_a[1])}"
+            ET.SubElement(equality, "connect", body1=joint.a, body2=joint.b, anchor=place)
+            continue
+        rod = ET.SubElement(tendons, "spatial", name=f"rod-{i}", width="0.005")
+        for side, name, anchor in (("a", joint.a, joint.anchor_a), ("b", joint.b, joint.anchor_b)):
+            site = f"rod-{i}-{side}"
+            place = f"{number(anchor[0])} 0 {number(anchor[1])}"
+            ET.SubElement(bodies[name], "site", name=site, pos=place, size="0.005")
+            ET.SubElement(rod, "site", site=site)
+        ET.SubElement(equality, "tendon", tendon1=f"rod-{i}", solref="0.005 1", solimp="0.99 0.999 0.001")
+
+
+def _add_start(root: ET.Element, parts: tuple[Part, ...]) -> None:
+    """Velocities at the start."""
+    speeds: list[float] = []
+    for part in parts:
+        if not part.fixed:
+            speeds += [part.vx, part.vy, *([part.spin] if math.isfinite(part.moment) else [])]
+    frame = ET.SubElement(ET.SubElement(root, "keyframe"), "key", name="start")
+    frame.set("qvel", " ".join(map(number, speeds)))
+
+
+def _rgba(colour: str) -> str:
+    return " ".join(f"{int(colour[i : i + 2], 16) / 255:.3f}" for i in (1, 3, 5)) + " 1"

@@ -1,9 +1,10 @@
 """Real physics engines, run on the reader's own machine.
 
-base.py        scenes, worlds, what an adapter is; adapters/ has one for each engine, options/ what can be set
-settings.py    the two kinds of settings of an engine, and what was chosen
-registry.py    which engines there are, and which of them are installed
-scenarios.py   small tests whose right answer is known
-worker.py      the process that an engine runs in; process.py starts it and waits with a deadline
-compare.py     puts engines through scenarios; cache.py remembers, reference.json ships one measurement
+base        scenes, worlds, an engine's settings, and what an adapter is; adapters has one for each engine
+registry    which engines there are, and which of them are installed
+scenarios   small tests whose right answer is known
+process     starts an engine in a process of its own (worker) and waits with a deadline
+compare     puts engines through scenarios; results keeps what they gave, and for how long it is true
+findings    what follows from the results, in words
+reference   one measurement that comes with the course
 """

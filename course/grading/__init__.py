@@ -6,7 +6,7 @@ gradebook   the record of a run
 results     what counts: rosters, times, lateness, overrides
 exports     files for other programs, and pages for people
 container   the same graders in Gradescope
-similar     submissions that are alike
+similar     submissions that are alike, and the page that shows them
 quiz        the quiz records of a submission, scored again
 cluster     the same run on many machines (optional)
 kit         the name under which checks import ``course.scoring.kit``

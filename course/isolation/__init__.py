@@ -1,10 +1,10 @@
 """Where a student's code runs, at the best protection level this machine has, and what crosses the boundary.
 
-levels                              the promises of each level, and the interface of every kind of worker
-probe                               what this machine can enforce, found by trying
-keeping                             sandboxes that one session takes over from another
-spawn, forked, plain, launch, view  starting a worker; the part of the file system that it sees
-session, deadline                   calls to a worker, each with its time limit
-reports, failures                   what came back, read as untrusted data
-inside                              what runs in the student's process
+levels     the promises of each level, and the interface of every kind of worker
+probe      what this machine can enforce, found by trying, and sandboxes that one session hands to another
+spawn      starting a worker: forked in a sandbox, or plain
+launch     its files, its command, the part of the file system that it sees, and cleaning up
+session    calls to a worker; deadline has the time limit of each
+failures   what came back, read as untrusted data
+inside     what runs in the student's process
 """

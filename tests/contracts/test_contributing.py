@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import re
 import shutil
 import textwrap
@@ -144,8 +143,3 @@ def test_every_name_of_the_kit_is_on_the_page() -> None:
         "Section",
     }
     assert set(kit.__all__) - set(re.findall(r"kit\.(\w+)", code)) <= told | types
-
-
-def test_every_package_says_what_it_is_for() -> None:
-    faces = [path.read_text("utf-8") for path in (ROOT / "course").rglob("__init__.py")]
-    assert all(ast.get_docstring(ast.parse(text)) for text in faces)

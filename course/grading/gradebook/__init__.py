@@ -3,7 +3,5 @@
 file      its format, its lock, its seal, and SQLite's errors as sentences
 book      reading from it and writing to it
 records   its content, as types
-backup    its copies
-pages     rows of a damaged file, read without SQLite
-salvage   a new gradebook from the intact rows of a damaged one
+salvage   its copies, and a new gradebook from the intact rows of a damaged one
 """

@@ -1,7 +1,6 @@
 """Contact between rigid bodies: where it occurs, what it does, and the models that engines use.
 
-geometry  how far apart things are, in which direction, and what their surfaces are like
-pairs     which bodies may touch and when they meet, for all pairs at once
+pairs     which bodies may touch, when they meet, how far apart they are and in which direction
 impulses  what all contacts do to the bodies at once
 models    a ball on a floor in one dimension, under the contact models of engines
 """

@@ -1,5 +1,4 @@
 """The checks of an exercise as pytest has them, collected once for a session.
 
-plugin, collected  their markers, and running one
-companions         the modules that the checks of an exercise share
+plugin, collected  their markers, running one, and the modules that the checks of an exercise share
 """

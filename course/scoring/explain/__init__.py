@@ -2,9 +2,9 @@
 
 If a task returns wrong values, its function is called with the questions of the exercise: a few fixed calls,
 the same at home and in a grading run. The answers are compared with those of each known wrong program
-(``table``). If one of these programs gives the same answers, it decides the diagnosis. If none does, the
-probes of the single checks decide, and of several probes the one that the others do not contradict
-(``story``). The words are data (``words``).
+(``story``). If one of these programs gives the same answers, it decides the diagnosis. If none does, the
+probes of the single checks decide, and of several probes the one that the others do not contradict.
+The words are data.
 """
 
 from course.scoring.explain.fingerprint import Answers, fingerprint

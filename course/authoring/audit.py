@@ -110,9 +110,6 @@ def _audit_question(catalog: Catalog, document: Document[Question], findings: Fi
         findings.add(document.path, fault.line, "quiz", fault.message, fault.fix)
 
 
-# ---
-
-
 @dataclass(frozen=True, slots=True)
 class _Candidate:
     """An exercise whose files are in order, ready to be graded."""

@@ -299,9 +299,6 @@ def _check_id(
         document.fail(where, error.message, fix=error.help)
 
 
-# ---
-
-
 #: A number of an exercise or a lesson has fewer digits than this.
 _DIGITS = 5
 

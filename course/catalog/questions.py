@@ -129,9 +129,6 @@ def _value(node: ast.expr, given: Mapping[str, float]) -> float:
     raise FormulaError("it is not arithmetic")
 
 
-# ---
-
-
 #: Options of every question. Five questions of four options are passed by guessing in 1.6 % of attempts.
 OPTIONS = 4
 #: Cases of one variant; more would only make proving it slow.

@@ -193,9 +193,6 @@ def _skip(text: str, position: int) -> int:
     return match.end() if match else position
 
 
-# ---
-
-
 T = TypeVar("T")
 
 _AT = re.compile(r" - at (?:key in )?`(?P<path>\$[^`]*)`$")

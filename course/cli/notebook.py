@@ -196,9 +196,6 @@ def put(folder: Path, notebook: Generated, *, update: bool = True) -> NotebookFi
     return said(action=action, backup=write(path, data, why="notebook").backup)
 
 
-# ---
-
-
 app = typer.Typer(
     help="Get lessons and exercises as Jupyter notebooks.",
     no_args_is_help=True,

@@ -135,9 +135,6 @@ class SimAll(Envelope, tag="course.sim-all/1", frozen=True, kw_only=True):
     insights: tuple[str, ...]
 
 
-# ---
-
-
 app = typer.Typer(
     help="Run a simulation and compare with theory.",
     no_args_is_help=True,

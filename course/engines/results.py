@@ -72,9 +72,6 @@ def _cpu() -> str:
     return platform.processor() or platform.machine() or "unknown processor"
 
 
-# ---
-
-
 Setting = Literal["default", "tuned"]
 Status = Literal[
     "ok", "not_installed", "unavailable", "crash", "deadline", "diverged", "not_applicable", "failed"

@@ -386,9 +386,6 @@ def boxes(build: Build, dt: float, quick: bool) -> Measured:
     return rate, {"contacts": world.contacts()[0]}
 
 
-# ---
-
-
 #: The default step of comparisons, s.
 DT = 1.0 / 240.0
 #: The scenario that measures speed; everything else measures accuracy.

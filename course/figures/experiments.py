@@ -208,9 +208,6 @@ def _beside_theory(axes: Axes, result: Result, name: str, formula: str) -> None:
     axes.legend(loc="best")
 
 
-# ---
-
-
 def render(result: Result, kind: str) -> bytes:
     """The figure of a result as the bytes of a file; the same result gives the same bytes.
 

@@ -248,9 +248,6 @@ def main() -> None:
         write_frame(sink, _Reply(fingerprints(msgspec.msgpack.decode(frame, type=bytes))))
 
 
-# ---
-
-
 #: A fingerprint in more submissions than this proposes no pairs; it counts in those that others propose.
 _COMMON = 40
 #: Pairs that share fewer fingerprints than this are alike by chance.

@@ -21,7 +21,7 @@ from course.errors import UngradableError
 from course.handed_in.cells import CodeCell, code_cells
 from course.isolation.inside import statements
 from course.printable import one_line
-from course.scoring.judging.session import Submission
+from course.scoring.judging.submission import Submission
 from course.scoring.verdict import Places
 
 __all__ = ["RECORD", "SETUP", "SOLUTION", "NotebookSource", "notebook_source", "opened", "source_of"]

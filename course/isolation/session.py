@@ -117,9 +117,6 @@ def _loop_around(text: str, lines: list[int]) -> int | None:
     return min(loops)[1] if loops else None
 
 
-# ---
-
-
 Kind = wire.Kind
 _CALLBACK, _REPLY = int(Kind.CALLBACK), int(Kind.REPLY)
 _RECV = 1 << 12

@@ -454,9 +454,6 @@ class _ProcessHandle:
         return Exit(max(code, 0), max(-code, 0))
 
 
-# ---
-
-
 def _plain(level: Level, imports: tuple[str, ...], limits: Limits) -> Spawner:  # noqa: ARG001 - one of MAKERS
     return ProcessSpawner(view_for(imports), imports, limits)
 

@@ -89,9 +89,6 @@ def _anchor(catalog: Catalog, lesson_id: str, slug: str) -> str:
     return ""
 
 
-# ---
-
-
 QUIZ, SANDBOX = "quiz", "sandbox"
 
 

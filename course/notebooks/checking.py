@@ -24,7 +24,7 @@ from course.handed_in.cells import CodeCell, code_cells, read_notebook, typed_ce
 from course.handed_in.notebook import SETUP, NotebookSource, source_of
 from course.notebooks.build import pieces
 from course.notebooks.show import ReportPage
-from course.scoring.judging.session import Submission
+from course.scoring.judging.submission import Submission
 from course.scoring.verdict import CheckResult, Verdict, format_points, numbers_of
 
 if TYPE_CHECKING:
@@ -393,9 +393,6 @@ def _names(cell: CodeCell) -> set[str]:
     }
 
 
-# ---
-
-
 #: The size of a file that a grading run takes at most, in bytes.
 _MOST_BYTES = 1_000_000
 
@@ -427,7 +424,8 @@ def checked(
     Args:
         prints: show what the code printed while it was loaded; a cell that was run has shown it already.
     """
-    from course.scoring.judging.session import GradingSession, Terms
+    from course.scoring.judging.session import GradingSession
+    from course.scoring.judging.submission import Terms
 
     begin = time.perf_counter()
     with GradingSession(exercise, catalog, scope="public", terms=Terms(home=True)) as session:
@@ -484,7 +482,7 @@ def _of_file(exercise: Exercise, path: Path) -> Submission:
 
 
 def _of_text(exercise: Exercise, text: bytes) -> Submission:
-    from course.scoring.judging.session import Submission
+    from course.scoring.judging.submission import Submission
 
     if len(text) > _MOST_BYTES:
         raise UngradableError(

@@ -106,7 +106,8 @@ def check_cell(text: str, exercise_id: str, task: str | None = None) -> CheckTab
     """
     from course.catalog.load import Catalog
     from course.notebooks.show import ReportPage
-    from course.scoring.judging.session import Submission, has_report, report_of
+    from course.scoring.judging.session import has_report, report_of
+    from course.scoring.judging.submission import Submission
 
     table = checking.check(exercise_id, task, text)
     exercise = Catalog().exercise(exercise_id)

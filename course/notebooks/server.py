@@ -81,9 +81,6 @@ def environment() -> dict[str, str]:
     return os.environ | {"PYTHONPATH": path}
 
 
-# ---
-
-
 #: How often to look whether it has started, in s.
 _LOOK = 0.1
 #: How much of its output is shown if it does not start, in characters.

@@ -141,9 +141,6 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _HUGE
 
 
-# ---
-
-
 _PASS, _SKIP = "pass", "skip"
 _UNWRITTEN = "NOT_IMPLEMENTED"
 

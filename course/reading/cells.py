@@ -129,9 +129,6 @@ def _zipped(files: dict[str, bytes]) -> bytes:
     return out.getvalue()
 
 
-# ---
-
-
 #: A lesson's own cell takes under two seconds; one that was changed may take this long before it is stopped.
 DEADLINE_S = 60.0
 _MAIN = "lesson.py"

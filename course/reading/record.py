@@ -154,9 +154,6 @@ class Layout:
         return starts
 
 
-# ---
-
-
 Judgement = Literal["right", "nearly", "wrong"]
 JUDGEMENTS: tuple[Judgement, ...] = ("right", "nearly", "wrong")
 #: As much of what a cell printed, or a reader predicted, as is kept.

@@ -25,9 +25,6 @@ class Divergence(msgspec.Struct, frozen=True):
     quantity: str
 
 
-# ---
-
-
 class Status(StrEnum):
     """How a check, or a whole submission, ended."""
 

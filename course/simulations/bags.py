@@ -136,9 +136,6 @@ def rviz_view(streams: Iterable[Stream]) -> str:
     return "".join(parts) + _TAIL.format(frame=placed.frame)
 
 
-# ---
-
-
 STORAGES = ("sqlite3", "mcap")
 #: The configuration of RViz in the folder of a bag.
 VIEW = "view.rviz"

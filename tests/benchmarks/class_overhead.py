@@ -31,11 +31,8 @@ from course.grading.intake.triage import survey  # noqa: E402
 from course.grading.results.effective import Results  # noqa: E402
 from course.grading.results.roster import Person, Roster  # noqa: E402
 from course.grading.running.snapshot import Snapshot, frozen  # noqa: E402
-from course.scoring.judging.session import (  # noqa: E402
-    GradingSession,
-    Submission,
-    Terms,
-)
+from course.scoring.judging.session import GradingSession  # noqa: E402
+from course.scoring.judging.submission import Submission, Terms  # noqa: E402
 from tests.unit.grading.made import key  # noqa: E402
 
 EXERCISE = "integrators"

@@ -31,9 +31,9 @@ sys.path.insert(0, str(ROOT))
 from course.catalog.load import Catalog  # noqa: E402
 from course.grading.cluster.connect import local_cluster  # noqa: E402
 from course.grading.running.batch import grade_all  # noqa: E402
+from course.grading.running.folder import open_results  # noqa: E402
 from course.grading.running.rerun import RerunOptions, rerun  # noqa: E402
 from course.grading.running.run import RunOptions, grade_class  # noqa: E402
-from course.grading.running.snapshot import open_results  # noqa: E402
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -35,12 +35,8 @@ from course.authoring.exercises.grading import (  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.isolation.deadline import Deadline  # noqa: E402
 from course.isolation.session import Connection  # noqa: E402
-from course.scoring.judging.session import (  # noqa: E402
-    GradingSession,
-    Submission,
-    Terms,
-    pinned_to,
-)
+from course.scoring.judging.session import GradingSession, pinned_to  # noqa: E402
+from course.scoring.judging.submission import Submission, Terms  # noqa: E402
 from course.scoring.kit import expectations  # noqa: E402
 
 TICK = os.sysconf("SC_CLK_TCK")

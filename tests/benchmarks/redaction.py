@@ -23,11 +23,8 @@ sys.path[:0] = [str(ROOT)]
 from course.catalog.load import Catalog  # noqa: E402
 from course.catalog.locate import Content  # noqa: E402
 from course.grading.exports.selection import checks_for_student, problem_for_student  # noqa: E402
-from course.scoring.judging.session import (  # noqa: E402
-    GradingSession,
-    Submission,
-    Terms,
-)
+from course.scoring.judging.session import GradingSession  # noqa: E402
+from course.scoring.judging.submission import Submission, Terms  # noqa: E402
 from course.scoring.verdict import Verdict, finite  # noqa: E402
 
 ARENA = ROOT / "tests" / "attacks" / "arena"

@@ -14,7 +14,8 @@ from course.authoring.exercises.diagnosis import build
 from course.catalog.load import Catalog
 from course.grading import kit
 from course.scoring.checks.collected import words as known_words
-from course.scoring.judging.session import GradingSession, Submission, report_of
+from course.scoring.judging.session import GradingSession, report_of
+from course.scoring.judging.submission import Submission
 from course.scoring.verdict import CheckResult, Status
 
 ROOT = Path(__file__).parents[2]

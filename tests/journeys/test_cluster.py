@@ -27,7 +27,7 @@ from course.grading.results.effective import Effective
 from course.grading.running.run import RunOptions, grade_class
 from course.grading.running.snapshot import Snapshot, frozen
 from course.scoring.graders import grader_version
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 from tests.journeys.processes import below, left_running
 from tests.unit.grading.made import read_class
 from tests.unit.grading.running.test_snapshot import judged_by_the_snapshot

@@ -136,7 +136,8 @@ def worked():
     """A warm session over the worked example, as a function of the module's text; and the right text."""
     from course.catalog.load import Catalog
     from course.cli.setup.demo import worked_example
-    from course.scoring.judging.session import GradingSession, Submission
+    from course.scoring.judging.session import GradingSession
+    from course.scoring.judging.submission import Submission
 
     catalog = Catalog()
     example = worked_example(catalog)

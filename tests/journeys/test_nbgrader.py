@@ -17,7 +17,8 @@ import pytest
 
 from course.catalog.load import Catalog
 from course.notebooks.build import pieces
-from course.scoring.judging.session import GradingSession, Submission
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission
 
 ROOT = Path(__file__).resolve().parents[2]
 

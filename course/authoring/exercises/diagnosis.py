@@ -53,7 +53,8 @@ from course.scoring.explain.story import (
     write_table,
 )
 from course.scoring.judging.explaining import answer_numbers, answers, tasks_asked
-from course.scoring.judging.session import GradingSession, Scope, Submission, Terms
+from course.scoring.judging.session import GradingSession, Scope
+from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import Status
 
 # ---
@@ -243,9 +244,6 @@ def _plain(value: Any) -> Any:
         items = [_plain(item) for item in value]
         return {"tuple": items} if isinstance(value, tuple) else items
     return str(value) if isinstance(value, float) and math.isinf(value) else value
-
-
-# ---
 
 
 CONFUSION = "confusion.json"

@@ -39,7 +39,8 @@ from course.errors import ContentError
 from course.progress.workspace import write_atomically
 from course.reading.parts import read_script
 from course.scoring.explain.story import WORDS, read_words
-from course.scoring.judging.session import GradingSession, Submission, Terms
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission, Terms
 
 # ---
 # The audit of an exercise's checks as declared: titles, markers, points, and the words they show.
@@ -311,9 +312,6 @@ def write_slow(catalog: Catalog, exercise: Exercise) -> Path | None:
         text = f"{above.rstrip()}\nslow = {{ {line} }}\n{task}{below}"
     write_atomically(path, text.encode())
     return path
-
-
-# ---
 
 
 #: The mark that ``course author new`` leaves where an author has to write.

@@ -25,7 +25,8 @@ from course.isolation.inside import loops
 from course.physics.systems import SYSTEMS
 from course.scoring.checks.collected import Check, CollectedChecks
 from course.scoring.explain.fingerprint import reached_from
-from course.scoring.judging.session import Submission, Terms, check_files
+from course.scoring.judging.session import check_files
+from course.scoring.judging.submission import Submission, Terms
 from course.scoring.values import Inspected, as_march, overwritten
 from course.scoring.verdict import Verdict
 
@@ -94,9 +95,6 @@ def compose(solution: Path, variant: Path) -> bytes:
             help="Keep only plain definitions in the file; __future__ imports belong into the solution.",
         ) from None
     return whole.encode("utf-8")
-
-
-# ---
 
 
 #: How many gradings of small exercises take as long as starting one more process.

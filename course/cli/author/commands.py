@@ -140,9 +140,6 @@ def counted(number: int, word: str) -> str:
     return f"{number} {word}" if number == 1 else f"{number} {word}s"
 
 
-# ---
-
-
 _HELP = {"help_option_names": ["-h", "--help"]}
 
 app = typer.Typer(

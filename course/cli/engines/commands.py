@@ -199,9 +199,6 @@ def figures(comparison: Comparison, path: Path) -> list[tuple[Path, bytes]]:
     return [(inserted(path, name), data) for name, data in pictures.items()]
 
 
-# ---
-
-
 app = typer.Typer(
     help="Compare real physics engines on this machine.",
     no_args_is_help=True,

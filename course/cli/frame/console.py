@@ -114,9 +114,6 @@ def harmless(text: str) -> str:
     return unheeded(steady(text.replace("\r\n", "\n")))
 
 
-# ---
-
-
 #: Long lines of prose are hard to read however wide the window is.
 MAX_WIDTH = 100
 #: Columns below which a table folds its cells until they cannot be read.

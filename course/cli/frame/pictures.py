@@ -70,9 +70,6 @@ def half_blocks(pixels: bytes, columns: int, rows: int, labels: list[list[Any]])
     return lines
 
 
-# ---
-
-
 Protocol = Literal["kitty", "iterm2", "sixel"]
 
 #: Terminals that show sixels as they are installed. Others need a setting, which cannot be detected.

@@ -79,9 +79,9 @@ def rerun(
     """
     from course.cli.grade.replies import GradeRerun
     from course.grading.running.batch import grade_all
+    from course.grading.running.folder import open_results
     from course.grading.running.rerun import RerunOptions
     from course.grading.running.rerun import rerun as regrade
-    from course.grading.running.snapshot import open_results
 
     console = current()
     level, at_least = levels(isolation)
@@ -145,7 +145,7 @@ def override(
     It counts in place of the graders' score in every export and report, whatever is graded later, and no late
     penalty touches it.
     """
-    from course.grading.running.snapshot import open_results, previewed
+    from course.grading.running.folder import open_results, previewed
 
     if (score is None) != lift:
         raise UsageError(
@@ -212,7 +212,7 @@ def late(
     """
     from course.cli.grade.replies import GradeLate
     from course.grading.results.effective import Recording, recorded
-    from course.grading.running.snapshot import open_results, previewed
+    from course.grading.running.folder import open_results, previewed
 
     if policy is not None and clear:
         raise UsageError("--policy and --clear do not go together.", help="Give one of them.")
@@ -379,7 +379,7 @@ def similar(
     layout do not count, and neither does the stub. Similarity is a reason to talk with students, not a proof.
     """
     from course.cli.grade.replies import GradeSimilar, SimilarGroup, SimilarPair
-    from course.grading.running.snapshot import open_results
+    from course.grading.running.folder import open_results
     from course.grading.similar import compare
 
     console = current()

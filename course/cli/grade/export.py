@@ -116,7 +116,7 @@ def _from_gradebook(
     options: ExportOptions,
 ) -> tuple[Written | None, Merged]:
     """Write it, and say first what the roster changes; nothing is written if it was printed."""
-    from course.grading.running.snapshot import open_results, remember
+    from course.grading.running.folder import open_results, remember
 
     with open_results(out) as opened:
         found, results = Merged(opened.roster or Roster(())), opened
@@ -171,7 +171,7 @@ def _autograder(
 ) -> Written:
     import secrets
 
-    from course.grading.running.snapshot import open_results
+    from course.grading.running.folder import open_results
 
     catalog = load_catalog()
     chosen = tuple(catalog.exercise(name) for name in exercises) or catalog.exercises()

@@ -37,7 +37,7 @@ from course.grading.results.late import in_days
 from course.grading.results.roster import read_roster
 from course.grading.running.rerun import Change
 from course.printable import command, one_line
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 from course.scoring.verdict import LARGEST_SEED, format_points, in_points
 
 if TYPE_CHECKING:
@@ -120,8 +120,8 @@ def _would_change(
     console: Console, summary: Summary, out: Path, catalog: Catalog, terms: Terms, grade: GradeAll
 ) -> tuple[Change, ...]:
     """The students who would get another score from the present graders, which a resumed run does not use."""
+    from course.grading.running.folder import open_results
     from course.grading.running.rerun import RerunOptions, rerun
-    from course.grading.running.snapshot import open_results
 
     if not summary.edited:
         return ()
@@ -197,7 +197,7 @@ def explain(
     exercise: Annotated[str, typer.Argument(metavar="EXERCISE", autocompletion=exercise_ids)],
 ) -> int:
     """Show everything about one result, expected values included: for the instructor, not the student."""
-    from course.grading.running.snapshot import open_results
+    from course.grading.running.folder import open_results
 
     catalog = load_catalog()
     with open_results(out) as results:

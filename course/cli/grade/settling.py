@@ -59,7 +59,7 @@ def assign(
     from course.cli.grade.replies import GradeAssign
     from course.grading.running import assign as assigning
     from course.grading.running.batch import grade_all
-    from course.grading.running.snapshot import open_results, previewed
+    from course.grading.running.folder import open_results, previewed
 
     if (student is None) != (file is None) or (student is not None and accept_names):
         raise UsageError(
@@ -172,7 +172,7 @@ def log(
 ) -> int:
     """List every run and every change of a grade: who, when, why, and what it was before."""
     from course.cli.grade.replies import GradeLog
-    from course.grading.running.snapshot import open_results
+    from course.grading.running.folder import open_results
 
     console = current()
     with open_results(out) as results:
@@ -213,7 +213,7 @@ def salvage(
     if nothing is known to be lost, else 6 with a list; `course grade run --resume` grades what is missing.
     """
     from course.cli.grade.replies import GradeSalvage
-    from course.grading.running.snapshot import export_all
+    from course.grading.running.folder import export_all
     from course.isolation.launch import private_folder, remove_tree
 
     console = current()
@@ -252,7 +252,7 @@ def salvage(
 
 
 def _show_salvaged(console: Console, told: Salvaged, to: Path, *, dry_run: bool) -> None:
-    from course.grading.running.snapshot import open_results
+    from course.grading.running.folder import open_results
 
     for name in ("results", "submissions", "overrides", "journal", "snapshots"):
         backed = told.from_backup[name]

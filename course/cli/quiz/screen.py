@@ -143,9 +143,6 @@ class QuizHistoryReply(Envelope, tag="course.quiz-history/1", frozen=True, kw_on
     next: NextStep
 
 
-# ---
-
-
 _PROMPT = "Your answer: "
 _KEYS = f"Type {LETTERS[0]} to {LETTERS[-1]} or 1 to {len(LETTERS)}, then Enter; q stops."
 #: Width of the longest label beside an option: "Your answer".

@@ -58,9 +58,6 @@ class LessonReply(Envelope, tag="course.lesson/1", frozen=True, kw_only=True):
     next: NextStep | None = None
 
 
-# ---
-
-
 def lessons() -> int:
     """List the lessons.
 

@@ -538,9 +538,6 @@ def _facts(header: list[Text], rows: list[list[Text]]) -> RenderableType:
     return Group(*shown)
 
 
-# ---
-
-
 @dataclass(frozen=True, slots=True)
 class Page:
     """One screenful of reading: a section, or a section up to a prediction.

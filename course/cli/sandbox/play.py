@@ -190,9 +190,6 @@ def table(run: Run) -> bytes:
     return text.getvalue().encode()
 
 
-# ---
-
-
 #: Frames per simulated second of a film.
 _FPS = 25.0
 _LONGEST = 86_400.0

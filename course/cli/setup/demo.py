@@ -25,7 +25,8 @@ from course.cli.work.checking import reply_to
 from course.cli.work.verdict import show_verdict
 from course.errors import InternalError
 from course.figures.described import Plot
-from course.scoring.judging.session import GradingSession, Submission
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission
 from course.scoring.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -150,7 +151,7 @@ class _Bench:
         return _Motion(source, verdict, np.array(x), np.array(v))
 
     def _submission(self, source: str) -> Submission:
-        from course.scoring.judging.session import Submission
+        from course.scoring.judging.submission import Submission
 
         # What a terminal cannot decode it hands over as lone surrogates.
         return Submission({self._session.exercise.module: source.encode(errors="replace")})

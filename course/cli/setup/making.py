@@ -180,9 +180,6 @@ KINDS: dict[str, tuple[str, Callable[[str | None], str]]] = {
 }
 
 
-# ---
-
-
 def init(
     folder: Annotated[
         Path | None, typer.Argument(metavar="DIR", help="The folder; the current one if left out.")

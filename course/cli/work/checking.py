@@ -35,7 +35,8 @@ from course.scoring.verdict import Verdict
 if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.figures.described import Curve
-    from course.scoring.judging.session import GradingSession, Submission
+    from course.scoring.judging.session import GradingSession
+    from course.scoring.judging.submission import Submission
 
 
 # ---
@@ -99,9 +100,6 @@ def _reply(check: str, curve: Curve) -> CurveReply:
     )  # fmt: skip
 
 
-# ---
-
-
 FAILED = 1
 
 
@@ -151,7 +149,8 @@ def check(
 
 def open_session(exercise: Exercise, catalog: Catalog) -> GradingSession:
     """A grading session over the public checks of an exercise; a context manager."""
-    from course.scoring.judging.session import GradingSession, Terms
+    from course.scoring.judging.session import GradingSession
+    from course.scoring.judging.submission import Terms
 
     return GradingSession(exercise, catalog, scope="public", terms=Terms(home=True))
 

@@ -25,7 +25,7 @@ from course.progress.history import fingerprint
 
 if TYPE_CHECKING:
     from course.handed_in.notebook import NotebookSource
-    from course.scoring.judging.session import Submission
+    from course.scoring.judging.submission import Submission
 
 __all__ = ["StudentWork", "as_handed_in", "asked_for", "chosen_work", "work_of", "worked_on"]
 
@@ -63,7 +63,7 @@ class StudentWork:
         """The part that is graded."""
         if self.notebook is not None:
             return self.notebook.submission(self.exercise)
-        from course.scoring.judging.session import Submission
+        from course.scoring.judging.submission import Submission
 
         return Submission({self.exercise.module: self.source})
 
@@ -262,7 +262,7 @@ def as_handed_in(work: StudentWork) -> Submission:
     Raises:
         UngradableError: it is a notebook that cannot be graded.
     """
-    from course.scoring.judging.session import Submission
+    from course.scoring.judging.submission import Submission
 
     if work.notebook is None:
         return Submission({work.exercise.module: work.data})

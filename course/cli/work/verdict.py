@@ -63,9 +63,6 @@ def show_unshown(console: Console, verdict: Verdict) -> None:
         console.note((f"Your code printed in {what}; --verbose shows it.", "dim"))
 
 
-# ---
-
-
 _DETAIL_INDENT = 4
 _LABEL_WIDTH = 9
 #: Columns beside a number: its indent, its label and the space between them.

@@ -107,9 +107,6 @@ def keys_of_terminal(on_key: Callable[[str], None]) -> Iterator[Keys | None]:
         termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
 
 
-# ---
-
-
 INTERRUPTED = 130
 #: A save counts as done once the file has not changed for this long, in ms.
 QUIET_MS = 20

@@ -29,7 +29,7 @@ from course.grading.intake.students import Entry
 from course.grading.running.batch import Graded
 from course.grading.running.snapshot import in_use
 from course.isolation.launch import private_folder, remove_tree
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 
 # ---
 # Whether a scheduler can be reached with the present settings, found out before anything is started.
@@ -228,9 +228,6 @@ def _silent(where: str, error: OSError) -> CourseError:
 
 def _problem(message: str, fix: str, code: str = "no_tls") -> MissingCapabilityError:
     return MissingCapabilityError(message, help=fix, code=code)
-
-
-# ---
 
 
 #: Wall seconds for a scheduler to answer, and for its first worker to be there.

@@ -20,7 +20,7 @@ from course.grading.cluster.worker import FORMAT, Answers, Batch, decode_answers
 from course.grading.intake.students import Entry
 from course.grading.running.batch import MAX_TRIES, Graded, as_error, killed_its_grader, without_grading
 from course.grading.running.grader import Job
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 from course.scoring.verdict import Problem
 
 __all__ = ["LostBatch", "Outcome", "Workers", "grade_on"]

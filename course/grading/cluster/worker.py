@@ -28,7 +28,7 @@ from course.grading.pipes import read_frame, write_frame
 from course.grading.running.batch import MAX_TRIES, answer_to, hang_s, start_grader
 from course.grading.running.grader import Answer, Config, Job
 from course.grading.running.snapshot import Snapshot, frozen, in_use
-from course.scoring.judging.session import Submission, Terms
+from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import Problem
 
 # ---
@@ -98,9 +98,6 @@ def _decode(payload: bytes, kind: type[T]) -> T | None:
     except msgspec.MsgspecError:
         return None
     return message if message.format == FORMAT else None
-
-
-# ---
 
 
 #: Seconds after which a grader without work ends, because the workers of an external cluster outlive the run.

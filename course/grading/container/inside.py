@@ -24,7 +24,7 @@ from course.grading.intake.students import read_student
 from course.grading.results.effective import Effective
 from course.grading.running.batch import grade_all, without_grading
 from course.grading.running.snapshot import Snapshot, frozen
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 from course.scoring.verdict import Problem
 
 if TYPE_CHECKING:

@@ -125,9 +125,6 @@ def replacing(path: Path) -> Iterator[IO[bytes]]:
             draft.unlink(missing_ok=True)
 
 
-# ---
-
-
 _COLUMNS = (
     "student", "exercise", "score", "max_score", "passed", "state", "reason", "late_s", "isolation",
     "raw_score", "late_penalty", "override_reason", "submitted_at", "graded_at",

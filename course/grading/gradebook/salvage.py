@@ -228,9 +228,6 @@ def _named(path: Path, number: int) -> Path:
     return path.with_name(f"{path.stem}.backup-{number or 'new'}{path.suffix}")
 
 
-# ---
-
-
 Row = tuple[Cell, ...]
 #: How many of a table's first columns are its key, where it is more than one.
 _KEYS = {"times": 4, "found": 2}

@@ -46,9 +46,6 @@ def is_meant(name: str, wanted: str) -> bool:
     return name == wanted or plain(name) == wanted.casefold()
 
 
-# ---
-
-
 Layout = Literal["auto", "folders", "canvas", "moodle", "gradescope"]
 LAYOUTS = ("auto", "folders", "canvas", "moodle", "gradescope")
 

@@ -35,7 +35,7 @@ from course.grading.results.roster import decoded
 from course.handed_in.cells import MAX_NOTEBOOK
 from course.handed_in.notebook import RECORD
 from course.printable import one_line
-from course.scoring.judging.session import Submission
+from course.scoring.judging.submission import Submission
 from course.scoring.verdict import Problem
 
 __all__ = [

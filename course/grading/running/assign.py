@@ -24,7 +24,7 @@ from course.grading.results.effective import Effective, Results, counted
 from course.grading.running.batch import Graded, grade_all
 from course.grading.running.snapshot import Snapshot, Unpacked, frozen, kept
 from course.printable import command
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 
 if TYPE_CHECKING:
     from course.grading.running.run import GradeAll

@@ -27,7 +27,7 @@ from course.grading.running.grader import Answer, Config, Job
 from course.grading.running.snapshot import in_use
 from course.isolation.deadline import WALL
 from course.isolation.launch import keep_private, sweep_after_the_dead
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 from course.scoring.remote import BUDGET_S
 from course.scoring.verdict import Problem, Verdict, not_graded
 

@@ -18,7 +18,7 @@ from course.grading.pipes import read_frame, served, write_frame
 from course.handed_in.notebook import opened
 from course.isolation.launch import keep_private
 from course.isolation.probe import kept_sandboxes
-from course.scoring.judging.session import Submission, Terms
+from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import Problem, Verdict, not_graded
 
 if TYPE_CHECKING:

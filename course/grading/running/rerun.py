@@ -25,7 +25,7 @@ from course.grading.running.batch import grade_all
 from course.grading.running.run import QUIZ_RECORD, graded_exercises
 from course.grading.running.snapshot import Snapshot, Unpacked, frozen, kept
 from course.quizzing.bank import Bank
-from course.scoring.judging.session import Submission, Terms
+from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import Verdict
 
 if TYPE_CHECKING:

@@ -29,24 +29,13 @@ from course.grading.results.effective import Effective, Results, ScoreChange, re
 from course.grading.results.merge import Merged
 from course.grading.results.roster import Roster
 from course.grading.running.batch import Graded, grade_all
-from course.grading.running.snapshot import (
-    BOOK,
-    Snapshot,
-    Unpacked,
-    among_graders,
-    begin,
-    export_all,
-    frozen,
-    kept,
-    note_without_work,
-    remember,
-    taken_back,
-)
+from course.grading.running.folder import BOOK, begin, export_all, note_without_work, remember, taken_back
+from course.grading.running.snapshot import Snapshot, Unpacked, among_graders, frozen, kept
 from course.quizzing.attempt import needed
 from course.quizzing.bank import Bank
 from course.scoring.failures import OURS
 from course.scoring.graders import grader_version
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 
 if TYPE_CHECKING:
     GradeAll = Callable[[Iterable[Entry], Terms], Iterator[Graded]]
@@ -153,9 +142,6 @@ class Summary:
                 self.troubled.append(
                     Ungraded(effective.student, effective.exercise, verdict.state, error.code, error.message)
                 )
-
-
-# ---
 
 
 #: The name of a quiz record among the submissions in a gradebook.

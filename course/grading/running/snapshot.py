@@ -16,25 +16,16 @@ import hashlib
 import io
 import json
 import os
-import shutil
 import zipfile
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from importlib.util import cache_from_source
 from pathlib import Path
 
-import msgspec
-
 from course.catalog.load import Catalog
 from course.catalog.locate import NAMES, PLACES, Content, chosen
-from course.errors import IntegrityError, MissingCapabilityError, UsageError
-from course.grading.exports.grades import write_csv, write_jsonl
-from course.grading.exports.html_report.write import write_pages
+from course.errors import IntegrityError
 from course.grading.gradebook.book import Gradebook
-from course.grading.gradebook.salvage import back_up
-from course.grading.results.effective import Results, recorded
-from course.grading.results.merge import Merged, merged
-from course.grading.results.roster import Roster
 from course.isolation.launch import private_folder, remove_tree
 from course.scoring.graders import grader_files, grader_version
 
@@ -210,150 +201,3 @@ def _take_compiled(original: Path, copy: Path, body: bytes) -> None:
         target.write_bytes(compiled.read_bytes())
         # A compiled file names the size and time of its source.
         os.utime(copy, ns=(status.st_mtime_ns, status.st_mtime_ns))
-
-
-# ---
-# The folder of a run: created, opened for later commands, and its files written anew.
-
-
-#: The gradebook's name in a run's folder.
-BOOK = "gradebook.sqlite"
-
-
-@dataclass
-class ClaimedName:
-    """A run's reserved folder. ``graded``: whether any grader could work."""
-
-    graded: bool = False
-
-
-@contextlib.contextmanager
-def taken_back(out: Path) -> Iterator[ClaimedName]:
-    """Remove a new folder again if the run is refused before anything was graded.
-
-    The user will correct the command and repeat it, and its folder must not be in the way.
-    """
-    new, taken = not out.exists(), ClaimedName()
-    try:
-        yield taken
-    except BaseException:
-        if new and not taken.graded and out.is_dir():
-            for item in out.iterdir():
-                item.unlink()
-            out.rmdir()
-        raise
-
-
-def begin(out: Path, submissions: Path, *, resume: bool) -> Gradebook:
-    """The gradebook of a new run or, with ``resume``, of an earlier one, opened for writing.
-
-    Raises:
-        UsageError: ``out`` exists, is in use, or lies among the submissions.
-        MissingCapabilityError: it cannot be made.
-    """
-    if out.resolve().is_relative_to(submissions.resolve()):
-        raise UsageError(
-            f"--out {out} lies among the submissions.",
-            help="Name a folder elsewhere.",
-            code="out_inside_submissions",
-        )
-    path = out / BOOK
-    if resume and path.exists():
-        return Gradebook(path, writing=True)
-    try:
-        out.mkdir(parents=True)
-    except FileExistsError:
-        # A run that was killed before it made its gradebook leaves the folder and perhaps the draft.
-        begun = (
-            resume and out.is_dir() and all(item.name.startswith("gradebook.new") for item in out.iterdir())
-        )
-        if not begun:
-            raise UsageError(
-                f"{out} exists already; nothing was touched.",
-                help="Name a new folder, or add --resume to finish the run that is there.",
-                code="out_exists",
-            ) from None
-        for draft in out.iterdir():
-            draft.unlink(missing_ok=True)
-    except OSError as error:
-        raise MissingCapabilityError(
-            f"{out} cannot be made: {error.strerror}.",
-            help="Name a folder that can be written.",
-            code="read_only",
-        ) from None
-    return Gradebook(path, create=True, writing=True)
-
-
-def export_all(out: Path, results: Results) -> None:
-    """The files that lie beside a gradebook after every run.
-
-    Raises:
-        MissingCapabilityError: one cannot be written; the gradebook has everything nevertheless.
-    """
-    try:
-        write_jsonl(out / "results.jsonl", results.all(), results.course)
-        write_csv(out / "grades.csv", results)
-        write_pages(out / "report.html", results, results.all(), [item.id for item in results.exercises()])
-    except MissingCapabilityError as error:
-        raise MissingCapabilityError(
-            error.message,
-            help="The gradebook is complete. Make room, then give the same command again (a run with"
-            " --resume): only this is missing. `course grade export` writes it elsewhere.",
-            code=error.code,
-        ) from None
-
-
-@contextlib.contextmanager
-def open_results(out: Path, *, writing: bool = False) -> Iterator[Results]:
-    """The results in the folder of a grading run.
-
-    Args:
-        writing: lock the gradebook; at the end write the files beside it anew, and a backup.
-    """
-    with Gradebook(out / BOOK, writing=writing) as book:
-        yield Results(book)
-        if writing:
-            export_all(out, Results(book))
-    if writing:
-        back_up(out / BOOK)
-
-
-@contextlib.contextmanager
-def previewed(out: Path) -> Iterator[Results]:
-    """A run's results, on which to try a change: a copy of the gradebook, which is thrown away.
-
-    The preview makes the change on the copy, so it cannot differ from the real one.
-    """
-    path = out / BOOK
-    Gradebook(path).close()  # it is complete, no process is writing it, and it is one file now
-    folder = private_folder()
-    try:
-        shutil.copyfile(path, folder / path.name)
-        with Gradebook(folder / path.name, writing=True) as book:
-            results = Results(book)
-            results.folder = out
-            yield results
-    finally:
-        remove_tree(folder)
-
-
-def remember(book: Gradebook, new: Roster) -> Merged:
-    """Merge a roster into the stored one; the scores that change by it (an extension) are recorded."""
-    found = merged(Results(book), new)
-    text, before = found.roster.dump(), book.meta().get("roster")
-    if text == before:
-        return found
-    if before is None and not book.exercise_ids():
-        book.set_meta(roster=text)
-        return found
-    with recorded(book, "roster", f"roster {new.file}" if new.file else "another roster") as told:
-        book.set_meta(roster=text)
-    found.moved = told.moved
-    return found
-
-
-def note_without_work(book: Gradebook, students: set[str]) -> None:
-    """Keep the names of the students in whose folders there is nothing to grade: no result names them."""
-    known: list[str] = msgspec.json.decode(book.meta().get("without_work", "[]"))
-    names = sorted({*known, *students} - set(book.student_ids()))
-    book.set_meta(without_work=msgspec.json.encode(names).decode() if names else None)

@@ -99,9 +99,6 @@ def meet_plane(centre: Array, radius: float | Array, plane: Plane) -> tuple[Arra
     return normal, (centre - plane.point) @ outward - radius
 
 
-# ---
-
-
 _ROUNDS = 10  # in which bodies that overlap are moved apart
 
 

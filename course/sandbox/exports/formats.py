@@ -247,9 +247,6 @@ def _point(part: Part, anchor: tuple[float, float]) -> tuple[tuple[float, float]
     return (part.x + rx, part.y + rz), (part.vx - part.spin * rz, part.vy + part.spin * rx)
 
 
-# ---
-
-
 VERSION = "1.9"
 #: The file that gives a world its velocities at the start.
 START = "gazebo_start.py"

@@ -155,9 +155,6 @@ class Probes:
         return float(value)
 
 
-# ---
-
-
 #: Columns of a table of samples, with their units; a row for each body and sample, totals with each.
 COLUMNS = (
     "t [s]",

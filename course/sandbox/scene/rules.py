@@ -95,9 +95,6 @@ def number(value: object, what: str) -> float:
     return float(value)
 
 
-# ---
-
-
 #: The fields that ``body.field`` may name in a formula.
 FIELDS = ("x", "y", "vx", "vy", "mass", "radius", "restitution", "friction")
 #: Names that a formula may use besides parameters and bodies.

@@ -190,9 +190,6 @@ class Receipt(msgspec.Struct, frozen=True, kw_only=True):
     integrator: float
 
 
-# ---
-
-
 #: Steps that are booked together. More would save nothing, because the arrays would not fit the cache.
 BLOCK = 32
 #: How often the history is sampled, in s of simulated time, and how many samples are kept.

@@ -206,9 +206,6 @@ class Ledger:
         return np.bincount(c.row, weights=across, minlength=count).astype(np.float64), friction
 
 
-# ---
-
-
 #: Ids of bodies are addresses.
 Ids: TypeAlias = NDArray[np.uint64]
 

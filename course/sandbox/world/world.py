@@ -74,9 +74,6 @@ class Watch:
         return left, resting
 
 
-# ---
-
-
 MAX_BODIES = 1000
 #: Steps between looking for bodies that left or came to rest.
 _TIDY = 64

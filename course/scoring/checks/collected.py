@@ -133,9 +133,6 @@ def _load(path: Path, label: str) -> ModuleType:
     return loaded
 
 
-# ---
-
-
 # Plugins that write files, read the user's settings, or cost time on every check.
 _BLOCKED = (
     "cacheprovider", "capture", "doctest", "faulthandler", "junitxml", "logging", "nose", "pastebin",

@@ -111,9 +111,6 @@ def read_words(path: Path) -> Words:
     return Words(read_document(path, _File).value.diagnosis)
 
 
-# ---
-
-
 @dataclass(frozen=True, slots=True)
 class Failure:
     """One failed check of a task.

@@ -45,11 +45,8 @@ from course.authoring.exercises.grading import (  # noqa: E402
 from course.authoring.exercises.mutants import judge, mutant_path  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.scoring.explain.story import OWN_WORDS  # noqa: E402
-from course.scoring.judging.session import (  # noqa: E402
-    GradingSession,
-    Submission,
-    Terms,
-)
+from course.scoring.judging.session import GradingSession  # noqa: E402
+from course.scoring.judging.submission import Submission, Terms  # noqa: E402
 from course.scoring.verdict import Status  # noqa: E402
 
 if TYPE_CHECKING:

@@ -48,11 +48,8 @@ from course.isolation.failures import StudentFailure  # noqa: E402
 from course.isolation.session import Connection, LoadRefusedError  # noqa: E402
 from course.sandbox.scene.loading import choose  # noqa: E402
 from course.sandbox.world.world import World  # noqa: E402
-from course.scoring.judging.session import (  # noqa: E402
-    GradingSession,
-    Submission,
-    Terms,
-)
+from course.scoring.judging.session import GradingSession  # noqa: E402
+from course.scoring.judging.submission import Submission, Terms  # noqa: E402
 from tests.contracts.boundary import test_spoilt_functions as spoiling  # noqa: E402
 from tests.unit.isolation.test_connection import LOADED, READY, Liar  # noqa: E402
 

@@ -38,10 +38,7 @@ from course.catalog.load import Catalog  # noqa: E402
 from course.grading.exports.selection import checks_for_student  # noqa: E402
 from course.grading.intake.students import Entry  # noqa: E402
 from course.grading.running.batch import grade_all  # noqa: E402
-from course.scoring.judging.session import (  # noqa: E402
-    Submission,
-    Terms,
-)
+from course.scoring.judging.submission import Submission, Terms  # noqa: E402
 
 if TYPE_CHECKING:
     from course.scoring.verdict import Verdict

@@ -25,7 +25,8 @@ import pytest
 from course.catalog.load import Catalog
 from course.catalog.locate import Content
 from course.isolation import launch
-from course.scoring.judging.session import GradingSession, Submission, Terms
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import Verdict, for_student
 from tests.benchmarks.protection import descendants_cpu
 from tests.contracts.boundary.levels import require_level

@@ -18,7 +18,8 @@ import pytest
 from course.authoring.exercises.grading import solution_path
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
-from course.scoring.judging.session import GradingSession, Submission, Terms
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import CheckResult
 
 CATALOG = Catalog()

@@ -28,7 +28,7 @@ os.environ["COURSE_CONTENT"] = content
 from course.catalog.load import Catalog
 from course.errors import CourseError
 from course.grading.running.run import RunOptions, grade_class
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 from pathlib import Path
 
 def graded_at(level):

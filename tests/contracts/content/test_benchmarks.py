@@ -9,7 +9,7 @@ import msgspec
 import pytest
 
 from course.catalog.load import Catalog
-from course.scoring.judging.session import Submission, Terms
+from course.scoring.judging.submission import Submission, Terms
 from tests.benchmarks.calibration import seeds
 
 MINI = Path(__file__).parents[2] / "fixtures" / "mini_course"

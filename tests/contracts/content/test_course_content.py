@@ -23,7 +23,8 @@ from course.ids import WARM_UPS
 from course.isolation.probe import kept_sandboxes
 from course.progress.history import NO_MISTAKE
 from course.scoring.checks.collected import words
-from course.scoring.judging.session import GradingSession, Submission
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission
 from tests.contracts.content.audited import CATALOG, EXERCISES, IN_PART, programs
 
 

@@ -20,7 +20,8 @@ from course.catalog.locate import content
 from course.grading import kit
 from course.scoring.explain.story import TABLE, read_table
 from course.scoring.failures import OURS
-from course.scoring.judging.session import GradingSession, Submission, Terms
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import CheckResult
 
 CATALOG = Catalog()

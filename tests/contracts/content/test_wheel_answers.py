@@ -20,7 +20,8 @@ import pytest
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.grading import kit
-from course.scoring.judging.session import GradingSession, Submission, Terms
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission, Terms
 
 CATALOG = Catalog()
 pytestmark = pytest.mark.usefixtures("sandboxes")

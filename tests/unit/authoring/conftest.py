@@ -115,7 +115,7 @@ def oracle() -> Oracle:
 @pytest.fixture
 def run(mini: Path, oracle: Oracle, monkeypatch: pytest.MonkeyPatch) -> Callable[..., AuditReport]:
     """Audit the copy with the oracle, but for the sandbox's scenes: no course has any of its own."""
-    monkeypatch.setattr("course.sandbox.scene.loading.scene_ids", lambda: ())
+    monkeypatch.setattr("course.authoring.audit.scene_ids", lambda: ())
     return lambda only=None: audit(Catalog(content()), only, grade=oracle.grade)
 
 

@@ -18,7 +18,8 @@ from course.authoring.exercises.grading import (
 from course.catalog.load import Catalog
 from course.grading.intake.students import Entry
 from course.grading.running.batch import Graded, Graders
-from course.scoring.judging.session import GradingSession, Submission
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission
 from course.scoring.verdict import Verdict
 
 #: What may come after a model solution, and the checks of "doubling" that see it.

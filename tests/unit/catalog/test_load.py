@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from course.catalog import load
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise, Hints
+from course.catalog.reading import read_toml
 from course.errors import ContentError, NotFoundError
 
 EXERCISE = "exercises/doubling/exercise.toml"
@@ -246,6 +246,6 @@ def test_a_folder_without_an_exercise_is_not_one(mini: Path) -> None:
 
 
 def test_any_toml_file_with_a_format_can_be_read_into_a_type(mini: Path) -> None:
-    assert load.read_toml(mini / HINTS, Hints).task[0].id == "double"
+    assert read_toml(mini / HINTS, Hints).task[0].id == "double"
     with pytest.raises(ContentError, match="unknown key `hints`"):
-        load.read_toml(mini / HINTS, Exercise)
+        read_toml(mini / HINTS, Exercise)

@@ -14,7 +14,8 @@ import pytest
 from course.authoring.exercises.grading import LocalSubmission
 from course.catalog.load import Catalog
 from course.grading import kit
-from course.scoring.judging.session import GradingSession, Submission
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission
 
 ROOT = Path(__file__).resolve().parents[3]
 HIDDEN = str(ROOT / "tests/graders/engine-comparison/checks.py")

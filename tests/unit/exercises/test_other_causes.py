@@ -14,7 +14,8 @@ import pytest
 from course.authoring.exercises.grading import LocalSubmission, compose, solution_path
 from course.catalog.load import Catalog
 from course.scoring.explain.fingerprint import reached_from
-from course.scoring.judging.session import GradingSession, Submission
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission
 
 AFRESH = Path(__file__).resolve().parents[2] / "benchmarks" / "mended" / "afresh"
 

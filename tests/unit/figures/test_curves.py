@@ -12,7 +12,8 @@ from course.catalog.load import Catalog
 from course.figures.described import compared, marched, plot_of, read_curve, thinned
 from course.figures.plots import render
 from course.physics.systems import Oscillator
-from course.scoring.judging.session import GradingSession, Submission, Terms
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission, Terms
 
 CATALOG = Catalog()
 T = np.linspace(0.0, 2.0, 41)

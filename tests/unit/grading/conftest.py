@@ -11,7 +11,8 @@ from course.catalog.load import Catalog
 from course.catalog.locate import chosen
 from course.catalog.models import Exercise
 from course.grading.running.snapshot import Snapshot, frozen
-from course.scoring.judging.session import GradingSession, Terms
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Terms
 
 MINI = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
 

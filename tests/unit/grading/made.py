@@ -12,7 +12,7 @@ from course.grading.gradebook.records import GradedExercise, Key, Result
 from course.grading.intake.downloads import class_list
 from course.grading.intake.students import Entry, read_student
 from course.grading.running.grader import Config
-from course.scoring.judging.session import Submission
+from course.scoring.judging.submission import Submission
 from course.scoring.verdict import CheckResult, Problem, Status, Tolerance, Verdict, Visibility
 
 SECRET = 1234.5678

@@ -17,9 +17,9 @@ from course.grading.gradebook.records import Override, PlatformIdentity
 from course.grading.intake.downloads import class_list
 from course.grading.results.effective import override
 from course.grading.results.roster import Person, read_roster
+from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions, grade_class
-from course.grading.running.snapshot import open_results
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 from tests.unit.grading.pages import faults, read_page
 from tests.unit.grading.running.test_run import right
 

@@ -16,7 +16,8 @@ from course.errors import ContentError, MissingCapabilityError
 from course.grading import kit
 from course.scoring.checks.collected import Check
 from course.scoring.graders import grader_version
-from course.scoring.judging.session import GradingSession, Submission, Terms
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission, Terms
 from course.scoring.remote import RemoteSubmission
 from course.scoring.values import plain
 from course.scoring.verdict import CheckResult, Status, Verdict, finite, for_student

@@ -35,7 +35,7 @@ from course.grading.similar import (
     fingerprints,
     page,
 )
-from course.scoring.judging.session import Submission
+from course.scoring.judging.submission import Submission
 from tests.growth import LIMIT, growth
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.made import RIGHT, key, make_book

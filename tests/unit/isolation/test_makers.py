@@ -15,7 +15,8 @@ from course.catalog.locate import ENVIRONMENT_VARIABLE, content
 from course.isolation import spawn
 from course.isolation.inside.worker import Worker
 from course.isolation.levels import TICK_S, Exit, Level
-from course.scoring.judging.session import GradingSession, Submission, Terms
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission, Terms
 
 MINI_COURSE = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
 

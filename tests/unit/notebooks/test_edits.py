@@ -12,7 +12,8 @@ from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.handed_in.notebook import RECORD, NotebookSource, notebook_source, opened
 from course.physics import systems
-from course.scoring.judging.session import GradingSession, Submission
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission
 from tests.unit.notebooks.edits import edited
 
 STEPS = ("explicit_euler_step", "semi_implicit_euler_step", "velocity_verlet_step", "rk4_step")

@@ -106,7 +106,7 @@ def test_no_more_of_the_course_than_is_imported_is_handed_over():
     assert {"course/physics/body.py", "course/physics/rotation.py"} <= names
     assert not {name for name in names if not name.startswith(("course/physics/", "course/__init__"))}
     assert book.absent == ()
-    assert textbook_for(["from course.figures import twins"]).absent == ("matplotlib",)
+    assert textbook_for(["from course.figures import sim_to_real"]).absent == ("matplotlib",)
     assert textbook_for(["from course.physics.body import Body"]).data == book.data
 
 

@@ -16,7 +16,8 @@ from course.isolation.failures import StudentFailure
 from course.isolation.levels import Level
 from course.isolation.session import Connection
 from course.isolation.spawn import spawner
-from course.scoring.judging.session import GradingSession, Submission, Terms
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import CheckResult
 from tests.contracts.boundary.levels import require_level
 

@@ -117,9 +117,6 @@ def when(iso: str) -> str:
     return f"{iso[:10]} {iso[11:16]} UTC" if len(iso) >= 16 else iso
 
 
-# ---
-
-
 #: The beginning of every page; a file that begins otherwise is not ours to replace.
 MARKER: Final = "<!DOCTYPE html>\n<!-- course grade -->\n"
 _TEMPLATES = Path(__file__).with_name("templates")

@@ -170,9 +170,6 @@ def _sides(corners: Floats) -> tuple[Floats, Floats]:
     return normals, np.asarray((normals * corners).sum(axis=-1))
 
 
-# ---
-
-
 Codes = NDArray[np.uint32]
 
 PAPER = 0x12161C

@@ -78,9 +78,6 @@ def speed_in_words(speed: float) -> str:
     return f"1/{1 / speed:.0f} of real time"
 
 
-# ---
-
-
 #: A line is pieces of text, each with a style: "", "bold", "dim" or a colour as #rrggbb.
 Line = tuple[tuple[str, str], ...]
 

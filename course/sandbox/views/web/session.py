@@ -234,9 +234,6 @@ def finite(value: float | None) -> float | None:
     return value if value is not None and math.isfinite(value) else None
 
 
-# ---
-
-
 #: Pages that may look at one world at a time.
 MAX_PAGES = 8
 #: Frames a second, and how much of each may go into stepping; the rest is for drawing and for being quick.

@@ -13,7 +13,7 @@ import pytest
 from course.grading.intake.students import Entry
 from course.grading.running import batch
 from course.grading.running.batch import Graded
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 from course.scoring.verdict import Problem
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.running.test_run import right

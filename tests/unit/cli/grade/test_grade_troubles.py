@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from course.grading.gradebook.book import Gradebook
-from course.grading.running.snapshot import export_all, open_results
+from course.grading.running.folder import export_all, open_results
 from tests.unit.grading.made import HALF, RIGHT, make_book
 
 RUN = ("run", "class", "--out", "out", "--exercise", "doubling")

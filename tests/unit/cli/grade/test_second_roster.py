@@ -18,7 +18,7 @@ from course.grading.results.effective import Results
 from course.grading.results.merge import merged
 from course.grading.results.roster import Person, Roster, read_roster
 from course.grading.running import batch
-from course.grading.running.snapshot import open_results
+from course.grading.running.folder import open_results
 from tests.unit.cli.grade.test_grade_after import grades
 from tests.unit.grading.made import HALF, RIGHT, digest, make_book
 from tests.unit.grading.running.test_run import right

@@ -30,7 +30,8 @@ from course.grading.running.batch import MAX_TRIES, Graded
 from course.grading.running.grader import Answer, Job
 from course.grading.running.snapshot import Snapshot, in_use
 from course.scoring.graders import grader_version
-from course.scoring.judging.session import GradingSession, Submission, Terms
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import Problem, Verdict
 from tests.unit.grading.made import stillborn
 

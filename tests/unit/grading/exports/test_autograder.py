@@ -26,7 +26,7 @@ from course.grading.container.packing import write_autograder
 from course.grading.intake.students import Entry
 from course.grading.running.batch import Graded
 from course.grading.running.snapshot import Snapshot
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.running.test_run import right
 

@@ -23,7 +23,7 @@ from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.records import Key, Override, Result, SubmittedAt
 from course.grading.results.effective import Results
 from course.grading.results.roster import Person, Roster
-from course.grading.running.snapshot import open_results
+from course.grading.running.folder import open_results
 from course.printable import one_line
 from course.scoring.verdict import Problem, Status
 from tests.unit.grading.made import (

@@ -16,9 +16,9 @@ from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
 from course.grading.results.effective import override
 from course.grading.results.roster import read_roster
+from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions, grade_class
-from course.grading.running.snapshot import open_results
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 from tests.unit.grading.made import read_by_php
 from tests.unit.grading.running.test_run import right
 

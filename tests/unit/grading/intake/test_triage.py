@@ -23,9 +23,9 @@ from course.grading.intake.students import Entry
 from course.grading.intake.triage import Candidate, found_for
 from course.grading.results.effective import override
 from course.grading.running.assign import assign, named, proposals, unsettled
+from course.grading.running.folder import open_results, previewed
 from course.grading.running.run import RunOptions, grade_class
-from course.grading.running.snapshot import open_results, previewed
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 from tests.unit.grading.made import read_class
 from tests.unit.grading.running.test_run import right
 

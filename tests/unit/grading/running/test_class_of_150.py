@@ -25,9 +25,9 @@ from course.grading.results.roster import read_roster
 from course.grading.running import snapshot
 from course.grading.running.assign import assign, proposals, unsettled
 from course.grading.running.batch import grade_all
+from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions, grade_class
-from course.grading.running.snapshot import open_results
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 from tests.unit.grading.running.test_run import right
 from tests.unit.grading.test_roster import rows
 

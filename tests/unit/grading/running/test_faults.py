@@ -12,7 +12,7 @@ import pytest
 from course.catalog.load import Catalog
 from course.grading.gradebook.book import Gradebook
 from course.grading.running.run import RunOptions, grade_class
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 from course.scoring.verdict import Verdict
 from tests.unit.grading.conftest import MINI
 

@@ -9,7 +9,7 @@ from course.grading.running import grader
 from course.grading.running.grader import Config, Job
 from course.isolation.probe import kept_sandboxes
 from course.scoring.judging import session
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 
 ORDER = ("doubling", "halving", "doubling", "doubling", "halving")
 

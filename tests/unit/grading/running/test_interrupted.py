@@ -15,9 +15,9 @@ from course.grading.exports.selection import ExportOptions
 from course.grading.intake.students import Entry
 from course.grading.results.roster import read_roster
 from course.grading.running.batch import Graded
+from course.grading.running.folder import export_all, open_results
 from course.grading.running.run import RunOptions, grade_class
-from course.grading.running.snapshot import export_all, open_results
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 from tests.command_line import in_process
 from tests.unit.grading.running.test_run import make_class, right
 

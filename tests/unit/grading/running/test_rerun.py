@@ -19,7 +19,7 @@ from course.grading.results.effective import Results, override
 from course.grading.running.batch import Graded
 from course.grading.running.rerun import RerunOptions, rerun
 from course.scoring.graders import grader_version
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, key, make_book
 

@@ -25,10 +25,10 @@ from course.grading.intake.students import Entry
 from course.grading.results.effective import override
 from course.grading.running import batch
 from course.grading.running.batch import MAX_TRIES, Graded, grade_all
+from course.grading.running.folder import open_results
 from course.grading.running.grader import Answer
 from course.grading.running.run import RunOptions, Summary, grade_class
-from course.grading.running.snapshot import open_results
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 from course.scoring.verdict import Verdict
 from tests.command_line import as_process, in_process
 from tests.unit.grading.made import read_class, stillborn

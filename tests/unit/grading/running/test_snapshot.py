@@ -17,12 +17,13 @@ from course.errors import IntegrityError, InternalError, NotFoundError
 from course.grading.gradebook.book import Gradebook
 from course.grading.results.effective import Results
 from course.grading.running.batch import start_grader
+from course.grading.running.folder import open_results
 from course.grading.running.grader import Config
 from course.grading.running.rerun import RerunOptions, rerun
 from course.grading.running.run import RunOptions, grade_class
-from course.grading.running.snapshot import Snapshot, frozen, in_use, open_results
+from course.grading.running.snapshot import Snapshot, frozen, in_use
 from course.scoring.graders import grader_version
-from course.scoring.judging.session import Terms
+from course.scoring.judging.submission import Terms
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.running.test_run import make_class, right
 

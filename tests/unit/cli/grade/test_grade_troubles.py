@@ -115,7 +115,7 @@ def test_the_gradebook_is_held_until_the_last_page_is_written(
         return whole(*arguments)
 
     whole = snapshot.write_pages
-    monkeypatch.setattr(snapshot, "write_pages", write_pages)
+    monkeypatch.setattr(folder, "write_pages", write_pages)
     ran = course("grade", "override", "out", "ada", "doubling", "--score", "1", "--reason", "oral exam")
     assert (ran.code, refused) == (0, ["gradebook_locked"])
     assert "oral exam" in (out / "report.html").read_text("utf-8")

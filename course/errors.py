@@ -17,17 +17,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-__all__ = [
-    "ContentError",
-    "CourseError",
-    "IntegrityError",
-    "InternalError",
-    "MissingCapabilityError",
-    "NotFoundError",
-    "UngradableError",
-    "UsageError",
-]
-
 
 class CourseError(Exception):
     """Base of every deliberate error.

@@ -19,8 +19,6 @@ from unittest.mock import patch
 
 from course.cli.frame import app, console
 
-__all__ = ["as_process", "in_process"]
-
 ROOT = Path(__file__).resolve().parents[1]
 
 

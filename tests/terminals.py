@@ -10,8 +10,6 @@ from pathlib import Path
 
 import pytest
 
-__all__ = ["Terminal", "needs_tmux"]
-
 ROOT = Path(__file__).resolve().parents[1]
 
 needs_tmux = pytest.mark.skipif(shutil.which("tmux") is None, reason="tmux is not installed")

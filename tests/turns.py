@@ -7,8 +7,6 @@ from typing import Any
 
 import pytest
 
-__all__ = ["soak_unless"]
-
 
 def soak_unless(chosen: Iterable[Any], cases: Iterable[Any]) -> list[Any]:
     """The cases as parameters, those marked ``soak`` that are not among the chosen.

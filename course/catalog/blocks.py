@@ -9,37 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-__all__ = [
-    "Block",
-    "Callout",
-    "CalloutKind",
-    "CodeCell",
-    "Command",
-    "CommandList",
-    "Diagram",
-    "Figure",
-    "Formula",
-    "Heading",
-    "Inline",
-    "Inlines",
-    "LineBreak",
-    "Link",
-    "ListBlock",
-    "Listing",
-    "MathBlock",
-    "Paragraph",
-    "Prediction",
-    "Sources",
-    "Span",
-    "Table",
-    "Text",
-    "Value",
-    "plain_text",
-    "slug",
-    "walk_blocks",
-    "walk_inlines",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Text:

@@ -7,8 +7,6 @@ import os
 import time
 from pathlib import Path
 
-__all__ = ["below", "left_running", "stored"]
-
 
 def below(pid: int) -> dict[int, tuple[int, str]]:
     """The processes that a process started, and theirs: id -> parent, command line."""

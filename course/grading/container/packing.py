@@ -20,8 +20,6 @@ from course.grading.exports.grades import write_bytes
 from course.grading.exports.selection import Written
 from course.grading.running.snapshot import Snapshot
 
-__all__ = ["write_autograder"]
-
 _PACKAGE = Path(__file__).resolve().parents[2]
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest date a zip can hold
 #: The content of a wheel, which the snapshot has.

@@ -38,15 +38,6 @@ from course.printable import one_line
 from course.scoring.judging.submission import Submission
 from course.scoring.verdict import Problem
 
-__all__ = [
-    "MAX_FILE",
-    "Entry",
-    "read_quiz",
-    "read_student",
-    "submission_from",
-    "witnesses",
-]
-
 
 @dataclass(frozen=True)
 class Entry:

@@ -20,8 +20,6 @@ from course.grading.intake.archives import RefusedError, reader
 from course.grading.intake.downloads import IGNORED, Place, plain
 from course.printable import one_line
 
-__all__ = ["Candidate", "Found", "described", "found_for", "survey"]
-
 _KINDS = (".py", ".ipynb", ".zip")
 #: How far one student's folder is searched: depth of folders, entries, files read, and files that killed the
 #: reading process, which may have taken ten seconds each.

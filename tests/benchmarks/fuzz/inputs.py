@@ -15,8 +15,6 @@ import numpy as np
 
 from course.isolation.inside.wire import Codec, Kind
 
-__all__ = ["NAMES", "Chance", "archive", "frames", "notebook", "scene"]
-
 
 class Chance(random.Random):
     """The numbers of one input, and how wild it is: a tame one gets further in."""

@@ -7,8 +7,6 @@ be harmless where it succeeds: 3 GB, 200 MB, one file of ours, one address of th
 
 from __future__ import annotations
 
-__all__ = ["ATTACKS", "HONEST", "WRONG"]
-
 HONEST = """
 def double(x):
     return x + x

@@ -16,8 +16,6 @@ from course.isolation.failures import IsolationError
 from course.isolation.levels import Level
 from course.isolation.probe import open_spawner
 
-__all__ = ["require_level"]
-
 
 def require_level(name: str) -> Level:
     """The level, proven here; skips or fails the calling test where it is not to be had."""

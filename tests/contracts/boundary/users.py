@@ -13,8 +13,6 @@ import pytest
 
 from tests.turns import soak_unless
 
-__all__ = ["LEVELS_AND_USERS", "USERS", "command_as", "run_as"]
-
 ROOT = Path(__file__).resolve().parents[3]
 #: "ordinary" is whoever runs the tests, or user 1000 of a new user namespace if that is root: files of the
 #: tester's stay readable there, and every capability is gone.

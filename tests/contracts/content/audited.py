@@ -14,8 +14,6 @@ from course.catalog.models import Exercise
 from course.scoring.verdict import Verdict
 from tests.benchmarks.calibration.seeds import proven
 
-__all__ = ["CATALOG", "EACH", "EXERCISES", "IN_PART", "changed", "on_record", "programs", "wrong"]
-
 CATALOG = Catalog()
 EXERCISES = CATALOG.exercise_ids()
 #: As `course author check` does it; all processors are at work on other tests already.

@@ -7,8 +7,6 @@ import re
 from html.parser import HTMLParser
 from pathlib import Path
 
-__all__ = ["Page", "faults", "read_page"]
-
 _VOID = {"br", "hr", "img", "input", "link", "meta"}
 _HEADINGS = ["h1", "h2", "h3", "h4"]
 

@@ -11,8 +11,6 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-__all__ = ["edited"]
-
 RawCell = dict[str, Any]
 
 EXPERIMENTS = (

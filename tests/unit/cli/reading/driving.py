@@ -10,8 +10,6 @@ import pytest
 
 from course.cli.reading.screen.app import ReaderApp
 
-__all__ = ["drive", "screen", "settled"]
-
 
 def drive(
     app: ReaderApp, journey: Callable[[ReaderApp, Any], Awaitable[None]], size: tuple[int, int] = (80, 24)

@@ -197,7 +197,7 @@ def put(folder: Path, notebook: Generated, *, update: bool = True) -> NotebookFi
 
 
 app = typer.Typer(
-    help="Get lessons and exercises as Jupyter notebooks.",
+    help="Write notebooks, check them, bring them up to date.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -396,7 +396,7 @@ def open_notebook(
         bool, typer.Option("--no-browser", help="Only print the address; nothing is opened.")
     ] = False,
 ) -> int:
-    """Open a notebook in JupyterLab.
+    """Open one notebook in JupyterLab.
 
     A missing notebook is written first, in the workspace, or outside of one in notebooks/. An existing one is
     not changed: `course notebook update` brings newer text. Ctrl+C ends it.

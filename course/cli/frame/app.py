@@ -15,6 +15,7 @@ import sys
 import tempfile
 import traceback
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Annotated, Any, NoReturn
 
@@ -23,7 +24,7 @@ import typer
 from course import __version__
 from course.cli.frame.console import Console, current, install
 from course.cli.frame.options import Line, global_options
-from course.cli.frame.registry import HOME, LazyGroup, build, find
+from course.cli.frame.registry import HOME, LazyGroup, build, find, understood
 from course.errors import CourseError, NotFoundError, UsageError
 
 INTERRUPTED = 130
@@ -62,6 +63,9 @@ def run(arguments: Sequence[str]) -> int:
     line = global_options(arguments)
     console = install(Console(line.settings))
     try:
+        line = replace(line, rest=understood(line.rest))
+        if line.rest[:1] == ("--version",):
+            line = replace(line, version=True)
         code = _dispatch(line, console)
         if code == INTERRUPTED and not console.emitted:
             raise KeyboardInterrupt
@@ -223,7 +227,21 @@ def _usage(console: Console, line: Line, error: Any) -> int:
             console.error(str(error.format_message()))
         return _say(console, line, UsageError.exit_code, "usage", f"`{path}` needs a command.")
     message = str(error.format_message()).strip()
-    return _say(console, line, UsageError.exit_code, "usage", message, f"See `{path} --help`.")
+    choices = _choices(error, context)
+    known = f"There {'is' if len(choices) == 1 else 'are'} {', '.join(choices)}. " if choices else ""
+    return _say(console, line, UsageError.exit_code, "usage", message, f"{known}See `{path} --help`.")
+
+
+_MOST_CHOICES = 20
+
+
+def _choices(error: Any, context: Any) -> list[str]:
+    """What could stand where an argument or an option is missing: what the shell would complete there."""
+    param = getattr(error, "param", None)
+    if param is None or context is None or not type(error).__name__.startswith("MissingParameter"):
+        return []
+    found = [str(item.value) for item in param.shell_complete(context, "")]
+    return found if len(found) <= _MOST_CHOICES else []
 
 
 def _crash(console: Console, line: Line, error: BaseException) -> int:

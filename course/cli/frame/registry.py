@@ -13,12 +13,18 @@ from typing import Any, cast
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from course.catalog.locate import content
+from course.errors import CourseError, UsageError
+
 GLOBAL_OPTIONS = "Every command also takes --json, --plain, --quiet (-q) and -C DIR."
 
 LEARN = "Learn"
-WORK = "Work on an exercise"
-KEEP = "Keep and hand in"
-TEACH = "Instructors"
+PRACTISE = "Practise"
+PLAY = "Play"
+HAND_IN = "Hand in"
+MACHINE = "This machine"
+TEACH = "For instructors"
+WRITE = "For authors"
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,100 +52,100 @@ class Entry:
 COMMANDS: dict[str, Entry] = {
     "demo": Entry("setup.demo", "demo", LEARN, "Find and fix a mistake, without a workspace.", "course demo"),
     "init": Entry("setup.making", "init", LEARN, "Make a workspace.", "course init my-course"),
-    "lessons": Entry("reading.commands", "lessons", LEARN, "List the lessons.", "course lessons"),
+    "go": Entry("home.going", "go", LEARN, "Open what is next: a lesson, a task or the quiz.", "course go"),
+    "next": Entry("home.going", "next_command", LEARN, "Name what is next, and open nothing.", "course next"),
+    "lessons": Entry(
+        "reading.commands", "lessons", LEARN, "List the lessons, with what is read.", "course lessons"
+    ),
     "lesson": Entry(
-        "reading.commands", "lesson", LEARN, "Read a lesson.", "course lesson numerical-integration"
+        "reading.commands", "lesson", LEARN, "Read one lesson.", "course lesson numerical-integration"
     ),
-    "warmup": Entry(
-        "reading.commands", "warmup", LEARN, "Do a lesson's small tasks.", "course warmup fall-time"
-    ),
-    "exercises": Entry("home.overview", "exercises", LEARN, "List the exercises.", "course exercises"),
-    "next": Entry("home.going", "next_command", LEARN, "Say what is next.", "course next"),
-    "go": Entry("home.going", "go", LEARN, "Go on from where you stopped.", "course go"),
     "quiz": Entry(
         "quiz.commands", "app", LEARN, "Answer the quiz, and review what was missed.", "course quiz take"
     ),
-    "sim": Entry(
-        "sim", "app", LEARN, "Run a simulation and compare with theory.", "course sim run free-fall"
+    "progress": Entry("home.overview", "progress", LEARN, "Show everything done so far.", "course progress"),
+    "warmup": Entry(
+        "reading.commands", "warmup", PRACTISE, "Do a lesson's small tasks.", "course warmup fall-time"
     ),
-    "sandbox": Entry(
-        "sandbox.commands",
-        "app",
-        LEARN,
-        "Play with collisions, and see where the energy goes.",
-        "course sandbox play newtons-cradle",
-    ),
-    "engines": Entry(
-        "engines.commands",
-        "app",
-        LEARN,
-        "Compare real physics engines on this machine.",
-        "course engines compare --quick",
-    ),
-    "notebook": Entry(
-        "notebook",
-        "app",
-        LEARN,
-        "Get lessons and exercises as Jupyter notebooks.",
-        "course notebook build integrators",
-    ),
-    "open": Entry(
-        "notebook",
-        "open_notebook",
-        LEARN,
-        "Open a notebook in JupyterLab.",
-        "course open integrators",
-    ),
+    "exercises": Entry("home.overview", "exercises", PRACTISE, "List the exercises.", "course exercises"),
     "start": Entry(
-        "work.changing", "start", WORK, "Put an exercise into the workspace.", "course start integrators"
+        "work.changing", "start", PRACTISE, "Put an exercise into the workspace.", "course start integrators"
     ),
-    "check": Entry("work.checking", "check", WORK, "Run the public checks.", "course check integrators"),
-    "watch": Entry("work.watching", "watch", WORK, "Check again on every save.", "course watch integrators"),
-    "hint": Entry("work.hinting", "hint", WORK, "Show the next hint.", "course hint integrators"),
+    "check": Entry("work.checking", "check", PRACTISE, "Run the public checks.", "course check integrators"),
+    "watch": Entry(
+        "work.watching", "watch", PRACTISE, "Check again on every save.", "course watch integrators"
+    ),
+    "hint": Entry("work.hinting", "hint", PRACTISE, "Show the next hint.", "course hint integrators"),
     "diff": Entry(
-        "work.changing", "diff", WORK, "Show what changed since the stub.", "course diff integrators"
+        "work.changing", "diff", PRACTISE, "Show what changed since the stub.", "course diff integrators"
     ),
     "report": Entry(
         "work.reporting",
         "report",
-        WORK,
+        PRACTISE,
         "Show what your code does, with figures.",
         "course report sim-to-real",
     ),
     "reflect": Entry(
         "work.hinting",
         "reflect",
-        WORK,
+        PRACTISE,
         "Answer in prose, and grade your answer.",
         "course reflect sim-to-real",
     ),
     "solution": Entry(
         "work.hinting",
         "solution",
-        WORK,
+        PRACTISE,
         "Show a released solution, after a pass.",
         "course solution integrators",
     ),
     "reset": Entry(
-        "work.changing", "reset", KEEP, "Go back to the stub; a copy is kept.", "course reset integrators"
+        "work.changing", "reset", PRACTISE, "Go back to the stub; a copy is kept.", "course reset integrators"
+    ),
+    "notebook": Entry(
+        "notebook",
+        "app",
+        PRACTISE,
+        "Write notebooks, check them, bring them up to date.",
+        "course notebook build integrators",
+    ),
+    "open": Entry(
+        "notebook", "open_notebook", PRACTISE, "Open one notebook in JupyterLab.", "course open integrators"
+    ),
+    "sandbox": Entry(
+        "sandbox.commands",
+        "app",
+        PLAY,
+        "Play with collisions, and see where the energy goes.",
+        "course sandbox play newtons-cradle",
+    ),
+    "sim": Entry("sim", "app", PLAY, "Run a simulation and compare with theory.", "course sim run free-fall"),
+    "engines": Entry(
+        "engines.commands",
+        "app",
+        PLAY,
+        "Compare real physics engines on this machine.",
+        "course engines compare --quick",
+    ),
+    "submit": Entry(
+        "work.submitting", "submit", HAND_IN, "Write the file to hand in.", "course submit -o mine.zip"
     ),
     "update": Entry(
-        "work.changing", "update", KEEP, "Bring newer course content in.", "course update --dry-run"
+        "work.changing", "update", MACHINE, "Bring newer course content in.", "course update --dry-run"
     ),
-    "progress": Entry("home.overview", "progress", KEEP, "Show everything done so far.", "course progress"),
-    "submit": Entry(
-        "work.submitting", "submit", KEEP, "Write the file to hand in.", "course submit -o mine.zip"
+    "doctor": Entry("setup.doctor", "doctor", MACHINE, "Say what works on this machine.", "course doctor"),
+    "bug": Entry(
+        "setup.doctor", "bug", MACHINE, "Write what a fault report needs into a file.", "course bug"
     ),
-    "doctor": Entry("setup.doctor", "doctor", KEEP, "Say what works on this machine.", "course doctor"),
-    "bug": Entry("setup.doctor", "bug", KEEP, "Write what a fault report needs into a file.", "course bug"),
     "schema": Entry(
-        "frame.schemas", "schema", KEEP, "Print the JSON Schema of a reply.", "course schema check"
+        "frame.schemas", "schema", MACHINE, "Print the JSON Schema of a reply.", "course schema check"
     ),
     "grade": Entry(
         "grade.commands", "app", TEACH, "Grade a class.", "course grade run submissions --out grades"
     ),
     "author": Entry(
-        "author.commands", "app", TEACH, "Write and check the course itself.", "course author check"
+        "author.commands", "app", WRITE, "Write and check the course itself.", "course author check"
     ),
 }
 
@@ -147,13 +153,63 @@ COMMANDS: dict[str, Entry] = {
 #: The command behind ``course`` alone: a module and its function.
 HOME = "home.overview", "dashboard"
 
+#: Words that other tools have for what these commands do.
+ALSO: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(("test", "tests", "run", "verify", "checks"), ("check",)),
+    **dict.fromkeys(("list", "ls", "exercise", "tasks"), ("exercises",)),
+    **dict.fromkeys(("warm-up", "warmups", "warm-ups"), ("warmup",)),
+    **dict.fromkeys(("status", "home", "dashboard"), ()),
+    **dict.fromkeys(("hints",), ("hint",)),
+    **dict.fromkeys(("hand-in", "handin", "turn-in", "turnin"), ("submit",)),
+    **dict.fromkeys(("version",), ("--version",)),
+}
+_NOTHING_TO_LEAVE = frozenset({"quit", "exit"})
+
+
+def understood(words: tuple[str, ...]) -> tuple[str, ...]:
+    """A command line with the course's own word for one of another tool; ``help WORDS`` is ``WORDS --help``.
+
+    Raises:
+        UsageError: it asks to leave, and no command goes on after its answer.
+    """
+    if not words or words[0] in COMMANDS:
+        return words
+    first, rest = words[0], words[1:]
+    if first in _NOTHING_TO_LEAVE:
+        raise UsageError(
+            "There is nothing to leave: every command ends by itself.",
+            help="In a lesson, in `course watch` and in the sandbox, the key q leaves.",
+        )
+    if first == "help":
+        return (*understood(rest), "--help")
+    return (*ALSO[first], *rest) if first in ALSO else words
+
+
+def content_is_whole() -> bool:
+    """Whether graders and solutions are here; where the course itself cannot be found, that is said later."""
+    try:
+        return content().is_checkout
+    except CourseError:
+        return True
+
 
 class LazyGroup(TyperGroup):
     """A group that knows its commands by name and loads the one that is run."""
 
     def list_commands(self, ctx: Any) -> list[str]:  # noqa: ARG002 - the signature is typer's
-        """Names in the order they are listed."""
-        return list(COMMANDS)
+        """Names in the order they are listed; what needs a checkout is offered in one."""
+        here = content_is_whole()
+        return [name for name, entry in COMMANDS.items() if here or entry.panel not in {TEACH, WRITE}]
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """The list of commands in plain help, under the same headings as on a terminal."""
+        panels: dict[str, list[tuple[str, str]]] = {}
+        for name in self.list_commands(ctx):
+            panels.setdefault(COMMANDS[name].panel, []).append((name, COMMANDS[name].summary))
+        widest = max(len(name) for name in COMMANDS)
+        for panel, rows in panels.items():
+            with formatter.section(panel):
+                formatter.write_dl([(name.ljust(widest), summary) for name, summary in rows])
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:  # noqa: ARG002 - the signature is typer's
         """A stand-in with the name and the summary, which is all that a list needs."""

@@ -26,7 +26,7 @@ _WHY = {
 
 
 def next_command() -> int:
-    """Say what is next.
+    """Name what is next, and open nothing.
 
     `course go` does it.
     """
@@ -42,7 +42,7 @@ def next_command() -> int:
 
 
 def go() -> int:
-    """Go on from where you stopped.
+    """Open what is next: a lesson, a task or the quiz.
 
     Runs the next command: a lesson, its predictions and small tasks, its exercise, the next lesson, and at
     last the quiz and `course submit`. In a terminal it asks before each further step. With --json it runs

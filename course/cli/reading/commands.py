@@ -59,7 +59,7 @@ class LessonReply(Envelope, tag="course.lesson/1", frozen=True, kw_only=True):
 
 
 def lessons() -> int:
-    """List the lessons.
+    """List the lessons, with what is read.
 
     In the order to read them; inside a workspace also which ones you have read.
     """
@@ -101,7 +101,7 @@ def lesson(
         bool, typer.Option("--no-browser", help="Open no page and no picture; say where each is.")
     ] = False,
 ) -> int:
-    """Read a lesson.
+    """Read one lesson.
 
     ID#SECTION is one of its sections, such as numerical-integration#swap-two-lines. On a terminal the lesson
     fills the screen: predict, run its cells, search; ? there lists the keys. With --page you do the same by

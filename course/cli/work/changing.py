@@ -13,7 +13,7 @@ from typing import Annotated
 import typer
 
 from course.catalog.models import Exercise
-from course.cli.frame.completion import ExerciseName, OneExercise
+from course.cli.frame.completion import ExerciseName, OneExercise, exercise_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.replies import Backup, FileReply, NextStep
@@ -215,13 +215,25 @@ _WORDS_A_MINUTE = 200
 _LONG = 3
 
 
-def start(exercise: OneExercise) -> int:
+def start(
+    exercise: Annotated[
+        str | None,
+        typer.Argument(metavar="EXERCISE", help="Its id or its number.", autocompletion=exercise_ids),
+    ] = None,
+) -> int:
     """Put an exercise into the workspace.
 
     You get the stub to fill in and its README. An existing file is not changed.
     """
 
     console, here = current(), Here.load()
+    if exercise is None:
+        raise UsageError(
+            "Which exercise?",
+            help=f"There are {', '.join(one.id for one in here.catalog.exercises())}. "
+            "`course warmup` lists the small tasks.",
+            code="no_name",
+        )
     chosen = here.exercise(exercise)
     files = put(console, here, chosen)
     step = f"course watch {chosen.id}"

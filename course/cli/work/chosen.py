@@ -8,7 +8,7 @@ be handed in.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -119,11 +119,18 @@ def worked_on(here: Here) -> tuple[Exercise, ...]:
     )
 
 
-def work_of(here: Here, *, warm_ups: bool = False) -> tuple[list[StudentWork], list[FileReply]]:
-    """The files to hand in, and those left out with the reason; warm-ups only on request."""
+def work_of(
+    here: Here, only: Sequence[Exercise] = (), *, warm_ups: bool = False
+) -> tuple[list[StudentWork], list[FileReply]]:
+    """The files to hand in, and those left out with the reason; warm-ups only on request.
+
+    Args:
+        only: these exercises and no others, whatever was started; empty for all.
+    """
     chosen: list[StudentWork] = []
     left_out: list[FileReply] = []
-    for exercise in (*here.catalog.exercises(), *(here.warm_ups_started() if warm_ups else ())):
+    started = here.warm_ups_started() if warm_ups else ()
+    for exercise in only or (*here.catalog.exercises(), *started):
         module = _handed_in_module(here, exercise)
         notebook, why_not = _handed_in_notebook(here, exercise)
         if isinstance(module, StudentWork):

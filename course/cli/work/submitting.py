@@ -18,6 +18,8 @@ from typing import Annotated, Any
 
 import typer
 
+from course.catalog.models import Exercise
+from course.cli.frame.completion import exercise_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd
 from course.cli.frame.replies import FileReply
@@ -37,6 +39,15 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest date a zip can hold
 
 
 def submit(
+    exercises: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[EXERCISE]...",
+            help="Only these, without the quiz; everything if left out.",
+            autocompletion=exercise_ids,
+            show_default=False,
+        ),
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="FILE", help="File to write; in the workspace if left out."),
@@ -53,12 +64,13 @@ def submit(
     """
 
     console, here = current(), Here.load()
-    target = _target(here, output)
-    works, left_out = work_of(here, warm_ups=warm_ups)
-    quiz = _quiz_records(here)
+    only = tuple(here.exercise(name) for name in exercises or ())
+    target = _target(here, output, only)
+    works, left_out = work_of(here, only, warm_ups=warm_ups)
+    quiz = [] if only else _quiz_records(here)
     goes_in = _checked(console, here, works)
     files = tuple(one.reply() for one in goes_in)
-    _show(console, here, goes_in, left_out, quiz)
+    _show(console, here, goes_in, left_out, quiz, only)
     if not works and not quiz:
         raise UngradableError(
             "There is nothing to hand in yet.",
@@ -132,9 +144,9 @@ def _packed(here: Here, works: Sequence[StudentWork], quiz: Sequence[Mapping[str
     return data
 
 
-def _target(here: Here, output: Path | None) -> Path:
+def _target(here: Here, output: Path | None, only: Sequence[Exercise]) -> Path:
     """Where the zip goes, before anything is read."""
-    name = f"{here.catalog.course_id}-submission.zip"
+    name = f"{'-'.join(one.id for one in only) or here.catalog.course_id}-submission.zip"
     if output is None:
         return here.workspace.root / name
     path = cwd() / output.expanduser()
@@ -229,6 +241,7 @@ def _show(
     goes_in: list[_GoesIn],
     left_out: list[FileReply],
     quiz: Sequence[Mapping[str, Any]],
+    only: Sequence[Exercise],
 ) -> None:
     files = [one.work.path for one in goes_in]
     if files or quiz:
@@ -251,7 +264,7 @@ def _show(
         console.line(f"Left out: {item.path} ({item.action}).")
     known = {Path(path).parent.name for path in (*files, *(item.path for item in left_out))}
     missing = [name for name in here.catalog.exercise_ids() if name not in known]
-    if files and missing:
+    if files and missing and not only:
         console.line(f"Not started, so not in it: {', '.join(missing)}.")
 
 

@@ -1,0 +1,88 @@
+"""Words that people bring from other tools, choices where one is missing, and help by use."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from course.cli.frame.registry import ALSO, COMMANDS
+from course.errors import CourseError
+
+
+@pytest.mark.parametrize(
+    ("word", "own"),
+    [
+        ("test", ["check"]),
+        ("verify", ["check"]),
+        ("run", ["check"]),
+        ("list", ["exercises"]),
+        ("status", []),
+        ("warm-ups", ["warmup"]),
+        ("version", ["--version"]),
+    ],
+)
+def test_a_word_of_another_tool_does_what_it_means(course, workspace, write, word, own):
+    write("RIGHT", "wrong")
+    said, meant = course(word, "--json"), course(*own, "--json")
+    assert said.code == meant.code
+    assert said.json["schema"] == meant.json["schema"]
+    assert not {*ALSO} & {*COMMANDS}
+
+
+def test_help_before_a_command_is_its_help(course):
+    assert course("help", "check").out == course("check", "--help").out
+    assert course("help").out == course("--help").out
+
+
+@pytest.mark.parametrize("word", ["quit", "exit"])
+def test_who_wants_to_leave_is_told_that_nothing_runs(course, word):
+    ran = course(word)
+    assert ran.code == 2
+    assert "every command ends by itself" in ran.err
+    assert json.loads(course(word, "--json").out)["error"]["code"] == "usage"
+
+
+def test_a_choice_that_is_missing_is_shown(course, workspace):
+    assert "There are mjcf, sdf." in course("sandbox", "export", "head-on").err
+    ran = course("start")
+    assert ran.code == 2
+    assert "There are doubling" in ran.err
+
+
+def test_one_exercise_is_handed_in_by_itself(course, workspace, write):
+    write("RIGHT", "RIGHT")
+    ran = course("submit", "doubling", "--json")
+    assert ran.code == 0, ran.err
+    assert [one["path"] for one in ran.json["files"]] == ["doubling/doubling.py"]
+    assert ran.json["output"].endswith("doubling-submission.zip")
+    assert course("submit", "tripling").code == 5
+
+
+def test_help_is_grouped_by_use_and_offers_what_works_here(course, monkeypatch):
+    said = course("--help", "--plain").out
+    headings = [
+        "Learn:",
+        "Practise:",
+        "Play:",
+        "Hand in:",
+        "This machine:",
+        "For instructors:",
+        "For authors:",
+    ]
+    assert [line for line in said.splitlines() if line in headings] == headings
+
+    class Wheel:
+        is_checkout = False
+
+    monkeypatch.setattr("course.cli.frame.registry.content", Wheel)
+    said = course("--help", "--plain").out
+    assert "For instructors:" not in said
+    assert "For authors:" not in said
+    assert "submit" in said
+
+    def nowhere():
+        raise CourseError("There is no course here.")
+
+    monkeypatch.setattr("course.cli.frame.registry.content", nowhere)
+    assert course("--help", "--plain").code == 0

@@ -134,11 +134,11 @@ def summary(exercise: Exercise, verdict: Verdict) -> list[str]:
     if verdict.all_pass:
         everything = "The one public check passes" if total == 1 else f"All {total} public checks pass"
         return [f"{everything}{later}.", _capital(f"{score}.")]
-    mark = exercise.pass_mark * verdict.max_score
-    reached = "reached" if verdict.passed else "not reached yet"
+    points = verdict.max_score + exercise.hidden_points
+    mark = f"a pass takes {format_points(exercise.pass_mark * points)} of {format_points(points)} points"
     return [
         f"{passing} of {total} public checks {'passes' if passing == 1 else 'pass'}{later}.",
-        _capital(f"{score}; the pass mark, {format_points(mark)} ({exercise.pass_mark:.0%}), is {reached}."),
+        _capital(f"{score}; {mark}{', hidden checks included' if exercise.hidden_points else ''}."),
     ]
 
 

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import ast
+from collections.abc import Collection, Iterable
 from typing import Any
+
+import msgspec
 
 from course.catalog.models import Exercise
 from course.isolation.failures import StudentFailure
 from course.isolation.session import LOOP, LoadRefusedError
 from course.scoring.checks.collected import Check
+from course.scoring.judging.submission import Submission
 from course.scoring.remote import RemoteSubmission
 from course.scoring.values import kind_of, plain
 from course.scoring.verdict import CheckResult, Finding, Places, Problem, Status
@@ -172,3 +177,54 @@ def no_functions(exercise: Exercise) -> Problem:
         f"{exercise.module} defines none of the functions of this exercise.",
         f"Keep the names the stub gave: {names}.",
     )
+
+
+# -- functions as they were handed out -----------------------------------------------------------------------
+
+
+def untouched(exercise: Exercise, submission: Submission) -> frozenset[str]:
+    """The tasks whose functions, and what these use of their file, are still the stub's.
+
+    A stub's function may run and return something: a measurement of nothing, a program to mend.
+    """
+    try:
+        stub = _definitions(exercise.stub_path.read_bytes())
+        mine = _definitions(submission.files[exercise.module])
+    except (OSError, KeyError, SyntaxError, ValueError, RecursionError):
+        return frozenset()
+    changed = {name for name in {*stub, *mine} if stub.get(name) != mine.get(name)}
+    while more := {name for name, (_, uses) in mine.items() if name not in changed and uses & changed}:
+        changed |= more
+    return frozenset(task.id for task in exercise.task) - changed
+
+
+def _definitions(source: bytes) -> dict[str, tuple[str, frozenset[str]]]:
+    """The functions, classes and constants of a module: the tree of each, and the names that it uses."""
+    found: dict[str, tuple[str, frozenset[str]]] = {}
+    for node in ast.parse(source).body:
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            names = [node.name]
+        else:
+            targets = node.targets if isinstance(node, ast.Assign) else []
+            names = [target.id for target in targets if isinstance(target, ast.Name)]
+        uses = frozenset(part.id for part in ast.walk(node) if isinstance(part, ast.Name))
+        found |= {name: (ast.dump(node), uses) for name in names}
+    return found
+
+
+def to_do(results: Iterable[CheckResult], tasks: Collection[str]) -> list[CheckResult]:
+    """The results, with what fails of functions that nobody has touched yet said as work to do."""
+    return [
+        msgspec.structs.replace(
+            result,
+            message="This function is as it was handed out.",
+            help="What it is to do stands above it.",
+            diagnosis="NOT_IMPLEMENTED",
+            expected=None, actual=None, input=None, tolerance=None, first_divergence=None, traceback=None,
+        )
+        if result.task in tasks
+        and result.status in {Status.FAIL, Status.ERROR}
+        and result.diagnosis != "NOT_IMPLEMENTED"
+        else result
+        for result in results
+    ]  # fmt: skip

@@ -35,7 +35,9 @@ from course.scoring.judging.outcomes import (
     no_functions,
     result,
     skipped,
+    to_do,
     unjudged,
+    untouched,
 )
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.remote import Heard, RemoteSubmission
@@ -167,6 +169,8 @@ class GradingSession:
             self._remote, self.running = None, ""
             with contextlib.suppress(IsolationError):
                 remote.close()
+        if self._terms.home and len(self.exercise.task) > 1:
+            results = to_do(results, untouched(self.exercise, submission))
         verdict = self._graded(results)
         return msgspec.structs.replace(verdict, warnings=(*verdict.warnings, *left_out))
 

@@ -19,7 +19,7 @@ def test_check_says_message_then_advice_then_numbers(course, write):
     places = [ran.out.index(text) for text in order]
     assert places == sorted(places)
     assert "1 of 2 public checks passes; 2 hidden checks run when it is graded." in ran.out
-    assert "Score 2/4; the pass mark, 2.8 (70%), is not reached yet." in ran.out
+    assert "Score 2/4; a pass takes 6.3 of 9 points, hidden checks included." in ran.out
     assert "Next: course hint doubling" in ran.out
     assert "\x1b" not in ran.out
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import shlex
 import time
 from collections.abc import Iterable
 from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
 
@@ -352,7 +354,10 @@ def _write(console: Console, catalog: Catalog, folder: Path, notebooks: Iterable
     if len(files) == 1:
         new = "new or changed" if changed else "not changed"
     console.line((f"{count} in {folder}, {new}.", "bold"))
-    console.note(f"Open them with: jupyter lab {folder}")
+    if find_spec("jupyterlab"):
+        console.note(f"Open them with: {shlex.join(['jupyter', 'lab', str(folder)])}")
+    else:
+        console.note("Open them in any program for Jupyter notebooks; `course open` needs JupyterLab.")
     console.emit(
         Notebook(
             course=catalog.ref,

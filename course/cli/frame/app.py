@@ -17,6 +17,7 @@ import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
 import typer
@@ -256,10 +257,15 @@ def _crash(console: Console, line: Line, error: BaseException) -> int:
 # A report of a crash: everything needed to look for the fault, in a file, for the person to send or not.
 
 
+#: Begins the line of a report that says which installation crashed: a user may have several.
+INSTALLATION = "installation: "
+
+
 def write_report(error: BaseException) -> str:
     """Write the report and return its path; if even that fails, a phrase that says so."""
     lines = [
         f"course {__version__}, Python {platform.python_version()}, {platform.platform()}",
+        f"{INSTALLATION}{Path(__file__).resolve().parents[2]}",
         f"when: {datetime.now(UTC).isoformat(timespec='seconds')}",
         f"command: {sys.argv!r}",
         "",

@@ -12,6 +12,7 @@ import re
 import sys
 import sysconfig
 import tempfile
+import time
 import unicodedata
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -23,6 +24,7 @@ import typer
 from course import __version__
 from course.catalog.load import Catalog
 from course.cli.frame import here
+from course.cli.frame.app import INSTALLATION
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, find_workspace, load_catalog
 from course.cli.setup.replies import Bug, Doctor, Fix, Package
@@ -340,7 +342,11 @@ def _report(crash: str | None) -> Iterator[str]:
 
 
 def _last_crash() -> str | None:
-    """The newest crash report of this user's, without what was typed; None if there is none."""
+    """The newest crash report of this installation, without what was typed; None if there is none.
+
+    Its age stands above it: it may have nothing to do with what is reported now.
+    """
+    mark = f"{INSTALLATION}{Path(__file__).resolve().parents[2]}\n"
     found = []
     for path in Path(tempfile.gettempdir()).glob("course-crash-*.txt"):
         try:
@@ -350,10 +356,14 @@ def _last_crash() -> str | None:
         mine = not hasattr(os, "getuid") or facts.st_uid == os.getuid()
         if mine and path.is_file() and not path.is_symlink():
             found.append((facts.st_mtime, path))
-    if not found:
-        return None
-    try:
-        text = max(found)[1].read_text(encoding="utf-8", errors="backslashreplace")
-    except OSError:
-        return None
-    return _TYPED.sub("command: left out", text)
+    for when, path in sorted(found, reverse=True):
+        with contextlib.suppress(OSError):
+            text = path.read_text(encoding="utf-8", errors="backslashreplace")
+            if mark in text:
+                minutes = max(0, round((time.time() - when) / 60))
+                ago = f"{minutes} minute{'' if minutes == 1 else 's'}"
+                if minutes >= 120:
+                    ago = f"{minutes // 60} hours"
+                text = _TYPED.sub("command: left out", text.replace(mark, ""))
+                return f"The last crash, {ago} ago:\n{text}"
+    return None

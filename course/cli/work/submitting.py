@@ -260,8 +260,8 @@ def _show(
         console.line(
             f"{MANIFEST}: the course ({here.course.id} {here.course.version}) and checksums", indent=2
         )
-    for item in left_out:
-        console.line(f"Left out: {item.path} ({item.action}).")
+    for why in dict.fromkeys(item.action for item in left_out):
+        console.line(f"Left out, {why}: {', '.join(item.path for item in left_out if item.action == why)}.")
     known = {Path(path).parent.name for path in (*files, *(item.path for item in left_out))}
     missing = [name for name in here.catalog.exercise_ids() if name not in known]
     if files and missing and not only:

@@ -9,6 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from course import __file__ as package
+from course.cli.frame.app import INSTALLATION
+
 USER, HOST = "planted.person", "planted-laptop"
 
 
@@ -26,6 +29,9 @@ def somebody(monkeypatch, tmp_path):
     monkeypatch.setattr(platform, "node", lambda: f"{HOST}.example.org")
     monkeypatch.setattr(tempfile, "tempdir", str(temporary))
     return home, temporary
+
+
+HERE = f"{INSTALLATION}{Path(package).resolve().parent}\n"
 
 
 def crash_in(course, monkeypatch, message):
@@ -104,7 +110,7 @@ def test_a_report_has_versions_and_the_level(course, somebody):
 def test_what_was_typed_is_left_out(course, somebody):
     _, temporary = somebody
     (temporary / "course-crash-1.txt").write_text(
-        "course 1\ncommand: ['course', 'grade', 'override', 'Anna Student']\n\nTraceback\n"
+        f"course 1\n{HERE}command: ['course', 'grade', 'override', 'Anna Student']\n\nTraceback\n"
     )
     course("bug")
     text = Path("course-bug.txt").read_text("utf-8")
@@ -116,14 +122,21 @@ def test_the_newest_crash_counts_and_a_link_is_none(course, somebody, tmp_path):
     _, temporary = somebody
     for number, when in ((1, 1_000.0), (2, 3_000.0), (3, 2_000.0)):
         path = temporary / f"course-crash-{number}.txt"
-        path.write_text(f"crash number {number}")
+        path.write_text(f"{HERE}crash number {number}")
         os.utime(path, (when, when))
     (tmp_path / "other").write_text("somebody else's")
     (temporary / "course-crash-4.txt").symlink_to(tmp_path / "other")
     course("bug")
     text = Path("course-bug.txt").read_text("utf-8")
     assert "crash number 2" in text
+    assert "hours ago" in text
     assert "somebody else's" not in text
+
+
+def test_a_crash_of_another_installation_is_not_in_the_report(course, somebody):
+    _, temporary = somebody
+    (temporary / "course-crash-1.txt").write_text(f"{INSTALLATION}/opt/other/course\nTraceback\n")
+    assert course("bug", "--json").json["traceback"] is False
 
 
 def test_a_second_report_keeps_the_first(course, somebody, tmp_path):

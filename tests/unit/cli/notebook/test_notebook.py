@@ -193,7 +193,7 @@ def test_submit_says_so_where_outputs_are_nested_too_deeply(course, workspace, m
     write_into(workspace / "doubling" / "doubling.ipynb", GOOD)
     ran = course("submit")
     assert ran.code == 3
-    assert "doubling/doubling.ipynb (its outputs cannot be read" in ran.out
+    assert "its outputs cannot be read; clear them in Jupyter and save it again: doubling/doubling.ipynb" in ran.out
 
 
 def test_a_zip_with_a_notebook_is_graded_like_the_module(course, workspace):

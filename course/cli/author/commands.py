@@ -34,6 +34,7 @@ from course.cli.frame.completion import exercise_ids, lesson_ids
 from course.cli.frame.console import Console, current, meter
 from course.cli.frame.here import load_catalog
 from course.cli.frame.registry import COMMANDS
+from course.cli.frame.replies import filled
 from course.errors import ContentError, UsageError
 from course.progress.workspace import write_atomically
 from course.sandbox.scene.loading import scene_ids
@@ -85,14 +86,7 @@ def _emit_coverage(
     console: Console, table: Coverage, problems: tuple[AuditProblem, ...], written: str | None
 ) -> None:
     parts = [
-        CoverageRow(
-            section=section.title,
-            lines=part.lines,
-            kind=section.kind,
-            what=part.what,
-            word=part.word,
-            where=part.where,
-        )
+        filled(CoverageRow, part, section=section.title, kind=section.kind)
         for section in table.section
         for part in section.parts
     ]
@@ -368,17 +362,11 @@ def _emit_report(console: Console, catalog: Catalog, report: AuditReport) -> Non
     except ContentError:
         course = CourseRef(id="", version="")  # the syllabus itself is what is wrong, and is reported below
     console.emit(
-        AuthorCheck(
-            ok=report.ok,
+        filled(
+            AuthorCheck,
+            report,
             exit_code=0 if report.ok else 1,
             course=course,
-            lessons=report.lessons,
-            exercises=report.exercises,
-            questions=report.questions,
-            scenes=report.scenes,
-            checks=report.checks,
-            graded=report.graded,
-            isolation=report.isolation,
             seconds=round(report.seconds, 3),
             problems=tuple(AuthorProblem(p.file, p.line, p.code, p.message, p.fix) for p in report.problems),
         )
@@ -527,17 +515,14 @@ def _show_mutants(console: Console, exercise: Exercise, outcomes: tuple[MutantOu
 
 
 def _mutant_row(exercise: Exercise, outcome: MutantOutcome) -> MutantRow:
-    return MutantRow(
+    return filled(
+        MutantRow,
+        outcome,
         exercise=exercise.id,
         file=outcome.mutant.file,
         task=outcome.mutant.task,
         misconception=outcome.mutant.misconception,
         check=outcome.mutant.check,
-        diagnosis=outcome.diagnosis,
-        caught_by=outcome.caught_by,
-        lost=outcome.lost,
-        message=outcome.message,
-        help=outcome.help,
         faults=tuple(fault.message for fault in outcome.faults),
     )
 

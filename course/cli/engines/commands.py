@@ -16,7 +16,7 @@ from course.cli.frame import here
 from course.cli.frame.completion import engine_ids, scenario_ids
 from course.cli.frame.console import Console, current, meter
 from course.cli.frame.here import inserted
-from course.cli.frame.replies import Envelope, WrittenFile
+from course.cli.frame.replies import Envelope, WrittenFile, filled
 from course.engines.registry import ENGINES
 from course.engines.results import Comparison, EngineState
 from course.errors import MissingCapabilityError, UsageError
@@ -146,27 +146,13 @@ def rows(comparison: Comparison) -> tuple[EngineRow, ...]:
     for row in comparison.rows:
         scenario = SCENARIOS[row.scenario]
         made.append(
-            EngineRow(
-                engine=row.engine,
-                scenario=row.scenario,
-                setting=row.setting,
-                dt=row.dt,
-                status=row.status,
-                value=row.value,
+            filled(
+                EngineRow,
+                row,
                 truth=scenario.truth,
                 error=None if row.value is None else scenario.error(row.value),
                 unit=scenario.unit,
                 best=id(row) in best,
-                message=row.message,
-                origin=row.origin,
-                measured=row.measured,
-                version=row.version,
-                options=row.options,
-                why=row.why,
-                samples=row.samples,
-                repeats=row.repeats,
-                spread=row.spread,
-                details=row.details,
             )
         )
     return tuple(made)
@@ -333,35 +319,13 @@ def _step(text: str) -> float:
 
 
 def _engine(state: EngineState) -> Engine:
-    return Engine(
-        id=state.id,
-        name=state.name,
-        package=state.package,
-        version=state.version,
-        extra=state.extra,
-        licence=state.licence,
-        about=state.about,
-        usable=state.usable,
-        missing=state.missing,
-        command=state.command,
-    )
+    return filled(Engine, state)
 
 
 def _scenarios(ids: Iterable[str]) -> tuple[EngineScenario, ...]:
     from course.engines.scenarios import SCENARIOS
 
-    return tuple(
-        EngineScenario(
-            id=one.id,
-            title=one.title,
-            question=one.question,
-            quantity=one.quantity,
-            unit=one.unit,
-            truth=one.truth,
-            source=one.source,
-        )
-        for one in (SCENARIOS[name] for name in ids)
-    )
+    return tuple(filled(EngineScenario, one) for one in (SCENARIOS[name] for name in ids))
 
 
 def _reply(

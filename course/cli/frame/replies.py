@@ -7,9 +7,11 @@ version; renaming, removing or changing the meaning of one makes a new version.
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 import msgspec
+
+Filled = TypeVar("Filled", bound=msgspec.Struct)
 
 
 class NextStep(msgspec.Struct, frozen=True):
@@ -97,6 +99,12 @@ class WrittenFile(msgspec.Struct, frozen=True):
 
     path: str
     backup: Backup | None = None
+
+
+def filled(kind: type[Filled], source: object, /, **given: Any) -> Filled:
+    """A reply whose fields are those of another object of the same names, but for those that are given."""
+    own = {*kind.__struct_fields__} - {*Envelope.__struct_fields__, *given}
+    return kind(**{name: getattr(source, name) for name in own if hasattr(source, name)}, **given)
 
 
 def encode(body: msgspec.Struct) -> bytes:

@@ -12,6 +12,7 @@ import typer
 from course.cli.frame.completion import exercise_ids, student_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
+from course.cli.frame.replies import filled
 from course.cli.grade.options import (
     Against,
     Exercises,
@@ -90,17 +91,7 @@ def rerun(
     code = 70 if done.faults else 0
     if console.json:
         console.emit(
-            GradeRerun(
-                ok=not code,
-                exit_code=code,
-                dry_run=dry_run,
-                regraded=done.regraded,
-                up_to_date=done.up_to_date,
-                kept=done.kept,
-                grader_error=done.faults,
-                changes=done.changes,
-                graders=done.graders,
-            )
+            filled(GradeRerun, done, ok=not code, exit_code=code, dry_run=dry_run, grader_error=done.faults)
         )
     else:
         _show_rerun(console, done, dry_run=dry_run)
@@ -325,15 +316,7 @@ def _everybody(results: Results) -> set[str]:
 def _late_one(item: Effective) -> LateOne:
     from course.cli.grade.replies import LateOne
 
-    return LateOne(
-        student=item.student,
-        exercise=item.exercise,
-        late=item.late,
-        penalty=item.penalty,
-        submitted_at=utc(item.submitted_at) or None,
-        witness=item.witness,
-        flagged_late=item.flagged_late,
-    )
+    return filled(LateOne, item, submitted_at=utc(item.submitted_at) or None)
 
 
 def _show_late(

@@ -16,6 +16,7 @@ from course.catalog.models import CourseRef
 from course.cli.frame.completion import exercise_ids, student_ids, submitted_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
+from course.cli.frame.replies import filled
 from course.cli.grade.options import (
     Jobs,
     Layout,
@@ -287,28 +288,24 @@ def _show_summary(
         from course.cli.grade.replies import GradeSummary
 
         console.emit_line(
-            GradeSummary(
+            filled(
+                GradeSummary,
+                summary,
                 ok=summary.exit_code == 0,
-                exit_code=summary.exit_code,
                 graded=summary.states["graded"],
                 ungradable=summary.states["ungradable"],
                 grader_error=summary.states["grader_error"],
-                passed=summary.passed,
-                not_submitted=summary.not_submitted,
                 missing=tuple(summary.missing),
                 strangers=tuple(summary.strangers),
                 already_graded=summary.already,
                 isolation=dict(summary.levels),
-                seed=summary.seed,
                 elapsed_s=round(summary.elapsed_s, 3),
                 out=str(out),
                 troubled=tuple(summary.troubled),
                 unrecognised=tuple(summary.unrecognised),
                 unjudged=tuple(_unjudged(summary)),
-                graders=summary.graders,
                 edited=tuple(summary.edited),
                 would_change=changes,
-                unsettled=summary.unsettled,
                 moved=tuple(summary.moved),
                 dropped=tuple(summary.dropped),
             )

@@ -11,6 +11,7 @@ import typer
 from course.cli.frame.completion import exercise_ids, student_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
+from course.cli.frame.replies import filled
 from course.cli.grade.options import Isolation, Jobs, Out, in_words, levels
 from course.cli.grade.replies import AssignedOne, UnsettledOne
 from course.errors import UsageError
@@ -113,13 +114,7 @@ def _unsettled_one(item: Unsettled) -> UnsettledOne:
     files = tuple(
         FoundFile(file=one.name, defines=one.defines, proposed=one.proposed) for one in item.found.candidates
     )
-    return UnsettledOne(
-        student=item.student,
-        exercise=item.exercise,
-        reason=item.found.reason,
-        message=item.message,
-        files=files,
-    )
+    return filled(UnsettledOne, item, reason=item.found.reason, files=files)
 
 
 def _show_assigned(console: Console, done: list[Assigned], *, dry_run: bool) -> None:

@@ -12,7 +12,7 @@ import msgspec
 from course.catalog.models import CourseRef
 from course.cli.frame.console import Console
 from course.cli.frame.here import Here
-from course.cli.frame.replies import Envelope, NextStep
+from course.cli.frame.replies import Envelope, NextStep, filled
 from course.cli.home.learning import day
 from course.errors import CourseError
 from course.progress.quiz import Attempt, QuizHistory, quiz_history
@@ -329,27 +329,22 @@ def _asked(posed: PosedQuestion) -> QuizAsked:
 def question_reply(marked: MarkedQuestion) -> QuizQuestion:
     """An answered question as a script reads it."""
     posed = marked.posed
-    return QuizQuestion(
+    return filled(
+        QuizQuestion,
+        posed,
         id=posed.question,
-        title=posed.title,
-        variant=posed.variant,
-        prompt=posed.prompt,
         answer=marked.chosen.id,
         right=marked.right,
         options=tuple(
-            QuizOption(
-                letter=choice.letter,
-                id=choice.id,
-                text=choice.text,
-                right=choice.right,
+            filled(
+                QuizOption,
+                choice,
                 chosen=choice is marked.chosen,
-                explanation=choice.explanation,
                 misconception=choice.misconception or None,
                 belief=choice.belief or None,
             )
             for choice in posed.choices
         ),
-        source=posed.source,
         lesson=posed.lesson or None,
         read=posed.read or None,
     )
@@ -364,16 +359,15 @@ def attempt_replies(history: QuizHistory) -> tuple[QuizAttempt, ...]:
     """Attempts as a script reads them; attempts without an answer are left out."""
     shown = [a for a in history.attempts if a.finished or a.answers or a is history.open]
     return tuple(
-        QuizAttempt(
-            seed=attempt.seed,
+        filled(
+            QuizAttempt,
+            attempt,
             state="finished" if attempt.finished else "open" if attempt is history.open else "left",
             started_at=attempt.started.isoformat(),
             finished_at=attempt.finished.isoformat() if attempt.finished else None,
-            version=attempt.version,
             answered=len(attempt.answers),
             score=attempt.score if attempt.finished else None,
             max_score=attempt.total,
-            passed=attempt.passed,
             counts=attempt in history.counting,
         )
         for attempt in shown

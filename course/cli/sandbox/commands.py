@@ -14,6 +14,7 @@ from course.cli.frame.completion import choice_of, scene_ids, scene_settings
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd
 from course.cli.frame.here import target as target_file
+from course.cli.frame.replies import filled
 from course.cli.sandbox import play as sandbox_files
 from course.cli.sandbox import play as sandbox_play
 from course.cli.sandbox.play import (
@@ -193,16 +194,14 @@ def replay(
     )
     code = 0 if difference.same else 1
     console.emit(
-        SandboxReplay(
+        filled(
+            SandboxReplay,
+            difference,
             ok=code == 0,
             exit_code=code,
             scene=recorded.head.scene.id,
-            same=difference.same,
             steps=recorded.ticks,
-            checked=difference.checked,
-            good_until=difference.good_until,
             first_difference=difference.tick,
-            t=difference.t,
             versions=versions,
         )
     )
@@ -300,26 +299,16 @@ def _entry(scene: Scene) -> SandboxEntry:
         "left": wheels.left if wheels else None,
         "right": wheels.right if wheels else None,
     }
-    parameters = [
-        SandboxParameter(
-            name=p.name, unit=p.unit, meaning=p.meaning, low=p.low, high=p.high, default=p.default
-        )
-        for p in scene.parameter
-    ]
+    parameters = [filled(SandboxParameter, p) for p in scene.parameter]
     parameters += [
-        SandboxParameter(
-            name=s.name, unit=s.unit, meaning=s.meaning, low=s.low, high=s.high, default=own.get(s.name)
-        )
+        filled(SandboxParameter, s, default=own.get(s.name))
         for s in SETTINGS.values()
         if wheels or s.name not in {"left", "right"}
     ]
-    return SandboxEntry(
-        id=scene.id,
-        title=scene.title,
-        teaches=scene.teaches,
+    return filled(
+        SandboxEntry,
+        scene,
         question=question(unchanged(scene)),
         note=" ".join(scene.note.split()),
-        after=scene.after,
-        duration=scene.duration,
         parameters=tuple(parameters),
     )

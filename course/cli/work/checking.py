@@ -16,7 +16,7 @@ from course.cli.frame.completion import (
 )
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
-from course.cli.frame.replies import ErrorBody, ErrorReply, NextStep
+from course.cli.frame.replies import ErrorBody, ErrorReply, NextStep, filled
 from course.cli.home.advice import next_step
 from course.cli.work.chosen import StudentWork, asked_for, chosen_work, worked_on
 from course.cli.work.replies import Check, CheckAll, CurveReply
@@ -225,18 +225,13 @@ def reply_to(
         printed: the file's output while it was loaded.
         curves: of its failed checks.
     """
-    return Check(
+    return filled(
+        Check,
+        verdict,
         ok=verdict.all_pass,
         exit_code=0 if verdict.all_pass else FAILED,
         course=course,
-        exercise=verdict.exercise,
-        scope=verdict.scope,
-        score=verdict.score,
-        max_score=verdict.max_score,
-        passed=verdict.passed,
-        checks=verdict.checks,
         next=NextStep(step) if step else None,
-        warnings=verdict.warnings,
         printed=printed,
         curves=curves,
     )

@@ -261,7 +261,7 @@ def _show(
             f"{MANIFEST}: the course ({here.course.id} {here.course.version}) and checksums", indent=2
         )
     for why in dict.fromkeys(item.action for item in left_out):
-        console.line(f"Left out, {why}: {', '.join(item.path for item in left_out if item.action == why)}.")
+        console.line(f"Left out: {', '.join(item.path for item in left_out if item.action == why)} ({why}).")
     known = {Path(path).parent.name for path in (*files, *(item.path for item in left_out))}
     missing = [name for name in here.catalog.exercise_ids() if name not in known]
     if files and missing and not only:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import assert_never
 
 
 @dataclass(frozen=True, slots=True)
@@ -294,8 +295,12 @@ def walk_blocks(blocks: tuple[Block, ...]) -> Iterator[Block]:
             case ListBlock(items=items):
                 for item in items:
                     yield from walk_blocks(item)
-            case _:
+            case Heading() | Paragraph() | Table() | CodeCell() | Listing() | MathBlock() | Diagram():
                 pass
+            case Figure() | CommandList() | Task() | Sources():
+                pass
+            case _:
+                assert_never(block)
 
 
 def walk_inlines(blocks: tuple[Block, ...]) -> Iterator[tuple[Block, Inline]]:
@@ -314,8 +319,12 @@ def _lines_of(block: Block) -> tuple[Inlines, ...]:
             return (*header, *(cell for row in rows for cell in row))
         case Sources(items=items):
             return items
-        case _:
+        case ListBlock() | CodeCell() | Listing() | MathBlock() | Diagram():
             return ()
+        case Prediction() | Callout() | CommandList() | Task():
+            return ()
+        case _:
+            assert_never(block)
 
 
 def _flatten(inlines: Inlines) -> Iterator[Inline]:

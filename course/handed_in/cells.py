@@ -18,11 +18,8 @@ from typing import Any
 import msgspec
 
 from course.errors import UngradableError, UsageError
+from course.handed_in import MAX_CODE, MAX_NOTEBOOK
 
-#: Pictures in outputs make notebooks large; they are skipped, but they have to be read past.
-MAX_NOTEBOOK = 32 << 20
-#: The most code in all cells together, in characters: the limit of a module.
-MAX_CODE = 1 << 20
 #: Code cells; the longest notebooks that people write have some hundreds.
 MAX_CELLS = 2000
 

@@ -20,6 +20,7 @@ from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.errors import CourseError, NotFoundError, UngradableError, UsageError
 from course.figures.described import Curve
+from course.handed_in import MAX_CODE
 from course.handed_in.cells import CodeCell, code_cells, read_notebook, typed_cell
 from course.handed_in.notebook import SETUP, NotebookSource, source_of
 from course.notebooks.build import pieces
@@ -393,10 +394,6 @@ def _names(cell: CodeCell) -> set[str]:
     }
 
 
-#: The size of a file that a grading run takes at most, in bytes.
-_MOST_BYTES = 1_000_000
-
-
 def check(exercise_id: str, task: str | None, source: Source | None) -> CheckTable:
     """See ``course.notebooks.check``."""
     from course.catalog.load import Catalog
@@ -484,9 +481,9 @@ def _of_file(exercise: Exercise, path: Path) -> Submission:
 def _of_text(exercise: Exercise, text: bytes) -> Submission:
     from course.scoring.judging.submission import Submission
 
-    if len(text) > _MOST_BYTES:
+    if len(text) > MAX_CODE:
         raise UngradableError(
-            f"This is more than {_MOST_BYTES:,} bytes of code.",
+            f"This is more than {MAX_CODE:,} bytes of code.",
             help="Keep data out of it; the exercise needs none.",
             code="too_large",
         )

@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import assert_never
 
 from rich import box
 from rich.console import Console, ConsoleOptions, Group, RenderableType
@@ -171,8 +172,10 @@ class PlainPrinter:
             case b.Sources(items=items):
                 for number, item in enumerate(items, start=1):
                     self._say(f"Source {number}: {self._words(item)}")
+            case b.CodeCell():
+                pass  # a hidden one
             case _:
-                pass
+                assert_never(block)
 
     def _prose(self, text: str, *, whole: bool = False) -> None:
         for line in [text] if whole else sentences(text):
@@ -358,8 +361,10 @@ class FancyPrinter:
                 return _commands((b.Command(f"course warmup {name}", f"{what.capitalize()}: {title}"),))
             case b.Sources(items=items):
                 return self._bullets([self._text(item) for item in items])
+            case b.CodeCell():
+                return None  # a hidden one
             case _:
-                return None
+                assert_never(block)
 
     def _heading(self, level: int, inlines: b.Inlines) -> RenderableType:
         text = self._text(inlines)

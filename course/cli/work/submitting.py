@@ -26,6 +26,7 @@ from course.cli.frame.replies import FileReply
 from course.cli.work.chosen import StudentWork, as_handed_in, work_of
 from course.cli.work.replies import Submit, SubmitFile
 from course.errors import CourseError, UngradableError, UsageError
+from course.handed_in import MAX_HANDED_IN
 from course.progress.history import fingerprint
 from course.progress.quiz import quiz_history, records
 from course.progress.workspace import write_atomically
@@ -33,8 +34,6 @@ from course.scoring.verdict import Verdict, format_points
 
 FORMAT_VERSION = 1
 MANIFEST = "submission.json"
-#: The most that a grading run unpacks, in bytes.
-MAX_TOTAL_BYTES = 5_000_000
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest date a zip can hold
 
 
@@ -135,9 +134,9 @@ def _packed(here: Here, works: Sequence[StudentWork], quiz: Sequence[Mapping[str
         {work.path: work.data for work in works},
         quiz,
     )
-    if len(data) > MAX_TOTAL_BYTES:
+    if len(data) > MAX_HANDED_IN:
         raise UngradableError(
-            f"Together the files are larger than {MAX_TOTAL_BYTES:,} bytes, which no grading run unpacks.",
+            f"Together the files are larger than {MAX_HANDED_IN:,} bytes, which no grading run unpacks.",
             help="Keep data out of them.",
             code="too_large",
         )

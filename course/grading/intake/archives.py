@@ -30,7 +30,7 @@ from course.errors import InternalError, UngradableError
 from course.grading.intake.downloads import IGNORED, is_meant
 from course.grading.pipes import limit_cpu, limit_memory, read_frame, served, write_frame
 from course.grading.quiz import checked_record
-from course.handed_in.cells import MAX_CODE, MAX_NOTEBOOK
+from course.handed_in import MAX_CODE, MAX_HANDED_IN, MAX_NOTEBOOK
 from course.handed_in.notebook import notebook_source
 from course.printable import one_line
 from course.scoring.verdict import Problem
@@ -44,9 +44,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 Members = dict[str, zipfile.ZipInfo]
 
-MAX_FILE = 1 << 20
 MAX_FILES = 20
-MAX_UNPACKED = 5 << 20
 MAX_ARCHIVE = 6 << 20  # no archive of files within the limits is larger
 FORMAT_VERSION = 1
 
@@ -209,7 +207,7 @@ def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
     files = [info for info in infos if not info.is_dir() and not _is_clutter(info.filename)]
     if len(files) > MAX_FILES:
         raise _refused(path, f"it holds more than {MAX_FILES} files")
-    if sum(info.file_size for info in files) > MAX_UNPACKED:
+    if sum(info.file_size for info in files) > MAX_HANDED_IN:
         raise _refused(path, "it unpacks to more than 5 MB")
     members: Members = {}
     for info in files:
@@ -247,8 +245,8 @@ def _is_clutter(name: str) -> bool:
 def _unpacked(path: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
     """A member's content; the size in its header is not trusted."""
     with archive.open(info) as handle:
-        content = handle.read(MAX_FILE + 1)
-    if len(content) > MAX_FILE:
+        content = handle.read(MAX_CODE + 1)
+    if len(content) > MAX_CODE:
         raise _refused(path, f"{info.filename} unpacks to more than 1 MB")
     return content
 

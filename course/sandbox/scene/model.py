@@ -12,7 +12,7 @@ import math
 import random
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Literal
+from typing import Annotated, Literal, assert_never
 
 import msgspec
 from msgspec import Meta
@@ -325,7 +325,7 @@ class Part:
     """
 
     name: str
-    shape: str
+    shape: Literal["circle", "polygon", "segment"]
     outline: tuple[Vector, ...]
     radius: float
     x: float
@@ -445,16 +445,20 @@ def _part(body: Body, material: Material, name: str, place: Vector, colour: str)
 
 
 def _outline(body: Body) -> tuple[tuple[Vector, ...], float]:
-    if body.shape == "circle":
-        return (), body.radius or 0.0
-    if body.shape == "segment":
-        return body.points or (), (body.thickness or 0.0) / 2
-    if body.shape == "box":
-        width, height = body.size or (0.0, 0.0)
-        w, h = width / 2, height / 2
-        return ((-w, -h), (w, -h), (w, h), (-w, h)), 0.0
     points = body.points or ()
-    return (points if signed_area(points) > 0 else points[::-1]), 0.0
+    match body.shape:
+        case "circle":
+            return (), body.radius or 0.0
+        case "segment":
+            return points, (body.thickness or 0.0) / 2
+        case "box":
+            width, height = body.size or (0.0, 0.0)
+            w, h = width / 2, height / 2
+            return ((-w, -h), (w, -h), (w, h), (-w, h)), 0.0
+        case "polygon":
+            return (points if signed_area(points) > 0 else points[::-1]), 0.0
+        case _:
+            assert_never(body.shape)
 
 
 def _turned(x: float, y: float, angle: float) -> Vector:

@@ -2,4 +2,5 @@
 
 cells      code cells of a notebook as plain Python
 notebook   the module that those cells stand for, and how its lines are told as cells
+attempts   the public checks on it at home, and what is kept of them in the record
 """

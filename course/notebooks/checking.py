@@ -20,10 +20,12 @@ from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.errors import CourseError, NotFoundError, UngradableError, UsageError
 from course.figures.described import Curve
+from course.handed_in.attempts import Attempt, attempt
 from course.handed_in.cells import CodeCell, code_cells, read_notebook, typed_cell
 from course.handed_in.notebook import SETUP, NotebookSource, source_of
 from course.notebooks.build import pieces
 from course.notebooks.show import ReportPage
+from course.progress.workspace import Recorder, not_recorded
 from course.scoring.judging.session import Submission
 from course.scoring.verdict import CheckResult, Verdict, format_points, numbers_of
 
@@ -427,20 +429,18 @@ def checked(
     Args:
         prints: show what the code printed while it was loaded; a cell that was run has shown it already.
     """
-    from course.scoring.judging.session import GradingSession, Terms
-
-    begin = time.perf_counter()
-    with GradingSession(exercise, catalog, scope="public", terms=Terms(home=True)) as session:
-        verdict, curves = session.grade(submission), session.curves
-    seconds = time.perf_counter() - begin
-    source, known = submission.files[exercise.module], [one.id for one in exercise.task]
-    only = task if task is not None and not defines_all(source, known) else ""
-    if only:
+    made = attempt(exercise, catalog, submission)
+    if task is not None and not defines_all(made.source, [one.id for one in exercise.task]):
         # A function that was not run yet is not missing: the attempt is about this one alone.
-        verdict = _of_task(verdict, exercise, only)
-    note = _recorded(catalog, exercise, verdict, source, seconds, only=only)
-    printed = session.printed if prints else ""
-    return CheckTable(verdict, task, note, printed=printed, scored=not exercise.is_warm_up, curves=curves)
+        made = replace(made, verdict=_of_task(made.verdict, exercise, task), only=task)
+    return CheckTable(
+        made.verdict,
+        task,
+        _recorded(catalog, made),
+        printed=made.printed if prints else "",
+        scored=not exercise.is_warm_up,
+        curves=made.curves,
+    )
 
 
 # -- what was written ------------------------------------------------------------------------------------
@@ -528,21 +528,13 @@ def _of_task(verdict: Verdict, exercise: Exercise, task: str) -> Verdict:
     )
 
 
-def _recorded(
-    catalog: Catalog, exercise: Exercise, verdict: Verdict, source: bytes, seconds: float, *, only: str = ""
-) -> str:
+def _recorded(catalog: Catalog, made: Attempt) -> str:
     """Record an attempt in the workspace, if this kernel runs in one; returns why that failed, or ""."""
-    from course.progress.history import check_data
-    from course.progress.workspace import Workspace
-
     try:
-        workspace = Workspace.find(Path.cwd())
-        if workspace.course_id != catalog.course_id:
-            return f"This was not recorded: {workspace.root} is a workspace of another course."
-        data = check_data(verdict, source, seconds, catalog.version, only=only)
-        workspace.store.append("check", exercise.id, data)
-    except (NotFoundError, FileNotFoundError):  # also where the folder is gone
-        return ""
+        record = Recorder.of_kernel(catalog.course_id)
     except CourseError as error:
-        return f"This was not recorded: {error.message} {error.help}"
-    return ""
+        return not_recorded(error)
+    if record is None:
+        return ""
+    record("check", made.exercise.id, made.data(catalog.version))
+    return record.trouble

@@ -213,8 +213,8 @@ def curved(monkeypatch):
     """A session in which a check has left a curve."""
     import numpy as np
 
-    from course.cli.work import checking
     from course.figures.described import compared
+    from course.handed_in import attempts
     from tests.unit.cli.conftest import FakeSession
 
     def opened(exercise, catalog):
@@ -223,7 +223,7 @@ def curved(monkeypatch):
         session.curves = {"doublings_works": compared(t, 3 * t, 2 * t, "x", "m")}
         return session
 
-    monkeypatch.setattr(checking, "open_session", opened)
+    monkeypatch.setattr(attempts, "open_session", opened)
 
 
 def test_a_curve_is_said_in_words_where_nothing_can_be_drawn(course, write, curved):

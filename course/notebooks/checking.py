@@ -19,12 +19,12 @@ from typing import TYPE_CHECKING, Any
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.errors import CourseError, NotFoundError, UngradableError, UsageError
-from course.figures.described import Curve
+from course.figures.described import Curve, plot_of
 from course.handed_in.attempts import Attempt, attempt
 from course.handed_in.cells import CodeCell, code_cells, read_notebook, typed_cell
-from course.handed_in.notebook import SETUP, NotebookSource, source_of
+from course.handed_in.notebook import SETUP, NotebookSource, notebook_source, source_of
 from course.notebooks.build import pieces
-from course.notebooks.show import ReportPage
+from course.notebooks.show import ReportPage, image_of
 from course.progress.workspace import Recorder, not_recorded
 from course.scoring.judging.session import Submission
 from course.scoring.verdict import CheckResult, Verdict, format_points, numbers_of
@@ -125,9 +125,6 @@ class CheckTable:
         """The first curve, and where it leaves the right one."""
         if self._curve is None:
             return ""
-        from course.figures.described import plot_of
-        from course.notebooks.show import image_of
-
         # The words stand below the picture; a screen reader must not read them twice.
         image = image_of(replace(plot_of(self._curve), description="Your curve over the right one."))
         return f"{image}<p><small>{escape(self._curve.description)}</small></p>"
@@ -404,8 +401,6 @@ _MOST_BYTES = 1_000_000
 
 def check(exercise_id: str, task: str | None, source: Source | None) -> CheckTable:
     """See ``course.notebooks.check``."""
-    from course.catalog.load import Catalog
-
     catalog = Catalog()
     exercise = catalog.exercise(exercise_id)
     must_have(exercise, task)
@@ -473,9 +468,6 @@ def _shell() -> Any:
 
 def _of_file(exercise: Exercise, path: Path) -> Submission:
     if path.suffix == ".ipynb":
-        from course.handed_in.cells import read_notebook
-        from course.handed_in.notebook import notebook_source
-
         return notebook_source(read_notebook(path), exercise, path.name).submission(exercise)
     try:
         return _of_text(exercise, path.read_bytes())
@@ -484,8 +476,6 @@ def _of_file(exercise: Exercise, path: Path) -> Submission:
 
 
 def _of_text(exercise: Exercise, text: bytes) -> Submission:
-    from course.scoring.judging.session import Submission
-
     if len(text) > _MOST_BYTES:
         raise UngradableError(
             f"This is more than {_MOST_BYTES:,} bytes of code.",

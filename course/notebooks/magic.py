@@ -71,8 +71,6 @@ def report(shell: Any, exercise_id: str) -> ReportPage:
         NotFoundError: there is no such exercise, or it has nothing to show.
         UngradableError: there is nothing to run yet, or it cannot be run.
     """
-    from course.catalog.load import Catalog
-    from course.notebooks.show import ReportPage
     from course.scoring.judging.session import report_of
 
     catalog = Catalog()
@@ -90,8 +88,6 @@ def check(shell: Any, exercise_id: str, task: str | None = None) -> CheckTable:
         NotFoundError: there is no such exercise or function.
         UngradableError: there is nothing to check yet.
     """
-    from course.catalog.load import Catalog
-
     catalog = Catalog()
     exercise = catalog.exercise(exercise_id)
     must_have(exercise, task)
@@ -104,8 +100,6 @@ def check_cell(text: str, exercise_id: str, task: str | None = None) -> CheckTab
     Raises:
         NotFoundError: there is no such exercise or function.
     """
-    from course.catalog.load import Catalog
-    from course.notebooks.show import ReportPage
     from course.scoring.judging.session import Submission, has_report, report_of
 
     table = checking.check(exercise_id, task, text)

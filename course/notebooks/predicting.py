@@ -11,8 +11,8 @@ from course.errors import CourseError, NotFoundError
 from course.notebooks.sandbox import alive
 from course.progress.quiz import quiz_history
 from course.progress.workspace import Recorder
-from course.quizzing.attempt import Result
-from course.reading.parts import Question, Script
+from course.quizzing.attempt import Result, fresh_seed
+from course.reading.parts import Question, Script, read_script
 from course.reading.record import InProgress
 
 
@@ -40,10 +40,6 @@ class LessonPrediction:
     """A lesson's prediction, and the student's answer."""
 
     def __init__(self, lesson_id: str, number: int) -> None:
-        from course.catalog.load import Catalog
-        from course.reading.parts import read_script
-        from course.reading.record import InProgress
-
         catalog = Catalog()
         lesson = catalog.lesson(lesson_id)
         script = read_script(lesson)
@@ -141,8 +137,6 @@ class OngoingAttempt:
     """
 
     def __init__(self) -> None:
-        from course.catalog.load import Catalog
-        from course.quizzing.attempt import fresh_seed
         from course.quizzing.bank import Bank
         from course.quizzing.desk import begun, fits
 

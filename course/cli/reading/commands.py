@@ -30,7 +30,7 @@ from course.cli.work.checking import check as check_work
 from course.cli.work.replies import Start
 from course.errors import CourseError, NotFoundError, UsageError
 from course.progress.standing import Standing
-from course.reading.parts import Section
+from course.reading.parts import Section, read_script
 
 # ---
 # Replies of the commands about lessons.
@@ -172,8 +172,6 @@ def _reader(
     catalog: Catalog, chosen: Lesson, console: Console, figures: Path | None, text: io.StringIO | None
 ) -> Reader:
     """The lesson, ready to be shown on the console, or put into ``text`` as ``--plain`` shows it."""
-    from course.cli.reading.lesson import Reader
-
     if text is None:
         return Reader(
             catalog,
@@ -201,8 +199,6 @@ def _fills_the_screen(console: Console) -> bool:
 
 def _section(catalog: Catalog, chosen: Lesson, slug: str) -> Section:
     """A section of a lesson, by its slug."""
-    from course.reading.parts import read_script
-
     sections = read_script(chosen, catalog.warm_ups(chosen.id)).sections
     found = next((section for section in sections if section.slug == slug), None)
     if found is None:
@@ -229,8 +225,6 @@ def _read_on_screen(
 
 def _print_code(console: Console, chosen: Lesson, number: int) -> int:
     """Print the code of one cell, unchanged, ready for a file."""
-    from course.reading.parts import read_script
-
     cells = read_script(chosen).shown_cells
     if number > len(cells):
         raise NotFoundError(
@@ -339,8 +333,6 @@ def _list(console: Console) -> int:
 
 def _begin(console: Console, here: Here, chosen: Exercise) -> int:
     """Its text, and its file in the workspace."""
-    from course.cli.reading.lesson import Reader
-
     if not console.quiet and not console.json:
         lesson = here.catalog.lesson(chosen.lesson)
         reader = Reader(

@@ -25,7 +25,7 @@ from course.cli.setup.replies import Demo
 from course.cli.work.checking import reply_to
 from course.cli.work.verdict import show_verdict
 from course.errors import InternalError
-from course.figures.described import Plot
+from course.figures.described import Panel, Plot, Series
 from course.handed_in import attempts
 from course.handed_in.attempts import Attempt
 from course.scoring.judging.session import GradingSession, Submission
@@ -149,8 +149,6 @@ class _Bench:
         return self._checked[source]
 
     def _submission(self, source: str) -> Submission:
-        from course.scoring.judging.session import Submission
-
         # What a terminal cannot decode it hands over as lone surrogates.
         return Submission({self._session.exercise.module: source.encode(errors="replace")})
 
@@ -291,8 +289,6 @@ def _draw(console: Console, before: _Motion, after: _Motion) -> None:
 
 
 def _plot(before: _Motion, after: _Motion, *, wide: bool) -> Plot:
-    from course.figures.described import Panel, Plot, Series
-
     # Each with the other in grey: then both have the same axes, and the growth shows.
     panels = tuple(
         Panel(

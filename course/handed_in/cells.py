@@ -19,8 +19,6 @@ import msgspec
 
 from course.errors import UngradableError, UsageError
 
-__all__ = ["MAX_CELLS", "MAX_CODE", "MAX_NOTEBOOK", "CodeCell", "code_cells", "read_notebook", "typed_cell"]
-
 #: Pictures in outputs make notebooks large; they are skipped, but they have to be read past.
 MAX_NOTEBOOK = 32 << 20
 #: The most code in all cells together, in characters: the limit of a module.

@@ -399,40 +399,38 @@ def _names(cell: CodeCell) -> set[str]:
 _MOST_BYTES = 1_000_000
 
 
-def check(exercise_id: str, task: str | None, source: Source | None) -> CheckTable:
-    """See ``course.notebooks.check``."""
+def check(exercise_id: str, task: str | None, source: Source | None, shell: Any = None) -> CheckTable:
+    """Run the public checks, record the attempt, and show those of one function, or all.
+
+    Args:
+        source: see ``course.notebooks.check``.
+        shell: of IPython, whose notebook is checked where there is no source; None takes the running one.
+
+    Raises:
+        NotFoundError: there is no such exercise or function.
+        UngradableError: there is nothing to check yet.
+    """
     catalog = Catalog()
     exercise = catalog.exercise(exercise_id)
-    must_have(exercise, task)
-    return checked(catalog, exercise, _submission(exercise, source), task, prints=source is not None)
-
-
-def must_have(exercise: Exercise, task: str | None) -> None:
-    """Raise NotFoundError for a function that an exercise does not have."""
     known = [one.id for one in exercise.task]
     if task is not None and task not in known:
         raise NotFoundError(
             f"{exercise.id} has no function {task}.", help=f"It has: {', '.join(known)}.", code="no_such_task"
         )
-
-
-def checked(
-    catalog: Catalog, exercise: Exercise, submission: Submission, task: str | None, *, prints: bool = False
-) -> CheckTable:
-    """Run the public checks, record the attempt, and show those of one function, or all.
-
-    Args:
-        prints: show what the code printed while it was loaded; a cell that was run has shown it already.
-    """
+    if source is None:
+        submission = at_hand(shell if shell is not None else _shell(), exercise).submission(exercise)
+    else:
+        submission = _submission(exercise, source)
     made = attempt(exercise, catalog, submission)
-    if task is not None and not defines_all(made.source, [one.id for one in exercise.task]):
+    if task is not None and not defines_all(made.source, known):
         # A function that was not run yet is not missing: the attempt is about this one alone.
         made = replace(made, verdict=_of_task(made.verdict, exercise, task), only=task)
     return CheckTable(
         made.verdict,
         task,
         _recorded(catalog, made),
-        printed=made.printed if prints else "",
+        # A cell that was run has shown what it printed.
+        printed=made.printed if source is not None else "",
         scored=not exercise.is_warm_up,
         curves=made.curves,
     )
@@ -441,9 +439,7 @@ def checked(
 # -- what was written ------------------------------------------------------------------------------------
 
 
-def _submission(exercise: Exercise, source: Source | None) -> Submission:
-    if source is None:
-        return at_hand(_shell(), exercise).submission(exercise)
+def _submission(exercise: Exercise, source: Source) -> Submission:
     if isinstance(source, str) and "\n" not in source and source.endswith((".py", ".ipynb")):
         source = Path(source)
     if isinstance(source, Path):

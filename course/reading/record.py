@@ -421,21 +421,6 @@ class RecordedPrediction:
     judged: Judgement | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Tally:
-    """How many of some predictions went which way; ``unjudged`` were made and never judged."""
-
-    right: int = 0
-    nearly: int = 0
-    wrong: int = 0
-    unjudged: int = 0
-    skipped: int = 0
-
-    @property
-    def said(self) -> int:
-        return self.right + self.nearly + self.wrong + self.unjudged
-
-
 def predictions_of(events: Iterable[Event]) -> tuple[RecordedPrediction, ...]:
     """The predictions that events of kind "prediction" tell of, in the order they were made.
 
@@ -458,12 +443,13 @@ def predictions_of(events: Iterable[Event]) -> tuple[RecordedPrediction, ...]:
     return tuple(found.values())
 
 
-def tally(predictions: Iterable[RecordedPrediction]) -> Tally:
-    """Count them."""
-    counts = dict.fromkeys(Tally.__dataclass_fields__, 0)
+def tally(predictions: Iterable[RecordedPrediction]) -> dict[str, int]:
+    """How many of them went which way: ``unjudged`` were made and never judged; ``said`` were not skipped."""
+    counts = dict.fromkeys((*JUDGEMENTS, "unjudged", "skipped", "said"), 0)
     for one in predictions:
         counts["skipped" if not one.text else one.judged or "unjudged"] += 1
-    return Tally(**counts)
+        counts["said"] += bool(one.text)
+    return counts
 
 
 # ---

@@ -220,17 +220,8 @@ def _in_words(counts: PredictionsOf) -> str:
     return ", ".join(f"{number} {word}" for number, word in named if number)
 
 
-def _counts(of: str, said: Sequence[RecordedPrediction]) -> PredictionsOf:
-    counted = tally(said)
-    return PredictionsOf(
-        of=of,
-        said=counted.said,
-        right=counted.right,
-        nearly=counted.nearly,
-        wrong=counted.wrong,
-        unjudged=counted.unjudged,
-        skipped=counted.skipped,
-    )
+def _counts(of: str, said: Iterable[RecordedPrediction]) -> PredictionsOf:
+    return PredictionsOf(of=of, **tally(said))
 
 
 def _looks_like(exercise: Exercise, code: str) -> str:

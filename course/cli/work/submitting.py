@@ -29,8 +29,6 @@ from course.progress.quiz import quiz_history, records
 from course.progress.workspace import write_atomically
 from course.scoring.verdict import Verdict, format_points
 
-__all__ = ["FORMAT_VERSION", "archive", "submit"]
-
 FORMAT_VERSION = 1
 MANIFEST = "submission.json"
 #: The most that a grading run unpacks, in bytes.

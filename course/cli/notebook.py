@@ -30,7 +30,7 @@ from course.handed_in import attempts
 from course.handed_in.cells import code_cells, read_notebook
 from course.notebooks.build import FOLDERS, NBGRADER, WORKSPACE, Generated, Layout, generate
 from course.notebooks.merge import CannotMergeError, is_untouched, merged
-from course.notebooks.server import executed, started
+from course.notebooks.server import executed
 from course.progress.workspace import write_atomically
 
 # ---
@@ -394,6 +394,8 @@ def open_notebook(
     A missing notebook is written first, in the workspace, or outside of one in notebooks/. An existing one is
     not changed: `course notebook update` brings newer text. Ctrl+C ends it.
     """
+    from course.notebooks.server import started
+
     console = current()
     require("notebook", "jupyterlab", "ipykernel", what="Opening a notebook")
     catalog = load_catalog()

@@ -17,8 +17,7 @@ from course.cli.frame.completion import simulation_ids, simulation_settings
 from course.cli.frame.console import Console, current
 from course.cli.frame.replies import Envelope, WrittenFile
 from course.errors import UsageError
-from course.simulations.base import Result, Row, Simulation, describe
-from course.simulations.base import run as run_simulation
+from course.simulations.base import Result, Row, Simulation
 from course.simulations.registry import CHAPTER, SIMULATIONS, get
 
 if TYPE_CHECKING:
@@ -190,6 +189,8 @@ def list_simulations(
 
 def _describe(console: Console, simulation: Simulation, *, whole: bool) -> None:
     """One simulation: its subject, its question, its parameters."""
+    from course.simulations.base import describe
+
     console.heading(simulation.id, simulation.title)
     console.item("shows", simulation.teaches, width=5)
     console.item("guess", simulation.question, width=5)
@@ -267,6 +268,8 @@ def _run_all(console: Console, plot: Path | None, csv: Path | None) -> int:
 
 def _run_one(console: Console, name: str, pairs: Sequence[str], plot: Path | None, csv: Path | None) -> Sim:
     """Run, show and write one simulation."""
+    from course.simulations.base import run as run_simulation
+
     simulation = get(name)
     plot = here.target(plot, "--plot", here.FORMATS) if plot else None
     csv = here.target(csv, "--csv", ("csv",)) if csv else None

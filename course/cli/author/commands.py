@@ -13,14 +13,13 @@ from course.authoring.audit import audit
 from course.authoring.coverage import Coverage, as_markdown, check_coverage, read_coverage, written_to
 from course.authoring.exercises.grading import instructors
 from course.authoring.exercises.mutants import MutantOutcome, run_mutants
-from course.authoring.exercises.proofs import kill_table, write_page
+from course.authoring.exercises.proofs import kill_table
 from course.authoring.packing import write_pack
-from course.authoring.report import AuditProblem, AuditReport, Findings
+from course.authoring.report import AuditProblem, AuditReport
 from course.catalog.load import Catalog
 from course.catalog.models import CourseRef, Exercise
 from course.cli.author.pictures import pictures
 from course.cli.author.replies import (
-    AuthorBuild,
     AuthorCheck,
     AuthorCoverage,
     AuthorMutants,
@@ -413,6 +412,8 @@ def build(
     """
     from course.authoring.exercises import diagnosis as desk
     from course.authoring.exercises.files import write_points, write_slow
+    from course.authoring.exercises.proofs import write_page
+    from course.cli.author.replies import AuthorBuild
     from course.scoring.explain.story import read_table
 
     console, catalog = current(), load_catalog()
@@ -450,6 +451,7 @@ def build(
 def _say_blanks(catalog: Catalog, exercise: Exercise) -> None:
     """A file with blanks is often no TOML either, and not for that reason."""
     from course.authoring.exercises.files import find_blanks
+    from course.authoring.report import Findings
 
     findings = Findings(catalog.content.root)
     if find_blanks(catalog, exercise.id, findings):

@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course.catalog.models import CourseRef, Exercise
-from course.cli.frame.replies import Backup, WrittenFile
+from course.cli.frame.console import current
+from course.cli.frame.replies import Backup, Envelope, WrittenFile
 from course.errors import CourseError, MissingCapabilityError, NotFoundError, UngradableError, UsageError
 from course.ids import WARM_UPS
 from course.progress.history import History, history_of
@@ -158,6 +159,13 @@ class Here:
         recorder = Recorder(self.workspace.store)
         recorder(kind, subject, data)
         self.warnings += [recorder.trouble] if recorder.trouble else []
+
+    def answer(self, reply: Envelope) -> int:
+        """End a command: say what was not recorded, print the object of ``--json``, give the exit code."""
+        for warning in self.warnings:
+            current().warn(warning)
+        current().emit(reply)
+        return reply.exit_code
 
     def _folder_name(self) -> str | None:
         """The first folder below the workspace on the way to the current one."""

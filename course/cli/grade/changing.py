@@ -26,14 +26,14 @@ from course.cli.grade.options import (
     show_roster,
 )
 from course.cli.grade.options import points as _points
-from course.cli.grade.replies import GradeLate, GradeRerun, GradeSimilar, LateOne, SimilarGroup, SimilarPair
+from course.cli.grade.replies import LateOne
 from course.cli.grade.running import checks_gave
 from course.errors import UsageError
 from course.grading.exports.grades import grade_line, utc, write_bytes
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import SubmittedAt
 from course.grading.results import effective as overriding
-from course.grading.results.effective import Effective, Recording, Results, ScoreChange, recorded
+from course.grading.results.effective import Effective, Results, ScoreChange
 from course.grading.results.late import (
     Worksheet,
     in_days,
@@ -44,9 +44,8 @@ from course.grading.results.late import (
 )
 from course.grading.results.merge import merged
 from course.grading.results.roster import Roster, read_roster
-from course.grading.running.rerun import Regraded, RerunOptions
-from course.grading.running.rerun import rerun as regrade
-from course.grading.similar import Similar, compare, page
+from course.grading.running.rerun import Regraded
+from course.grading.similar import Similar, page
 from course.printable import one_line
 from course.scoring.verdict import format_points, in_points
 
@@ -78,7 +77,10 @@ def rerun(
     whose score changes, by how much and because of which check. The submissions are in the gradebook; old
     results stay beside the new ones, and overrides still count.
     """
+    from course.cli.grade.replies import GradeRerun
     from course.grading.running.batch import grade_all
+    from course.grading.running.rerun import RerunOptions
+    from course.grading.running.rerun import rerun as regrade
     from course.grading.running.snapshot import open_results
 
     console = current()
@@ -208,6 +210,8 @@ def late(
     The policy is kept in the gradebook and applied at every export; the scores of the checks never change.
     Without options it shows the present policy.
     """
+    from course.cli.grade.replies import GradeLate
+    from course.grading.results.effective import Recording, recorded
     from course.grading.running.snapshot import open_results, previewed
 
     if policy is not None and clear:
@@ -321,6 +325,8 @@ def _everybody(results: Results) -> set[str]:
 
 
 def _late_one(item: Effective) -> LateOne:
+    from course.cli.grade.replies import LateOne
+
     return LateOne(
         student=item.student,
         exercise=item.exercise,
@@ -372,7 +378,9 @@ def similar(
     Writes a page that shows them side by side. Everything happens on this machine. Names, comments and
     layout do not count, and neither does the stub. Similarity is a reason to talk with students, not a proof.
     """
+    from course.cli.grade.replies import GradeSimilar, SimilarGroup, SimilarPair
     from course.grading.running.snapshot import open_results
+    from course.grading.similar import compare
 
     console = current()
     catalog = load_catalog()

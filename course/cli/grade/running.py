@@ -35,7 +35,7 @@ from course.grading.gradebook.records import Decision, Result
 from course.grading.results.effective import MISSING, NOT_YET, Effective
 from course.grading.results.late import in_days
 from course.grading.results.roster import read_roster
-from course.grading.running.rerun import Change, RerunOptions, rerun
+from course.grading.running.rerun import Change
 from course.printable import command, one_line
 from course.scoring.judging.session import Terms
 from course.scoring.verdict import LARGEST_SEED, format_points, in_points
@@ -120,6 +120,7 @@ def _would_change(
     console: Console, summary: Summary, out: Path, catalog: Catalog, terms: Terms, grade: GradeAll
 ) -> tuple[Change, ...]:
     """The students who would get another score from the present graders, which a resumed run does not use."""
+    from course.grading.running.rerun import RerunOptions, rerun
     from course.grading.running.snapshot import open_results
 
     if not summary.edited:

@@ -12,7 +12,7 @@ from course.cli.frame.completion import exercise_ids, student_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
 from course.cli.grade.options import Isolation, Jobs, Out, in_words, levels
-from course.cli.grade.replies import AssignedOne, FoundFile, GradeAssign, GradeLog, GradeSalvage, UnsettledOne
+from course.cli.grade.replies import AssignedOne, UnsettledOne
 from course.errors import UsageError
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import Decision
@@ -56,6 +56,7 @@ def assign(
     Without STUDENT it lists the students without a submission, the files there are for each, the functions
     that each file defines, and the proposed match. No file is renamed; who decided, when and why is kept.
     """
+    from course.cli.grade.replies import GradeAssign
     from course.grading.running import assign as assigning
     from course.grading.running.batch import grade_all
     from course.grading.running.snapshot import open_results, previewed
@@ -94,6 +95,8 @@ def assign(
 
 
 def _assigned_one(item: Assigned) -> AssignedOne:
+    from course.cli.grade.replies import AssignedOne
+
     one, before = item.assignment, item.before
     return AssignedOne(
         student=one.student,
@@ -107,6 +110,8 @@ def _assigned_one(item: Assigned) -> AssignedOne:
 
 
 def _unsettled_one(item: Unsettled) -> UnsettledOne:
+    from course.cli.grade.replies import FoundFile, UnsettledOne
+
     files = tuple(
         FoundFile(file=one.name, defines=one.defines, proposed=one.proposed) for one in item.found.candidates
     )
@@ -166,6 +171,7 @@ def log(
     exercise: Annotated[str | None, typer.Argument(metavar="EXERCISE", autocompletion=exercise_ids)] = None,
 ) -> int:
     """List every run and every change of a grade: who, when, why, and what it was before."""
+    from course.cli.grade.replies import GradeLog
     from course.grading.running.snapshot import open_results
 
     console = current()
@@ -206,6 +212,7 @@ def salvage(
     Everything goes into a new folder; the damaged file and its backups stay unchanged. The exit code is 0
     if nothing is known to be lost, else 6 with a list; `course grade run --resume` grades what is missing.
     """
+    from course.cli.grade.replies import GradeSalvage
     from course.grading.running.snapshot import export_all
     from course.isolation.launch import private_folder, remove_tree
 

@@ -35,10 +35,7 @@ def next_command() -> int:
     console.line(step)
     why = _why(here, step)
     console.note((why, "dim"))
-    for warning in here.warnings:
-        console.warn(warning)
-    console.emit(Next(next=NextStep(step), why=why))
-    return 0
+    return here.answer(Next(next=NextStep(step), why=why))
 
 
 def go() -> int:

@@ -253,9 +253,7 @@ def _inside(console: Console, here: Here) -> int:
     if ahead:
         console.note(ahead)
     console.note((f"Next: {step}", "bold"), " (`course go` runs it, and goes on from there)")
-    for warning in here.warnings:
-        console.warn(warning)
-    console.emit(
+    return here.answer(
         Status(
             course=here.course,
             title=catalog.title,
@@ -269,7 +267,6 @@ def _inside(console: Console, here: Here) -> int:
             warnings=tuple(here.warnings),
         )
     )
-    return 0
 
 
 def _progress_line(exercise: ExerciseState) -> str:

@@ -355,7 +355,4 @@ def _begin(console: Console, here: Here, chosen: Exercise) -> int:
         console.note(f"Check it:          {step}")
         console.note(f"On every save:     course watch {chosen.id}")
         console.note(f"Still failing:     course hint {chosen.id}")
-    for warning in here.warnings:
-        console.warn(warning)
-    console.emit(Start(exercise=chosen.id, files=files, next=NextStep(step)))
-    return 0
+    return here.answer(Start(exercise=chosen.id, files=files, next=NextStep(step)))

@@ -20,7 +20,7 @@ from course.cli.frame.replies import Backup, Envelope
 from course.errors import CourseError, MissingCapabilityError, UsageError
 from course.extras import require
 from course.sandbox.runs.recording import Film, Recording, ffmpeg
-from course.sandbox.runs.running import COLUMNS, Run, run
+from course.sandbox.runs.running import Run
 from course.sandbox.scene.loading import NO_GUESS, Chosen, Comparison, choose, guess_of, question
 from course.sandbox.world.accounts import Event, Receipt
 from course.sandbox.world.world import Snapshot, World
@@ -162,6 +162,8 @@ def pairs(settings: Sequence[str]) -> dict[str, object]:
 def chosen(scene: str, settings: Sequence[str]) -> Chosen:
     """The scene of this name, or of this file in the current folder, with its settings."""
     if scene.endswith(".toml"):
+        from pathlib import Path
+
         scene = str(cwd() / Path(scene).expanduser())
     return choose(scene, pairs(settings))
 
@@ -177,6 +179,8 @@ def write(console: Console, path: Path, data: bytes, kind: str) -> SandboxFile:
 
 def table(run: Run) -> bytes:
     """The samples of a run as CSV: a line of names with units, then a row for each body and time."""
+    from course.sandbox.runs.running import COLUMNS
+
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(COLUMNS)
@@ -298,6 +302,9 @@ def _guess(console: Console, chosen: Chosen, options: PlayOptions) -> float | No
 
 def _play_seen(console: Console, chosen: Chosen, options: PlayOptions, targets: _Targets) -> int:
     """Open a view; it asks for the prediction and shows the comparison itself."""
+    from course.sandbox.runs.recording import Recording
+    from course.sandbox.world.world import World
+
     world = World(chosen.scene, chosen.settings)
     recording = Recording(world) if "record" in targets.paths else None
     view = _view("web" if options.web else "terminal")
@@ -345,6 +352,8 @@ def _view(name: str) -> Callable[..., None]:
 def _run_unseen(
     console: Console, chosen: Chosen, options: PlayOptions, targets: _Targets, guess: float | None
 ) -> int:
+    from course.sandbox.runs.recording import Recording
+    from course.sandbox.runs.running import run
 
     made: dict[str, Any] = {}
     film = Film(chosen.scene) if {"gif", "mp4", "png"} & targets.paths.keys() else None

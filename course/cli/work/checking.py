@@ -131,10 +131,7 @@ def check(
     reply = _check_one(console, here, chosen, only=only, verbose=verbose, form=form)
     if reply.next is not None and form == "text":
         console.next(reply.next.command)
-    for warning in here.warnings:
-        console.warn(warning)
-    console.emit(reply)
-    return reply.exit_code
+    return here.answer(reply)
 
 
 def report_source_file(console: Console, here: Here, work: StudentWork) -> None:

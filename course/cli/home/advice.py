@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from pathlib import Path
 
 from course.catalog.load import Catalog
@@ -53,16 +52,16 @@ def after_report(here: Here, exercise: Exercise) -> str:
 
 def _rest_of_lesson(here: Here, warm_up: Exercise) -> str:
     """Its lesson if partly read; otherwise the lesson's next warm-up, the lesson, or what comes next."""
-    standing, begun, done, read = Standing(), False, {warm_up.id}, False
-    with contextlib.suppress(CourseError):  # a record that cannot be read is warned about elsewhere
+    try:
         standing = here.standing()
-        begun = bool(standing.events("bookmark", warm_up.lesson))
-        checks = standing.events("check")
+        begun = standing.events("bookmark", warm_up.lesson)
+        done = {event.subject for event in standing.events("check") if event.data.get("all_pass")}
         read = warm_up.lesson in standing.read
-        done |= {event.subject for event in checks if event.data.get("all_pass")}
+    except CourseError:  # a record that cannot be read is warned about elsewhere
+        standing, begun, done, read = Standing(), (), set(), False
     if begun and not read:  # the other warm-ups wait there, each in its place
         return f"course lesson {warm_up.lesson}"
-    left = [one.id for one in here.catalog.warm_ups(warm_up.lesson) if one.id not in done]
+    left = [one.id for one in here.catalog.warm_ups(warm_up.lesson) if one.id not in {*done, warm_up.id}]
     if left:
         return f"course warmup {left[0]}"
     return next_in_course(here.catalog, standing) if read else f"course lesson {warm_up.lesson}"

@@ -307,7 +307,9 @@ def _warm_up(catalog: Catalog, name: str) -> Exercise:
 def _list(console: Console) -> int:
     here, catalog = here_or_outside()
     try:
-        states = warm_up_states(catalog, here.standing() if here else Standing())
+        standing = here.standing() if here else Standing()
+        standing.events()  # an event that cannot be read is told of, whatever it is about
+        states = warm_up_states(catalog, standing)
     except CourseError as error:
         console.warn(f"{error.message} {error.help}")
         states = warm_up_states(catalog, Standing())

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import shlex
-import time
 from collections.abc import Iterable
 from functools import partial
 from importlib.util import find_spec
@@ -22,13 +21,14 @@ from course.cli.frame.console import (
     Console,
     current,
 )
-from course.cli.frame.here import Here, cwd, find_workspace, load_catalog, write
+from course.cli.frame.here import cwd, find_workspace, here_or_outside, load_catalog, write
 from course.cli.frame.replies import Backup, Envelope
-from course.cli.work import checking
+from course.cli.work.checking import reply_to
 from course.cli.work.replies import Check
 from course.cli.work.verdict import show_verdict
 from course.errors import CourseError, NotFoundError, UngradableError, UsageError
 from course.extras import require
+from course.handed_in import attempts
 from course.handed_in.cells import code_cells, read_notebook
 from course.notebooks.build import FOLDERS, NBGRADER, WORKSPACE, Generated, Layout, generate
 from course.notebooks.merge import CannotMergeError, is_untouched, merged
@@ -100,31 +100,21 @@ def check_file(console: Console, file: Path, exercise_id: str | None, *, verbose
             f"There is no file {file}.", help="`course notebook build` writes notebooks.", code="no_file"
         )
     data = read_notebook(path)
-    here, catalog = _course()
+    here, catalog = here_or_outside()
     exercise = _exercise(catalog, path, data, exercise_id)
     module = notebook_source(data, exercise, file.name)
     with console.working(f"Checking {exercise.id}"):
-        begin = time.perf_counter()
-        with checking.open_session(exercise, catalog) as session:
-            verdict = checking.grade_once(session, module.submission(exercise))
-        seconds = time.perf_counter() - begin
+        made = attempts.attempt(exercise, catalog, module.submission(exercise))
     if here is not None and path.is_relative_to(here.workspace.root):
-        checking.record_verdict(here, exercise, module.source, verdict, seconds)
-    problem = checking.error_without_checks(verdict)
-    if problem is not None:
-        raise problem
-    show_verdict(console, exercise, verdict, verbose=verbose)
+        here.record("check", exercise.id, made.data(catalog.version))
+    if made.problem is not None:
+        raise made.problem
+    show_verdict(console, exercise, made.verdict, verbose=verbose)
     for warning in here.warnings if here else ():
         console.warn(warning)
-    course = catalog.ref
-    reply = checking.reply_to(course, verdict, f"course notebook check {file}")
+    reply = reply_to(catalog.ref, made.verdict, f"course notebook check {file}")
     console.emit(NotebookCheck(ok=reply.ok, exit_code=reply.exit_code, file=str(path), result=reply))
     return reply.exit_code
-
-
-def _course() -> tuple[Here | None, Catalog]:
-    here = find_workspace()
-    return here, here.catalog if here is not None else load_catalog()
 
 
 def _exercise(catalog: Catalog, path: Path, data: bytes, wanted: str | None) -> Exercise:

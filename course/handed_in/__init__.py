@@ -2,6 +2,7 @@
 
 cells      code cells of a notebook as plain Python
 notebook   the module that those cells stand for, and how its lines are told as cells
+attempts   the public checks on it at home, and what is kept of them in the record
 """
 
 __all__ = ["MAX_CODE", "MAX_HANDED_IN", "MAX_NOTEBOOK"]

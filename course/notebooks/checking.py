@@ -19,12 +19,14 @@ from typing import TYPE_CHECKING, Any
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.errors import CourseError, NotFoundError, UngradableError, UsageError
-from course.figures.described import Curve
+from course.figures.described import Curve, plot_of
 from course.handed_in import MAX_CODE
+from course.handed_in.attempts import Attempt, attempt
 from course.handed_in.cells import CodeCell, code_cells, read_notebook, typed_cell
-from course.handed_in.notebook import SETUP, NotebookSource, source_of
+from course.handed_in.notebook import SETUP, NotebookSource, notebook_source, source_of
 from course.notebooks.build import pieces
-from course.notebooks.show import ReportPage
+from course.notebooks.show import ReportPage, image_of
+from course.progress.workspace import Recorder, not_recorded
 from course.scoring.judging.submission import Submission
 from course.scoring.verdict import CheckResult, Verdict, format_points, numbers_of
 
@@ -124,9 +126,6 @@ class CheckTable:
         """The first curve, and where it leaves the right one."""
         if self._curve is None:
             return ""
-        from course.figures.described import plot_of
-        from course.notebooks.show import image_of
-
         # The words stand below the picture; a screen reader must not read them twice.
         image = image_of(replace(plot_of(self._curve), description="Your curve over the right one."))
         return f"{image}<p><small>{escape(self._curve.description)}</small></p>"
@@ -394,56 +393,47 @@ def _names(cell: CodeCell) -> set[str]:
     }
 
 
-def check(exercise_id: str, task: str | None, source: Source | None) -> CheckTable:
-    """See ``course.notebooks.check``."""
-    from course.catalog.load import Catalog
+def check(exercise_id: str, task: str | None, source: Source | None, shell: Any = None) -> CheckTable:
+    """Run the public checks, record the attempt, and show those of one function, or all.
 
+    Args:
+        source: see ``course.notebooks.check``.
+        shell: of IPython, whose notebook is checked where there is no source; None takes the running one.
+
+    Raises:
+        NotFoundError: there is no such exercise or function.
+        UngradableError: there is nothing to check yet.
+    """
     catalog = Catalog()
     exercise = catalog.exercise(exercise_id)
-    must_have(exercise, task)
-    return checked(catalog, exercise, _submission(exercise, source), task, prints=source is not None)
-
-
-def must_have(exercise: Exercise, task: str | None) -> None:
-    """Raise NotFoundError for a function that an exercise does not have."""
     known = [one.id for one in exercise.task]
     if task is not None and task not in known:
         raise NotFoundError(
             f"{exercise.id} has no function {task}.", help=f"It has: {', '.join(known)}.", code="no_such_task"
         )
-
-
-def checked(
-    catalog: Catalog, exercise: Exercise, submission: Submission, task: str | None, *, prints: bool = False
-) -> CheckTable:
-    """Run the public checks, record the attempt, and show those of one function, or all.
-
-    Args:
-        prints: show what the code printed while it was loaded; a cell that was run has shown it already.
-    """
-    from course.scoring.judging.session import GradingSession
-    from course.scoring.judging.submission import Terms
-
-    begin = time.perf_counter()
-    with GradingSession(exercise, catalog, scope="public", terms=Terms(home=True)) as session:
-        verdict, curves = session.grade(submission), session.curves
-    seconds = time.perf_counter() - begin
-    source, known = submission.files[exercise.module], [one.id for one in exercise.task]
-    only = task if task is not None and not defines_all(source, known) else ""
-    if only:
+    if source is None:
+        submission = at_hand(shell if shell is not None else _shell(), exercise).submission(exercise)
+    else:
+        submission = _submission(exercise, source)
+    made = attempt(exercise, catalog, submission)
+    if task is not None and not defines_all(made.source, known):
         # A function that was not run yet is not missing: the attempt is about this one alone.
-        verdict = _of_task(verdict, exercise, only)
-    note = _recorded(catalog, exercise, verdict, source, seconds, only=only)
-    printed = session.printed if prints else ""
-    return CheckTable(verdict, task, note, printed=printed, scored=not exercise.is_warm_up, curves=curves)
+        made = replace(made, verdict=_of_task(made.verdict, exercise, task), only=task)
+    return CheckTable(
+        made.verdict,
+        task,
+        _recorded(catalog, made),
+        # A cell that was run has shown what it printed.
+        printed=made.printed if source is not None else "",
+        scored=not exercise.is_warm_up,
+        curves=made.curves,
+    )
 
 
 # -- what was written ------------------------------------------------------------------------------------
 
 
-def _submission(exercise: Exercise, source: Source | None) -> Submission:
-    if source is None:
-        return at_hand(_shell(), exercise).submission(exercise)
+def _submission(exercise: Exercise, source: Source) -> Submission:
     if isinstance(source, str) and "\n" not in source and source.endswith((".py", ".ipynb")):
         source = Path(source)
     if isinstance(source, Path):
@@ -468,9 +458,6 @@ def _shell() -> Any:
 
 def _of_file(exercise: Exercise, path: Path) -> Submission:
     if path.suffix == ".ipynb":
-        from course.handed_in.cells import read_notebook
-        from course.handed_in.notebook import notebook_source
-
         return notebook_source(read_notebook(path), exercise, path.name).submission(exercise)
     try:
         return _of_text(exercise, path.read_bytes())
@@ -479,8 +466,6 @@ def _of_file(exercise: Exercise, path: Path) -> Submission:
 
 
 def _of_text(exercise: Exercise, text: bytes) -> Submission:
-    from course.scoring.judging.submission import Submission
-
     if len(text) > MAX_CODE:
         raise UngradableError(
             f"This is more than {MAX_CODE:,} bytes of code.",
@@ -523,21 +508,13 @@ def _of_task(verdict: Verdict, exercise: Exercise, task: str) -> Verdict:
     )
 
 
-def _recorded(
-    catalog: Catalog, exercise: Exercise, verdict: Verdict, source: bytes, seconds: float, *, only: str = ""
-) -> str:
+def _recorded(catalog: Catalog, made: Attempt) -> str:
     """Record an attempt in the workspace, if this kernel runs in one; returns why that failed, or ""."""
-    from course.progress.history import check_data
-    from course.progress.workspace import Workspace
-
     try:
-        workspace = Workspace.find(Path.cwd())
-        if workspace.course_id != catalog.course_id:
-            return f"This was not recorded: {workspace.root} is a workspace of another course."
-        data = check_data(verdict, source, seconds, catalog.version, only=only)
-        workspace.store.append("check", exercise.id, data)
-    except (NotFoundError, FileNotFoundError):  # also where the folder is gone
-        return ""
+        record = Recorder.of_kernel(catalog.course_id)
     except CourseError as error:
-        return f"This was not recorded: {error.message} {error.help}"
-    return ""
+        return not_recorded(error)
+    if record is None:
+        return ""
+    record("check", made.exercise.id, made.data(catalog.version))
+    return record.trouble

@@ -11,7 +11,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, TypeVar
 
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
@@ -19,8 +19,12 @@ from course.errors import CourseError
 from course.handed_in.notebook import SOLUTION
 from course.notebooks import checking
 from course.notebooks.cells import Cell, document
-from course.notebooks.checking import CheckTable, Runs, at_hand, checked, must_have
+from course.notebooks.checking import CheckTable, Runs, at_hand
 from course.notebooks.show import ReportPage
+from course.scoring.judging.session import check_files, has_report, report_of
+from course.scoring.judging.submission import Submission
+
+T = TypeVar("T")
 
 
 def register(shell: Any) -> None:
@@ -30,35 +34,28 @@ def register(shell: Any) -> None:
     def course_check(line: str, cell: str | None = None) -> CheckTable | None:
         """Run the public checks: %course_check EXERCISE [FUNCTION]; with %% on the cell as a file."""
         words = line.split()
-        if not 1 <= len(words) <= 2:
-            _said("Write: %course_check EXERCISE [FUNCTION]")
-            return None
-        try:
-            if cell is not None:
-                return check_cell(f"{cell}\n", *words)
-            return check(shell, *words)
-        except CourseError as error:
-            _said(f"{error.message} {error.help}")
-            return None
+        usage = "" if 1 <= len(words) <= 2 else "Write: %course_check EXERCISE [FUNCTION]"
+        return _told(usage, lambda: check(shell, *words) if cell is None else check_cell(f"{cell}\n", *words))
 
     def course_report(line: str) -> ReportPage | None:
         """Show what your functions do on public data: %course_report EXERCISE"""
         words = line.split()
-        if len(words) != 1:
-            _said("Write: %course_report EXERCISE")
-            return None
-        try:
-            return report(shell, words[0])
-        except CourseError as error:
-            _said(f"{error.message} {error.help}")
-            return None
+        usage = "" if len(words) == 1 else "Write: %course_report EXERCISE"
+        return _told(usage, lambda: report(shell, *words))
 
     shell.register_magic_function(course_check, "line_cell", "course_check")
     shell.register_magic_function(course_report, "line", "course_report")
 
 
-def _said(text: str) -> None:
-    print(text)  # noqa: T201 - a cell's output is its screen
+def _told(wrong: str, act: Callable[[], T]) -> T | None:
+    """What was asked for; or None, with a sentence about what is wrong."""
+    try:
+        if not wrong:
+            return act()
+    except CourseError as error:
+        wrong = f"{error.message} {error.help}"
+    print(wrong)  # noqa: T201 - a cell's output is its screen
+    return None
 
 
 def report(shell: Any, exercise_id: str) -> ReportPage:
@@ -71,10 +68,6 @@ def report(shell: Any, exercise_id: str) -> ReportPage:
         NotFoundError: there is no such exercise, or it has nothing to show.
         UngradableError: there is nothing to run yet, or it cannot be run.
     """
-    from course.catalog.load import Catalog
-    from course.notebooks.show import ReportPage
-    from course.scoring.judging.session import report_of
-
     catalog = Catalog()
     exercise = catalog.exercise(exercise_id)
     return ReportPage(report_of(exercise, catalog, at_hand(shell, exercise).submission(exercise)))
@@ -90,12 +83,7 @@ def check(shell: Any, exercise_id: str, task: str | None = None) -> CheckTable:
         NotFoundError: there is no such exercise or function.
         UngradableError: there is nothing to check yet.
     """
-    from course.catalog.load import Catalog
-
-    catalog = Catalog()
-    exercise = catalog.exercise(exercise_id)
-    must_have(exercise, task)
-    return checked(catalog, exercise, at_hand(shell, exercise).submission(exercise), task)
+    return checking.check(exercise_id, task, None, shell)
 
 
 def check_cell(text: str, exercise_id: str, task: str | None = None) -> CheckTable:
@@ -104,17 +92,11 @@ def check_cell(text: str, exercise_id: str, task: str | None = None) -> CheckTab
     Raises:
         NotFoundError: there is no such exercise or function.
     """
-    from course.catalog.load import Catalog
-    from course.notebooks.show import ReportPage
-    from course.scoring.judging.session import has_report, report_of
-    from course.scoring.judging.submission import Submission
-
     table = checking.check(exercise_id, task, text)
-    exercise = Catalog().exercise(exercise_id)
+    catalog = Catalog()
+    exercise = catalog.exercise(exercise_id)
     if table.passed and has_report(exercise):
-        table.report = ReportPage(
-            report_of(exercise, Catalog(), Submission({exercise.module: text.encode()}))
-        )
+        table.report = ReportPage(report_of(exercise, catalog, Submission({exercise.module: text.encode()})))
     return table
 
 
@@ -170,7 +152,6 @@ def points(exercise_id: str, task: str) -> float:
 def _public_points(catalog: Catalog, exercise: Exercise) -> dict[str, float]:
     """Public points of each task."""
     from course.scoring.checks.collected import CollectedChecks
-    from course.scoring.judging.session import check_files
 
     collected = CollectedChecks(check_files(exercise, catalog, "public"))
     try:

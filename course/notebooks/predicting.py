@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 from course.catalog.load import Catalog
 from course.catalog.models import Lesson
 from course.errors import CourseError, NotFoundError
 from course.notebooks.sandbox import alive
-from course.progress.quiz import QuizHistory
-from course.progress.store import Store
-from course.quizzing.attempt import Result
-from course.reading.parts import Question, Script
+from course.progress.quiz import quiz_history
+from course.progress.workspace import Recorder
+from course.quizzing.attempt import Result, fresh_seed
+from course.reading.parts import Question, Script, read_script
 from course.reading.record import InProgress
 
 
@@ -38,17 +37,9 @@ def predict(lesson_id: str, number: int, text: str = "") -> Any:
 
 
 class LessonPrediction:
-    """A lesson's prediction, and the student's answer.
-
-    Attributes:
-        note: another sentence to show.
-    """
+    """A lesson's prediction, and the student's answer."""
 
     def __init__(self, lesson_id: str, number: int) -> None:
-        from course.catalog.load import Catalog
-        from course.reading.parts import read_script
-        from course.reading.record import InProgress
-
         catalog = Catalog()
         lesson = catalog.lesson(lesson_id)
         script = read_script(lesson)
@@ -60,11 +51,11 @@ class LessonPrediction:
                 code="no_such_prediction",
             )
         self.question: Question = found[0]
-        self.note = ""
+        self._unread = ""
         self._answer = answer_of(catalog, lesson, script, self.question)
-        self._store = _store(catalog)
+        self._record = Recorder.of_kernel(catalog.course_id) or Recorder(None)
         events = self._events(lesson)
-        self._progress: InProgress = InProgress(script, events, self._write, catalog.version)
+        self._progress: InProgress = InProgress(script, events, self._record, catalog.version)
 
     @property
     def said(self) -> str | None:
@@ -75,6 +66,11 @@ class LessonPrediction:
     def say(self, text: str) -> None:
         """Keep a prediction; an empty one is a skip. The first answer stays."""
         self._progress.predict(self.question, text)
+
+    @property
+    def note(self) -> str:
+        """Another sentence to show: why something was not recorded, or could not be read."""
+        return (self._record.trouble if self._record.store is not None else "") or self._unread
 
     @property
     def opened(self) -> str:
@@ -90,21 +86,13 @@ class LessonPrediction:
         return repr(self) if self.said is None else self.opened
 
     def _events(self, lesson: Lesson) -> tuple[Any, ...]:
-        if self._store is None:
+        if self._record.store is None:
             return ()
         try:
-            return self._store.events("prediction", lesson.id)
+            return self._record.store.events("prediction", lesson.id)
         except CourseError as error:
-            self.note = f"{error.message} {error.help}"
+            self._unread = f"{error.message} {error.help}"
             return ()
-
-    def _write(self, kind: str, subject: str, data: Mapping[str, Any]) -> None:
-        if self._store is None:
-            return
-        try:
-            self._store.append(kind, subject, data)
-        except CourseError as error:
-            self.note = f"This was not recorded: {error.message} {error.help}"
 
 
 def answer_of(catalog: Catalog, lesson: Lesson, script: Script, question: Question) -> str:
@@ -121,17 +109,6 @@ def _quoted(text: str) -> str:
     from course.notebooks.lowering import escaped
 
     return escaped(" ".join(text.split()))
-
-
-def _store(catalog: Catalog) -> Store | None:
-    """The workspace this kernel runs in; None outside of one, or in another course's."""
-    from course.progress.workspace import Workspace
-
-    try:
-        workspace = Workspace.find(Path.cwd())
-    except (NotFoundError, FileNotFoundError):  # also where the folder is gone
-        return None
-    return workspace.store if workspace.course_id == catalog.course_id else None
 
 
 # ---
@@ -157,26 +134,28 @@ class OngoingAttempt:
 
     Attributes:
         result: its score, once it has one.
-        note: another sentence to show.
     """
 
     def __init__(self) -> None:
-        from course.catalog.load import Catalog
-        from course.quizzing.attempt import fresh_seed
         from course.quizzing.bank import Bank
         from course.quizzing.desk import begun, fits
 
         catalog = Catalog()
         bank = Bank.of(catalog)
-        self.note = ""
         self.result: Result | None = None
-        self._store = self._found(catalog)
-        history = self._history()
+        outside = Recorder(None, "This was not recorded: the notebook is not in a workspace.")
+        self._record = Recorder.of_kernel(catalog.course_id) or outside
+        history = quiz_history(self._record.store.events() if self._record.store is not None else ())
         left = history.open
         if left is None or not fits(bank, left):
             left = begun(bank, fresh_seed(bank, history.last_seeds()), catalog.version, self._record)
         self.attempt = left
         self.posed = bank.pose(left.seed)
+
+    @property
+    def note(self) -> str:
+        """Another sentence to show: why something was not recorded."""
+        return self._record.trouble
 
     def finish(self, letters: Mapping[str, str]) -> bool:
         """Score the attempt with letters by question id; False while one is not answered.
@@ -195,29 +174,3 @@ class OngoingAttempt:
                 answered(self.attempt, one.question, choice.id, self._record)
         self.result = finished(self.attempt, self.posed, self._record)
         return True
-
-    def _found(self, catalog: Catalog) -> Store | None:
-        from course.progress.workspace import Workspace
-
-        try:
-            workspace = Workspace.find(Path.cwd())
-        except (NotFoundError, FileNotFoundError):  # also where the folder is gone
-            self.note = "This was not recorded: the notebook is not in a workspace."
-            return None
-        if workspace.course_id != catalog.course_id:
-            self.note = f"This was not recorded: {workspace.root} is a workspace of another course."
-            return None
-        return workspace.store
-
-    def _history(self) -> QuizHistory:
-        from course.progress.quiz import quiz_history
-
-        return quiz_history(self._store.events() if self._store is not None else ())
-
-    def _record(self, kind: str, subject: str, data: dict[str, object]) -> None:
-        if self._store is None:
-            return
-        try:
-            self._store.append(kind, subject, data)
-        except CourseError as error:
-            self.note = f"This was not recorded: {error.message} {error.help}"

@@ -8,8 +8,8 @@ from html import escape
 from course.catalog.load import Catalog
 from course.notebooks.cells import Cell, code, document, markdown, opening
 from course.notebooks.lowering import escaped
-from course.quizzing.attempt import MarkedQuestion, Result
-from course.quizzing.bank import PosedQuestion
+from course.quizzing.attempt import MarkedQuestion, Result, mark, mark_sentence, needed
+from course.quizzing.bank import LETTERS, Bank, PosedQuestion
 
 #: A notebook's questions stay the same; ``course quiz take`` draws new ones each time.
 SEED = 1
@@ -33,9 +33,6 @@ def quiz_notebook(catalog: Catalog, seed: int = SEED) -> bytes:
         NotFoundError: the course has no quiz.
         ContentError: a question is wrong.
     """
-    from course.quizzing.attempt import mark_sentence
-    from course.quizzing.bank import Bank
-
     posed = Bank.of(catalog).pose(seed)
     cells = [
         opening(_HEAD.format(mark=mark_sentence(len(posed)))),
@@ -65,10 +62,6 @@ def marked(seed: int, answers: Mapping[str, str]) -> Marks | None:
     Args:
         answers: letters by question id.
     """
-    from course.catalog.load import Catalog
-    from course.quizzing.attempt import mark
-    from course.quizzing.bank import LETTERS, Bank
-
     posed = Bank.of(Catalog()).pose(seed)
     for number, question in enumerate(posed, 1):
         given = str(answers.get(question.question, "")).strip()
@@ -90,8 +83,6 @@ class Marks:
     @property
     def summary(self) -> str:
         """The score in a sentence."""
-        from course.quizzing.attempt import needed
-
         verdict = "passed" if self.result.passed else "not passed"
         total = self.result.total
         return f"{self.result.score} of {total} right, {needed(total)} needed: {verdict}."

@@ -13,7 +13,7 @@ from typing import Any
 from course.catalog.load import Catalog
 from course.notebooks.cells import code, document, markdown, opening
 from course.notebooks.lowering import escaped
-from course.sandbox.runs.running import Run
+from course.sandbox.runs.running import Run, account, run, sentences
 from course.sandbox.scene.model import Scene
 
 #: Set in the environment of a kernel whose outputs are saved: a live view cannot be saved.
@@ -92,7 +92,6 @@ def film(scene_id: str, **settings: float) -> Film:
         UsageError: a setting is unknown or out of range.
     """
     from course.sandbox.runs.recording import Film as Frames
-    from course.sandbox.runs.running import run
     from course.sandbox.scene.loading import choose
 
     chosen = choose(scene_id, settings)
@@ -122,8 +121,6 @@ class Film:
     @property
     def story(self) -> list[str]:
         """The run in sentences, its energy last."""
-        from course.sandbox.runs.running import account, sentences
-
         return [*sentences(self.run.events, _MOST_TOLD), *account(self.run.receipt), *self._compared()]
 
     def _compared(self) -> list[str]:

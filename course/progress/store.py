@@ -10,7 +10,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -44,6 +44,10 @@ _INSERT = "INSERT INTO event (at, kind, subject, data) VALUES (?, ?, ?, ?)"
 _SELECT = "SELECT id, at, kind, subject, data FROM event"
 
 
+class _UnreadableError(ValueError):
+    """A row is no event."""
+
+
 @dataclass(frozen=True, slots=True)
 class Event:
     """One thing that happened.
@@ -62,6 +66,32 @@ class Event:
     kind: str
     subject: str
     data: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """What was recorded until one moment.
+
+    An event is read when it is asked for: one that somebody spoilt costs only those who need it.
+
+    Attributes:
+        path: the file.
+        rows: its events, oldest first.
+    """
+
+    path: Path
+    rows: Sequence[tuple[Any, ...]] = ()
+
+    def events(self, kind: str = "", subject: str = "") -> tuple[Event, ...]:
+        """Events of a kind and about a subject, oldest first; an empty string stands for any.
+
+        Raises:
+            IntegrityError: one of them cannot be read.
+        """
+        try:
+            return tuple(_event(row) for row in self.rows if kind in ("", row[2]) and subject in ("", row[3]))
+        except _UnreadableError as error:
+            raise _damaged(self.path, str(error)) from error
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,14 +134,17 @@ class Store:
             IntegrityError: the file is damaged.
             MissingCapabilityError: it cannot be read here, is locked, or is from a newer course.
         """
+        return self.record(kind, subject).events()
+
+    def record(self, kind: str = "", subject: str = "") -> Record:
+        """The same, unread: for who asks for events of several kinds. Raises what ``events`` raises."""
         if not self.path.exists():
-            return ()
+            return Record(self.path)
         query = f"{_SELECT} WHERE (? = '' OR kind = ?) AND (? = '' OR subject = ?) ORDER BY id"
         with self._connection(create=False) as database:
             if _version(database) == 0:
-                return ()
-            rows = database.execute(query, (kind, kind, subject, subject)).fetchall()
-            return tuple(_event(row) for row in rows)
+                return Record(self.path)
+            return Record(self.path, database.execute(query, (kind, kind, subject, subject)).fetchall())
 
     def last(self, kind: str, subject: str = "") -> Event | None:
         """The newest event of a kind and about a subject, or None."""
@@ -204,16 +237,10 @@ def _event(row: tuple[Any, ...]) -> Event:
         when = datetime.fromisoformat(at)
         values = json.loads(data)
     except (TypeError, ValueError) as error:
-        raise _unreadable(number) from error
+        raise _UnreadableError(f"event {number} cannot be read") from error
     if when.tzinfo is None or not isinstance(values, dict):
-        raise _unreadable(number)
+        raise _UnreadableError(f"event {number} cannot be read")
     return Event(id=number, at=when, kind=str(kind), subject=str(subject), data=values)
-
-
-def _unreadable(number: object) -> Exception:
-    import sqlite3
-
-    return sqlite3.DatabaseError(f"event {number} cannot be read")
 
 
 def _salvage(damaged: Path) -> list[tuple[str, str, str, str]]:
@@ -224,7 +251,7 @@ def _salvage(damaged: Path) -> list[tuple[str, str, str, str]]:
     with contextlib.suppress(sqlite3.Error), contextlib.closing(sqlite3.connect(damaged)) as database:
         cursor = database.execute(f"{_SELECT} ORDER BY id")
         while (row := cursor.fetchone()) is not None:
-            with contextlib.suppress(sqlite3.DatabaseError):
+            with contextlib.suppress(_UnreadableError):
                 _event(row)
                 rows.append(row[1:])
     return rows

@@ -17,9 +17,11 @@ import contextlib
 import os
 import re
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
+from typing import Any
 
 from course.errors import ContentError, CourseError, MissingCapabilityError, NotFoundError, UsageError
 from course.ids import WARM_UPS
@@ -187,6 +189,51 @@ class Workspace:
 
     def _given_path(self, place: str, name: str) -> Path:
         return self.state / "given" / place / name
+
+
+class Recorder:
+    """Takes events into a record; where one cannot be kept, work goes on.
+
+    Args:
+        store: None where there is no workspace; events are dropped then.
+        trouble: why there is none.
+
+    Attributes:
+        trouble: why something was not recorded, a sentence; empty while all is well.
+    """
+
+    def __init__(self, store: Store | None, trouble: str = "") -> None:
+        self.store = store
+        self.trouble = trouble
+
+    @classmethod
+    def of_kernel(cls, course_id: str) -> Recorder | None:
+        """That of the workspace a notebook's kernel runs in, if it is this course's; None outside of one.
+
+        Raises:
+            ContentError, MissingCapabilityError: its ``course.toml`` cannot be used.
+        """
+        try:
+            workspace = Workspace.find(Path.cwd())
+        except (NotFoundError, FileNotFoundError):  # also where the folder is gone
+            return None
+        if workspace.course_id != course_id:
+            return cls(None, f"This was not recorded: {workspace.root} is a workspace of another course.")
+        return cls(workspace.store)
+
+    def __call__(self, kind: str, subject: str, data: Mapping[str, Any]) -> None:
+        """Add an event."""
+        if self.store is None:
+            return
+        try:
+            self.store.append(kind, subject, data)
+        except CourseError as error:
+            self.trouble = not_recorded(error)
+
+
+def not_recorded(error: CourseError) -> str:
+    """Why an event was not recorded, for its student."""
+    return f"This was not recorded: {error.message} {error.help}"
 
 
 def same_text(one: bytes, other: bytes) -> bool:

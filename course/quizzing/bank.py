@@ -16,7 +16,7 @@ import hashlib
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from course.catalog.load import Catalog
 from course.catalog.questions import Formula, FormulaError, Question, Variant, read_questions
@@ -192,8 +192,6 @@ def pose_case(document: Document[Question], variant_index: int, case: int) -> Po
 
 
 def _replace_choices(posed: PosedQuestion, choices: Sequence[Choice]) -> PosedQuestion:
-    from dataclasses import replace
-
     placed = tuple(replace(choice, letter=letter) for choice, letter in zip(choices, LETTERS, strict=True))
     return replace(posed, choices=placed)
 

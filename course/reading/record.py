@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Any, Literal
 
-from course.errors import CourseError
 from course.progress.store import Event, Store
+from course.progress.workspace import Recorder
 from course.reading.parts import Cell, Question, Script, is_unseen, words_of
 
 # ---
@@ -205,21 +205,21 @@ class CellState:
 
 
 class Writer:
-    """Adds events to a record, one after the other, in a thread of its own.
-
-    Attributes:
-        trouble: why something was not recorded; empty while all is well.
-    """
+    """Adds events to a record, one after the other, in a thread of its own."""
 
     def __init__(self, store: Store | None) -> None:
-        self._store = store
+        self._record = Recorder(store)
         self._queue: queue.Queue[tuple[str, str, Mapping[str, Any]] | None] = queue.Queue()
         self._thread: threading.Thread | None = None
-        self.trouble = ""
+
+    @property
+    def trouble(self) -> str:
+        """Why something was not recorded; empty while all is well."""
+        return self._record.trouble
 
     def __call__(self, kind: str, subject: str, data: Mapping[str, Any]) -> None:
         """Add an event, soon."""
-        if self._store is None:
+        if self._record.store is None:
             return
         if self._thread is None:
             self._thread = threading.Thread(target=self._work, name="record", daemon=True)
@@ -234,12 +234,8 @@ class Writer:
             self._thread = None
 
     def _work(self) -> None:
-        assert self._store is not None
         while (event := self._queue.get()) is not None:
-            try:
-                self._store.append(*event)
-            except CourseError as error:
-                self.trouble = f"This was not recorded: {error.message} {error.help}"
+            self._record(*event)
 
 
 class InProgress:
@@ -422,21 +418,6 @@ class RecordedPrediction:
     judged: Judgement | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Tally:
-    """How many of some predictions went which way; ``unjudged`` were made and never judged."""
-
-    right: int = 0
-    nearly: int = 0
-    wrong: int = 0
-    unjudged: int = 0
-    skipped: int = 0
-
-    @property
-    def said(self) -> int:
-        return self.right + self.nearly + self.wrong + self.unjudged
-
-
 def predictions_of(events: Iterable[Event]) -> tuple[RecordedPrediction, ...]:
     """The predictions that events of kind "prediction" tell of, in the order they were made.
 
@@ -459,12 +440,13 @@ def predictions_of(events: Iterable[Event]) -> tuple[RecordedPrediction, ...]:
     return tuple(found.values())
 
 
-def tally(predictions: Iterable[RecordedPrediction]) -> Tally:
-    """Count them."""
-    counts = dict.fromkeys(Tally.__dataclass_fields__, 0)
+def tally(predictions: Iterable[RecordedPrediction]) -> dict[str, int]:
+    """How many of them went which way: ``unjudged`` were made and never judged; ``said`` were not skipped."""
+    counts = dict.fromkeys((*JUDGEMENTS, "unjudged", "skipped", "said"), 0)
     for one in predictions:
         counts["skipped" if not one.text else one.judged or "unjudged"] += 1
-    return Tally(**counts)
+        counts["said"] += bool(one.text)
+    return counts
 
 
 # ---

@@ -23,7 +23,7 @@ from course.catalog.load import Catalog
 from course.catalog.models import Exercise, Hints, Mutant, fields_of
 from course.catalog.reading import Document, read_text
 from course.errors import ContentError
-from course.progress.history import numbers_of
+from course.handed_in.attempts import numbers_of
 from course.progress.workspace import write_atomically
 from course.scoring.graders import LEFT_OUT
 from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility

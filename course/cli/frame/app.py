@@ -149,8 +149,6 @@ def _root(
 
 
 def _version(console: Console) -> int:
-    from course import __version__
-
     python = ".".join(map(str, sys.version_info[:3]))
     console.line(f"course {__version__} (Python {python})")
     if console.json:

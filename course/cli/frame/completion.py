@@ -120,7 +120,6 @@ def simulation_settings(ctx: Any, incomplete: str) -> list[str]:
 def scene_settings(ctx: Any, incomplete: str) -> list[str]:
     """The names that ``--set`` takes for the scene on the line, with the equals sign."""
     import tomllib
-    from pathlib import Path
 
     name = _given(ctx, "scene")
     path = Path(name) if name.endswith(".toml") else _scenes() / f"{name}.toml"
@@ -133,8 +132,6 @@ def scene_settings(ctx: Any, incomplete: str) -> list[str]:
 
 def submitted_ids(ctx: Any, incomplete: str) -> list[str]:
     """Students who handed something in to the folder on the line."""
-    from pathlib import Path
-
     try:
         found = [entry.name for entry in Path(_given(ctx, "submissions")).iterdir() if entry.is_dir()]
     except OSError:
@@ -157,7 +154,6 @@ def _in_gradebook(ctx: Any, query: str) -> list[Any]:
     """A column of an existing gradebook; empty if it cannot be read."""
     import sqlite3
     from contextlib import closing
-    from pathlib import Path
 
     path = Path(_given(ctx, "out"), "gradebook.sqlite").resolve()
     try:
@@ -196,8 +192,6 @@ def _of_exercises(ctx: Any, name: str) -> list[Path]:
 
 
 def _scenes() -> Path:
-    from pathlib import Path
-
     return Path(__file__).parents[2] / "sandbox" / "scenes"
 
 

@@ -11,15 +11,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course.catalog.models import CourseRef, Exercise
-from course.cli.frame.replies import WrittenFile
+from course.cli.frame.console import current
+from course.cli.frame.replies import Backup, Envelope, WrittenFile
 from course.errors import CourseError, MissingCapabilityError, NotFoundError, UngradableError, UsageError
 from course.handed_in import MAX_CODE
 from course.ids import WARM_UPS
-from course.progress.history import History
+from course.progress.history import History, history_of
+from course.progress.standing import Standing
+from course.progress.workspace import Recorder, Workspace, write_atomically
 
 if TYPE_CHECKING:
     from course.catalog.load import Catalog
-    from course.progress.workspace import Workspace
 
 
 @dataclass
@@ -38,8 +40,6 @@ class Here:
             NotFoundError: the folder is not in a workspace.
             MissingCapabilityError: the workspace is another course's.
         """
-        from course.progress.workspace import Workspace
-
         workspace = Workspace.find(cwd())
         catalog = load_catalog()
         if workspace.course_id != catalog.course_id:
@@ -145,16 +145,24 @@ class Here:
         Raises:
             IntegrityError, MissingCapabilityError: the record cannot be read.
         """
-        from course.progress.history import history_of
-
         return history_of(self.workspace.store.events(subject=exercise.id))
+
+    def standing(self) -> Standing:
+        """How far the student is with everything, as it is now; raises what ``history`` raises."""
+        return Standing.of(self.workspace)
 
     def record(self, kind: str, subject: str, data: dict[str, object]) -> None:
         """Note an event; where that fails, the command goes on and says so."""
-        try:
-            self.workspace.store.append(kind, subject, data)
-        except CourseError as error:
-            self.warnings.append(f"This was not recorded: {error.message} {error.help}")
+        recorder = Recorder(self.workspace.store)
+        recorder(kind, subject, data)
+        self.warnings += [recorder.trouble] if recorder.trouble else []
+
+    def answer(self, reply: Envelope) -> int:
+        """End a command: say what was not recorded, print the object of ``--json``, give the exit code."""
+        for warning in self.warnings:
+            current().warn(warning)
+        current().emit(reply)
+        return reply.exit_code
 
     def _folder_name(self) -> str | None:
         """The first folder below the workspace on the way to the current one."""
@@ -208,6 +216,12 @@ def find_workspace() -> Here | None:
         return None
 
 
+def here_or_outside() -> tuple[Here | None, Catalog]:
+    """The workspace of the current folder, or None outside of one; and the course in use."""
+    here = find_workspace()
+    return here, here.catalog if here is not None else load_catalog()
+
+
 # ---
 # Files that commands write to a given place. A copy of what was there before is kept and reported.
 
@@ -255,9 +269,6 @@ def write(path: Path, data: bytes, *, why: str = "sim") -> WrittenFile:
         UsageError: the file cannot be written.
         MissingCapabilityError: the copy cannot be written; the file is then unchanged.
     """
-    from course.cli.frame.replies import Backup, WrittenFile
-    from course.progress.workspace import write_atomically
-
     try:
         old = path.read_bytes() if path.exists() else None
     except OSError as error:
@@ -273,8 +284,6 @@ def write(path: Path, data: bytes, *, why: str = "sim") -> WrittenFile:
 
 def _keep(path: Path, old: bytes, why: str) -> Path:
     """Copy a file and give the copy's place."""
-    from course.progress.workspace import Workspace
-
     try:
         return Workspace.find(path.parent).backup(path, why)
     except CourseError as error:

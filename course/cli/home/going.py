@@ -31,14 +31,11 @@ def next_command() -> int:
     `course go` does it.
     """
     console, here = current(), Here.load()
-    step = next_in_course(here)
+    step = next_in_course(here.catalog, here.standing())
     console.line(step)
     why = _why(here, step)
     console.note((why, "dim"))
-    for warning in here.warnings:
-        console.warn(warning)
-    console.emit(Next(next=NextStep(step), why=why))
-    return 0
+    return here.answer(Next(next=NextStep(step), why=why))
 
 
 def go() -> int:
@@ -49,11 +46,12 @@ def go() -> int:
     nothing and says what it would run.
     """
     console, here = current(), Here.load()
-    step = next_in_course(here)
+    standing = here.standing()
+    step = next_in_course(here.catalog, standing)
     if console.json:
         console.emit(Go(next=NextStep(step), why=_why(here, step)))
         return 0
-    ahead = exercise_ahead(here, step)
+    ahead = exercise_ahead(here.catalog, standing, step)
     while True:
         words = _as_run(console, step)
         if not (words[0] == "lesson" and console.fancy):  # the reader covers it and tells where it continues
@@ -65,7 +63,7 @@ def go() -> int:
         if not console.interactive:
             return code
         here = Here.load()
-        before, step = step, next_in_course(here)
+        before, step = step, next_in_course(here.catalog, here.standing())
         if step == before:
             left = "" if words[0] == "lesson" else f"Not finished yet: {step}. "  # a lesson says it itself
             console.note(f"{left}Go on at any time with: course go")

@@ -10,7 +10,6 @@ from pathlib import Path
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.cli.frame.console import Console
-from course.cli.frame.here import Here
 from course.cli.home.replies import (
     ExerciseState,
     MistakeState,
@@ -22,10 +21,9 @@ from course.cli.home.replies import (
     WarmUpState,
 )
 from course.errors import CourseError
-from course.progress.history import Mistake, mistakes_of
-from course.progress.quiz import quiz_history
-from course.progress.store import Event
-from course.reading.parts import Script, read_script
+from course.progress.history import Mistake
+from course.progress.standing import Standing
+from course.reading.parts import Question, Script, read_script
 from course.reading.record import RecordedPrediction, predictions_of, tally
 
 #: So many days of predictions are shown; ``--json`` has all.
@@ -41,12 +39,12 @@ class Learning:
         revisit: sections worth reading again; those with the most mistakes come first.
     """
 
-    def __init__(self, catalog: Catalog, events: Sequence[Event]) -> None:
+    def __init__(self, catalog: Catalog, standing: Standing) -> None:
         self._catalog = catalog
         self._scripts = cache(self._script)
-        said = predictions_of(events)
+        said = predictions_of(standing.events())
         self.predictions = self._predictions(said) if said else None
-        self.mistakes = tuple(self._mistakes(events))
+        self.mistakes = tuple(self._mistakes(standing.mistakes))
         self.revisit = tuple(self._revisit(said))
 
     # -- predictions -----------------------------------------------------------------------------------
@@ -61,8 +59,8 @@ class Learning:
             each=tuple(
                 PredictionState(
                     lesson=one.lesson,
-                    section=self._section(one)[0],
-                    question=self._question(one),
+                    section=self._section(one),
+                    question=asked[1].words if (asked := self._asked(one)) else "",
                     said=one.text or None,
                     judged=one.judged,
                     at=one.at.isoformat(),
@@ -78,23 +76,23 @@ class Learning:
         except CourseError:
             return None
 
-    def _question(self, said: RecordedPrediction) -> str:
+    def _asked(self, said: RecordedPrediction) -> tuple[Script, Question] | None:
+        """The lesson and its question; None if it is gone."""
         script = self._scripts(said.lesson)
         asked = next((one for one in script.questions if one.key == said.key), None) if script else None
-        return asked.words if asked else ""
+        return (script, asked) if script and asked else None
 
-    def _section(self, said: RecordedPrediction) -> tuple[str, str]:
-        """Where it was asked, as "lesson#section", and the title of that section; "" if it is gone."""
-        script = self._scripts(said.lesson)
-        asked = next((one for one in script.questions if one.key == said.key), None) if script else None
-        section = script.section_of(asked.index) if script and asked else None
-        return (f"{said.lesson}#{section.slug}", section.title) if section else ("", "")
+    def _section(self, said: RecordedPrediction) -> str:
+        """Where it was asked, as "lesson#section"; "" if it is gone."""
+        asked = self._asked(said)
+        section = asked[0].section_of(asked[1].index) if asked else None
+        return f"{said.lesson}#{section.slug}" if section else ""
 
     # -- mistakes --------------------------------------------------------------------------------------
 
-    def _mistakes(self, events: Sequence[Event]) -> Iterable[MistakeState]:
+    def _mistakes(self, made: Sequence[Mistake]) -> Iterable[MistakeState]:
         known = {one.id: one for one in (*self._catalog.exercises(), *self._catalog.warm_ups())}
-        for one in mistakes_of(events):
+        for one in made:
             exercise = known.get(one.exercise)
             if exercise is None:
                 continue
@@ -121,7 +119,7 @@ class Learning:
                 why.setdefault(one.read, []).append(f"{one.task} in {one.exercise}: {one.diagnosis}")
         wrong: dict[str, int] = {}
         for each in said:
-            place = self._section(each)[0] if each.judged == "wrong" else ""
+            place = self._section(each) if each.judged == "wrong" else ""
             if place:
                 wrong[place] = wrong.get(place, 0) + 1
         for place, count in wrong.items():
@@ -222,17 +220,8 @@ def _in_words(counts: PredictionsOf) -> str:
     return ", ".join(f"{number} {word}" for number, word in named if number)
 
 
-def _counts(of: str, said: Sequence[RecordedPrediction]) -> PredictionsOf:
-    counted = tally(said)
-    return PredictionsOf(
-        of=of,
-        said=counted.said,
-        right=counted.right,
-        nearly=counted.nearly,
-        wrong=counted.wrong,
-        unjudged=counted.unjudged,
-        skipped=counted.skipped,
-    )
+def _counts(of: str, said: Iterable[RecordedPrediction]) -> PredictionsOf:
+    return PredictionsOf(of=of, **tally(said))
 
 
 def _looks_like(exercise: Exercise, code: str) -> str:
@@ -267,28 +256,22 @@ def day(moment: str) -> str:
 
 
 def objective_states(
-    here: Here, states: Sequence[ExerciseState], warm_ups: Sequence[WarmUpState]
+    catalog: Catalog, standing: Standing, states: Sequence[ExerciseState], warm_ups: Sequence[WarmUpState]
 ) -> tuple[ObjectiveState, ...]:
     """The evidence for each objective; raises what reading the record raises."""
-    events = here.workspace.store.events()
-    read = {event.subject for event in events if event.kind == "lesson"}
     predicted = {
         (event.subject, event.data.get("key"))
-        for event in events
-        if event.kind == "prediction" and event.data.get("text")
+        for event in standing.events("prediction")
+        if event.data.get("text")
     }
     passed = {state.id for state in states if state.passed_at is not None}
-    answered = {
-        question
-        for attempt in quiz_history(events).counting
-        for question, right in attempt.right.items()
-        if right
-    }
+    rights = [attempt.right.items() for attempt in standing.quiz.counting]
+    answered = {question for items in rights for question, right in items if right}
     return tuple(
         ObjectiveState(
             title=one.title,
             lessons=one.lessons,
-            lessons_read=tuple(name for name in one.lessons if name in read),
+            lessons_read=tuple(name for name in one.lessons if name in standing.read),
             predictions=sum(lesson in one.lessons for lesson, _ in predicted),
             warm_ups=sum(state.lesson in one.lessons for state in warm_ups),
             warm_ups_done=sum(state.lesson in one.lessons and state.state == "done" for state in warm_ups),
@@ -297,7 +280,7 @@ def objective_states(
             questions=one.quiz,
             answered=tuple(name for name in one.quiz if name in answered),
         )
-        for one in here.catalog.syllabus.objective
+        for one in catalog.syllabus.objective
     )
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from course.catalog.models import Exercise, Lesson
+from course.catalog.load import Catalog
+from course.catalog.models import Exercise
 from course.cli.frame.console import Console, current
-from course.cli.frame.here import Here, find_workspace, load_catalog
+from course.cli.frame.here import Here, here_or_outside
 from course.cli.frame.replies import NextStep
 from course.cli.home.advice import exercise_ahead, next_in_course
 from course.cli.home.learning import Learning, day, objective_states, show_learning, show_objectives
@@ -20,9 +21,8 @@ from course.cli.home.replies import (
     WarmUpState,
 )
 from course.errors import CourseError
-from course.progress.history import History, history_of
-from course.progress.quiz import quiz_history
-from course.progress.store import Event
+from course.progress.history import History
+from course.progress.standing import Standing
 from course.scoring.verdict import format_points
 
 #: States of an exercise, as a person reads them.
@@ -38,8 +38,8 @@ WORDS = {
 
 def dashboard() -> int:
     """Say where the student is and what is next."""
-    here = find_workspace()
-    return _outside(current()) if here is None else _inside(current(), here)
+    here, catalog = here_or_outside()
+    return _outside(current(), catalog) if here is None else _inside(current(), here)
 
 
 def progress() -> int:
@@ -50,11 +50,11 @@ def progress() -> int:
     """
 
     console, here = current(), Here.load()
-    exercises = tuple(exercise_state(here, exercise) for exercise in here.catalog.exercises())
-    lessons = lesson_states(here)
-    sent = tuple(event.at.isoformat() for event in here.workspace.store.events("submit"))
-    warm_ups, quiz = warm_up_states(here), quiz_state(here)
-    learning = Learning(here.catalog, here.workspace.store.events())
+    catalog, standing = here.catalog, here.standing()
+    exercises, lessons = exercise_states(catalog, standing), lesson_states(catalog, standing)
+    sent = tuple(event.at.isoformat() for event in standing.events("submit"))
+    warm_ups, quiz = warm_up_states(catalog, standing), quiz_state(catalog, standing)
+    learning = Learning(catalog, standing)
     with console.paged():
         _show_reading(console, lessons, warm_ups)
         done = sum(x.state in {"passed", "complete"} for x in exercises)
@@ -66,7 +66,7 @@ def progress() -> int:
         often = _count(len(sent), "time")
         console.heading("Handed in", f"{often}, last {day(sent[-1])}" if sent else "never")
         show_learning(console, learning)
-    step = next_in_course(here)
+    step = next_in_course(catalog, standing)
     console.next(step)
     console.emit(
         Progress(
@@ -101,36 +101,23 @@ def _show_reading(console: Console, lessons: Sequence[LessonState], warm_ups: Se
             console.line(f"{title} ({lesson.id}): {when}{small}", indent=2)
 
 
-def warm_up_states(here: Here) -> tuple[WarmUpState, ...]:
+def warm_up_states(catalog: Catalog, standing: Standing) -> tuple[WarmUpState, ...]:
     """Every warm-up and how far the student is; raises what reading the record raises."""
-    warm_ups = here.catalog.warm_ups()
-    events = here.workspace.store.events() if warm_ups else ()
-    started = set(here.workspace.started())
-    return tuple(
-        warm_up_state(one, [event for event in events if event.subject == one.id], one.id in started)
-        for one in warm_ups
-    )
+    return tuple(_warm_up_state(one, standing) for one in catalog.warm_ups())
 
 
-def warm_up_state(warm_up: Exercise, events: Sequence[Event] = (), started: bool = False) -> WarmUpState:
-    """One warm-up for a list.
-
-    Args:
-        events: what is recorded about it.
-        started: its file was put into the workspace.
-    """
-    history = history_of(events)
-    done = next((run for run in history.runs if run.all_pass and not run.only), None)
+def _warm_up_state(warm_up: Exercise, standing: Standing) -> WarmUpState:
+    history = standing.history(warm_up.id)
     return WarmUpState(
         id=warm_up.id,
         title=warm_up.title,
         summary=warm_up.summary,
         lesson=warm_up.lesson,
         minutes=warm_up.minutes,
-        state="done" if done else "started" if started or history.runs else "new",
+        state="done" if history.done else "started" if standing.is_begun(warm_up.id) else "new",
         checks_run=len(history.runs),
         hints_shown=len(history.hints),
-        done_at=done.at.isoformat() if done else None,
+        done_at=history.done.at.isoformat() if history.done else None,
     )
 
 
@@ -138,9 +125,13 @@ def _done_of(states: Sequence[WarmUpState]) -> str:
     return f"{sum(state.state == 'done' for state in states)} of {len(states)} done"
 
 
-def exercise_state(here: Here, exercise: Exercise) -> ExerciseState:
-    """How far the student is with one exercise; raises what reading the record raises."""
-    history = here.history(exercise)
+def exercise_states(catalog: Catalog, standing: Standing) -> tuple[ExerciseState, ...]:
+    """Every exercise and how far the student is; raises what reading the record raises."""
+    return tuple(_exercise_state(one, standing) for one in catalog.exercises())
+
+
+def _exercise_state(exercise: Exercise, standing: Standing) -> ExerciseState:
+    history = standing.history(exercise.id)
     graded, best, first_pass, last = history.last_graded, history.best, history.first_pass, history.last
     return ExerciseState(
         id=exercise.id,
@@ -148,7 +139,7 @@ def exercise_state(here: Here, exercise: Exercise) -> ExerciseState:
         summary=exercise.summary,
         lesson=exercise.lesson,
         number=exercise.number or None,
-        state=_state(here, exercise, history),
+        state=_state(exercise.id in standing.started, history),
         score=graded.score if graded else None,
         max_score=graded.max_score if graded else None,
         best_score=best.score if best else None,
@@ -160,42 +151,36 @@ def exercise_state(here: Here, exercise: Exercise) -> ExerciseState:
     )
 
 
-def quiz_state(here: Here) -> QuizState | None:
+def quiz_state(catalog: Catalog, standing: Standing) -> QuizState | None:
     """The quiz, by the record; None if the course has none."""
-    questions = len(list(here.catalog.content.quiz.glob("*.toml")))
+    questions = len(list(catalog.content.quiz.glob("*.toml")))
     if not questions:
         return None
-    history = quiz_history(here.workspace.store.events())
-    best = history.best
+    counting, best = standing.quiz.counting, standing.quiz.best
     if best is None:
         return QuizState(attempts=0, best=None, total=questions, passed=False)
-    return QuizState(attempts=len(history.counting), best=best.score, total=best.total, passed=best.passed)
+    return QuizState(attempts=len(counting), best=best.score, total=best.total, passed=best.passed)
 
 
-def lesson_states(here: Here) -> tuple[LessonState, ...]:
-    """Every lesson and when it was first read."""
-    read: dict[str, str] = {}
-    for event in here.workspace.store.events("lesson"):
-        read.setdefault(event.subject, event.at.isoformat())
-    return tuple(lesson_state(lesson, read.get(lesson.id)) for lesson in here.catalog.lessons())
-
-
-def lesson_state(lesson: Lesson, read_at: str | None) -> LessonState:
-    """One lesson for a list."""
-    return LessonState(
-        id=lesson.id,
-        title=lesson.title,
-        summary=lesson.summary,
-        minutes=lesson.minutes,
-        exercises=lesson.exercises,
-        read_at=read_at,
+def lesson_states(catalog: Catalog, standing: Standing) -> tuple[LessonState, ...]:
+    """Every lesson and when it was first read; raises what reading the record raises."""
+    return tuple(
+        LessonState(
+            id=lesson.id,
+            title=lesson.title,
+            summary=lesson.summary,
+            minutes=lesson.minutes,
+            exercises=lesson.exercises,
+            read_at=standing.read[lesson.id].isoformat() if lesson.id in standing.read else None,
+        )
+        for lesson in catalog.lessons()
     )
 
 
-def _state(here: Here, exercise: Exercise, history: History) -> str:
+def _state(started: bool, history: History) -> str:
     last, whole = history.last, history.last_graded
     if last is None:
-        return "started" if exercise.id in here.workspace.started() else "new"
+        return "started" if started else "new"
     if last.state != "graded":
         return "broken"
     if whole is None:  # only some checks were ever run
@@ -205,8 +190,7 @@ def _state(here: Here, exercise: Exercise, history: History) -> str:
     return "passed" if whole.passed else "failing"
 
 
-def _outside(console: Console) -> int:
-    catalog = load_catalog()
+def _outside(console: Console, catalog: Catalog) -> int:
     lessons, exercises = catalog.lesson_ids(), catalog.exercise_ids()
     step = "course init my-course"
     console.heading(catalog.title)
@@ -233,13 +217,13 @@ def _outside(console: Console) -> int:
 def _inside(console: Console, here: Here) -> int:
     catalog = here.catalog
     try:
-        states = tuple(exercise_state(here, exercise) for exercise in catalog.exercises())
-        read = sum(lesson.read_at is not None for lesson in lesson_states(here))
-        quiz = quiz_state(here)
-        warm_ups = warm_up_states(here)
-        objectives = objective_states(here, states, warm_ups)
-        step = next_in_course(here)
-        ahead = exercise_ahead(here, step)
+        standing = here.standing()
+        states, quiz = exercise_states(catalog, standing), quiz_state(catalog, standing)
+        read = sum(lesson.read_at is not None for lesson in lesson_states(catalog, standing))
+        warm_ups = warm_up_states(catalog, standing)
+        objectives = objective_states(catalog, standing, states, warm_ups)
+        step = next_in_course(catalog, standing)
+        ahead = exercise_ahead(catalog, standing, step)
     except CourseError as error:
         # A student in trouble looks at the dashboard first, so it must not fail as well.
         here.warnings.append(f"{error.message} {error.help}")
@@ -269,9 +253,7 @@ def _inside(console: Console, here: Here) -> int:
     if ahead:
         console.note(ahead)
     console.note((f"Next: {step}", "bold"), " (`course go` runs it, and goes on from there)")
-    for warning in here.warnings:
-        console.warn(warning)
-    console.emit(
+    return here.answer(
         Status(
             course=here.course,
             title=catalog.title,
@@ -285,7 +267,6 @@ def _inside(console: Console, here: Here) -> int:
             warnings=tuple(here.warnings),
         )
     )
-    return 0
 
 
 def _progress_line(exercise: ExerciseState) -> str:
@@ -340,11 +321,8 @@ def exercises() -> int:
     In the order in which the lessons lead to them. The numbers are the chapter's: `course start 2` and
     `course check 2` take them as well as ids.
     """
-    console, here = current(), find_workspace()
-    catalog = here.catalog if here else load_catalog()
-    states = tuple(
-        exercise_state(here, exercise) if here else _unknown(exercise) for exercise in catalog.exercises()
-    )
+    console, (here, catalog) = current(), here_or_outside()
+    states = exercise_states(catalog, here.standing() if here else Standing())
     for state in states:
         known = f"; {WORDS[state.state]} {score_of(state)}".rstrip() if here else ""
         console.item(
@@ -372,15 +350,3 @@ def exercises() -> int:
         )
     )
     return 0
-
-
-def _unknown(exercise: Exercise) -> ExerciseState:
-    """An exercise outside of a workspace."""
-    return ExerciseState(
-        id=exercise.id,
-        title=exercise.title,
-        summary=exercise.summary,
-        lesson=exercise.lesson,
-        number=exercise.number or None,
-        state="new",
-    )

@@ -169,9 +169,7 @@ def _finish(
     if result.passed:  # else the lesson to read comes first
         screen.show_first_due(console, due, today())
     console.next(step)
-    for warning in desk.here.warnings:
-        console.warn(warning)
-    console.emit(
+    return desk.here.answer(
         Quiz(
             ok=result.passed,
             exit_code=0 if result.passed else 1,
@@ -189,7 +187,6 @@ def _finish(
             warnings=tuple(desk.here.warnings),
         )
     )
-    return 0 if result.passed else 1
 
 
 def _step(missed: Sequence[MarkedQuestion], due: Sequence[Due], *, passed: bool) -> str:
@@ -272,9 +269,7 @@ def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence
     best = desk.history.best
     step = "course" if best is not None and best.passed else "course quiz take"
     console.next(step)
-    for warning in desk.here.warnings:
-        console.warn(warning)
-    console.emit(
+    return desk.here.answer(
         QuizReview(
             ok=not missed,
             exit_code=1 if missed else 0,
@@ -287,7 +282,6 @@ def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence
             warnings=tuple(desk.here.warnings),
         )
     )
-    return 1 if missed else 0
 
 
 @app.command(epilog="Example: course quiz history --json")

@@ -300,9 +300,7 @@ def hand_out(console: Console, here: Here, posed: Sequence[PosedQuestion], seed:
     console.heading("Answers", "save this as answers.toml, with a letter in each pair of quotes")
     console.block(template)
     console.note(f"Then: {step}")
-    for warning in here.warnings:
-        console.warn(warning)
-    console.emit(
+    return here.answer(
         QuizQuestions(
             course=here.course,
             seed=seed,
@@ -313,7 +311,6 @@ def hand_out(console: Console, here: Here, posed: Sequence[PosedQuestion], seed:
             warnings=tuple(here.warnings),
         )
     )
-    return 0
 
 
 def _template(posed: Sequence[PosedQuestion], seed: int) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+from collections.abc import Collection
 from pathlib import Path
 from typing import Annotated
 
@@ -17,17 +18,19 @@ from course.cli.frame.completion import (
     WarmUpName,
 )
 from course.cli.frame.console import MAX_WIDTH, Console, current
-from course.cli.frame.here import Here, find_workspace, load_catalog
+from course.cli.frame.here import Here, here_or_outside
 from course.cli.frame.replies import Envelope, NextStep, filled
 from course.cli.home.advice import next_in_course
-from course.cli.home.overview import warm_up_state, warm_up_states
+from course.cli.home.learning import day
+from course.cli.home.overview import lesson_states, warm_up_states
 from course.cli.home.replies import LessonState, WarmUpState
 from course.cli.reading.lesson import Reader
 from course.cli.work.changing import put
 from course.cli.work.checking import check as check_work
 from course.cli.work.replies import Start
 from course.errors import CourseError, NotFoundError, UsageError
-from course.reading.parts import Section
+from course.progress.standing import Standing
+from course.reading.parts import Section, read_script
 
 # ---
 # Replies of the commands about lessons.
@@ -63,14 +66,8 @@ def lessons() -> int:
 
     In the order to read them; inside a workspace also which ones you have read.
     """
-
-    from course.cli.home.learning import day
-    from course.cli.home.overview import lesson_state, lesson_states
-
-    console = current()
-    here = find_workspace()
-    catalog = here.catalog if here else load_catalog()
-    states = lesson_states(here) if here else tuple(lesson_state(item, None) for item in catalog.lessons())
+    console, (here, catalog) = current(), here_or_outside()
+    states = lesson_states(catalog, here.standing() if here else Standing())
     rows: list[tuple[str, ...]] = []
     for state in states:
         read = day(state.read_at)[:10] if state.read_at else "" if here is None else "no"
@@ -108,10 +105,7 @@ def lesson(
     typed lines. With --plain alone, or in a pipe, it is printed. Without an id: the next lesson you have not
     read. Inside a workspace your place and predictions are kept, and a lesson is read once you reach its end.
     """
-
-    console = current()
-    here = find_workspace()
-    catalog = here.catalog if here else load_catalog()
+    console, (here, catalog) = current(), here_or_outside()
     called, _, slug = (name or _next_unread(here, catalog)).partition("#")
     chosen = catalog.lesson_called(called)
     section = _section(catalog, chosen, slug) if slug else None
@@ -150,10 +144,10 @@ def _reply(chosen: Lesson, text: str, figures: tuple[str, ...] = (), step: str =
 
 def _next_unread(here: Here | None, catalog: Catalog) -> str:
     """The first unread lesson; the first of all where nothing is recorded or everything was read."""
-    read: set[str] = set()
+    read: Collection[str] = ()
     if here is not None:
         try:
-            read = {event.subject for event in here.workspace.store.events("lesson")}
+            read = here.standing().read
         except CourseError as error:
             here.warnings.append(f"{error.message} {error.help}")
     ids = catalog.lesson_ids()
@@ -166,8 +160,6 @@ def _reader(
     catalog: Catalog, chosen: Lesson, console: Console, figures: Path | None, text: io.StringIO | None
 ) -> Reader:
     """The lesson, ready to be shown on the console, or put into ``text`` as ``--plain`` shows it."""
-    from course.cli.reading.lesson import Reader
-
     if text is None:
         return Reader(
             catalog,
@@ -195,8 +187,6 @@ def _fills_the_screen(console: Console) -> bool:
 
 def _section(catalog: Catalog, chosen: Lesson, slug: str) -> Section:
     """A section of a lesson, by its slug."""
-    from course.reading.parts import read_script
-
     sections = read_script(chosen, catalog.warm_ups(chosen.id)).sections
     found = next((section for section in sections if section.slug == slug), None)
     if found is None:
@@ -223,8 +213,6 @@ def _read_on_screen(
 
 def _print_code(console: Console, chosen: Lesson, number: int) -> int:
     """Print the code of one cell, unchanged, ready for a file."""
-    from course.reading.parts import read_script
-
     cells = read_script(chosen).shown_cells
     if number > len(cells):
         raise NotFoundError(
@@ -257,7 +245,7 @@ def _after(here: Here | None, chosen: Lesson) -> str:
     """The next step after a lesson that was read in a workspace, or that was printed."""
     if here is not None:
         with contextlib.suppress(CourseError):  # a record that cannot be read is warned about elsewhere
-            return next_in_course(here)
+            return next_in_course(here.catalog, here.standing())
     return f"course start {chosen.exercises[0]}" if chosen.exercises else "course lessons"
 
 
@@ -305,14 +293,14 @@ def _warm_up(catalog: Catalog, name: str) -> Exercise:
 
 
 def _list(console: Console) -> int:
-    here = find_workspace()
-    catalog = here.catalog if here else load_catalog()
-    states: tuple[WarmUpState, ...]
+    here, catalog = here_or_outside()
     try:
-        states = warm_up_states(here) if here else tuple(map(warm_up_state, catalog.warm_ups()))
+        standing = here.standing() if here else Standing()
+        standing.events()  # an event that cannot be read is told of, whatever it is about
+        states = warm_up_states(catalog, standing)
     except CourseError as error:
         console.warn(f"{error.message} {error.help}")
-        states = tuple(map(warm_up_state, catalog.warm_ups()))
+        states = warm_up_states(catalog, Standing())
     if not states:
         console.line("This course has no warm-ups.")
     marks = _MARKS if console.fancy else _PLAIN_MARKS
@@ -335,8 +323,6 @@ def _list(console: Console) -> int:
 
 def _begin(console: Console, here: Here, chosen: Exercise) -> int:
     """Its text, and its file in the workspace."""
-    from course.cli.reading.lesson import Reader
-
     if not console.quiet and not console.json:
         lesson = here.catalog.lesson(chosen.lesson)
         reader = Reader(
@@ -359,7 +345,4 @@ def _begin(console: Console, here: Here, chosen: Exercise) -> int:
         console.note(f"Check it:          {step}")
         console.note(f"On every save:     course watch {chosen.id}")
         console.note(f"Still failing:     course hint {chosen.id}")
-    for warning in here.warnings:
-        console.warn(warning)
-    console.emit(Start(exercise=chosen.id, files=files, next=NextStep(step)))
-    return 0
+    return here.answer(Start(exercise=chosen.id, files=files, next=NextStep(step)))

@@ -27,7 +27,7 @@ from course.catalog.markdown import read_task
 from course.catalog.models import Exercise, Lesson
 from course.cli.frame.pictures import Code, picture, protocol_of
 from course.errors import NotFoundError
-from course.figures.registry import save
+from course.figures.registry import build, save
 from course.reading.parts import Section, read_script
 
 # ---
@@ -425,8 +425,6 @@ class FancyPrinter:
         number = self._figure_ids.index(figure.id) + 1
         caption = Text.assemble((f"Figure {number}. ", "bold"), self._text(figure.caption))
         shown: list[RenderableType] = []
-        from course.figures.registry import build
-
         drawn = picture(self._console, self._environ, lambda: build(figure.id), self._prose)
         if drawn is not None:
             shown.append(drawn)
@@ -439,8 +437,6 @@ class FancyPrinter:
     def _where(self, figure: b.Figure) -> Text:
         """The picture's path, or the command that writes it."""
         if self._figures_dir is not None:
-            from course.figures.registry import save
-
             path = save(figure.id, self._figures_dir)
             self.pictures.append(path)
             link = Style(link=path.absolute().as_uri())

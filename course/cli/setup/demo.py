@@ -11,6 +11,7 @@ import os
 import shutil
 import sys
 import textwrap
+import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,7 +25,9 @@ from course.cli.setup.replies import Demo
 from course.cli.work.checking import reply_to
 from course.cli.work.verdict import show_verdict
 from course.errors import InternalError
-from course.figures.described import Plot
+from course.figures.described import Panel, Plot, Series
+from course.handed_in import attempts
+from course.handed_in.attempts import Attempt
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission
 from course.scoring.verdict import Verdict
@@ -72,15 +75,12 @@ def demo() -> int:
     An integrator that says Euler and does something else is checked. In a terminal you fix its one wrong
     line, and what you type is checked as your own code will be. It leaves nothing behind.
     """
-
-    from course.cli.work.checking import open_session
-
     console, catalog = current(), load_catalog()
     example = worked_example(catalog)
     mistaken, right = (
         (Path(example.folder) / name).read_text(encoding="utf-8") for name in (MISTAKEN, example.module)
     )
-    with open_session(example, catalog) as session:
+    with attempts.open_session(example, catalog) as session:
         bench = _Bench(console, session)
         before = bench.motion(mistaken, passes=False)
         _show_mistake(console, example, before)
@@ -113,25 +113,17 @@ class _Bench:
     def __init__(self, console: Console, session: GradingSession) -> None:
         self.console = console
         self._session = session
-        self._checked: dict[str, Verdict] = {}
+        self._checked: dict[str, Attempt] = {}
 
     def verdict(self, source: str) -> Verdict:
         """The checks' results; each version is checked once."""
-        from course.cli.work.checking import grade_once
-
-        if source not in self._checked:
-            with self.console.working("Checking"):
-                self._checked[source] = grade_once(self._session, self._submission(source))
-        return self._checked[source]
+        return self._attempt(source).verdict
 
     def motion(self, source: str, *, passes: bool) -> _Motion:
         """The motion of a version whose checks must pass, or must not."""
         import numpy as np
 
-        from course.cli.work.checking import error_without_checks
-
-        verdict = self.verdict(source)
-        problem = error_without_checks(verdict)
+        verdict, problem = self.verdict(source), self._attempt(source).problem
         if problem is not None:
             raise InternalError(problem.message, help=problem.help, code=problem.code)
         if verdict.all_pass != passes:
@@ -148,9 +140,14 @@ class _Bench:
             )
         return _Motion(source, verdict, np.array(x), np.array(v))
 
-    def _submission(self, source: str) -> Submission:
-        from course.scoring.judging.submission import Submission
+    def _attempt(self, source: str) -> Attempt:
+        if source not in self._checked:
+            with self.console.working("Checking"):
+                made = attempts.attempt_in(self._session, self._submission(source), time.perf_counter())
+            self._checked[source] = made
+        return self._checked[source]
 
+    def _submission(self, source: str) -> Submission:
         # What a terminal cannot decode it hands over as lone surrogates.
         return Submission({self._session.exercise.module: source.encode(errors="replace")})
 
@@ -291,8 +288,6 @@ def _draw(console: Console, before: _Motion, after: _Motion) -> None:
 
 
 def _plot(before: _Motion, after: _Motion, *, wide: bool) -> Plot:
-    from course.figures.described import Panel, Plot, Series
-
     # Each with the other in grey: then both have the same axes, and the growth shows.
     panels = tuple(
         Panel(

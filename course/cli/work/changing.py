@@ -44,9 +44,7 @@ def diff(exercise: ExerciseName = None) -> int:
         console.note(f"{added} lines added, {removed} removed.")
     else:
         console.line(f"{name} is as it was handed out.")
-    for warning in here.warnings:
-        console.warn(warning)
-    console.emit(
+    return here.answer(
         Diff(
             exercise=work.exercise.id,
             path=str(here.workspace.path(work.exercise.place, work.name)),
@@ -56,7 +54,6 @@ def diff(exercise: ExerciseName = None) -> int:
             diff="".join(f"{row}\n" for row in rows),
         )
     )
-    return 0
 
 
 def reset(
@@ -98,10 +95,7 @@ def reset(
     here.workspace.remember(chosen.place, chosen.module, stub)
     here.record("reset", chosen.id, {"backups": [item.backup for item in backups]})
     console.line(f"{shown} is the stub again.")
-    for warning in here.warnings:
-        console.warn(warning)
-    console.emit(Reset(exercise=chosen.id, changed=True, backups=tuple(backups), next=NextStep(step)))
-    return 0
+    return here.answer(Reset(exercise=chosen.id, changed=True, backups=tuple(backups), next=NextStep(step)))
 
 
 def update(
@@ -127,10 +121,7 @@ def update(
             here.workspace.with_version(new)
             console.line(f"The workspace is at version {new} now (it was {old}).")
         here.record("update", "", {"from": old, "to": new, "changes": [[c.path, c.action] for c in changes]})
-    for warning in here.warnings:
-        console.warn(warning)
-    console.emit(Update(dry_run=dry_run, from_version=old, to_version=new, changes=changes))
-    return 0
+    return here.answer(Update(dry_run=dry_run, from_version=old, to_version=new, changes=changes))
 
 
 def _agreed(console: Console, shown: str) -> bool:
@@ -244,10 +235,7 @@ def start(
     if not console.led:
         console.note(f"Then check it on every save: {step}")
         console.note(f"Or once, now and then: course check {chosen.id}")
-    for warning in here.warnings:
-        console.warn(warning)
-    console.emit(Start(exercise=chosen.id, files=files, next=NextStep(step)))
-    return 0
+    return here.answer(Start(exercise=chosen.id, files=files, next=NextStep(step)))
 
 
 def put(console: Console, here: Here, chosen: Exercise) -> tuple[FileReply, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
@@ -28,42 +27,32 @@ from course.cli.work.verdict import (
     show_loading,
     show_verdict,
 )
-from course.errors import CourseError, NotFoundError, UngradableError, UsageError
-from course.progress.history import check_data
+from course.errors import CourseError, UsageError
+from course.handed_in import attempts
+from course.handed_in.attempts import Attempt
 from course.scoring.verdict import Verdict
 
 if TYPE_CHECKING:
-    from course.catalog.load import Catalog
     from course.figures.described import Curve
-    from course.scoring.judging.session import GradingSession
-    from course.scoring.judging.submission import Submission
 
 
 # ---
 # The curve of a failed check over the right one: drawn where the terminal can, and always in words.
 
 
-def curve_replies(exercise: Exercise, verdict: Verdict, session: GradingSession) -> tuple[CurveReply, ...]:
+def curve_replies(made: Attempt) -> tuple[CurveReply, ...]:
     """The curves as ``--json`` prints them."""
-    return tuple(_reply(check, curve) for check, curve in _curves(exercise, verdict, session))
+    return tuple(_reply(check, curve) for check, curve in _curves(made))
 
 
-def show_curve(
-    console: Console,
-    exercise: Exercise,
-    verdict: Verdict,
-    session: GradingSession,
-    *,
-    focus: str = "",
-    drawn: bool = True,
-) -> None:
+def show_curve(console: Console, made: Attempt, *, focus: str = "", drawn: bool = True) -> None:
     """Show the first failed check that has a curve; nothing if none has one.
 
     Args:
         focus: a function whose checks come before those of others.
         drawn: with a picture; else in words alone.
     """
-    check, curve = next(_curves(exercise, verdict, session, focus), ("", None))
+    check, curve = next(_curves(made, focus), ("", None))
     if console.quiet or curve is None:
         return
     from course.figures.described import plot_of
@@ -78,16 +67,14 @@ def show_curve(
         console.blank()
 
 
-def _curves(
-    exercise: Exercise, verdict: Verdict, session: GradingSession, focus: str = ""
-) -> Iterator[tuple[str, Curve]]:
+def _curves(made: Attempt, focus: str = "") -> Iterator[tuple[str, Curve]]:
     """Id and curve of each check that has one, in the order of the tasks."""
-    order = [focus, *(task.id for task in exercise.task)]
+    order = [focus, *(task.id for task in made.exercise.task)]
     for check in sorted(
-        (check for check in verdict.checks if check.id in session.curves),
+        (check for check in made.verdict.checks if check.id in made.curves),
         key=lambda check: order.index(check.task) if check.task in order else len(order),
     ):
-        yield check.id, session.curves[check.id]
+        yield check.id, made.curves[check.id]
 
 
 def _reply(check: str, curve: Curve) -> CurveReply:
@@ -141,18 +128,7 @@ def check(
     reply = _check_one(console, here, chosen, only=only, verbose=verbose, form=form)
     if reply.next is not None and form == "text":
         console.next(reply.next.command)
-    for warning in here.warnings:
-        console.warn(warning)
-    console.emit(reply)
-    return reply.exit_code
-
-
-def open_session(exercise: Exercise, catalog: Catalog) -> GradingSession:
-    """A grading session over the public checks of an exercise; a context manager."""
-    from course.scoring.judging.session import GradingSession
-    from course.scoring.judging.submission import Terms
-
-    return GradingSession(exercise, catalog, scope="public", terms=Terms(home=True))
+    return here.answer(reply)
 
 
 def report_source_file(console: Console, here: Here, work: StudentWork) -> None:
@@ -160,56 +136,6 @@ def report_source_file(console: Console, here: Here, work: StudentWork) -> None:
     if work.notebook is not None or work.notes:
         console.note(f"Reading {work.path}.")
     here.warnings.extend(work.notes)
-
-
-def grade_once(session: GradingSession, submission: Submission, only: str | None = None) -> Verdict:
-    """The verdict of an open session on one submission.
-
-    Args:
-        only: run this check and those it requires, and no others.
-
-    Raises:
-        NotFoundError: there is no check ``only``.
-    """
-    if only is not None:
-        _must_exist(only, [check.id for check in session.checks], session.exercise)
-    return session.grade(submission, only=[only] if only else ())
-
-
-def error_without_checks(verdict: Verdict) -> CourseError | None:
-    """The error to report in place of a verdict that has no checks to show; None if it has."""
-    if verdict.state == "graded":
-        return None
-    problem = verdict.error
-    message = problem.message if problem else "The file could not be checked."
-    code = problem.code if problem else verdict.state
-    fix = problem.help if problem else ""
-    if verdict.state == "ungradable":
-        return UngradableError(message, help=fix, code=code)
-    return CourseError(message, help=fix or "This is a fault of the course, not of your work.", code=code)
-
-
-def record_verdict(
-    here: Here,
-    exercise: Exercise,
-    source: bytes,
-    verdict: Verdict,
-    seconds: float,
-    *,
-    only: str | None = None,
-    one_of_many: bool = False,
-) -> None:
-    """Add the verdict to the record of progress.
-
-    Args:
-        seconds: how long it took.
-        only: the one requested check.
-        one_of_many: every exercise was checked, so the student did not choose this one.
-    """
-
-    version = here.catalog.version
-    data = check_data(verdict, source, seconds, version, only=only or "", one_of_many=one_of_many)
-    here.record("check", exercise.id, data)
 
 
 def reply_to(
@@ -248,38 +174,34 @@ def _check_one(
     form: str = "text",
 ) -> Check:
     """Check, record, show; raises the error if it cannot be checked."""
-    exercise, source = work.exercise, work.source
+    exercise = work.exercise
     if form == "text":
         report_source_file(console, here, work)
     with console.working(f"Checking {exercise.id}{_estimate(here, exercise)}"):
-        begin = time.perf_counter()
-        with open_session(exercise, here.catalog) as session:
-            verdict = grade_once(session, work.submission, only)
-            printed = session.printed
-        seconds = time.perf_counter() - begin
-    record_verdict(here, exercise, source, verdict, seconds, only=only, one_of_many=one_of_many)
+        made = attempts.attempt(exercise, here.catalog, work.submission, only or "")
+    verdict = made.verdict
+    here.record("check", exercise.id, made.data(here.catalog.version, one_of_many=one_of_many))
     if form == "text":
-        show_loading(console, printed, whole=verbose)
-    problem = error_without_checks(verdict)
-    if problem is not None:
+        show_loading(console, made.printed, whole=verbose)
+    if made.problem is not None:
         if form != "text":
-            annotate_error(console, here, work, problem, form)
-        raise problem
+            annotate_error(console, here, work, made.problem, form)
+        raise made.problem
     if form == "text":
         # For a small warm-up, one finding at a time is enough.
         brief = exercise.is_warm_up and not verbose
         if console.draws:  # above, so that the finding stays on the screen
-            show_curve(console, exercise, verdict, session)
+            show_curve(console, made)
         if only is None:
             _show_changes(console, here, exercise)
         show_verdict(console, exercise, verdict, verbose=verbose, whole=only is None, brief=brief)
         if not console.draws:
-            show_curve(console, exercise, verdict, session, drawn=False)
+            show_curve(console, made, drawn=False)
     else:
         annotate(console, here, work, verdict, form)
-    step = next_step(here, exercise, verdict, source) if only is None or not verdict.all_pass else ""
-    curves = curve_replies(exercise, verdict, session)
-    return reply_to(here.course, verdict, step or f"course check {exercise.id}", printed, curves)
+    step = next_step(here, made) if only is None or not verdict.all_pass else ""
+    again = f"course check {exercise.id}"
+    return reply_to(here.course, verdict, step or again, made.printed, curve_replies(made))
 
 
 def _show_changes(console: Console, here: Here, exercise: Exercise) -> None:
@@ -324,19 +246,6 @@ def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int
         console.warn(warning)
     console.emit(CheckAll(ok=worst == 0, exit_code=worst, results=tuple(results)))
     return worst
-
-
-def _must_exist(wanted: str, known: list[str], exercise: Exercise) -> None:
-    if wanted in known:
-        return
-    import difflib
-
-    close = difflib.get_close_matches(wanted, known, n=3)
-    raise NotFoundError(
-        f"{exercise.id} has no public check called {wanted!r}.",
-        help=f"Did you mean {' or '.join(close)}?" if close else f"There are: {', '.join(known)}.",
-        code="check_not_found",
-    )
 
 
 def _estimate(here: Here, exercise: Exercise) -> str:

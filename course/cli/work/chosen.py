@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -215,8 +215,6 @@ def _is_edited(here: Here, work: StudentWork) -> bool:
 
 def _beside_notebook(here: Here, module: StudentWork) -> StudentWork:
     """An edited module, with a note if the notebook beside it has other code."""
-    from dataclasses import replace
-
     try:
         notebook = _notebook(here, module.exercise)
     except CourseError:
@@ -243,8 +241,6 @@ def _handed_in_module(here: Here, exercise: Exercise) -> StudentWork | str:
 
 def _handed_in_notebook(here: Here, exercise: Exercise) -> tuple[StudentWork | None, str]:
     """The notebook to hand in; or None and the reason, "" where there is none."""
-    from dataclasses import replace
-
     if not here.workspace.path(exercise.place, _notebook_name(exercise)).exists():
         return None, ""
     try:

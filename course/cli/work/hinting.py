@@ -51,10 +51,7 @@ def hint(
     chosen, named = asked_for(here, exercise)
     reply = give_hint(console, here, chosen, task, named)
     console.next(reply.next.command)
-    for warning in here.warnings:
-        console.warn(warning)
-    console.emit(reply)
-    return 0
+    return here.answer(reply)
 
 
 def give_hint(
@@ -207,10 +204,7 @@ def solution(exercise: ExerciseName = None) -> int:
     source, files = _released(here, chosen)
     _show_files(console, source, files)
     here.record("solution", chosen.id, {"source": source})
-    for warning in here.warnings:
-        console.warn(warning)
-    console.emit(Solution(exercise=chosen.id, source=source, files=dict(files)))
-    return 0
+    return here.answer(Solution(exercise=chosen.id, source=source, files=dict(files)))
 
 
 def _released(here: Here, exercise: Exercise) -> tuple[str, Mapping[str, str]]:
@@ -309,9 +303,7 @@ def reflect(
     step = f"course reflect {chosen.id}" + ("" if graded else " --grades …" if said else " --answer FILE")
     if not graded:
         console.next(step)
-    for warning in here.warnings:
-        console.warn(warning)
-    console.emit(
+    return here.answer(
         Reflect(
             exercise=chosen.id,
             question=_flowing(rubric.question),
@@ -326,7 +318,6 @@ def reflect(
             next=None if graded else NextStep(step),
         )
     )
-    return 0
 
 
 def _rubric(here: Here, chosen: Exercise) -> Rubric:

@@ -57,9 +57,7 @@ def report(
     )
     written = _write_bag(console, made, bag) if bag is not None else None
     console.next(after_report(here, chosen))
-    for warning in here.warnings:
-        console.warn(warning)
-    console.emit(
+    return here.answer(
         ReportReply(
             course=here.course,
             exercise=chosen.id,
@@ -68,7 +66,6 @@ def report(
             bag=written,
         )
     )
-    return 0
 
 
 def _folder(here: Here, place: str, out: Path | None) -> Path:

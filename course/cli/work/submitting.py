@@ -9,7 +9,6 @@ from __future__ import annotations
 import hashlib
 import io
 import json
-import time
 import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -26,7 +25,7 @@ from course.cli.frame.replies import FileReply
 from course.cli.work.chosen import StudentWork, as_handed_in, work_of
 from course.cli.work.replies import Submit, SubmitFile
 from course.errors import CourseError, UngradableError, UsageError
-from course.handed_in import MAX_HANDED_IN
+from course.handed_in import MAX_HANDED_IN, attempts
 from course.progress.history import fingerprint
 from course.progress.quiz import quiz_history, records
 from course.progress.workspace import write_atomically
@@ -197,17 +196,13 @@ def _checked(console: Console, here: Here, works: Sequence[StudentWork]) -> list
 
 
 def _check(here: Here, work: StudentWork) -> _GoesIn:
-    from course.cli.work.checking import open_session, record_verdict
-
     try:
-        submission, begin = as_handed_in(work), time.perf_counter()
-        with open_session(work.exercise, here.catalog) as session:
-            verdict = session.grade(submission)
+        made = attempts.attempt(work.exercise, here.catalog, as_handed_in(work))
         if not _is_known(here, work):
-            seconds = time.perf_counter() - begin
-            record_verdict(here, work.exercise, work.source, verdict, seconds, one_of_many=True)
+            here.record("check", work.exercise.id, made.data(here.catalog.version, one_of_many=True))
     except CourseError as error:
         return _GoesIn(work, None, (f"{work.path} could not be checked: {error.message} {error.help}",))
+    verdict = made.verdict
     notes = [f"{work.path}: {note.removeprefix(f'{work.name}, ')}" for note in verdict.warnings]
     if verdict.error is not None:
         notes.insert(

@@ -26,13 +26,14 @@ from course.cli.frame.console import PATIENCE, Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.replies import ErrorBody, ErrorReply
 from course.cli.home.advice import hint_is_due, next_step
-from course.cli.work import checking
-from course.cli.work.checking import curve_replies, show_curve
+from course.cli.work.checking import curve_replies, reply_to, show_curve
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.hinting import give_hint
 from course.cli.work.replies import Check, Watch, WatchRun
 from course.cli.work.verdict import is_unwritten, show_loading, show_verdict
 from course.errors import CourseError, UngradableError
+from course.handed_in import attempts
+from course.handed_in.attempts import Attempt
 from course.scoring.judging.session import GradingSession
 from course.scoring.verdict import Verdict
 
@@ -132,8 +133,6 @@ def watch(
     On a terminal, keys give the next hint, the next failing function, details or another run; q or Ctrl-C
     ends it. With --json the one object is printed at the end.
     """
-    from course.cli.work.checking import open_session
-
     console, here = current(), Here.load()
     # A missing file is an error at the start; later it is something to wait for.
     work = chosen_work(here, *asked_for(here, exercise))
@@ -145,7 +144,7 @@ def watch(
     wake = threading.Event()
     try:
         with (
-            open_session(chosen, here.catalog) as session,
+            attempts.open_session(chosen, here.catalog) as session,
             _keys(console, wake) as keys,
         ):
             shown = here.workspace.shown(path)
@@ -224,10 +223,9 @@ class Watcher:
     last: Check | ErrorReply | None = None
     _seen: Signature = None
     _gone: bool = False
-    _verdict: Verdict | None = None
+    _made: Attempt | None = None
     _focus: str = ""
     _printed: str = ""
-    _session: GradingSession | None = None
 
     def look(self, session: GradingSession) -> bool:
         """Grade the file if it was saved since the last look; True if it was."""
@@ -256,12 +254,12 @@ class Watcher:
         elif key == "r":
             self._seen = None
             self.look(session)
-        elif key in {"n", "v"} and self._verdict is not None:
+        elif key in {"n", "v"} and self._made is not None:
             if key == "v":
                 self.verbose = not self.verbose
             else:
                 self._focus = _following(self._failing(), self._focus)
-            self._show(self._verdict)
+            self._show(self._made)
         else:
             return False
         self._flush_warnings()
@@ -291,48 +289,44 @@ class Watcher:
         try:
             work = chosen_work(self.here, self.exercise, self.name or self.exercise.module)
             with self._at_work(session) as superseded:
-                verdict = checking.grade_once(session, work.submission)
-                self._session, self._printed = session, session.printed
+                made = attempts.attempt_in(session, work.submission, noticed)
+                self._printed = made.printed
             if superseded.is_set():
                 self.console.note("Saved again meanwhile: this run is dropped.")
                 return True
-            seconds = time.perf_counter() - noticed
-            checking.record_verdict(self.here, self.exercise, work.source, verdict, seconds)
-            problem = checking.error_without_checks(verdict)
-            if problem is not None:
-                raise problem
+            self.here.record("check", self.exercise.id, made.data(self.here.catalog.version))
+            if made.problem is not None:
+                raise made.problem
         except CourseError as error:
             if not isinstance(error, UngradableError):
                 raise
             self._ungradable(error, noticed)
             return False
+        verdict = made.verdict
         self._say_changes(verdict)
-        self._verdict = verdict
+        self._made = made
         if self._focus not in self._failing():
             self._focus = ""
-        self._show(verdict)
-        step = next_step(self.here, self.exercise, verdict, work.source)
+        self._show(made)
+        step = next_step(self.here, made)
         if step != f"course watch {self.exercise.id}":
             self.console.next(step)
-        curves = curve_replies(self.exercise, verdict, session)
-        self.last = checking.reply_to(self.here.course, verdict, step, self._printed, curves)
+        self.last = reply_to(self.here.course, verdict, step, self._printed, curve_replies(made))
         self._remember(verdict.state, verdict.score, verdict.max_score, verdict.passed, noticed)
         self._flush_warnings()
         return False
 
-    def _show(self, verdict: Verdict) -> None:
+    def _show(self, made: Attempt) -> None:
         show_loading(self.console, self._printed, whole=self.verbose)
         show_verdict(
-            self.console, self.exercise, verdict, verbose=self.verbose, brief=True, focus=self._focus
+            self.console, self.exercise, made.verdict, verbose=self.verbose, brief=True, focus=self._focus
         )
-        if self._session is not None:
-            # A picture takes the room that the finding needs, so it is one of the details.
-            drawn, focus = self.verbose, self._focus
-            show_curve(self.console, self.exercise, verdict, self._session, focus=focus, drawn=drawn)
+        # A picture takes the room that the finding needs, so it is one of the details.
+        show_curve(self.console, made, focus=self._focus, drawn=self.verbose)
 
     def _failing(self) -> list[str]:
         """Functions that were begun and have a check that does not pass, in the order of the exercise."""
-        every = self._verdict.checks if self._verdict is not None else ()
+        every = self._made.verdict.checks if self._made is not None else ()
         found = []
         for task in self.exercise.task:
             checks = [check for check in every if check.task == task.id]
@@ -342,9 +336,9 @@ class Watcher:
 
     def _say_changes(self, verdict: Verdict) -> None:
         """First the checks that broke since the last run, and those that turned green."""
-        if self._verdict is None:
+        if self._made is None:
             return
-        before = {check.id: check.status for check in self._verdict.checks}
+        before = {check.id: check.status for check in self._made.verdict.checks}
         broke = [c for c in verdict.checks if c.status != "pass" and before.get(c.id) == "pass"]
         fixed = [c for c in verdict.checks if c.status == "pass" and before.get(c.id, "pass") != "pass"]
         for label, style, changed in (("broke", "bold red", broke), ("fixed", "bold green", fixed)):

@@ -353,7 +353,6 @@ class Film:
             MissingCapabilityError: there is no ffmpeg, or it cannot encode H.264.
         """
         import tempfile
-        from pathlib import Path
 
         command = [ffmpeg(), "-v", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"]
         command += ["-s", f"{self.size[0]}x{self.size[1]}", "-r", f"{fps:g}", "-i", "-"]

@@ -136,14 +136,14 @@ def loaded(name, entry, mode):
 def course(monkeypatch, tmp_path, capsys):
     """Run a command line in ``tmp_path`` on the miniature course; gives code, out and err."""
     from course.cli.frame import app
-    from course.cli.work import checking
+    from course.handed_in import attempts
 
     monkeypatch.setenv("COURSE_CONTENT", str(MINI_COURSE))
     monkeypatch.setenv("COLUMNS", "80")
     for name in ("FORCE_COLOR", "NO_COLOR", "TTY_COMPATIBLE"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(checking, "open_session", lambda exercise, catalog: FakeSession(exercise))
+    monkeypatch.setattr(attempts, "open_session", lambda exercise, catalog: FakeSession(exercise))
     monkeypatch.setattr(registry, "_load", loaded)
 
     def run(*words):

@@ -6,7 +6,8 @@ from datetime import UTC, datetime
 
 import pytest
 
-from course.progress.history import check_data, history_of, numbers_of
+from course.handed_in.attempts import Attempt, numbers_of
+from course.progress.history import history_of
 from course.progress.store import Event
 from course.scoring.verdict import CheckResult, Status, Verdict, Visibility
 
@@ -90,7 +91,7 @@ def _data(*checks):
         checks=checks,
         isolation="L1",
     )
-    return check_data(verdict, b"", 0.1, "1")
+    return Attempt(None, b"", verdict, 0.1).data("1")
 
 
 def test_the_record_gives_them_back_with_the_diagnosis():

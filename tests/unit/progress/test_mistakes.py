@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from datetime import UTC, datetime, timedelta
 
-from course.progress.history import check_data, mistakes_of
+from course.handed_in.attempts import Attempt
+from course.progress.history import mistakes_of
 from course.progress.store import Event
 from course.scoring.verdict import CheckResult, Verdict
 
@@ -24,7 +25,7 @@ def run(minute: int, *checks: tuple[str, str, str | None], subject: str = "integ
         exercise=subject, scope="public", state="graded", score=0, max_score=1, passed=False, checks=results,
         isolation="L3",
     )  # fmt: skip
-    data = check_data(verdict, b"", 0.1, "1")
+    data = Attempt(None, b"", verdict, 0.1).data("1")
     return Event(minute, START + timedelta(minutes=minute), "check", subject, data)
 
 

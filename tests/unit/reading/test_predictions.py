@@ -44,4 +44,4 @@ def test_a_skipped_prediction_is_neither_said_nor_judged():
             )
         )
     )
-    assert (counts.said, counts.skipped, counts.right, counts.unjudged) == (2, 1, 1, 1)
+    assert counts == {"said": 2, "skipped": 1, "right": 1, "nearly": 0, "wrong": 0, "unjudged": 1}

@@ -16,8 +16,8 @@ import pytest
 import course as package
 from course.cli.frame.replies import Bare, Envelope, ErrorBody, ErrorReply, NextStep, encode
 from course.cli.frame.schemas import reply_types, schema_of
-from course.cli.work import checking
 from course.cli.work.replies import Hint
+from course.handed_in import attempts
 from course.scoring.judging.session import GradingSession
 
 CLI = Path(package.__file__).parent / "cli"
@@ -196,7 +196,7 @@ def test_every_reply_of_every_command_keeps_its_schema(course, tmp_path, monkeyp
             Path("answers.toml").write_text(ran.json["template"].replace('= ""', '= "a"'), "utf-8")
     with monkeypatch.context() as real:
         real.setattr(
-            checking, "open_session", lambda one, catalog: GradingSession(one, catalog, scope="public")
+            attempts, "open_session", lambda one, catalog: GradingSession(one, catalog, scope="public")
         )
         answer("demo")
     shutil.copytree(MINI_COURSE, tmp_path / "mini")

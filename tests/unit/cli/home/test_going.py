@@ -85,7 +85,7 @@ def someone(monkeypatch):
 
 def test_go_announces_the_command_that_it_would_run(course, workspace, someone, monkeypatch):
     ran, steps = [], iter(["course lesson twice-as-much", "course check doubling"])
-    monkeypatch.setattr("course.cli.home.going.next_in_course", lambda _: next(steps))
+    monkeypatch.setattr("course.cli.home.going.next_in_course", lambda *_: next(steps))
     monkeypatch.setattr("course.cli.home.going.again", lambda words: ran.append(words) or 0)
     monkeypatch.setattr(Console, "go_on", lambda *_: False)
     said = course("go").out
@@ -95,7 +95,7 @@ def test_go_announces_the_command_that_it_would_run(course, workspace, someone, 
 
 def test_at_a_terminal_what_comes_next_is_said_once(course, workspace, someone, monkeypatch):
     steps = iter(["course lesson twice-as-much", "course check doubling"])
-    monkeypatch.setattr("course.cli.home.going.next_in_course", lambda _: next(steps))
+    monkeypatch.setattr("course.cli.home.going.next_in_course", lambda *_: next(steps))
     monkeypatch.setattr(Console, "go_on", lambda *_: False)
     said = course("go").out
     assert "Next: course watch doubling" in said

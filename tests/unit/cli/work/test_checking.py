@@ -156,7 +156,7 @@ def test_a_missing_file_exits_3_and_says_how_to_get_it_back(course, workspace):
 
 
 def test_a_file_that_is_far_too_large_is_not_read(course, workspace):
-    (workspace / "doubling" / "doubling.py").write_bytes(b"#" * 1_000_001)
+    (workspace / "doubling" / "doubling.py").write_bytes(b"#" * (MAX_CODE + 1))
     ran = course("check", "--json")
     assert (ran.code, ran.json["error"]["code"]) == (3, "too_large")
 
@@ -213,8 +213,8 @@ def curved(monkeypatch):
     """A session in which a check has left a curve."""
     import numpy as np
 
-    from course.cli.work import checking
     from course.figures.described import compared
+    from course.handed_in import attempts
     from tests.unit.cli.conftest import FakeSession
 
     def opened(exercise, catalog):
@@ -223,7 +223,7 @@ def curved(monkeypatch):
         session.curves = {"doublings_works": compared(t, 3 * t, 2 * t, "x", "m")}
         return session
 
-    monkeypatch.setattr(checking, "open_session", opened)
+    monkeypatch.setattr(attempts, "open_session", opened)
 
 
 def test_a_curve_is_said_in_words_where_nothing_can_be_drawn(course, write, curved):

@@ -13,8 +13,8 @@ import pytest
 
 from course.cli.frame.console import Console, Settings
 from course.cli.frame.here import Here
-from course.cli.work import checking
 from course.cli.work.watching import Watcher, saves
+from course.handed_in import attempts
 
 
 @pytest.fixture
@@ -25,7 +25,7 @@ def watching(course, workspace, write):
     watcher = Watcher(
         console=Console(Settings(), stdout=io.StringIO(), stderr=io.StringIO()), here=here, exercise=exercise
     )
-    return watcher, checking.open_session(exercise, here.catalog)
+    return watcher, attempts.open_session(exercise, here.catalog)
 
 
 def _said(watcher):

@@ -1,0 +1,57 @@
+"""The record is read once a command, however many questions it answers."""
+
+from __future__ import annotations
+
+import pytest
+
+from course.catalog.load import Catalog
+from course.cli.frame import app
+from course.errors import IntegrityError
+from course.progress.standing import Standing
+from course.progress.store import Store
+from course.progress.workspace import Workspace
+
+
+@pytest.fixture
+def workspace(tmp_path, monkeypatch):
+    """A workspace of the course itself with a lesson read and an exercise begun; the current folder."""
+    catalog = Catalog()
+    made = Workspace.create(tmp_path / "w", catalog.course_id, catalog.version)
+    monkeypatch.chdir(made.root)
+    first, *_ = catalog.exercises()
+    made.store.append("lesson", first.lesson)
+    made.store.append("start", first.id)
+    made.give(first.place, first.module, first.stub_path.read_bytes())
+    return made
+
+
+@pytest.mark.parametrize(
+    "command", [(), ("progress",), ("exercises",), ("lessons",), ("next",), ("go", "--json")]
+)
+def test_the_record_is_read_once(workspace, monkeypatch, command):
+    reads, connection = [], Store._connection
+    monkeypatch.setattr(
+        Store, "_connection", lambda self, *, create: reads.append(create) or connection(self, create=create)
+    )
+    assert app.run(command) == 0
+    assert reads == [False]
+
+
+def test_an_event_that_somebody_spoilt_costs_those_alone_who_need_it(workspace, monkeypatch):
+    monkeypatch.setattr("course.progress.store._now", lambda: "some time")
+    workspace.store.append("check", "elsewhere")
+    standing = Standing.of(workspace)
+    (name,) = standing.started
+    assert standing.is_begun(name)
+    assert len(standing.read) == 1
+    with pytest.raises(IntegrityError, match="event 3 cannot be read"):
+        standing.history("elsewhere")
+    with pytest.raises(IntegrityError, match="event 3 cannot be read"):
+        assert standing.quiz.best is None
+
+
+def test_outside_of_a_workspace_nothing_is_begun():
+    nowhere = Standing()
+    assert (nowhere.read, nowhere.mistakes, nowhere.started) == ({}, (), frozenset())
+    assert not nowhere.is_begun("integrators")
+    assert not nowhere.is_complete("integrators")

@@ -1,10 +1,11 @@
-"""Boxes over the page: contents, search, a prediction, a cell to edit."""
+"""Boxes over the page: a prediction, contents, search, code to edit, the keys."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 
+from rich.table import Table
 from rich.text import Text
 from textual.app import ComposeResult
 from textual.binding import Binding
@@ -15,7 +16,39 @@ from textual.widgets.option_list import Option
 
 from course.full_screen import Field, InOrder, Overlay
 
-__all__ = ["ChoiceOverlay", "Edit", "Find", "Predict"]
+_HELP = (
+    ("Space, PgDn", "next screen; at the end of the lesson: what is next"),
+    ("b, PgUp", "the screen before"),
+    ("↓ ↑, j k, the wheel", "a line on or back"),
+    ("g G, Home End", "the first screen, the last"),
+    ("Tab, Shift-Tab", "the next thing that keys act on: a prediction, a cell, a figure, a link"),
+    ("Enter", "predict; run the cell; start or check the task; open the figure; follow the link"),
+    ("s", "skip a prediction; that is kept, too"),
+    ("1 2 3", "below an answer: you were right, nearly right, wrong"),
+    ("r", "run the cell, and before it what it needs; check the warm-up or the exercise"),
+    ("Ctrl-C", "stop the cell that runs; else leave. Your place is kept"),
+    ("e", "change the cell or the task's file; Ctrl-R there runs or checks it"),
+    ("h", "at a task its next hint; elsewhere these keys"),
+    ("u", "put the lesson's own code back into the cell"),
+    ("c", "copy the cell, or a command, to the clipboard of your terminal"),
+    ("w", "write the cell into a file here"),
+    ("o", "open the figure in the system's viewer"),
+    ("t", "contents, with what is done"),
+    ("/", "search in this lesson and in all"),
+    ("n", "the next place that the search finds"),
+    ("Backspace", "back to where a link was followed"),
+    ("q", "leave; `course lesson` comes back to this line"),
+)
+
+
+def keys_table(width: int) -> Table:
+    """All keys, on a screen of this many columns."""
+    grid = Table.grid(padding=(0, 2, 0, 0))
+    grid.add_column(no_wrap=width >= 60)
+    grid.add_column()
+    for key, what in _HELP:
+        grid.add_row(Text(key, style="bold"), Text(what))
+    return grid
 
 
 class Predict(Overlay[str]):
@@ -46,8 +79,16 @@ class Predict(Overlay[str]):
             self.close(event.value.strip())
 
 
-class ChoiceOverlay(Overlay[str]):
-    """A list to choose from. Dismissed with the key of what was chosen, or None."""
+class _Chooser(Overlay[str]):
+    """Has a list to choose from. Dismissed with the key of what was chosen, or None."""
+
+    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
+        """Take it."""
+        self.close(event.option.id)
+
+
+class Choice(_Chooser):
+    """A list, with the place in it where the reader is; an option without a key is a heading."""
 
     BINDINGS: ClassVar[list[Any]] = [
         Binding("q,t", "leave", show=False),
@@ -60,7 +101,7 @@ class ChoiceOverlay(Overlay[str]):
         self._title, self._options, self._at = title, options, at
 
     def compose(self) -> ComposeResult:
-        """The list; an option without a key is a heading."""
+        """The list."""
         with Vertical(classes="box") as box:
             box.border_title, box.border_subtitle = self._title, "Enter: go there   Escape: back"
             yield OptionList(
@@ -75,10 +116,6 @@ class ChoiceOverlay(Overlay[str]):
             chooser.highlighted = keys.index(self._at)
         chooser.focus()
 
-    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
-        """Take it."""
-        self.close(event.option.id)
-
     def action_down(self) -> None:
         """Further down."""
         self.query_one(OptionList).action_cursor_down()
@@ -88,8 +125,8 @@ class ChoiceOverlay(Overlay[str]):
         self.query_one(OptionList).action_cursor_up()
 
 
-class Find(Overlay[str]):
-    """Words to look for, and where they are. Dismissed with the key of a hit, or None.
+class Find(_Chooser):
+    """Words to look for, and where they are.
 
     Args:
         search: (key, what to show) of each hit for some words.
@@ -126,10 +163,6 @@ class Find(Overlay[str]):
         chooser.add_options([Option(Text(words), id=key) for key, words in hits])
         chooser.highlighted = 0
         chooser.focus()
-
-    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
-        """Take it."""
-        self.close(event.option.id)
 
 
 class _Code(InOrder, TextArea):

@@ -13,8 +13,7 @@ from course.authoring.exercises.grading import solution_path
 from course.catalog import blocks as b
 from course.catalog.load import Catalog
 from course.cli.reading.screen.app import ReaderApp
-from course.cli.reading.screen.drawing import Drawer
-from course.cli.reading.screen.practice import Practice
+from course.cli.reading.screen.running import Drawer, Practice
 from course.progress.workspace import Workspace
 from course.reading.parts import read_script, words_of
 from tests.unit.cli.reading.driving import drive, screen
@@ -47,7 +46,7 @@ def doing(
     app = ReaderApp(catalog, LESSON, practice=practice, pictures=pictures)
 
     async def there(app: ReaderApp, pilot: Any) -> None:
-        blocks = app.progress.script.blocks
+        blocks = app.page.progress.script.blocks
         index = next(i for i, one in enumerate(blocks) if isinstance(one, b.Task) and one.id == TASK)
         app._chosen(f"block:{index}")
         await pilot.pause()
@@ -62,10 +61,10 @@ def doing(
 
 async def answered(app: ReaderApp, pilot: Any) -> None:
     """Until nothing is being checked."""
-    assert app._practice is not None
+    assert app.page.practice is not None
     for _ in range(3000):
         await pilot.pause(0.02)
-        if not app._practice.of(TASK).busy:
+        if not app.page.practice.of(TASK).busy:
             await pilot.pause(0.1)
             return
     pytest.fail("the check never ended")
@@ -217,10 +216,10 @@ def test_the_curve_of_a_failed_check_stands_above_its_finding(catalog: Catalog, 
     reply = {"ok": False, "checks": [CHECK], "curves": [words | numbers]}
 
     async def journey(app: ReaderApp, pilot: Any) -> None:
-        practice = app._practice
+        practice = app.page.practice
         practice.start(TASK)
         practice._standings[TASK] = replace(practice.of(TASK), reply=reply)
-        app._show_answer(TASK)
+        app.page.show_answer(TASK)
         for _ in range(1500):
             await pilot.pause(0.02)
             if "q over time" in screen(app):

@@ -102,12 +102,12 @@ class ReaderApp(FullScreenApp):
             ("ctrl+q", "quit"),
             ("q", "quit"),
             ("ctrl+c", "stop"),
-            ("space,pagedown,f", "forward"),
-            ("b,pageup,shift+space", "backward"),
+            ("space,pagedown,f", "turn('next')"),
+            ("b,pageup,shift+space", "turn('previous')"),
             ("down,j", "line(1)"),
             ("up,k", "line(-1)"),
-            ("g,home", "first"),
-            ("G,end", "last"),
+            ("g,home", "turn('first')"),
+            ("G,end", "turn('last')"),
             ("tab", "item(1)"),
             ("shift+tab", "item(-1)"),
             ("enter", "act"),
@@ -193,13 +193,14 @@ class ReaderApp(FullScreenApp):
 
     # -- moving ------------------------------------------------------------------------------------------
 
-    def action_forward(self) -> None:
-        """The next screen."""
-        self.page.forward()
-
-    def action_backward(self) -> None:
-        """The screen before."""
-        self.page.show(self.page.book.layout.previous(self.page.top))
+    def action_turn(self, to: str) -> None:
+        """The next screen, the previous, the first or the last."""
+        layout = self.page.book.layout
+        if to == "next":
+            self.page.forward()
+        else:
+            others = {"previous": layout.previous(self.page.top), "first": 0, "last": layout.last}
+            self.page.show(others[to])
 
     def action_line(self, lines: int) -> None:
         """A line on or back."""
@@ -207,21 +208,13 @@ class ReaderApp(FullScreenApp):
         self.page.go(max(0, min(self.page.top + lines, last)), paged=False)
         self.page.settle()
 
-    def action_first(self) -> None:
-        """The first screen."""
-        self.page.show(0)
-
-    def action_last(self) -> None:
-        """The last screen."""
-        self.page.show(self.page.book.layout.last)
-
     def action_item(self, way: int) -> None:
         """The next thing on this screen that keys act on; after the last, the first of the next screen."""
         self.hush()
         items, item = self.page.items(), self.page.item
         at = items.index(item) + way if item in items else (0 if way > 0 else -1)
         if not items or at >= len(items) or (at < 0 and item in items):
-            self.action_forward() if way > 0 else self.action_backward()
+            self.action_turn("next" if way > 0 else "previous")
             items, at = self.page.items(), 0 if way > 0 else -1
         if items:
             self.page.item = items[at]
@@ -262,7 +255,7 @@ class ReaderApp(FullScreenApp):
         if self.page.item is not None:
             self.page.item.act(self.page)
         else:
-            self.action_forward()
+            self.page.forward()
 
     def action_do(self, act: str) -> None:
         """Run or change the task at hand, or else the cell; undo, copy or write the cell."""

@@ -92,8 +92,8 @@ class Choice(_Chooser):
 
     BINDINGS: ClassVar[list[Any]] = [
         Binding("q,t", "leave", show=False),
-        Binding("j", "down", show=False),
-        Binding("k", "up", show=False),
+        Binding("j", "focused.cursor_down", show=False),
+        Binding("k", "focused.cursor_up", show=False),
     ]
 
     def __init__(self, title: str, options: Sequence[tuple[str, str]], at: str = "") -> None:
@@ -115,14 +115,6 @@ class Choice(_Chooser):
         if self._at in keys:
             chooser.highlighted = keys.index(self._at)
         chooser.focus()
-
-    def action_down(self) -> None:
-        """Further down."""
-        self.query_one(OptionList).action_cursor_down()
-
-    def action_up(self) -> None:
-        """Further up."""
-        self.query_one(OptionList).action_cursor_up()
 
 
 class Find(_Chooser):

@@ -114,29 +114,13 @@ class ScreenPrinter(FancyPrinter):
         """
         self._index, self._links = index, 0
         if index < 0:
-            return self._head_rows()
+            head = ((*[Text("")] * above, shown) for shown, above in self._head())
+            return self._laid_out(Group(*(piece for pieces in head for piece in pieces)), -1)
         if index == len(self._script.blocks):
             return self._tail_rows()
         question = self._progress.closed_by(index)
         shown = self._closed(index, question) if question else self._block(self._script.blocks[index])
         return self._laid_out(shown, index) if shown is not None else BlockRows()
-
-    def _head_rows(self) -> BlockRows:
-        """The title, the summary, the objectives."""
-        lesson = self._lesson
-        shown: list[RenderableType] = [
-            Text(lesson.title, style="bold"),
-            Text(f"about {lesson.minutes} minutes", style="dim"),
-            Text(""),
-            Text(lesson.summary),
-            Text(""),
-            Text("After this lesson you can", style="bold"),
-            self._bullets([Text(objective) for objective in lesson.objectives]),
-        ]
-        if lesson.exercises:
-            commands = ", ".join(f"course start {name}" for name in lesson.exercises)
-            shown += [Text(""), Text.assemble(("Then practise: ", "bold"), (commands, "bold cyan"))]
-        return self._laid_out(Group(*shown), -1)
 
     def _tail_rows(self) -> BlockRows:
         """The lesson is read, and the next step."""

@@ -12,7 +12,7 @@ from textual.events import Resize
 
 from course.catalog.blocks import Task
 from course.catalog.load import Catalog
-from course.cli.reading.screen.asking import Choice, Find, keys_table
+from course.cli.reading.screen.asking import Choice, Edit, Find, keys_table
 from course.cli.reading.screen.items import (
     AnswerItem,
     FigureItem,
@@ -174,15 +174,29 @@ class ReaderApp(FullScreenApp):
         if event.size != self.page.laid_for:
             self.call_after_refresh(self.page.reflow)
 
+    async def action_quit(self) -> None:
+        """Leave, unless what was typed cannot be kept."""
+        if self._keeps_what_was_typed():
+            self.action_quit_now()
+
     def action_quit_now(self) -> None:
-        """Leave; the place is kept."""
+        """Leave, as a signal asks for; the place is kept, and what was typed into an editor."""
+        self._keeps_what_was_typed()
         self.page.keep_place()
         super().action_quit_now()
 
+    def _keeps_what_was_typed(self) -> bool:
+        return all(box.keep_changes() for box in self.screen_stack if isinstance(box, Edit))
+
     def action_stop(self) -> None:
-        """Stop the cell that runs; else leave."""
+        """Copy what is selected in an editor; else stop the cell that runs; else leave the editor, or all."""
+        editor = self.screen if isinstance(self.screen, Edit) else None
+        if editor is not None and editor.copied():
+            return
         if self.page.bench is not None and self.page.running is not None:
             self.page.bench.interrupt()
+        elif editor is not None:
+            editor.leave()
         else:
             self.action_quit_now()
 

@@ -139,16 +139,18 @@ class CellItem(Item):
         """Change it."""
         cell = self._cell(page)
 
-        def done(result: tuple[str, bool] | None) -> None:
-            if result is None:
-                return
-            source, run = result
-            page.progress.edit(cell, source.rstrip("\n"))
-            page.rebuild(self.block)
+        progress = page.progress
+
+        def keep(source: str) -> None:
+            progress.edit(cell, source.rstrip("\n"))
+
+        def done(run: bool | None) -> None:
+            if run is not None:
+                page.rebuild(self.block)
             if run:
                 self.run(page)
 
-        page.app.push_screen(Edit(f"Cell {cell.number}", page.progress.cell(cell).source, "run"), done)
+        page.app.push_screen(Edit(f"Cell {cell.number}", progress.cell(cell).source, keep, "run"), done)
 
     def undo(self, page: Page) -> None:
         """The lesson's own code again."""
@@ -268,21 +270,17 @@ class TaskItem(Item):
             if not practice.of(self.target).file:
                 return
 
-        def done(result: tuple[str, bool] | None) -> None:
-            if result is None:
-                return
-            source, check = result
-            try:
-                practice.write(self.target, source)
-            except CourseError as error:
-                page.reader.say(error.message)
-                return
+        def keep(source: str) -> None:
+            practice.write(self.target, source)
+
+        def done(check: bool | None) -> None:
             if check:
                 practice.check(self.target)
-            page.rebuild(self.block)
+            if check is not None:
+                page.rebuild(self.block)
 
         now, source = practice.of(self.target), practice.source(self.target)
-        page.app.push_screen(Edit(now.file, source, "check", line_to_mend(now, source)), done)
+        page.app.push_screen(Edit(now.file, source, keep, "check", line_to_mend(now, source)), done)
 
 
 class FigureItem(Item):

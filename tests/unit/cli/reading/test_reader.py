@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import signal
 import time
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -21,6 +22,7 @@ from course.cli.reading.screen.asking import Edit
 from course.cli.reading.screen.items import CellItem, FigureItem
 from course.cli.reading.screen.page import fitting
 from course.progress.store import Store
+from course.reading.parts import Cell
 from course.reading.record import Place, Writer
 from tests.unit.cli.reading.driving import drive, screen, settled
 
@@ -276,19 +278,89 @@ def test_keys_that_come_in_a_burst_act_in_their_order(catalog):
     typed = ["end", *["backspace"] * 6, *"v2, v1", "home", "#", "ctrl+r"]
 
     async def journey(app, pilot):
-        edit = Edit("", "return v1, v2", "run")
         kept = []
+        edit = Edit("", "return v1, v2", kept.append, "run")
         app.push_screen(edit, kept.append)
         await pilot.pause()
         for key in typed:
             app.post_message(Key(key, key if len(key) == 1 else None))
         for _ in range(200):
             await pilot.pause(0.02)
-            if kept:
+            if len(kept) == 2:
                 break
-        assert kept == [("#return v2, v1", True)]
+        assert kept == ["#return v2, v1", True]
 
     reading(catalog, journey)
+
+
+async def editing(app: ReaderApp, pilot: Any) -> Cell:
+    """The first cell of the lesson, in the editor."""
+    cell = app.page.progress.script.shown_cells[0]
+    await to_question(app, pilot)
+    await pilot.press("s")
+    app._chosen(f"block:{cell.index}")
+    await pilot.pause()
+    await pilot.press("e")
+    await pilot.pause()
+    return cell
+
+
+def test_ctrl_c_in_the_editor_copies_what_is_selected_and_never_loses_what_was_typed(catalog):
+    async def journey(app, pilot):
+        cell = await editing(app, pilot)
+        await pilot.press(*"abc", "shift+left", "shift+left", "ctrl+c")
+        assert app.clipboard == "bc"
+        assert "Copied" in app.screen.query_one(".box").border_subtitle
+        await pilot.press("right", "d", "ctrl+c")
+        assert app.clipboard == "bc"
+        assert "Nothing is selected" in app.screen.query_one(".box").border_subtitle
+        await pilot.press("e", "ctrl+c")
+        assert isinstance(app.screen, Edit), "who goes on typing is asked again"
+        await pilot.press("ctrl+c")
+        await pilot.pause()
+        assert app.page.progress.cell(cell).source.startswith("abcde")
+        assert len(app.screen_stack) == 1
+
+    reading(catalog, journey)
+
+
+def test_ctrl_c_in_the_editor_stops_a_cell_that_runs(catalog):
+    async def journey(app, pilot):
+        cell = await editing(app, pilot)
+        await pilot.press(*"while 1: pass", "enter", "ctrl+r")
+        await pilot.pause(0.3)
+        await pilot.press("e", "x", "ctrl+c")
+        await ran(app, pilot)
+        assert app.page.progress.cell(cell).error == "Stopped."
+        await pilot.press("escape")
+        await pilot.pause()
+        assert app.page.progress.cell(cell).source.startswith("xwhile")
+
+    reading(catalog, journey)
+
+
+@pytest.mark.parametrize("how", ["ctrl+q", "SIGINT", "SIGTERM", "SIGHUP"])
+def test_what_is_typed_is_kept_however_the_reader_is_left(catalog, tmp_path, how):
+    store = Store(tmp_path / "progress.sqlite")
+    seen = []
+
+    async def journey(app, pilot):
+        await editing(app, pilot)
+        await pilot.press(*"abc")
+        if how.startswith("SIG"):
+            signal.raise_signal(getattr(signal, how))
+            await pilot.pause(0.2)
+        else:
+            await pilot.press(how)
+        assert app._exit
+
+    async def again(app, pilot):
+        seen.append(app.page.progress.cell(app.page.progress.script.shown_cells[0]).source)
+        assert "cell 1, changed" in screen(app)
+
+    reading(catalog, journey, store=store)
+    reading(catalog, again, store=store)
+    assert seen[0].startswith("abc")
 
 
 def test_the_editor_indents_after_a_colon_and_goes_to_both_ends(catalog):

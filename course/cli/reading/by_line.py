@@ -20,8 +20,7 @@ from course.cli.frame.app import again
 from course.cli.frame.console import Console
 from course.cli.frame.here import Here
 from course.cli.reading.lesson import Reader, paginate
-from course.cli.reading.screen.machine import write_new
-from course.cli.reading.screen.running import Bench
+from course.cli.reading.screen.running import Bench, write_new
 from course.errors import CourseError
 from course.progress.store import Event
 from course.reading.cells import CellOutput

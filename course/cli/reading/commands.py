@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import io
+import os
+import sys
 from collections.abc import Collection
 from pathlib import Path
 from typing import Annotated
@@ -177,12 +179,14 @@ def _reader(
 
 
 def _fills_the_screen(console: Console) -> bool:
-    """Whether the reader can open here."""
+    """Whether the reader can open here: a user is there, and non-ASCII letters are shown."""
     if not (console.fancy and console.interactive) or console.quiet:
         return False
-    from course.cli.reading.screen.view import is_possible
-
-    return is_possible()
+    if os.environ.get("TERM", "") in {"", "dumb", "unknown"}:
+        return False
+    if not (sys.stdin and sys.stdin.isatty() and sys.stdout and sys.stdout.isatty()):
+        return False
+    return (sys.stdout.encoding or "").lower().replace("-", "") == "utf8"
 
 
 def _section(catalog: Catalog, chosen: Lesson, slug: str) -> Section:
@@ -200,7 +204,7 @@ def _section(catalog: Catalog, chosen: Lesson, slug: str) -> Section:
 def _read_on_screen(
     console: Console, here: Here | None, catalog: Catalog, chosen: Lesson, section: Section | None
 ) -> int:
-    from course.cli.reading.screen.view import read
+    from course.cli.reading.screen.app import read
 
     slug = section.slug if section is not None else ""
     last, trouble = read(catalog, chosen.id, here.workspace if here else None, slug)

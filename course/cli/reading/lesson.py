@@ -310,15 +310,20 @@ class FancyPrinter:
 
     def head(self) -> None:
         """Title, summary, objectives."""
+        for shown, above in self._head(f"{self._lesson.id} · "):
+            self._print(shown, above=above)
+
+    def _head(self, before_minutes: str = "") -> Iterator[tuple[RenderableType, int]]:
+        """Each with the empty lines above it."""
         lesson = self._lesson
-        self._print(Text(lesson.title, style="bold"))
-        self._print(Text(f"{lesson.id} · about {lesson.minutes} minutes", style="dim"))
-        self._print(Text(lesson.summary), above=1)
-        self._print(Text("After this lesson you can", style="bold"), above=1)
-        self._print(self._bullets([Text(objective) for objective in lesson.objectives]))
+        yield Text(lesson.title, style="bold"), 0
+        yield Text(f"{before_minutes}about {lesson.minutes} minutes", style="dim"), 0
+        yield Text(lesson.summary), 1
+        yield Text("After this lesson you can", style="bold"), 1
+        yield self._bullets([Text(objective) for objective in lesson.objectives]), 0
         if lesson.exercises:
             commands = ", ".join(f"course start {name}" for name in lesson.exercises)
-            self._print(Text.assemble(("Then practise: ", "bold"), (commands, _SPANS["code"])), above=1)
+            yield Text.assemble(("Then practise: ", "bold"), (commands, _SPANS["code"])), 1
 
     def blocks(self, blocks: tuple[b.Block, ...]) -> None:
         """Print blocks in order, an empty line before each."""

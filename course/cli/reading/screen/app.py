@@ -1,89 +1,253 @@
-"""The reader's program: the actions of keys and mouse on a lesson in the full-screen reader."""
+"""The full-screen reader: what its keys and the mouse do, and what is found from any page."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
+from time import perf_counter
 from typing import Any, ClassVar
 
+from textual.app import ComposeResult
 from textual.binding import Binding
+from textual.events import Resize
 
-from course.cli.reading.screen.doing import TasksApp
-from course.cli.reading.screen.printing import Item
-from course.cli.reading.screen.telling import contents, keys_table
-from course.full_screen import TextOverlay
-from course.reading.parts import Question
-from course.reading.record import InProgress, Judgement, Place
+from course.catalog.blocks import Task
+from course.catalog.load import Catalog
+from course.cli.reading.screen.asking import Choice, Edit, Find, keys_table
+from course.cli.reading.screen.items import (
+    AnswerItem,
+    FigureItem,
+    TaskItem,
+    answer,
+    cell_at_hand,
+    in_sight,
+    items_of,
+    keys_of,
+    unjudged,
+)
+from course.cli.reading.screen.page import Item, Page
+from course.cli.reading.screen.running import Drawer, Practice
+from course.errors import CourseError
+from course.full_screen import FullScreenApp, TextOverlay
+from course.progress.store import Event
+from course.progress.workspace import Workspace
+from course.reading.record import InProgress, Judgement, Place, Writer, find
 
 _JUDGED: dict[str, Judgement] = {"1": "right", "2": "nearly", "3": "wrong"}
+#: How often the last line and running work are looked at, in s.
+_TICK = 0.25
+_WHEEL = 3
 
 
-class ReaderApp(TasksApp):
-    """A lesson to predict, run, practise, follow and search."""
+def read(
+    catalog: Catalog, first: str, workspace: Workspace | None, section: str = ""
+) -> tuple[InProgress, str]:
+    """Read until the reader leaves. The terminal is restored, whatever happens.
 
+    Args:
+        catalog: the course.
+        first: id of the lesson to open.
+        workspace: the student's; None outside of one.
+        section: slug of the section to open it at; where it was left if empty.
+
+    Returns:
+        The lesson that was open last, and why something was not recorded ("" if all was).
+    """
+    store = workspace.store if workspace is not None else None
+    writer = Writer(store)
+    troubles: list[str] = []
+
+    def events(lesson: str) -> tuple[Event, ...]:
+        if store is None:
+            return ()
+        try:
+            return store.events(subject=lesson)
+        except CourseError as error:
+            troubles.append(f"{error.message} {error.help}")
+            return ()
+
+    practice = Practice(catalog, workspace)
+    app = ReaderApp(
+        catalog, first, section, events=events, write=writer, pictures=Drawer(), practice=practice
+    )
+    try:
+        app.play()
+    finally:
+        practice.close()
+        writer.close()
+    return app.page.progress, writer.trouble or "".join(troubles[:1])
+
+
+class ReaderApp(FullScreenApp):
+    """One lesson after the other on the whole screen, to predict, run, practise, follow and search.
+
+    Args:
+        catalog: the course.
+        first: id of the lesson to open.
+        section: slug of the section to open it at; where it was left if empty.
+        events: what is recorded about a lesson.
+        write: called with each new event: kind, subject, data.
+        pictures: draws figures for this terminal; None to describe them.
+        practice: the warm-ups and exercises in the student's workspace.
+
+    Attributes:
+        page: the lesson that is open, and the items on it that keys act on.
+    """
+
+    # Letters of the page beside a box would be read with it.
+    CSS = "Screen { overflow: hidden; } Overlay { background: $background; }"
+    ALWAYS = FullScreenApp.ALWAYS | {"stop"}
     BINDINGS: ClassVar[list[Any]] = [
-        Binding("enter", "act", show=False),
-        Binding("s", "skip", show=False),
-        Binding("1", "judge('1')", show=False),
-        Binding("2", "judge('2')", show=False),
-        Binding("3", "judge('3')", show=False),
-        Binding("o", "open_figure", show=False),
-        Binding("t", "contents", show=False),
-        Binding("slash", "search", show=False),
-        Binding("n", "next_hit", show=False),
-        Binding("backspace,left", "return", show=False),
-        Binding("question_mark,f1", "help", show=False),
+        Binding(keys, action, show=False, priority=keys in {"ctrl+q", "ctrl+c", "tab", "shift+tab"})
+        for keys, action in (
+            ("ctrl+q", "quit"),
+            ("q", "quit"),
+            ("ctrl+c", "stop"),
+            ("space,pagedown,f", "turn('next')"),
+            ("b,pageup,shift+space", "turn('previous')"),
+            ("down,j", "line(1)"),
+            ("up,k", "line(-1)"),
+            ("g,home", "turn('first')"),
+            ("G,end", "turn('last')"),
+            ("tab", "item(1)"),
+            ("shift+tab", "item(-1)"),
+            ("enter", "act"),
+            ("s", "skip"),
+            ("1", "judge('1')"),
+            ("2", "judge('2')"),
+            ("3", "judge('3')"),
+            ("r", "do('run')"),
+            ("e", "do('edit')"),
+            ("u", "do('undo')"),
+            ("c", "do('copy')"),
+            ("w", "do('write')"),
+            ("h", "hint"),
+            ("o", "open_figure"),
+            ("t", "contents"),
+            ("slash", "search"),
+            ("n", "next_hit"),
+            ("backspace,left", "return"),
+            ("question_mark,f1", "help"),
+        )
     ]
 
-    #: Where links were followed from.
-    _trail: tuple[tuple[str, Place], ...] = ()
-    _wanted = ""
+    def __init__(
+        self,
+        catalog: Catalog,
+        first: str,
+        section: str = "",
+        *,
+        events: Callable[[str], Sequence[Event]] = lambda _: (),
+        write: Callable[[str, str, Mapping[str, Any]], None] = lambda *_: None,
+        pictures: Drawer | None = None,
+        practice: Practice | None = None,
+        clock: Callable[[], float] = perf_counter,
+    ) -> None:
+        super().__init__(clock)
+        self.catalog = catalog
+        self._first, self._section = first, section
+        self._wanted = ""
+        shown = pictures if self.in_colour else None
+        practice = practice or Practice(catalog, None)
+        self.page = Page(self, catalog, practice, shown, events, write, items_of, keys_of, clock)
 
-    def _is_offered(self, item: Item) -> bool:
-        """Whether keys act on it by default: open tasks, and never a link."""
-        if item.kind == "question":
-            return self.progress.asked_by(item.block) is not None
-        if item.kind == "answer":
-            question = self.progress.script.answered_at(item.block)
-            said = self.progress.prediction(question) if question else None
-            return said is not None and said.judged is None
-        return super()._is_offered(item)
+    # -- coming and going --------------------------------------------------------------------------------
 
-    def _keys(self) -> str:
-        item, keys = self.page.item, self._keys_at_hand()
-        asks = item is not None and item.kind == "answer"  # its own keys say it
-        if asks or self._cell_that_runs is not None or self._unjudged() is None:
-            return keys
-        return f"1 right, 2 nearly, 3 wrong   {keys}"
+    def compose(self) -> ComposeResult:
+        """The page is all there is."""
+        yield self.page
 
-    def _keys_at_hand(self) -> str:
-        item = self.page.item
-        if self._cell_that_runs is not None or (item is not None and item.kind in {"cell", "task"}):
-            return super()._keys()
-        general = "Space on   t contents   / search   ? keys   q leave"
-        if item is None:
-            return general
-        match item.kind:
-            case "question":
-                open_ = self.progress.asked_by(item.block) is not None
-                return "Enter predict   s skip   ? keys" if open_ else general
-            case "figure":
-                return "Enter or o: open the figure   Space on   ? keys"
-            case "answer":
-                return "were you 1 right, 2 nearly, 3 wrong   Space on"
-            case _:
-                return f"Enter: {self._leads(item.target)}   Tab next   Space on"
+    def on_mount(self) -> None:
+        """Start."""
+        self.page.focus()
+        self.set_interval(_TICK, self.page.tick)
+        self.page.open(self._first, section=self._section)
 
-    def _leads(self, target: str) -> str:
-        kind, _, rest = target.partition(":")
-        if target.startswith("#"):
-            return f"go to {target[1:].replace('-', ' ')}"
-        return f"open {rest.partition('#')[0]}" if kind in {"lesson", "exercise"} else f"open {target}"
+    def on_unmount(self) -> None:
+        """End what runs, and write down the place."""
+        self.page.end_cells()
+        self.page.keep_place()
+        if self.page.pictures is not None:
+            self.page.pictures.close()
+
+    def on_resize(self, event: Resize) -> None:
+        """Reflow; the line at the top stays."""
+        if event.size != self.page.laid_for:
+            self.call_after_refresh(self.page.reflow)
+
+    async def action_quit(self) -> None:
+        """Leave, unless what was typed cannot be kept."""
+        if self._keeps_what_was_typed():
+            self.action_quit_now()
+
+    def action_quit_now(self) -> None:
+        """Leave, as a signal asks for; the place is kept, and what was typed into an editor."""
+        self._keeps_what_was_typed()
+        self.page.keep_place()
+        super().action_quit_now()
+
+    def _keeps_what_was_typed(self) -> bool:
+        return all(box.keep_changes() for box in self.screen_stack if isinstance(box, Edit))
+
+    def action_stop(self) -> None:
+        """Copy what is selected in an editor; else stop the cell that runs; else leave the editor, or all."""
+        editor = self.screen if isinstance(self.screen, Edit) else None
+        if editor is not None and editor.copied():
+            return
+        if self.page.bench is not None and self.page.running is not None:
+            self.page.bench.interrupt()
+        elif editor is not None:
+            editor.leave()
+        else:
+            self.action_quit_now()
+
+    def say(self, message: str) -> None:
+        """Show something in the last line for a moment."""
+        super().say(message)
+        self.page.say_round()
+
+    # -- moving ------------------------------------------------------------------------------------------
+
+    def action_turn(self, to: str) -> None:
+        """The next screen, the previous, the first or the last."""
+        layout = self.page.book.layout
+        if to == "next":
+            self.page.forward()
+        else:
+            others = {"previous": layout.previous(self.page.top), "first": 0, "last": layout.last}
+            self.page.show(others[to])
+
+    def action_line(self, lines: int) -> None:
+        """A line on or back."""
+        last = len(self.page.book.layout) - self.page.room
+        self.page.go(max(0, min(self.page.top + lines, last)), paged=False)
+        self.page.settle()
+
+    def action_item(self, way: int) -> None:
+        """The next thing on this screen that keys act on; after the last, the first of the next screen."""
+        self.hush()
+        items, item = self.page.items(), self.page.item
+        at = items.index(item) + way if item in items else (0 if way > 0 else -1)
+        if not items or at >= len(items) or (at < 0 and item in items):
+            self.action_turn("next" if way > 0 else "previous")
+            items, at = self.page.items(), 0 if way > 0 else -1
+        if items:
+            self.page.item = items[at]
+            self.page.say_round()
 
     def action_return(self) -> None:
         """Back to where a link was followed."""
-        if self._trail:
-            *before, last = self._trail
-            self._trail = tuple(before)
-            self.open(*last)
+        if self.page.trail:
+            self.page.open(*self.page.trail.pop())
+
+    def on_mouse_scroll_down(self) -> None:
+        """Some lines on."""
+        if len(self.screen_stack) == 1:
+            self.action_line(_WHEEL)
+
+    def on_mouse_scroll_up(self) -> None:
+        """Some lines back."""
+        if len(self.screen_stack) == 1:
+            self.action_line(-_WHEEL)
 
     def on_click(self, event: Any) -> None:
         """Follow a link; choose anything else, and act on it with a second click."""
@@ -94,137 +258,63 @@ class ReaderApp(TasksApp):
             return
         again = item == self.page.item
         self.page.item = item
-        self._say_round()
-        if item.kind in {"link", "question"} or (again and event.chain > 1):
-            self.action_act()
+        self.page.say_round()
+        if item.at_once or (again and event.chain > 1):
+            item.act(self.page)
 
     # -- acting ------------------------------------------------------------------------------------------
 
     def action_act(self) -> None:
         """Do what Enter does here."""
-        item = self.page.item
-        if item is None:
-            self.action_forward()
-        elif item.kind == "link":
-            self._follow(item.target)
-        elif item.kind == "question":
-            self._predict(item)
-        elif item.kind in {"cell", "task"}:
-            self.action_run_cell()
-        elif item.kind == "figure":
-            self.action_open_figure()
+        if self.page.item is not None:
+            self.page.item.act(self.page)
         else:
-            self.action_forward()
+            self.page.forward()
 
-    def _follow(self, target: str) -> None:
-        kind, _, rest = target.partition(":")
-        if target.startswith("#") or kind == "lesson":
-            name, _, slug = rest.partition("#") if kind == "lesson" else ("", "", target[1:])
-            here = self.progress.script.lesson.id
-            self._leave_trail()
-            self.open_at(name or here, slug)
-        elif kind == "exercise":
-            self._go_to_task(rest.partition("#")[0])
+    def action_do(self, act: str) -> None:
+        """Run or change the task at hand, or else the cell; undo, copy or write the cell."""
+        item: Item | None = self.page.item
+        if not (isinstance(item, TaskItem) and hasattr(item, act)):
+            item = cell_at_hand(self.page)
+        if item is not None:
+            getattr(item, act)(self.page)
+
+    def action_hint(self) -> None:
+        """The hint that is due at the task at hand; all keys elsewhere."""
+        if isinstance(self.page.item, TaskItem):
+            self.page.item.ask_hint(self.page)
         else:
-            self._open_address(target)
-
-    def _leave_trail(self) -> None:
-        self._trail += ((self.progress.script.lesson.id, self.page.place() or Place()),)
-
-    def _go_to_task(self, name: str) -> None:
-        """Where a warm-up or an exercise is done: in the lesson that leads to it."""
-        lesson = self.catalog.exercise(name).lesson
-        here = self.progress.script
-        self._leave_trail()
-        script = here if lesson == here.lesson.id else self._script_of(lesson)
-        self.open(lesson, Place(script.task(name)))
-
-    def _open_address(self, address: str) -> None:
-        """Open a web page where a browser can show it; print its address in any case."""
-        from course.browser import opened
-
-        if opened(address):
-            self.say(f"Opened {address}")
-        else:
-            self.copy_to_clipboard(address)
-            self.say(f"Copied: {address}")
-
-    # -- predictions -------------------------------------------------------------------------------------
-
-    def _predict(self, item: Item) -> None:
-        from course.cli.reading.screen.asking import Predict
-
-        question = self.progress.asked_by(item.block)
-        if question is None:
-            self.action_forward()
-            return
-
-        def said(text: str | None) -> None:
-            if text:
-                self._answered(question, text)
-
-        self.push_screen(Predict(question.words), said)
-
-    def _answered(self, question: Question, text: str) -> None:
-        self.progress.predict(question, text)
-        script = self.progress.script
-        self._rebuild(*range(question.index, question.end), script.after(question), len(script.blocks))
-        self.page.item = None
-        self._settle()
-        cells = [c for c in self.progress.script.shown_cells if question.index < c.index < question.end]
-        run = " r: run" if cells else ""
-        self.say(f"{'Kept' if text else 'Skipped'}. The answer is open.{run}")
+            self.action_help()
 
     def action_skip(self) -> None:
-        """Open an answer without a prediction; that is kept, too."""
+        """Open the answer at hand without a prediction."""
         item = self.page.item
-        question = self.progress.asked_by(item.block) if item is not None else None
+        question = self.page.progress.asked_by(item.block) if item is not None else None
         if question is not None:
-            self._answered(question, "")
-
-    def _unjudged(self) -> Item | None:
-        """The first answer in sight whose prediction is not judged yet."""
-        answers = (one for one in self.page.items() if one.kind == "answer")
-        return next((one for one in answers if self._is_offered(one)), None)
+            answer(self.page, question, "")
 
     def action_judge(self, key: str) -> None:
-        """How good a prediction was, in the reader's own judgement."""
+        """How good a prediction was; its answer may be in sight while the cell above it is at hand."""
         item = self.page.item
-        if item is None or item.kind != "answer":  # the cell above it is at hand
-            item = self._unjudged()
-        question = self.progress.script.answered_at(item.block) if item is not None else None
-        if item is not None and question is not None:
-            self.progress.judge(question, _JUDGED[key])
-            self._rebuild(question.index, item.block)
+        judged = item if isinstance(item, AnswerItem) else unjudged(self.page)
+        if judged is not None:
+            judged.judge(self.page, _JUDGED[key])
 
     def action_open_figure(self) -> None:
         """The figure at hand in the system's viewer."""
-        item = self.page.item
-        if item is None or item.kind != "figure":
-            item = next((one for one in self.page.items() if one.kind == "figure"), None)
-        if item is None:
+        figure = in_sight(self.page, FigureItem)
+        if figure is not None:
+            figure.act(self.page)
+        else:
             self.say("No figure in sight.")
-            return
-        if self._pictures is None:
-            self.say(f"course lesson {self.progress.script.lesson.id} --figures DIR writes the pictures.")
-            return
-        self.say("Drawing the figure …")
-        self._pictures.open(item.target, lambda words: self.call_from_thread(self.say, words))
 
     # -- finding -----------------------------------------------------------------------------------------
 
     def action_contents(self) -> None:
         """The sections of this lesson, and the other lessons, with what is done."""
-        from course.cli.reading.screen.asking import ChoiceOverlay
-
-        self.keep_place()
-        here = (self.page.place() or Place()).block
-        options, at = contents(self.catalog, self.progress, here, self._is_read, self._practice)
-        self.push_screen(ChoiceOverlay(self.progress.script.lesson.title, options, at), self._chosen)
-
-    def _is_read(self, name: str) -> bool:
-        opened = self._opened.get(name)
-        return opened.read if opened is not None else any(e.kind == "lesson" for e in self._events(name))
+        self.page.keep_place()
+        options, at = _contents(self.page)
+        self.push_screen(Choice(self.page.progress.script.lesson.title, options, at), self._chosen)
 
     def _chosen(self, key: str | None) -> None:
         """Go where a list says: "block:12", "lesson:ID" or "lesson:ID:12"."""
@@ -232,47 +322,66 @@ class ReaderApp(TasksApp):
             return
         kind, _, rest = key.partition(":")
         name, _, block = rest.partition(":")
-        self._leave_trail()
+        self.page.leave_trail()
         if kind == "lesson":
-            self.open(name, Place(int(block)) if block else None)
-        elif self.page.book is not None:
-            self._show(self.page.book.layout.row(Place(int(rest))))
+            self.page.open(name, Place(int(block)) if block else None)
+        else:
+            self.page.show(self.page.book.layout.row(Place(int(rest))))
 
     def action_search(self) -> None:
         """Look for words."""
-        from course.cli.reading.screen.asking import Find
-
         self.push_screen(Find(self._search), self._chosen)
 
     def _search(self, wanted: str) -> list[tuple[str, str]]:
-        from course.reading.record import find
-
         self._wanted = wanted
-        here = self.progress.script.lesson.id
-        hits: list[tuple[str, str]] = []
-        for name in (here, *(other for other in self.catalog.lesson_ids() if other != here)):
-            progress = self._opened.get(name)
-            if progress is None:
-                progress = InProgress(self._script_of(name), self._events(name))
-            found = find(progress, wanted)
-            hits += [(f"lesson:{name}:{hit.block}", f"{name}: {hit.excerpt}") for hit in found]
-        return hits
+        here = self.page.progress.script.lesson.id
+        return [
+            (f"lesson:{name}:{hit.block}", f"{name}: {hit.excerpt}")
+            for name in (here, *(other for other in self.catalog.lesson_ids() if other != here))
+            for hit in find(self.page.in_progress(name), wanted)
+        ]
 
     def action_next_hit(self) -> None:
         """The next place in this lesson where the words are."""
-        from course.reading.record import find
-
         if not self._wanted:
             self.say("/ searches for words.")
             return
         place = self.page.place() or Place()
-        blocks = [hit.block for hit in find(self.progress, self._wanted)]
+        blocks = [hit.block for hit in find(self.page.progress, self._wanted)]
         following = [block for block in blocks if block > place.block] or blocks
-        if not following or self.page.book is None:
+        if not following:
             self.say(f"{self._wanted!r} is not in this lesson; / searches all lessons.")
             return
-        self._show(self.page.book.layout.row(Place(following[0])))
+        self.page.show(self.page.book.layout.row(Place(following[0])))
 
     def action_help(self) -> None:
         """All keys."""
-        self.push_screen(TextOverlay("Keys", [keys_table(self._width)]))
+        self.push_screen(TextOverlay("Keys", [keys_table(self.size.width)]))
+
+
+def _contents(page: Page) -> tuple[list[tuple[str, str]], str]:
+    """The sections of a lesson with its tasks, and all lessons, with what is done.
+
+    Returns:
+        (key, what to show) of each, and the key of where the reader is.
+    """
+    progress, script, options, at = page.progress, page.progress.script, list[tuple[str, str]](), ""
+    here = (page.place() or Place()).block
+    for section in script.sections:
+        done = progress.is_done(section.start, section.end)
+        asked = [q for q in script.questions if section.start <= q.index < section.end]
+        open_ = sum(progress.prediction(q) is None for q in asked)
+        more = f"   {open_} to predict" if open_ and section.level == 2 else ""
+        indent = "  " * (section.level - 2)
+        options.append((f"block:{section.start}", f"{'✓' if done else ' '} {indent}{section.title}{more}"))
+        if section.start <= here and section.level == 2:
+            at = f"block:{section.start}"
+        for index, block in enumerate(script.blocks):
+            if isinstance(block, Task) and script.section_at(index) == section:
+                mark = "✓" if page.practice.of(block.id).done else " "
+                options.append((f"block:{index}", f"{mark}   {block.what.partition(',')[0]}: {block.title}"))
+    options.append(("", ""))
+    for number, name in enumerate(page.catalog.lesson_ids(), start=1):
+        words = f"{'✓' if page.is_read(name) else ' '} {number}. {page.catalog.lesson(name).title}"
+        options.append((f"lesson:{name}", words))
+    return options, at

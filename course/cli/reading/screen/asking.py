@@ -1,10 +1,11 @@
-"""Boxes over the page: contents, search, a prediction, a cell to edit."""
+"""Boxes over the page: a prediction, contents, search, code to edit, the keys."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 
+from rich.table import Table
 from rich.text import Text
 from textual.app import ComposeResult
 from textual.binding import Binding
@@ -13,7 +14,47 @@ from textual.events import Key
 from textual.widgets import Input, OptionList, Static, TextArea
 from textual.widgets.option_list import Option
 
+from course.errors import CourseError
 from course.full_screen import Field, InOrder, Overlay
+
+#: Said below code that is changed.
+_DROP = "Ctrl-D again: drop the changes   Escape: keep"
+_LEAVE = "Nothing is selected   Ctrl-C again or Escape: keep"
+_COPIED = "Copied, if your terminal allows it   Escape: keep"
+
+_HELP = (
+    ("Space, PgDn", "next screen; at the end of the lesson: what is next"),
+    ("b, PgUp", "the screen before"),
+    ("↓ ↑, j k, the wheel", "a line on or back"),
+    ("g G, Home End", "the first screen, the last"),
+    ("Tab, Shift-Tab", "the next thing that keys act on: a prediction, a cell, a figure, a link"),
+    ("Enter", "predict; run the cell; start or check the task; open the figure; follow the link"),
+    ("s", "skip a prediction; that is kept, too"),
+    ("1 2 3", "below an answer: you were right, nearly right, wrong"),
+    ("r", "run the cell, and before it what it needs; check the warm-up or the exercise"),
+    ("Ctrl-C", "stop the cell that runs; else leave. Your place is kept"),
+    ("e", "change the cell or the task's file; Ctrl-R there runs or checks it, Ctrl-C copies"),
+    ("h", "at a task its next hint; elsewhere these keys"),
+    ("u", "put the lesson's own code back into the cell"),
+    ("c", "copy the cell, or a command, to the clipboard of your terminal"),
+    ("w", "write the cell into a file here"),
+    ("o", "open the figure in the system's viewer"),
+    ("t", "contents, with what is done"),
+    ("/", "search in this lesson and in all"),
+    ("n", "the next place that the search finds"),
+    ("Backspace", "back to where a link was followed"),
+    ("q", "leave; `course lesson` comes back to this line"),
+)
+
+
+def keys_table(width: int) -> Table:
+    """All keys, on a screen of this many columns."""
+    grid = Table.grid(padding=(0, 2, 0, 0))
+    grid.add_column(no_wrap=width >= 60)
+    grid.add_column()
+    for key, what in _HELP:
+        grid.add_row(Text(key, style="bold"), Text(what))
+    return grid
 
 
 class Predict(Overlay[str]):
@@ -44,13 +85,21 @@ class Predict(Overlay[str]):
             self.close(event.value.strip())
 
 
-class ChoiceOverlay(Overlay[str]):
-    """A list to choose from. Dismissed with the key of what was chosen, or None."""
+class _Chooser(Overlay[str]):
+    """Has a list to choose from. Dismissed with the key of what was chosen, or None."""
+
+    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
+        """Take it."""
+        self.close(event.option.id)
+
+
+class Choice(_Chooser):
+    """A list, with the place in it where the reader is; an option without a key is a heading."""
 
     BINDINGS: ClassVar[list[Any]] = [
         Binding("q,t", "leave", show=False),
-        Binding("j", "down", show=False),
-        Binding("k", "up", show=False),
+        Binding("j", "focused.cursor_down", show=False),
+        Binding("k", "focused.cursor_up", show=False),
     ]
 
     def __init__(self, title: str, options: Sequence[tuple[str, str]], at: str = "") -> None:
@@ -58,7 +107,7 @@ class ChoiceOverlay(Overlay[str]):
         self._title, self._options, self._at = title, options, at
 
     def compose(self) -> ComposeResult:
-        """The list; an option without a key is a heading."""
+        """The list."""
         with Vertical(classes="box") as box:
             box.border_title, box.border_subtitle = self._title, "Enter: go there   Escape: back"
             yield OptionList(
@@ -73,21 +122,9 @@ class ChoiceOverlay(Overlay[str]):
             chooser.highlighted = keys.index(self._at)
         chooser.focus()
 
-    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
-        """Take it."""
-        self.close(event.option.id)
 
-    def action_down(self) -> None:
-        """Further down."""
-        self.query_one(OptionList).action_cursor_down()
-
-    def action_up(self) -> None:
-        """Further up."""
-        self.query_one(OptionList).action_cursor_up()
-
-
-class Find(Overlay[str]):
-    """Words to look for, and where they are. Dismissed with the key of a hit, or None.
+class Find(_Chooser):
+    """Words to look for, and where they are.
 
     Args:
         search: (key, what to show) of each hit for some words.
@@ -125,10 +162,6 @@ class Find(Overlay[str]):
         chooser.highlighted = 0
         chooser.focus()
 
-    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
-        """Take it."""
-        self.close(event.option.id)
-
 
 class _Code(InOrder, TextArea):
     """A field for Python: Enter indents the next line as Python's own editors do."""
@@ -163,10 +196,11 @@ class _Code(InOrder, TextArea):
         self._replace_via_keyboard(f"\n{indent}", start, end)
 
 
-class Edit(Overlay[tuple[str, bool]]):
-    """Code to change. Dismissed with it and whether to run or check it, or None to leave it as it was.
+class Edit(Overlay[bool]):
+    """Code to change. Dismissed with whether to run or check it once it is kept, or None if it was dropped.
 
     Args:
+        keep: takes the code; raises a ``CourseError`` where it cannot be kept.
         act: what Ctrl-R does after keeping it: "run" for a cell, "check" for a task's file.
         line: where to begin.
     """
@@ -181,51 +215,79 @@ class Edit(Overlay[tuple[str, bool]]):
         Binding("ctrl+d", "drop", show=False),
     ]
 
-    def __init__(self, title: str, source: str, act: str, line: int = 1) -> None:
+    def __init__(self, title: str, source: str, keep: Callable[[str], None], act: str, line: int = 1) -> None:
         super().__init__()
-        self._title, self._source, self._act, self._line = title, source, act, line
-        self._asked = False
+        self._title, self._source, self._keep, self._act, self._line = title, source, keep, act, line
+        self._area = _Code(source, tab_behavior="indent", show_line_numbers=True)
+        self._area.cursor_blink = False
+        self._told = ""  # below the code, in place of the keys
 
     def compose(self) -> ComposeResult:
         """The code, with the keys that end editing below it."""
         with Vertical(classes="box") as box:
             box.border_title = self._title
-            box.border_subtitle = self._keys()
-            area = _Code(self._source, tab_behavior="indent", show_line_numbers=True)
-            area.cursor_blink = False
-            yield area
+            box.border_subtitle = self._keys
+            yield self._area
 
     def on_mount(self) -> None:
         """Ready to type, with the line to change in sight."""
-        area = self.query_one(TextArea)
-        area.focus()
-        area.move_cursor((self._line - 1, 0), center=True)
+        self._area.focus()
+        self._area.move_cursor((self._line - 1, 0), center=True)
+
+    def kept(self) -> bool:
+        """Keep the code as it is now; False, with the reason below it, where that is not possible."""
+        try:
+            self._keep(self._area.text)
+        except CourseError as error:
+            self._tell(error.message)
+            return False
+        return True
+
+    def keep_changes(self) -> bool:
+        """As ``kept``, for a reader who leaves without a word: what was not changed is left alone."""
+        return self._area.text == self._source or self.kept()
 
     def action_keep(self) -> None:
         """Keep the code as it is now."""
-        self.close((self.query_one(TextArea).text, False))
+        if self.kept():
+            self.close(False)
 
     def action_run(self) -> None:
         """Keep it, and run or check it."""
-        self.close((self.query_one(TextArea).text, True))
+        if self.kept():
+            self.close(True)
 
     def action_drop(self) -> None:
         """As it was; where something was changed, at the second press."""
-        if self._asked or self.query_one(TextArea).text == self._source:
+        if self._told == _DROP or self._area.text == self._source:
             self.close(None)
         else:
-            self._ask(asked=True)
+            self._tell(_DROP)
+
+    def copied(self) -> bool:
+        """Copy what is selected; False if nothing is."""
+        if not self._area.selected_text:
+            return False
+        self.app.copy_to_clipboard(self._area.selected_text)
+        self._tell(_COPIED)
+        return True
+
+    def leave(self) -> None:
+        """What Ctrl-C does where nothing is selected: keep the code and close, at the second press."""
+        if self._told == _LEAVE:
+            self.action_keep()
+        else:
+            self._tell(_LEAVE)
 
     def on_text_area_changed(self) -> None:
         """Who goes on typing does not drop anything."""
-        if self._asked:
-            self._ask(asked=False)
+        if self._told:
+            self._tell("")
 
-    def _ask(self, *, asked: bool) -> None:
-        self._asked = asked
-        self.query_one(".box").border_subtitle = self._keys()
+    def _tell(self, words: str) -> None:
+        self._told = words
+        self.query_one(".box").border_subtitle = words or self._keys
 
+    @property
     def _keys(self) -> str:
-        if self._asked:
-            return "Ctrl-D again: drop the changes   Escape: keep"
         return f"Ctrl-R: keep and {self._act}   Escape: keep   Ctrl-D: drop the changes"

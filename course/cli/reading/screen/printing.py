@@ -1,4 +1,4 @@
-"""A lesson's blocks as rows of a given width, with the items that keys act on.
+"""A lesson's blocks as rows of a given width, and below a task how far its student is with it.
 
 It looks like the printed lesson, except that predictions hide what follows them, cells show their results
 here, and links can be followed.
@@ -6,10 +6,11 @@ here, and links can be followed.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
+import msgspec
 from rich.console import Console, Group, RenderableType
 from rich.segment import Segment
 from rich.style import Style
@@ -18,12 +19,14 @@ from rich.text import Text
 
 from course.catalog import blocks as b
 from course.catalog.load import Catalog
+from course.cli.frame.console import STATUS_STYLE
 from course.cli.frame.pictures import Code
 from course.cli.reading.lesson import KEEP, FancyPrinter
-from course.cli.reading.screen.practice import Practice, Standing
-from course.cli.reading.screen.tasks import standing_lines
+from course.cli.reading.screen.running import Practice, Standing
+from course.cli.work.verdict import line_of, unread_line
 from course.reading.parts import Cell, Question
 from course.reading.record import InProgress, Row
+from course.scoring.verdict import CheckResult, numbers_of
 
 #: Prose is this wide at most; a cell's two outputs stand side by side where both fit.
 COLUMN = 80
@@ -33,7 +36,8 @@ _BESIDE = 2 * 58 + 3
 _JUDGED = {"right": "right", "nearly": "nearly right", "wrong": "wrong"}
 #: Lines of a run that are put beside a prediction.
 _MOST = 6
-Kind = Literal["link", "cell", "question", "answer", "figure", "task"]
+#: Lines of what a student's code printed: there is more to see on a screen than these.
+_PRINTED = 4
 
 #: Rows at the head of a block, below the blank one, that stay together: the rule, the title and two
 #: lines of a task; the label of a passage and two lines.
@@ -41,30 +45,11 @@ _LEAD = {b.Task: 6, b.Callout: 4}
 
 
 @dataclass(frozen=True, slots=True)
-class Item:
-    """Something on the page that a key acts on.
-
-    Attributes:
-        row: within its block.
-        block: index of the block.
-        target: where a link leads; the id of a figure or a task.
-        number: tells the links of a block apart.
-    """
-
-    kind: Kind
-    block: int
-    row: int
-    target: str = ""
-    number: int = 0
-
-
-@dataclass(frozen=True, slots=True)
 class BlockRows:
-    """A block laid out: its lines, facts about each, and the items in them."""
+    """A block laid out: its lines, and facts about each."""
 
-    lines: tuple[tuple[Segment, ...], ...]
-    rows: tuple[Row, ...]
-    items: tuple[Item, ...]
+    lines: tuple[tuple[Segment, ...], ...] = ()
+    rows: tuple[Row, ...] = ()
 
 
 class ScreenPrinter(FancyPrinter):
@@ -72,82 +57,92 @@ class ScreenPrinter(FancyPrinter):
 
     Args:
         progress: the lesson, with what its reader did.
+        practice: how far the student is with warm-ups and exercises.
         width: of the screen, in columns.
+        in_colour: whether colours may be shown.
         busy: the key of the cell that runs, with what to say of it; empty if none does.
-        picture: a figure's lines for a width: blank while it is being drawn, none if it stays described.
-        practice: how far the student is with warm-ups and exercises; None where there is nothing to work in.
-        curve: the lines of a failed check's curve, for a task, what its check said of the curve, and a width.
+        picture: the lines for a figure, or for a task and the curve of its failed check, at a width: blank
+            while they are being drawn, none if it stays described.
     """
 
     def __init__(
         self,
         catalog: Catalog,
         progress: InProgress,
-        console: Console,
+        practice: Practice,
         width: int,
-        busy: Callable[[], tuple[str, str]] = lambda: ("", ""),
-        picture: Callable[[str, int], list[Text]] = lambda *_: [],
-        practice: Practice | None = None,
-        curve: Callable[[str, dict[str, Any], int], list[Text]] = lambda *_: [],
+        in_colour: bool,
+        busy: Callable[[], tuple[str, str]],
+        picture: Callable[[str, dict[str, Any] | None, int], list[Text]],
     ) -> None:
+        # Kept away from the terminal: what it lays out goes to the page.
+        console = Console(
+            width=width,
+            force_terminal=True,
+            markup=False,
+            emoji=False,
+            highlight=False,
+            no_color=not in_colour,
+            color_system="truecolor" if in_colour else None,
+        )
         script = progress.script
         figures = [one.id for one in b.walk_blocks(script.blocks) if isinstance(one, b.Figure)]
-        super().__init__(catalog, script.lesson, console, figures, None, min(width, COLUMN), {})
+        self._width = max(20, width - 2)
+        super().__init__(catalog, script.lesson, console, figures, None, min(self._width, COLUMN), {})
         self._progress = progress
         self._script = script
-        self._width = width
+        self._practice = practice
         self._busy = busy
         self._picture = picture
-        self._practice = practice
-        self._curve = curve
         self._index = -1
         self._links = 0
-
-    @property
-    def column(self) -> int:
-        """Columns of prose, and of figures."""
-        return self._prose
 
     @property
     def wide(self) -> bool:
         """Two outputs fit beside each other."""
         return self._width >= _BESIDE + 4
 
-    def head_rows(self) -> BlockRows:
-        """The title, the summary, the objectives."""
-        lesson = self._lesson
-        shown: list[RenderableType] = [
-            Text(lesson.title, style="bold"),
-            Text(f"about {lesson.minutes} minutes", style="dim"),
-            Text(""),
-            Text(lesson.summary),
-            Text(""),
-            Text("After this lesson you can", style="bold"),
-            self._bullets([Text(objective) for objective in lesson.objectives]),
-        ]
-        if lesson.exercises:
-            commands = ", ".join(f"course start {name}" for name in lesson.exercises)
-            shown += [Text(""), Text.assemble(("Then practise: ", "bold"), (commands, "bold cyan"))]
-        return self._laid_out(Group(*shown), -1)
+    def draw_ahead(self) -> None:
+        """Have every figure of the lesson drawn, so that it is there when its reader is."""
+        for figure in self._figure_ids:
+            self._picture(figure, None, self._prose)
 
     def rows(self, index: int) -> BlockRows:
-        """One block as it is now; no rows if it is not shown."""
-        self._index, self._links = index, 0
-        block = self._script.blocks[index]
-        question = self._progress.closed_by(index)
-        shown = self._closed(index, question) if question else self._block(block)
-        if shown is None:
-            return BlockRows((), (), ())
-        return self._laid_out(shown, index)
+        """One block as it is now, -1 for the head of the lesson, behind the last for what stands below.
 
-    def tail_rows(self, shown: RenderableType, links: list[tuple[str, str]], index: int) -> BlockRows:
-        """The rows after the last block: some words, and a line for each (target, words)."""
-        self._links = 0
-        lines = [shown, *(self._link(target, (b.Text(words),)) for target, words in links)]
-        made = self._laid_out(Group(*lines), -1)
-        rows = tuple(Row(index, row.blank, number > 0) for number, row in enumerate(made.rows))
-        items = tuple(Item("link", index, item.row, item.target, item.number) for item in made.items)
-        return BlockRows(made.lines, rows, items)
+        There are no rows if it is not shown.
+        """
+        self._index, self._links = index, 0
+        if index < 0:
+            head = ((*[Text("")] * above, shown) for shown, above in self._head())
+            return self._laid_out(Group(*(piece for pieces in head for piece in pieces)), -1)
+        if index == len(self._script.blocks):
+            return self._tail_rows()
+        question = self._progress.closed_by(index)
+        shown = self._closed(index, question) if question else self._block(self._script.blocks[index])
+        return self._laid_out(shown, index) if shown is not None else BlockRows()
+
+    def _tail_rows(self) -> BlockRows:
+        """The lesson is read, and the next step."""
+        lesson, ids = self._lesson, self._catalog.lesson_ids()
+        following = ids[ids.index(lesson.id) + 1 :][:1] if lesson.id in ids else ()
+        links = [(f"exercise:{name}", f"Practise: {name}") for name in lesson.exercises]
+        links += [
+            (f"lesson:{name}", f"Next lesson: {self._catalog.lesson(name).title}") for name in following
+        ]
+        shown = [Text("─" * 20, style="dim"), Text("You have read this lesson.", style="bold")]
+        count = sum(self._progress.prediction(one) is None for one in self._script.questions)
+        if count:
+            are = "s are" if count != 1 else " is"
+            shown.append(Text(f"{count} prediction{are} still open: t shows where."))
+        tasks = [one for one in self._script.blocks if isinstance(one, b.Task) and one.what != "exercise"]
+        left = sum(not self._practice.of(one.id).done for one in tasks) if self._practice.possible else 0
+        if left:
+            shown.append(Text(f"{left} warm-up{'s are' if left != 1 else ' is'} left: t shows where."))
+        linked = [self._link(target, (b.Text(words),)) for target, words in links]
+        made = self._laid_out(Group(*shown, Text(""), *linked), -1)
+        rows = (Row(self._index, row.blank, number > 0) for number, row in enumerate(made.rows))
+        return BlockRows(made.lines, tuple(rows))
 
     # -- rows ------------------------------------------------------------------------------------------
 
@@ -162,7 +157,7 @@ class ScreenPrinter(FancyPrinter):
         whole = isinstance(block, kinds)
         lead = next((most for kind, most in _LEAD.items() if isinstance(block, kind)), 2)
         after_head = index > 0 and isinstance(self._script.blocks[index - 1], b.Heading)
-        rows, items = [], list(self._items(index))
+        rows = []
         for number, line in enumerate(lines):
             blank = not any(segment.text.strip() for segment in line)
             # A heading is not left alone at the foot of a screen, nor a single line of a paragraph.
@@ -170,8 +165,7 @@ class ScreenPrinter(FancyPrinter):
             joined = (number > 0 and (whole or first)) or after_head
             fresh = number == 0 and self._begins_afresh(index)
             rows.append(Row(index, blank, joined and not (number == 0 and not after_head), fresh))
-            items += self._links_in(line, index, number)
-        return BlockRows(tuple(tuple(line) for line in lines), tuple(rows), tuple(items))
+        return BlockRows(tuple(tuple(line) for line in lines), tuple(rows))
 
     def _begins_afresh(self, index: int) -> bool:
         """Whether a block comes right after what an open prediction closes."""
@@ -182,33 +176,6 @@ class ScreenPrinter(FancyPrinter):
         if style is not None and self._console.no_color:
             style = style.without_color
         return Segment(text.replace(KEEP, " "), style)
-
-    def _items(self, index: int) -> list[Item]:  # noqa: PLR0911 - one return per kind
-        if index < 0:
-            return []
-        block = self._script.blocks[index]
-        if self._script.question_at(index) is not None:
-            return [Item("question", index, 1)]
-        closed = self._progress.closed_by(index)
-        if closed is not None:
-            is_shut = isinstance(block, b.CodeCell) or self._script.gives_away(index)
-            return [Item("question", index, 1)] if is_shut else []
-        if not isinstance(block, b.CodeCell) or not block.hidden:
-            if isinstance(block, b.CodeCell):
-                return [Item("cell", index, 1)]
-            if isinstance(block, b.Figure | b.Task):
-                return [Item("figure" if isinstance(block, b.Figure) else "task", index, 1, block.id)]
-            if self._said(index) is not None:
-                return [Item("answer", index, 1)]
-        return []
-
-    def _links_in(self, line: list[Segment], index: int, row: int) -> list[Item]:
-        found: dict[int, Item] = {}
-        for segment in line:
-            meta = segment.style.meta if segment.style else {}
-            if "link" in meta and meta["link"] not in found:
-                found[meta["link"]] = Item("link", index, row, meta["target"], meta["link"])
-        return list(found.values())
 
     # -- what the screen shows otherwise ------------------------------------------------------------------
 
@@ -229,7 +196,7 @@ class ScreenPrinter(FancyPrinter):
 
     def _task(self, task: b.Task) -> RenderableType:
         """A warm-up or an exercise: its text, and how far the student is with it."""
-        now = self._practice.of(task.id) if self._practice is not None else Standing()
+        now = self._practice.of(task.id)
         done = ", done" if now.done else ""
         shown: list[RenderableType] = [
             self._rule(f"{task.what}{done}"),
@@ -238,8 +205,7 @@ class ScreenPrinter(FancyPrinter):
         for block in task.blocks:
             made = self._block(block)
             shown += [Text(""), made] if made is not None else []
-        possible = self._practice is not None and self._practice.possible
-        standing = standing_lines(now, task.id, possible=possible)
+        standing = _standing_lines(now, task.id, possible=self._practice.possible)
         # The finding comes last: it is what must be in sight.
         return Group(*shown, Text(""), *self._curve_lines(now, task.id), *standing, self._rule(""))
 
@@ -249,7 +215,7 @@ class ScreenPrinter(FancyPrinter):
         if not curves or now.busy:
             return []
         words = Text(curves[0]["description"], style="dim")
-        return [*self._curve(task, curves[0], self._prose), words, Text("")]
+        return [*self._picture(task, curves[0], self._prose), words, Text("")]
 
     def _passage(self, kind: str, inner: tuple[b.Block, ...]) -> RenderableType:
         if kind == "predict":
@@ -257,14 +223,8 @@ class ScreenPrinter(FancyPrinter):
             if question is not None:
                 return self._asked(question, inner)
         shown = super()._passage(kind, inner)
-        question = self._said(self._index) if kind == "answer" else None
+        question = answered(self._progress, self._index) if kind == "answer" else None
         return Group(self._compared(question), Text(""), shown) if question is not None else shown
-
-    def _said(self, index: int) -> Question | None:
-        """The prediction that this block answers, if the reader said something."""
-        question = next((one for one in self._script.questions if one.answer == index), None)
-        said = self._progress.prediction(question) if question is not None else None
-        return question if said is not None and not said.skipped else None
 
     def _asked(self, question: Question, inner: tuple[b.Block, ...]) -> RenderableType:
         shown = super()._passage("predict", inner)
@@ -351,7 +311,7 @@ class ScreenPrinter(FancyPrinter):
         number = self._figure_ids.index(figure.id) + 1
         caption = Text.assemble((f"Figure {number}. ", "bold"), self._text(figure.caption))
         seen = Text.assemble(("The figure shows: ", "bold"), figure.alt, style="dim")
-        picture = self._picture(figure.id, self._prose)
+        picture = self._picture(figure.id, None, self._prose)
         if not picture:
             return Group(caption, seen)
         if not any(picture):
@@ -368,7 +328,115 @@ class ScreenPrinter(FancyPrinter):
         return text
 
 
+def answered(progress: InProgress, index: int) -> Question | None:
+    """The prediction that a block answers, if the reader said something."""
+    question = progress.script.answered_at(index)
+    said = progress.prediction(question) if question is not None else None
+    return question if said is not None and not said.skipped else None
+
+
 def _end_of(text: str) -> str:
     """A cell's output, or its last lines where there are many: any of them may hold the answer."""
     lines = text.splitlines()
     return "\n".join(lines if len(lines) <= _MOST else ["…", *lines[1 - _MOST :]])
+
+
+# ---
+# A student's progress with a warm-up or an exercise, in lines below its text.
+
+
+def _standing_lines(now: Standing, name: str, *, possible: bool) -> Iterator[Text]:
+    """The next step, or the last check's result: the first fault, and how many there are.
+
+    Args:
+        name: its id.
+        possible: there is a workspace to work in.
+    """
+    if not possible:
+        yield Text.assemble(("$ ", "dim"), ("course init my-course", "bold cyan"), "   makes a place for it")
+        return
+    if not now.file:
+        yield Text.assemble(("Enter", "bold"), " puts its file into your workspace")
+        return
+    yield Text.assemble(("Your file: ", "bold"), now.file)
+    if now.busy:
+        yield Text(f"{now.busy} …", style="dim")
+    elif now.reply is None and now.done:
+        yield Text("Done: every check passed.", style="bold green")
+    elif now.reply is None:
+        yield Text.assemble(
+            ("e", "bold"), " changes it here, or save it in your own editor; ", ("r", "bold"), " checks it"
+        )
+    else:
+        if now.fixed:
+            yield Text.assemble(("Fixed: ", "bold green"), ", ".join(now.fixed))
+        yield from _said(now.reply, name)
+    if now.hint:
+        yield Text(now.hint, style="italic")
+
+
+def hint_is_named(now: Standing) -> bool:
+    """Whether the last check named a hint as the next step: one is due."""
+    return _names_hint(now.reply or {})
+
+
+def _names_hint(reply: dict[str, Any]) -> bool:
+    return _step(reply).startswith("course hint")
+
+
+def line_to_mend(now: Standing, source: str) -> int:
+    """The line that the first finding of the last check is about; the first line before one."""
+    reply = now.reply or {}
+    if "error" in reply:
+        return unread_line(source)
+    _, first = _checks(reply)
+    return line_of(source, first) if first is not None else 1
+
+
+def _checks(reply: dict[str, Any]) -> tuple[tuple[CheckResult, ...], CheckResult | None]:
+    """The checks of a reply, and the first that did not pass."""
+    checks = msgspec.convert(reply.get("checks", ()), tuple[CheckResult, ...])
+    return checks, next((check for check in checks if check.status != "pass"), None)
+
+
+def _said(reply: dict[str, Any], name: str) -> Iterator[Text]:
+    if "error" in reply:
+        yield Text(reply["error"]["message"], style="red")
+        yield Text(reply["error"].get("help", ""))
+        return
+    checks, first = _checks(reply)
+    yield from _printed("Loading your file printed:", reply.get("printed"))
+    if first is None:
+        yield Text("Done: every check passes.", style="bold green")
+        step = _step(reply)
+        if step.startswith("course report"):
+            yield Text.assemble(("$ ", "dim"), (step, "bold cyan"), "   shows what has changed")
+        return
+    word = str(first.status).upper()
+    yield Text.assemble((f"{word}: ", STATUS_STYLE.get(str(first.status), "red")), (first.title, "bold"))
+    for text in (first.message, first.help):
+        if text:
+            yield Text(text)
+    for label, text in numbers_of(first):
+        if label != "diagnosis":
+            yield Text(f"{label}: {text}", style="dim")
+    yield from _printed("Your code printed:", first.stdout)
+    passing = sum(check.status == "pass" for check in checks)
+    some = f"{passing} of {len(checks)} checks pass.  " if len(checks) > 1 else ""
+    offer = f"course hint {name} or h: a hint" if _names_hint(reply) else ""
+    if some or offer:
+        yield Text(f"{some}{offer}".rstrip(), style="dim")
+
+
+def _step(reply: dict[str, Any]) -> str:
+    """The command that the reply names as the next."""
+    return str((reply.get("next") or {}).get("command", ""))
+
+
+def _printed(heading: str, text: str | None) -> Iterator[Text]:
+    lines = (text or "").rstrip().splitlines()
+    if lines:
+        yield Text(heading, style="bold")
+        yield from (Text(f"  {line}") for line in lines[:_PRINTED])
+    if len(lines) > _PRINTED:
+        yield Text("  … `course check --verbose` shows all", style="dim")

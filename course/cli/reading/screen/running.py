@@ -1,16 +1,44 @@
-"""Cells that run while their reader reads on: one at a time; a thread waits for their process."""
+"""What goes on beside the page while its reader reads on: cells run, tasks are checked, figures are drawn.
+
+Each has a process of its own and a thread that waits for it; both end with the reader.
+"""
 
 from __future__ import annotations
 
+import base64
 import contextlib
+import json
 import signal
+import subprocess
+import sys
+import tempfile
+import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from pathlib import Path
 from time import perf_counter
+from typing import TYPE_CHECKING, Any
 
-from course.reading.cells import CellOutput, CellRunner
+import msgspec
+from rich.text import Text
+
+from course.browser import opened
+from course.catalog.load import Catalog
+from course.catalog.models import Exercise
+from course.cli.frame.pictures import half_blocks
+from course.errors import CourseError, MissingCapabilityError
+from course.isolation.failures import IsolationError
+from course.progress.history import history_of
+from course.progress.workspace import Workspace, write_atomically
 from course.reading.parts import Cell
 from course.reading.record import InProgress
+
+if TYPE_CHECKING:  # it needs NumPy, and no first page waits for that
+    from course.reading.cells import CellOutput, CellRunner
+
+# ---
+# A lesson's cells, one at a time.
 
 
 class Bench:
@@ -72,41 +100,34 @@ class Bench:
             self._pool = None
 
     def _end(self) -> None:
-        from course.isolation.failures import IsolationError
-
         if self._runner is not None:
             with contextlib.suppress(IsolationError):  # it ended by itself
                 self._runner.close()
-            self._runner = None
 
     def _submit(self, what: Callable[..., None], *arguments: object) -> None:
         if self._pool is None:
-            from concurrent.futures import ThreadPoolExecutor
-
             self._pool = ThreadPoolExecutor(1, thread_name_prefix="cells", initializer=_hear_no_ctrl_c)
         self._pool.submit(what, *arguments)
 
-    def _made(self) -> CellRunner:
-        if self._runner is None:
-            from course.reading.cells import CellRunner
+    def _ready(self) -> CellRunner:
+        """In the cells' thread: their process, started."""
+        from course.reading.cells import CellRunner
 
+        if self._runner is None:
             progress = self._progress
             self._runner = CellRunner(progress.script.cells, lambda one: progress.cell(one).source)
+        self._runner.prepare()
         return self._runner
 
     def _warm(self) -> None:
-        from course.isolation.failures import IsolationError
-
         with contextlib.suppress(IsolationError):  # the first run says it
-            self._made().prepare()
+            self._ready()
 
     def _run(self, cell: Cell, source: str) -> None:
-        from course.isolation.failures import IsolationError
         from course.reading.cells import STOPPED, CellOutput
 
         try:
-            runner = self._made()
-            runner.prepare()
+            runner = self._ready()
             # A stop while the process is still starting is meant for the cell.
             gave = CellOutput("", STOPPED, 0.0) if self._stopped else runner.run(cell)
         except IsolationError as error:
@@ -119,3 +140,337 @@ def _hear_no_ctrl_c() -> None:
     """Ctrl-C on a terminal reaches every process there; those that this thread starts are not meant."""
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+
+
+def write_new(name: str, text: str) -> Path:
+    """Write a file into the current folder; an existing one keeps its name and content.
+
+    Raises:
+        MissingCapabilityError: the folder cannot be written.
+    """
+    stem, _, ending = name.rpartition(".")
+    number = 1
+    while True:
+        path = Path(name if number == 1 else f"{stem}-{number}.{ending}")
+        try:
+            with path.open("x", encoding="utf-8") as file:
+                file.write(text)
+        except FileExistsError:
+            number += 1
+        except OSError as error:
+            raise MissingCapabilityError(
+                f"{path} cannot be written ({error.strerror or error}).",
+                help="Change to a folder that can be written.",
+                code="not_writable",
+            ) from error
+        else:
+            return path
+
+
+# ---
+# Warm-ups and exercises done while their lesson is read: their files, and the results of their checks.
+#
+# ``course check`` and ``course hint`` run in a separate process: the reader stays small, the file is the one
+# that an editor has open, and the same code as everywhere writes the record.
+
+
+#: Time limit of a command, in s; the checks' own deadlines are shorter.
+_PATIENCE = 120.0
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """How far the student is with one task.
+
+    Attributes:
+        file: where it lies, relative to the workspace; empty before it was started.
+        done: all its checks passed once.
+        busy: what is going on; empty if nothing is.
+        reply: the last answer of ``course check --json``, as plain values.
+        hint: what ``course hint`` said last.
+        fixed: functions that the check before found wrong and this one right.
+    """
+
+    file: str = ""
+    done: bool = False
+    busy: str = ""
+    reply: dict[str, Any] | None = None
+    hint: str = ""
+    fixed: tuple[str, ...] = ()
+
+
+class Practice:
+    """The warm-ups and exercises of a course in one workspace.
+
+    Args:
+        workspace: None outside of one, where nothing can be started.
+
+    Attributes:
+        changed: called with an id, from another thread, when its standing has changed.
+    """
+
+    def __init__(self, catalog: Catalog, workspace: Workspace | None) -> None:
+        self.changed: Callable[[str], None] = lambda _: None
+        self._catalog = catalog
+        self._workspace = workspace
+        self._standings: dict[str, Standing] = {}
+        self._saved: dict[str, int] = {}
+        self._thread: threading.Thread | None = None
+        self._process: subprocess.Popen[bytes] | None = None
+        self._closed = False
+
+    @property
+    def possible(self) -> bool:
+        """Whether there is a workspace to work in."""
+        return self._workspace is not None
+
+    @property
+    def busy(self) -> bool:
+        """Whether something is being checked, or asked."""
+        return any(one.busy for one in self._standings.values())
+
+    def of(self, name: str) -> Standing:
+        """How far the student is."""
+        if name not in self._standings:
+            self._standings[name] = self._recorded(name)
+        return self._standings[name]
+
+    def start(self, name: str) -> None:
+        """Put its file into the workspace where there is none.
+
+        Raises:
+            MissingCapabilityError: the workspace cannot be written.
+        """
+        if self._workspace is None:
+            return
+        exercise = self._catalog.exercise(name)
+        for path in exercise.given:
+            self._workspace.give(exercise.place, path.name, path.read_bytes())
+        self._workspace.store.append("start", name, {"version": self._catalog.version})
+        self._saved[name] = self._stamp(exercise)
+        self._standings[name] = replace(self.of(name), file=f"{exercise.place}/{exercise.module}")
+
+    def source(self, name: str) -> str:
+        """Its file as it is now."""
+        return self._path(self._catalog.exercise(name)).read_text(encoding="utf-8", errors="replace")
+
+    def write(self, name: str, source: str) -> None:
+        """Put other code into its file.
+
+        Raises:
+            MissingCapabilityError: the workspace cannot be written.
+        """
+        exercise = self._catalog.exercise(name)
+        write_atomically(self._path(exercise), source.encode())
+        self._saved[name] = self._stamp(exercise)
+
+    def was_saved(self, name: str) -> bool:
+        """Whether the student's editor saved the file since the last call."""
+        if not self.of(name).file:
+            return False
+        stamp = self._stamp(self._catalog.exercise(name))
+        before = self._saved.setdefault(name, stamp)
+        self._saved[name] = stamp
+        return stamp not in {before, 0}
+
+    def check(self, name: str) -> bool:
+        """Check it, as ``course check`` does; False if something is going on already."""
+        return self._run(name, "check", "Checking")
+
+    def hint(self, name: str) -> bool:
+        """Ask for the hint that is due, as ``course hint`` does; False if something is going on already."""
+        return self._run(name, "hint", "Asking")
+
+    def close(self) -> None:
+        """End what runs."""
+        self._closed = True
+        if self._process is not None:
+            self._process.kill()
+        if self._thread is not None:
+            self._thread.join()
+
+    def _run(self, name: str, command: str, what: str) -> bool:
+        if self.busy:
+            return False
+        self._standings[name] = replace(self.of(name), busy=what)
+        self._thread = threading.Thread(target=self._ask, args=(name, command), name="practice")
+        self._thread.start()
+        return True
+
+    def _ask(self, name: str, command: str) -> None:
+        """In a thread: the command's answer."""
+        reply = self._reply(name, command)
+        now = replace(self._standings[name], busy="")
+        if command == "hint" and "error" not in reply:
+            hint = reply.get("hint")
+            now = replace(now, hint=f"Hint: {hint}" if hint else str(reply.get("message", "")))
+        else:
+            fixed = () if "error" in reply else self._fixed(name)
+            now = replace(now, reply=reply, hint="", done=now.done or bool(reply.get("ok")), fixed=fixed)
+        self._standings[name] = now
+        if not self._closed:
+            self.changed(name)
+
+    def _reply(self, name: str, command: str) -> dict[str, Any]:
+        assert self._workspace is not None
+        line = [sys.executable, "-P", "-m", "course", "-C", str(self._workspace.root)]
+        with subprocess.Popen(
+            [*line, command, name, "--json"],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+        ) as self._process:
+            try:
+                said, _ = self._process.communicate(timeout=_PATIENCE)
+                reply: dict[str, Any] = msgspec.json.decode(said)
+            except (subprocess.TimeoutExpired, msgspec.DecodeError):
+                self._process.kill()
+                problem = {"message": f"`course {command} {name}` gave no answer.", "help": ""}
+                reply = {"error": problem}
+        self._process = None
+        return reply
+
+    def _fixed(self, name: str) -> tuple[str, ...]:
+        """The functions that the last edit fixed, by the record."""
+        assert self._workspace is not None
+        try:
+            return tuple(sorted(history_of(self._workspace.store.events(subject=name)).changed_tasks()[0]))
+        except CourseError:
+            return ()
+
+    def _recorded(self, name: str) -> Standing:
+        """The workspace's record of a task."""
+        if self._workspace is None:
+            return Standing()
+        exercise = self._catalog.exercise(name)
+        try:
+            events = self._workspace.store.events("check", name)
+        except CourseError:
+            events = ()
+        there = self._path(exercise).is_file()
+        done = any(event.data.get("all_pass") and not event.data.get("only") for event in events)
+        return Standing(file=f"{exercise.place}/{exercise.module}" if there else "", done=done)
+
+    def _path(self, exercise: Exercise) -> Path:
+        assert self._workspace is not None
+        return self._workspace.path(exercise.place, exercise.module)
+
+    def _stamp(self, exercise: Exercise) -> int:
+        """When the file was last saved; 0 where it is gone."""
+        try:
+            return self._path(exercise).stat().st_mtime_ns
+        except OSError:
+            return 0
+
+
+# ---
+# Figures as half blocks of a terminal. Drawing needs matplotlib, which is slow to load and large; the reader
+# stays quick and small without it.
+
+
+#: A figure's height, in cells, as a share of its width; its caption stands below it on the same screen.
+_LOW = 0.26
+_CAPTION = 5
+_LEAST = 8
+#: Lines of a finding with its hint.
+_FINDING = 11
+
+
+class Drawer:
+    """Draws figures, one after the other; each is drawn once for a size.
+
+    Attributes:
+        drawn: called with the name of what is there now, from another thread.
+    """
+
+    def __init__(self) -> None:
+        self.drawn: Callable[[str], None] = lambda _: None
+        self._drawn: dict[tuple[str, int, int], list[Text]] = {}
+        self._asked: set[tuple[str, int, int]] = set()
+        self._waiting: dict[int, Callable[[dict[str, Any]], None]] = {}
+        self._process: subprocess.Popen[str] | None = None
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        self._number = 0
+
+    def rows(self, name: str, curve: dict[str, Any] | None, columns: int, room: int) -> list[Text]:
+        """A picture's lines; blank ones while it is being drawn, so that nothing moves when it arrives.
+
+        Args:
+            name: of a figure, or of the task whose check failed.
+            curve: one of ``course check --json``, to be drawn over the right one; None for a figure.
+            columns: how wide.
+            room: lines of a screen; a figure and the start of its caption fit, a curve and its finding.
+        """
+        rows = max(_LEAST, min(round(columns * _LOW), room - (_FINDING if curve else _CAPTION)))
+        request: dict[str, Any] = {"curve": curve} if curve else {"figure": name}
+        key = (json.dumps(request), columns, rows)
+        if key not in self._asked:
+            self._asked.add(key)
+
+            def take(answer: dict[str, Any]) -> None:
+                if "pixels" in answer:
+                    pixels = base64.b64decode(answer["pixels"])
+                    self._drawn[key] = half_blocks(pixels, columns, rows, answer["labels"])
+                else:
+                    self._drawn[key] = []  # it stays described
+                self.drawn(name)
+
+            self._ask({**request, "columns": columns, "rows": rows}, take)
+        return self._drawn.get(key, [Text()] * rows)
+
+    def open(self, figure: str, say: Callable[[str], None]) -> None:
+        """Show a figure as on paper in the system's viewer, or say where its file is."""
+
+        def take(answer: dict[str, Any]) -> None:
+            if "png" not in answer:
+                say(answer.get("error", "The figure could not be drawn."))
+                return
+            if self._folder is None:
+                self._folder = tempfile.TemporaryDirectory(prefix="course-figures-")
+            path = Path(self._folder.name) / f"{figure}.png"
+            path.write_bytes(base64.b64decode(answer["png"]))
+            if opened(path.as_uri()):
+                say(f"Opened {figure}.png")
+            else:
+                say(f"No viewer here; until you leave, the figure is {path}")
+
+        self._ask({"figure": figure, "png": True}, take)
+
+    def close(self) -> None:
+        """End the drawing process."""
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait()
+            for stream in (self._process.stdin, self._process.stdout):
+                if stream is not None:
+                    with contextlib.suppress(OSError):
+                        stream.close()
+            self._process = None
+        if self._folder is not None:
+            self._folder.cleanup()
+            self._folder = None
+
+    def _ask(self, request: dict[str, Any], take: Callable[[dict[str, Any]], None]) -> None:
+        if self._process is None:
+            self._process = subprocess.Popen(
+                [sys.executable, "-m", "course.figures.terminal"],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                text=True,
+                encoding="utf-8",
+            )
+            threading.Thread(target=self._listen, args=(self._process,), name="figures", daemon=True).start()
+        self._number += 1
+        self._waiting[self._number] = take
+        assert self._process.stdin is not None
+        with contextlib.suppress(OSError, ValueError):  # it ended: figures stay described
+            self._process.stdin.write(json.dumps({**request, "id": self._number}) + "\n")
+            self._process.stdin.flush()
+
+    def _listen(self, process: subprocess.Popen[str]) -> None:
+        assert process.stdout is not None
+        with contextlib.suppress(OSError, ValueError):  # closed on the way out
+            for line in process.stdout:
+                answer = json.loads(line)
+                self._waiting.pop(answer["id"])(answer)

@@ -93,7 +93,7 @@ def test_help_on_a_terminal_loads_nothing_heavy_either():
 def test_a_lesson_opens_without_numpy_and_matplotlib():
     """They cost a quarter of the time to the first page, and no page needs them."""
     modules = "course.cli.frame.app, course.cli.reading.commands, course.cli.reading.screen.app"
-    drawing = "course.cli.reading.screen.drawing, course.cli.reading.screen.practice"
+    drawing = "course.cli.reading.screen.running"
     ran = _python("-X", "importtime", "-c", f"import {modules}, {drawing}")
     loaded = {line.rpartition("|")[2].strip().partition(".")[0] for line in ran.stderr.splitlines()}
     assert "textual" in loaded

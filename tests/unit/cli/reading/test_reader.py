@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import signal
 import time
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -15,11 +16,13 @@ from course.catalog import blocks as b
 from course.catalog.load import Catalog
 from course.cli.frame.app import run
 from course.cli.frame.pictures import half_blocks
-from course.cli.reading.screen import showing
+from course.cli.reading.screen import page as paging
 from course.cli.reading.screen.app import ReaderApp
 from course.cli.reading.screen.asking import Edit
-from course.cli.reading.screen.telling import fitting
+from course.cli.reading.screen.items import CellItem, FigureItem
+from course.cli.reading.screen.page import fitting
 from course.progress.store import Store
+from course.reading.parts import Cell
 from course.reading.record import Place, Writer
 from tests.unit.cli.reading.driving import drive, screen, settled
 
@@ -49,7 +52,7 @@ def reading(
 
     async def left(app: ReaderApp, pilot: Any) -> None:
         await journey(app, pilot)
-        app.keep_place()
+        app.page.keep_place()
 
     try:
         drive(app, left, size)
@@ -62,14 +65,14 @@ async def ran(app: ReaderApp, pilot: Any) -> None:
     """Until the cell has ended."""
     for _ in range(1500):
         await pilot.pause(0.02)
-        if app._bench is None or app._bench.cell is None:
+        if app.page.bench is None or app.page.bench.cell is None:
             await pilot.pause(0.05)
             return
     pytest.fail("the cell never ended")
 
 
 async def to_question(app: ReaderApp, pilot: Any, number: int = 1) -> None:
-    question = app.progress.script.questions[number - 1]
+    question = app.page.progress.script.questions[number - 1]
     app._chosen(f"block:{question.index}")
     await pilot.pause()
 
@@ -85,17 +88,17 @@ async def to_question(app: ReaderApp, pilot: Any, number: int = 1) -> None:
 def test_every_lesson_is_read_by_space_alone_to_its_end(catalog, size):
     async def journey(app, pilot):
         for number, name in enumerate(catalog.lesson_ids(), 1):
-            app.open(name)
+            app.page.open(name)
             await settled(app, pilot)
-            assert not app.progress.read
+            assert not app.page.progress.read
             title = catalog.lesson(name).title.split(":")[0][:20]
             for _ in range(200):
-                if app.progress.read:
+                if app.page.progress.read:
                     break
                 shown = screen(app)
                 assert title in shown or f"Lesson {number} of" in shown  # where the title is too long
                 await pilot.press("space")
-            assert app.progress.read, name
+            assert app.page.progress.read, name
             assert "You have read this lesson." in screen(app)
 
     reading(catalog, journey, size=size)
@@ -106,19 +109,19 @@ def test_a_prediction_is_typed_kept_and_compared(catalog, tmp_path):
 
     async def journey(app, pilot):
         await to_question(app, pilot)
-        question = app.progress.script.questions[0]
+        question = app.page.progress.script.questions[0]
         assert "Enter predict" in screen(app)
-        cell = app.progress.script.shown_cells[0]
+        cell = app.page.progress.script.shown_cells[0]
         recorded = cell.output.splitlines()[0]
         everything = "\n".join("".join(s.text for s in line) for line in app.page.book.lines)
         assert recorded not in everything
         assert "then it is shown here" in everything
         await pilot.press("r")  # not yet
-        assert app._bench is None or app._bench.cell is None
+        assert app.page.bench is None or app.page.bench.cell is None
         await pilot.press("enter")
         await pilot.press(*"half a metre", "enter")
         await pilot.pause()
-        assert app.progress.prediction(question).text == "half a metre"
+        assert app.page.progress.prediction(question).text == "half a metre"
         everything = "\n".join("".join(s.text for s in line) for line in app.page.book.lines)
         assert recorded in everything
         assert "You said" in everything
@@ -159,17 +162,19 @@ def test_a_number_below_an_answer_judges_it_though_a_cell_is_at_hand(catalog, tm
     store = Store(tmp_path / "progress.sqlite")
 
     async def journey(app, pilot):
-        question = app.progress.script.questions[0]
-        app.progress.predict(question, "half")
-        app._rebuild(*range(question.index, question.end))
-        cell = next(c for c in app.progress.script.shown_cells if question.index < c.index < question.end)
+        question = app.page.progress.script.questions[0]
+        app.page.progress.predict(question, "half")
+        app.page.rebuild(*range(question.index, question.end))
+        cell = next(
+            c for c in app.page.progress.script.shown_cells if question.index < c.index < question.end
+        )
         app._chosen(f"block:{cell.index}")
         await pilot.pause(0.2)
-        assert app.page.item.kind == "cell"
+        assert isinstance(app.page.item, CellItem)
         assert "Were you right?" in screen(app)
         assert "1 right, 2 nearly, 3 wrong   r run" in screen(app)
         await pilot.press("2")
-        assert app.progress.prediction(question).judged == "nearly"
+        assert app.page.progress.prediction(question).judged == "nearly"
         await pilot.pause()
         assert "3 wrong" not in screen(app)
 
@@ -182,7 +187,7 @@ def test_a_skip_is_kept_too(catalog, tmp_path):
     async def journey(app, pilot):
         await to_question(app, pilot)
         await pilot.press("s")
-        assert app.progress.prediction(app.progress.script.questions[0]).skipped
+        assert app.page.progress.prediction(app.page.progress.script.questions[0]).skipped
 
     reading(catalog, journey, store=store)
     assert store.last("prediction", LESSON).data["text"] == ""
@@ -192,29 +197,29 @@ def test_a_cell_runs_is_changed_fails_is_stopped_and_reset(catalog, tmp_path):
     async def journey(app, pilot):
         await to_question(app, pilot)
         await pilot.press("s")
-        cell = app.progress.script.shown_cells[0]
+        cell = app.page.progress.script.shown_cells[0]
         app._chosen(f"block:{cell.index}")
         await pilot.pause()
         await pilot.press("r")
         await ran(app, pilot)
-        state = app.progress.cell(cell)
+        state = app.page.progress.cell(cell)
         assert (state.printed, state.error) == (cell.output, "")
         assert "prints the same" in screen(app)
-        app.progress.edit(cell, cell.source + "\nprint(1 / 0)")
+        app.page.progress.edit(cell, cell.source + "\nprint(1 / 0)")
         await pilot.press("r")
         await ran(app, pilot)
-        assert "ZeroDivisionError" in app.progress.cell(cell).error
-        app.progress.edit(cell, "while True:\n    pass")
+        assert "ZeroDivisionError" in app.page.progress.cell(cell).error
+        app.page.progress.edit(cell, "while True:\n    pass")
         await pilot.press("r")
         await pilot.pause(0.5)
         await pilot.resize_terminal(60, 30)  # in the middle of a cell
         await pilot.pause(0.2)
         await pilot.press("ctrl+c")
         await ran(app, pilot)
-        assert app.progress.cell(cell).error == "Stopped."
+        assert app.page.progress.cell(cell).error == "Stopped."
         await pilot.press("u", "r")
         await ran(app, pilot)
-        assert app.progress.cell(cell).printed == cell.output
+        assert app.page.progress.cell(cell).printed == cell.output
 
     reading(catalog, journey)
 
@@ -228,7 +233,7 @@ def test_nothing_that_takes_an_answer_as_read_is_on_the_screen_of_its_prediction
         assert "So why not always step implicitly?" in screen(app)
         await to_question(app, pilot, 9)
         await pilot.press("s")
-        app._show(app.page.book.layout.row(Place(app.progress.script.questions[8].answer)))
+        app.page.show(app.page.book.layout.row(Place(app.page.progress.script.questions[8].answer)))
         await pilot.pause()
         assert "The two implicit methods" in screen(app)
         assert "So why not always step implicitly?" in screen(app)
@@ -238,7 +243,7 @@ def test_nothing_that_takes_an_answer_as_read_is_on_the_screen_of_its_prediction
 
 def test_the_editor_keeps_runs_and_drops(catalog):
     async def journey(app, pilot):
-        cell = app.progress.script.shown_cells[0]
+        cell = app.page.progress.script.shown_cells[0]
         await to_question(app, pilot)
         await pilot.press("s")
         app._chosen(f"block:{cell.index}")
@@ -247,7 +252,7 @@ def test_the_editor_keeps_runs_and_drops(catalog):
         await pilot.pause()
         await pilot.press("x", "escape")
         await pilot.pause()
-        assert app.progress.cell(cell).source.startswith("x")
+        assert app.page.progress.cell(cell).source.startswith("x")
         await pilot.press("e")
         await pilot.pause()
         await pilot.press("y", "ctrl+d")
@@ -258,12 +263,12 @@ def test_the_editor_keeps_runs_and_drops(catalog):
         assert "again" not in app.screen.query_one(".box").border_subtitle
         await pilot.press("ctrl+d", "ctrl+d")
         await pilot.pause()
-        assert app.progress.cell(cell).source.startswith("xf")
+        assert app.page.progress.cell(cell).source.startswith("xf")
         await pilot.press("e")
         await pilot.pause()
         await pilot.press("ctrl+d", "u")
         await pilot.press("u")
-        assert app.progress.cell(cell).source == cell.source
+        assert app.page.progress.cell(cell).source == cell.source
 
     reading(catalog, journey)
 
@@ -273,24 +278,94 @@ def test_keys_that_come_in_a_burst_act_in_their_order(catalog):
     typed = ["end", *["backspace"] * 6, *"v2, v1", "home", "#", "ctrl+r"]
 
     async def journey(app, pilot):
-        edit = Edit("", "return v1, v2", "run")
         kept = []
+        edit = Edit("", "return v1, v2", kept.append, "run")
         app.push_screen(edit, kept.append)
         await pilot.pause()
         for key in typed:
             app.post_message(Key(key, key if len(key) == 1 else None))
         for _ in range(200):
             await pilot.pause(0.02)
-            if kept:
+            if len(kept) == 2:
                 break
-        assert kept == [("#return v2, v1", True)]
+        assert kept == ["#return v2, v1", True]
 
     reading(catalog, journey)
 
 
+async def editing(app: ReaderApp, pilot: Any) -> Cell:
+    """The first cell of the lesson, in the editor."""
+    cell = app.page.progress.script.shown_cells[0]
+    await to_question(app, pilot)
+    await pilot.press("s")
+    app._chosen(f"block:{cell.index}")
+    await pilot.pause()
+    await pilot.press("e")
+    await pilot.pause()
+    return cell
+
+
+def test_ctrl_c_in_the_editor_copies_what_is_selected_and_never_loses_what_was_typed(catalog):
+    async def journey(app, pilot):
+        cell = await editing(app, pilot)
+        await pilot.press(*"abc", "shift+left", "shift+left", "ctrl+c")
+        assert app.clipboard == "bc"
+        assert "Copied" in app.screen.query_one(".box").border_subtitle
+        await pilot.press("right", "d", "ctrl+c")
+        assert app.clipboard == "bc"
+        assert "Nothing is selected" in app.screen.query_one(".box").border_subtitle
+        await pilot.press("e", "ctrl+c")
+        assert isinstance(app.screen, Edit), "who goes on typing is asked again"
+        await pilot.press("ctrl+c")
+        await pilot.pause()
+        assert app.page.progress.cell(cell).source.startswith("abcde")
+        assert len(app.screen_stack) == 1
+
+    reading(catalog, journey)
+
+
+def test_ctrl_c_in_the_editor_stops_a_cell_that_runs(catalog):
+    async def journey(app, pilot):
+        cell = await editing(app, pilot)
+        await pilot.press(*"while 1: pass", "enter", "ctrl+r")
+        await pilot.pause(0.3)
+        await pilot.press("e", "x", "ctrl+c")
+        await ran(app, pilot)
+        assert app.page.progress.cell(cell).error == "Stopped."
+        await pilot.press("escape")
+        await pilot.pause()
+        assert app.page.progress.cell(cell).source.startswith("xwhile")
+
+    reading(catalog, journey)
+
+
+@pytest.mark.parametrize("how", ["ctrl+q", "SIGINT", "SIGTERM", "SIGHUP"])
+def test_what_is_typed_is_kept_however_the_reader_is_left(catalog, tmp_path, how):
+    store = Store(tmp_path / "progress.sqlite")
+    seen = []
+
+    async def journey(app, pilot):
+        await editing(app, pilot)
+        await pilot.press(*"abc")
+        if how.startswith("SIG"):
+            signal.raise_signal(getattr(signal, how))
+            await pilot.pause(0.2)
+        else:
+            await pilot.press(how)
+        assert app._exit
+
+    async def again(app, pilot):
+        seen.append(app.page.progress.cell(app.page.progress.script.shown_cells[0]).source)
+        assert "cell 1, changed" in screen(app)
+
+    reading(catalog, journey, store=store)
+    reading(catalog, again, store=store)
+    assert seen[0].startswith("abc")
+
+
 def test_the_editor_indents_after_a_colon_and_goes_to_both_ends(catalog):
     async def journey(app, pilot):
-        cell = app.progress.script.shown_cells[0]
+        cell = app.page.progress.script.shown_cells[0]
         await to_question(app, pilot)
         await pilot.press("s")
         app._chosen(f"block:{cell.index}")
@@ -299,7 +374,7 @@ def test_the_editor_indents_after_a_colon_and_goes_to_both_ends(catalog):
         await pilot.pause()
         await pilot.press("ctrl+end", "enter", *"if 1:  ", "enter", "1", "enter", "ctrl+home", "#", "escape")
         await pilot.pause()
-        changed = app.progress.cell(cell).source
+        changed = app.page.progress.cell(cell).source
         assert changed.startswith("#")
         assert changed.endswith("\n    if 1:  \n        1\n        "), "it stands in a loop"
 
@@ -326,12 +401,12 @@ def test_the_place_is_kept_to_the_line_at_another_width(catalog, tmp_path):
 
 
 def test_the_place_is_kept_by_a_window_that_closes_as_it_changes(catalog, tmp_path, monkeypatch):
-    monkeypatch.setattr(showing, "_SETTLED", 1e6)  # nothing is kept but by leaving
+    monkeypatch.setattr(paging, "_SETTLED", 1e6)  # nothing is kept but by leaving
     store = Store(tmp_path / "progress.sqlite")
 
     async def journey(app, pilot):
         await pilot.press("space", "space", "space")
-        app._lay_out(app.page.place())  # the rest of the lesson follows a moment later
+        app.page.lay_out(app.page.place())  # the rest of the lesson follows a moment later
         assert not app.page.book.whole
 
     app = reading(catalog, journey, store=store)
@@ -346,20 +421,20 @@ def test_links_search_contents_and_the_way_back(catalog):
         await pilot.pause()
         await pilot.press("enter")
         await settled(app, pilot)
-        assert app.progress.script.lesson.id != LESSON
+        assert app.page.progress.script.lesson.id != LESSON
         await pilot.press("backspace")
         await settled(app, pilot)
-        assert (app.progress.script.lesson.id, app.page.place()) == (LESSON, start)
+        assert (app.page.progress.script.lesson.id, app.page.place()) == (LESSON, start)
         await pilot.press("t")
         await pilot.pause()
         await pilot.press("end", "enter")
         await settled(app, pilot)
-        assert app.progress.script.lesson.id == catalog.lesson_ids()[-1]
+        assert app.page.progress.script.lesson.id == catalog.lesson_ids()[-1]
         link = next(item for item in app.page.book.items if item.target.startswith("lesson:"))
         app.page.item = link
         await pilot.press("enter")
         await settled(app, pilot)
-        assert app.progress.script.lesson.id == link.target.partition(":")[2].partition("#")[0]
+        assert app.page.progress.script.lesson.id == link.target.partition(":")[2].partition("#")[0]
 
     reading(catalog, journey)
 
@@ -371,8 +446,8 @@ def test_tab_reaches_everything_that_can_be_acted_on(catalog):
         for _ in range(4 * wanted):
             await pilot.press("tab")
             if app.page.item is not None:
-                seen.add((app.page.item.kind, app.page.item.block, app.page.item.number))
-        assert seen >= {(item.kind, item.block, item.number) for item in app.page.book.items}
+                seen.add((type(app.page.item), app.page.item.block, app.page.item.number))
+        assert seen >= {(type(item), item.block, item.number) for item in app.page.book.items}
 
     reading(catalog, journey, size=(60, 20), lesson="why-simulate")
 
@@ -426,18 +501,18 @@ def test_a_figure_is_known_by_its_block(catalog):
     for name in catalog.lesson_ids():
 
         async def journey(app, pilot):
-            script = app.progress.script
+            script = app.page.progress.script
             for question in script.questions:
-                app.progress.predict(question, "")
-            app._rebuild()
+                app.page.progress.predict(question, "")
+            app.page.rebuild()
             figures = [i for i, one in enumerate(script.blocks) if isinstance(one, b.Figure)]
-            assert [item.block for item in app.page.book.items if item.kind == "figure"] == figures
+            assert [item.block for item in app.page.book.items if isinstance(item, FigureItem)] == figures
 
         reading(catalog, journey, lesson=name)
 
 
 def test_a_file_that_is_there_is_not_overwritten(tmp_path: Path, monkeypatch):
-    from course.cli.reading.screen.machine import write_new
+    from course.cli.reading.screen.running import write_new
 
     monkeypatch.chdir(tmp_path)
     first, second = write_new("a-1.py", "x = 1\n"), write_new("a-1.py", "x = 2\n")
@@ -484,8 +559,10 @@ def test_a_block_that_is_laid_out_again_below_leaves_the_screen_as_it_was_cut(ca
         assert book is not None
         cut = page.end()
         assert cut < page.top + page.room
-        figures = [n for n, block in enumerate(app.progress.script.blocks) if isinstance(block, b.Figure)]
-        app._rebuild(figures[-1])
+        figures = [
+            n for n, block in enumerate(app.page.progress.script.blocks) if isinstance(block, b.Figure)
+        ]
+        app.page.rebuild(figures[-1])
         await pilot.pause()
         assert page.end() == cut
 

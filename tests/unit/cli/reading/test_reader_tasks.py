@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Awaitable, Callable
 from dataclasses import replace
 from pathlib import Path
@@ -13,8 +14,8 @@ from course.authoring.exercises.grading import solution_path
 from course.catalog import blocks as b
 from course.catalog.load import Catalog
 from course.cli.reading.screen.app import ReaderApp
-from course.cli.reading.screen.drawing import Drawer
-from course.cli.reading.screen.practice import Practice
+from course.cli.reading.screen.running import Drawer, Practice
+from course.errors import MissingCapabilityError
 from course.progress.workspace import Workspace
 from course.reading.parts import read_script, words_of
 from tests.unit.cli.reading.driving import drive, screen
@@ -47,7 +48,7 @@ def doing(
     app = ReaderApp(catalog, LESSON, practice=practice, pictures=pictures)
 
     async def there(app: ReaderApp, pilot: Any) -> None:
-        blocks = app.progress.script.blocks
+        blocks = app.page.progress.script.blocks
         index = next(i for i, one in enumerate(blocks) if isinstance(one, b.Task) and one.id == TASK)
         app._chosen(f"block:{index}")
         await pilot.pause()
@@ -62,10 +63,10 @@ def doing(
 
 async def answered(app: ReaderApp, pilot: Any) -> None:
     """Until nothing is being checked."""
-    assert app._practice is not None
+    assert app.page.practice is not None
     for _ in range(3000):
         await pilot.pause(0.02)
-        if not app._practice.of(TASK).busy:
+        if not app.page.practice.of(TASK).busy:
             await pilot.pause(0.1)
             return
     pytest.fail("the check never ended")
@@ -128,6 +129,65 @@ def test_its_file_is_changed_in_the_reader_too(catalog: Catalog, workspace: Work
         await pilot.pause(0.2)
         assert "Ctrl-R: keep and check" in app.screen.query_one(".box").border_subtitle
         await pilot.press("#", "escape")
+        await pilot.pause(0.2)
+
+    doing(catalog, workspace, journey)
+    assert (workspace.root / "warm-ups" / TASK / "which_line_first.py").read_text().startswith("#")
+
+
+@pytest.mark.parametrize("how", ["ctrl+q", "SIGTERM", "SIGHUP"])
+def test_what_is_typed_into_its_file_is_kept_however_the_reader_is_left(
+    catalog: Catalog, workspace: Workspace, how: str
+) -> None:
+    async def journey(app: ReaderApp, pilot: Any) -> None:
+        await pilot.press("e")
+        await pilot.pause(0.2)
+        await pilot.press("#")
+        if how.startswith("SIG"):
+            signal.raise_signal(getattr(signal, how))
+            await pilot.pause(0.2)
+        else:
+            await pilot.press(how)
+
+    doing(catalog, workspace, journey)
+    assert (workspace.root / "warm-ups" / TASK / "which_line_first.py").read_text().startswith("#")
+
+
+def test_a_file_that_was_not_changed_is_left_alone_when_the_reader_is_left(
+    catalog: Catalog, workspace: Workspace
+) -> None:
+    path = workspace.root / "warm-ups" / TASK / "which_line_first.py"
+
+    async def journey(app: ReaderApp, pilot: Any) -> None:
+        await pilot.press("e")
+        await pilot.pause(0.2)
+        path.write_text("# from another editor\n")
+        await pilot.press("ctrl+q")
+
+    doing(catalog, workspace, journey)
+    assert path.read_text() == "# from another editor\n"
+
+
+def test_what_cannot_be_written_stays_in_the_editor(
+    catalog: Catalog, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise MissingCapabilityError(
+            "The workspace cannot be written.", help="Make room.", code="not_writable"
+        )
+
+    async def journey(app: ReaderApp, pilot: Any) -> None:
+        await pilot.press("e")
+        await pilot.pause(0.2)
+        await pilot.press("#")
+        monkeypatch.setattr(app.page.practice, "write", refuse)
+        for key in ("escape", "ctrl+r", "ctrl+q"):
+            await pilot.press(key)
+            await pilot.pause(0.2)
+            box = app.screen.query_one(".box")
+            assert box.border_subtitle == "The workspace cannot be written."
+        monkeypatch.undo()
+        await pilot.press("escape")
         await pilot.pause(0.2)
 
     doing(catalog, workspace, journey)
@@ -217,10 +277,10 @@ def test_the_curve_of_a_failed_check_stands_above_its_finding(catalog: Catalog, 
     reply = {"ok": False, "checks": [CHECK], "curves": [words | numbers]}
 
     async def journey(app: ReaderApp, pilot: Any) -> None:
-        practice = app._practice
+        practice = app.page.practice
         practice.start(TASK)
         practice._standings[TASK] = replace(practice.of(TASK), reply=reply)
-        app._show_answer(TASK)
+        app.page.show_answer(TASK)
         for _ in range(1500):
             await pilot.pause(0.02)
             if "q over time" in screen(app):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from course.handed_in import MAX_CODE
+
 
 def test_check_says_message_then_advice_then_numbers(course, write):
     write("wrong", "RIGHT")

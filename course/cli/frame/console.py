@@ -14,6 +14,7 @@ from __future__ import annotations
 import contextlib
 import io
 import os
+import re
 import shutil
 import sys
 import textwrap
@@ -87,11 +88,18 @@ class Stream:
 Piece = str | tuple[str, str]
 
 
+#: A command that people copy: what stands between backticks or after a colon, or how something is installed.
+_PASTED = re.compile(r"`[^`\n]+`|pip install '[^\n]+|(?<=: )(?:course|jupyter)(?: [\w./#'=-]+)+")
+
+
 def filled(row: str, width: int, margin: str = "", hanging: int = 0) -> str:
-    """One row as several, broken between words only."""
+    """One row as several, broken between words only, and never within a command: what is copied is whole."""
     wrapper = textwrap.TextWrapper(width, margin, margin + " " * hanging)
     wrapper.break_long_words = wrapper.break_on_hyphens = False
-    return wrapper.fill(row)
+    return wrapper.fill(_PASTED.sub(lambda piece: piece[0].replace(" ", _GLUE), row)).replace(_GLUE, " ")
+
+
+_GLUE = "\0"
 
 
 def bare(piece: Piece) -> str:
@@ -273,7 +281,13 @@ class Console:
         from rich.padding import Padding
 
         text = rich_text(pieces)
-        if max(map(len, text.plain.split()), default=0) > self.width - indent:
+        if _PASTED.search(text.plain) and "\n" not in text.plain:
+            start, width = 0, self.width - indent
+            for row in filled(text.plain, width).split("\n"):
+                start = text.plain.index(row, start)
+                self.rich().print(rich_text((" " * indent,)) + text[start : start + len(row)], soft_wrap=True)
+                start += len(row)
+        elif max(map(len, text.plain.split()), default=0) > self.width - indent:
             self.rich().print(rich_text((" " * indent, *pieces)), soft_wrap=True)
         else:
             self.rich().print(Padding(text, (0, 0, 0, indent)) if indent else text)

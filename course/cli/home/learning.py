@@ -192,13 +192,21 @@ def _show_mistakes(console: Console, mistakes: Sequence[MistakeState]) -> None:
     )
 
 
+#: So many mistakes that are open and so many that are mended are shown, the newest of each.
+_OPEN, _MENDED = 5, 3
+
+
 def _show_some(console: Console, what: str, done: str, mistakes: Sequence[MistakeState]) -> None:
     """How many, and each with the day it was made or fixed."""
     if not mistakes:
         return
     fixed = sum(one.mended_at is not None for one in mistakes)
     console.heading(what, f"{len(mistakes)} {done}, {fixed} fixed")
+    shown = [one for one in mistakes if not one.mended_at][-_OPEN:]
+    shown += [one for one in mistakes if one.mended_at][-_MENDED:]
     for one in mistakes:
+        if one not in shown:
+            continue
         seen = f"in {one.runs} checks since" if one.runs > 1 else "seen"
         state = (
             f"fixed {day(one.mended_at)}" if one.mended_at else f"not fixed yet, {seen} {day(one.first_seen)}"
@@ -206,6 +214,8 @@ def _show_some(console: Console, what: str, done: str, mistakes: Sequence[Mistak
         # A diagnosis of a check's own code has no words here; its name is made of words.
         words = one.looks_like or f"{one.diagnosis.replace('_', ' ').capitalize()}."
         console.line(f"{one.title} ({one.exercise}), {state}: {words}", indent=2)
+    if len(shown) < len(mistakes):
+        console.line(f"And {len(mistakes) - len(shown)} more, in `course progress --json`.", indent=2)
 
 
 def _in_words(counts: PredictionsOf) -> str:

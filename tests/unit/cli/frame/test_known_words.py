@@ -6,6 +6,7 @@ import json
 
 import pytest
 
+from course.cli.frame.console import filled
 from course.cli.frame.registry import ALSO, COMMANDS
 from course.errors import CourseError
 
@@ -86,3 +87,19 @@ def test_help_is_grouped_by_use_and_offers_what_works_here(course, monkeypatch):
 
     monkeypatch.setattr("course.cli.frame.registry.content", nowhere)
     assert course("--help", "--plain").code == 0
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "`course grade rerun 'my grades' --against 1`",
+        "pip install 'starlette>=7.5' 'uvicorn<9,>=8' 'websockets'",
+    ],
+)
+def test_a_command_that_is_copied_is_never_broken(command):
+    rows = filled(f"Grade these again with what the run itself had been graded with: {command}", 40).split(
+        "\n"
+    )
+    assert len(rows) > 1
+    assert any(command in row for row in rows)
+    assert all(len(row) <= 40 for row in rows if command not in row)

@@ -220,13 +220,18 @@ _HOW = """\
 ## Work in the cells below
 
 Write each function in its cell, run the cell, then run the check below it. Only the cells with your functions
-are graded, and whatever other cells define that they use; plots, experiments and outputs are yours. Save the
-notebook and hand it in with `course submit`, or check the whole file from a terminal with
-`course notebook check {file}`."""
+are graded, and whatever other cells define that they use; plots, experiments and outputs are yours. After a
+check that failed, `%course_hint {exercise}` gives a hint. From a terminal, `course notebook check {file}`
+checks the whole file."""
 _LAST = """\
 ## All of it
 
 All public checks at once; the hidden ones run when it is graded."""
+_HAND_IN = """\
+## Hand in
+
+Save the notebook, take the # away and run the cell: it checks what goes in, just as it will be read when it
+is graded, and writes one file. Upload that file where your instructor wants it."""
 #: A link between files of the course: a notebook may lie anywhere, so it cannot follow it.
 _LINK = re.compile(r"\[([^\]]+)\]\((lesson|exercise):([a-z0-9-]+)[^)]*\)")
 _REPORT = """\
@@ -253,7 +258,8 @@ def exercise_cells(exercise: Exercise, source: str) -> list[Cell]:
     readme = _LINK.sub(_as_command, exercise.readme_path.read_text(encoding="utf-8"))
     first, *rest = _sections(readme)
     cells = [opening(first), *map(markdown, rest)]
-    cells.append(markdown(f"{_HOW.format(file=exercise.stub_path.with_suffix('.ipynb').name)}\n\n{about}"))
+    file = exercise.stub_path.with_suffix(".ipynb").name
+    cells.append(markdown(f"{_HOW.format(file=file, exercise=exercise.id)}\n\n{about}"))
     cells.append(code(_LOAD, role="tools", exercise=exercise.id))
     for part in parts:
         if not part.task:
@@ -271,6 +277,8 @@ def exercise_cells(exercise: Exercise, source: str) -> list[Cell]:
     if has_report(exercise):
         cells.append(markdown(_REPORT))
         cells.append(code(f"%course_report {exercise.id}", role="report", exercise=exercise.id))
+    cells.append(markdown(_HAND_IN))
+    cells.append(code(f"# %course_submit {exercise.id}", role="hand-in", exercise=exercise.id))
     return cells
 
 

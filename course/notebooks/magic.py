@@ -1,4 +1,4 @@
-"""``%course_check``: the public checks inside a notebook, through the same boundary as in a terminal.
+"""``%course_check`` and its kin: checks in a notebook, through the same boundary as in a terminal.
 
 With ``%%course_check`` at its head, a cell is the whole file and does not run in the kernel. Otherwise the
 text of the notebook is checked, as it would be handed in, and not the objects in the kernel: the functions
@@ -9,8 +9,12 @@ a workspace the attempt is recorded as `course check` records it.
 from __future__ import annotations
 
 import ast
+import os
 import re
+import subprocess
+import sys
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, TypeVar
 
 from course.catalog.load import Catalog
@@ -28,7 +32,7 @@ T = TypeVar("T")
 
 
 def register(shell: Any) -> None:
-    """Add ``%course_check`` and ``%course_report`` to an IPython shell."""
+    """Add the course's magics to an IPython shell."""
     shell.course_runs = Runs(shell)
 
     def course_check(line: str, cell: str | None = None) -> CheckTable | None:
@@ -43,8 +47,36 @@ def register(shell: Any) -> None:
         usage = "" if len(words) == 1 else "Write: %course_report EXERCISE"
         return _told(usage, lambda: report(shell, *words))
 
+    def course_hint(line: str) -> None:
+        """The next hint, after a check that failed: %course_hint EXERCISE [FUNCTION]"""
+        first, *rest = line.split() or [""]
+        words = [first, *(f"--task={task}" for task in rest)]
+        _told(
+            "" if first and len(rest) < 2 else "Write: %course_hint EXERCISE [FUNCTION]",
+            partial(_run, "hint", *words),
+        )
+
+    def course_progress(line: str) -> None:
+        """What you have done in this workspace: %course_progress"""
+        _told("" if not line else "Write: %course_progress", partial(_run, "progress"))
+
+    def course_submit(line: str) -> None:
+        """Write the file to hand in: %course_submit [EXERCISE ...]"""
+        _run("submit", *line.split())
+
     shell.register_magic_function(course_check, "line_cell", "course_check")
-    shell.register_magic_function(course_report, "line", "course_report")
+    for magic in (course_report, course_hint, course_progress, course_submit):
+        shell.register_magic_function(magic, "line", magic.__name__)
+
+
+def _run(*words: str) -> None:
+    """Run a command of the course as a terminal would, in the notebook's folder, and show what it says."""
+    done = subprocess.run(
+        [sys.executable, "-P", "-m", "course", *words],
+        capture_output=True, encoding="utf-8", errors="replace", check=False,
+        env={**os.environ, "PYTHONIOENCODING": "utf-8", "NO_COLOR": "1"},
+    )  # fmt: skip
+    print((done.stdout + done.stderr).rstrip("\n"))  # noqa: T201 - a cell's output is its screen
 
 
 def _told(wrong: str, act: Callable[[], T]) -> T | None:

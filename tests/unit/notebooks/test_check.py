@@ -237,3 +237,30 @@ def test_the_curve_of_a_failed_check_is_drawn_and_said(
     assert page.count('src="data:image/png;base64,') == 1
     mended = f"{head}    return q + h * v, v + h * accel(t, q, v)\n"
     assert "<img" not in check("integrators", "explicit_euler_step", source=[mended])._repr_html_()
+
+
+def test_hints_progress_and_handing_in_need_no_terminal(
+    here: Workspace, capsys: pytest.CaptureFixture[str]
+) -> None:
+    magics: dict[str, Callable[..., None]] = {}
+
+    class Registered:
+        events = SimpleNamespace(register=lambda *_: None)
+
+        def register_magic_function(self, made: Callable[..., None], _kind: str, name: str) -> None:
+            magics[name] = made
+
+    magic.register(Registered())
+    capsys.readouterr()
+    magics["course_hint"]("")
+    assert "Write: %course_hint EXERCISE [FUNCTION]" in capsys.readouterr().out
+    Path("doubling.py").write_text(f"{DOUBLE}\n\n\ndef doublings(x, n):\n    return [x]\n")
+    app.run(("check", "doubling"))
+    capsys.readouterr()
+    magics["course_hint"]("doubling doublings")
+    assert "doublings" in capsys.readouterr().out
+    magics["course_progress"]("")
+    assert "checked 1 time" in capsys.readouterr().out
+    magics["course_submit"]("doubling")
+    assert "doubling-submission.zip" in capsys.readouterr().out
+    assert (here.root / "doubling-submission.zip").is_file()

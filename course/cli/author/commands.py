@@ -365,6 +365,7 @@ def _emit_report(console: Console, catalog: Catalog, report: AuditReport) -> Non
         filled(
             AuthorCheck,
             report,
+            ok=report.ok,
             exit_code=0 if report.ok else 1,
             course=course,
             seconds=round(report.seconds, 3),

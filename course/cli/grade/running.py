@@ -292,6 +292,7 @@ def _show_summary(
                 GradeSummary,
                 summary,
                 ok=summary.exit_code == 0,
+                exit_code=summary.exit_code,
                 graded=summary.states["graded"],
                 ungradable=summary.states["ungradable"],
                 grader_error=summary.states["grader_error"],

@@ -264,7 +264,9 @@ def test_holding_a_body_still_costs_nothing(data, aside) -> None:
     assert np.abs(world.state()[row, 3:5]).max() < 1e-2
     size = float(np.ptp(np.array(part.outline), axis=0).max()) if part.outline else 2 * part.radius
     worth = 0.01 * part.mass * 9.81 * size
-    assert abs(after.given - before.given) < worth
+    # Where the hand pulls a body up beside its rod's upright, it may still creep; what it gains is its own.
+    gained = after.kinetic + after.potential - before.kinetic - before.potential
+    assert abs(after.given - before.given - gained) < worth
     assert abs(after.residual - before.residual) < worth
 
 

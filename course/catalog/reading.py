@@ -9,6 +9,7 @@ from __future__ import annotations
 import difflib
 import re
 import tomllib
+from bisect import bisect_left
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
@@ -24,20 +25,19 @@ from course.errors import ContentError
 # On which line of a TOML text a value stands.
 #
 # ``tomllib`` throws positions away and msgspec names a value by its path (``$.task[2].points``). ``LineMap``
-# joins the two: asked for the first time, it walks the text and remembers where each table, key and array
-# item begins. A text without faults is not asked about. It expects one that ``tomllib`` accepted, so it needs
-# to tell tokens apart and nothing more.
+# joins the two: asked for the first time, it reads one statement after the other and remembers where each
+# begins. A value inside one begins on the first line up to which the statement, ended there as TOML would
+# have it, has that value. A text without faults is not asked about. It expects one that ``tomllib`` accepted.
 
 
 Keys: TypeAlias = "tuple[str | int, ...]"
 
 _STEP = re.compile(r"\.(?P<name>[^.\[]+)|\[(?P<index>\d+)\]|\[\.\.\.\]")
-_KEY = re.compile(r"""[ \t]*(?P<key>"(?:\\.|[^"\\\n])*"|'[^'\n]*'|[A-Za-z0-9_-]+)[ \t]*""")
-_STRING = re.compile(
-    r'"""(?:\\.|[^\\])*?"{3,5}|' + r"'''.*?'{3,5}|" + r'"(?:\\.|[^"\\\n])*"|' + r"'[^'\n]*'", re.DOTALL
+_TOKEN = re.compile(
+    r'"""(?:\\.|[^\\])*?"{3,5}|' + r"'''.*?'{3,5}|" + r'"(?:\\.|[^"\\\n])*"|'
+    r"'[^'\n]*'|#[^\n]*|[\[\]{}\n]",
+    re.DOTALL,
 )
-_BLANK = re.compile(r"(?:[ \t\r\n,]+|#[^\n]*)*")
-_SCALAR = re.compile(r"[^,\]}\n#]+")
 _SYNTAX_LINE = re.compile(r"\(at line (\d+), column \d+\)")
 
 
@@ -73,124 +73,84 @@ class LineMap:
     """
 
     def __init__(self, text: str, first_line: int = 1) -> None:
-        self._text = text.replace("\r\n", "\n")
+        self._lines = text.replace("\r\n", "\n").split("\n")
         self._first = first_line
-        self._found: dict[Keys, int] = {}
-        self._arrays: dict[Keys, int] = {}
-
-    @cached_property
-    def _lines(self) -> dict[Keys, int]:
-        self._read_document()
-        return self._found
 
     def line(self, path: Keys | str) -> int:
         """The line on which the value at ``path`` begins, else that of the nearest thing around it."""
         steps = parse_path(path) if isinstance(path, str) else path
-        while steps:
-            if steps in self._lines:
-                return self._lines[steps]
-            steps = steps[:-1]
-        return self._first
+        depth = next((n for n in range(len(steps), 0, -1) if steps[:n] in self._statements), 0)
+        if not depth:
+            return self._first
+        table, begin, end = self._statements[steps[:depth]]
+        inner = steps[table:]
+        while len(inner) > depth - table and not self._has(inner, begin, end):
+            inner = inner[:-1]
+        begins = bisect_left(range(end), True, begin, key=lambda at: self._has(inner, begin, at))
+        return self._first + begins
 
     def key_line(self, path: Keys | str, key: str) -> int:
         """The line of ``key`` inside the table at ``path``; the table's own where it has no such key."""
         steps = parse_path(path) if isinstance(path, str) else path
         return self.line((*steps, key))
 
-    def _note(self, path: Keys, position: int) -> None:
-        self._found.setdefault(path, self._first + self._text.count("\n", 0, position))
-
-    def _read_document(self) -> None:
-        table: Keys = ()
-        position = _skip(self._text, 0)
-        while position < len(self._text):
-            if self._text[position] == "[":
-                table, position = self._read_header(position)
+    @cached_property
+    def _ends(self) -> list[str]:
+        """What would end the statement at the end of each line; nothing where it ends there."""
+        ends, inside = [], ""
+        for match in _TOKEN.finditer("\n".join((*self._lines, ""))):
+            token = match[0]
+            if token == "\n":
+                ends.append(inside)
+            elif token in ("[", "{"):
+                inside = f"{']' if token == '[' else '}'}{inside}"
+            elif token in ("]", "}"):
+                inside = inside[1:]
             else:
-                position = self._read_pair(table, position)
-            position = _skip(self._text, position)
+                ends += [token[:3] + inside] * token.count("\n")
+        return ends
 
-    def _read_header(self, position: int) -> tuple[Keys, int]:
-        """``[a.b]`` or ``[[a.b]]``: the table that the following pairs belong to."""
-        doubled = self._text.startswith("[[", position)
-        keys, end = self._read_keys(position + (2 if doubled else 1))
-        path = self._resolve(keys[:-1])
-        if doubled:
-            array = (*path, keys[-1])
-            index = self._arrays.get(array, 0)
-            self._arrays[array] = index + 1
-            self._note(array, position)
-            path = (*array, index)
-        else:
-            path = self._resolve(keys)
-        self._note(path, position)
-        return path, end + (2 if doubled else 1)
+    @cached_property
+    def _statements(self) -> dict[Keys, tuple[int, int, int]]:
+        """By path, the first statement with it: the length of its table's path, its first and last line."""
+        found: dict[Keys, tuple[int, int, int]] = {}
+        latest: dict[Keys, int] = {}  # of arrays of tables, which a header means by the array's name
+        table: Keys = ()
+        begin = 0
+        for at, end in enumerate(self._ends):
+            if end:
+                continue
+            data: Any = self._read(begin, at)
+            is_header = self._lines[begin].lstrip().startswith("[")
+            path = () if is_header else table
+            place = len(path), begin, at
+            while isinstance(data, dict) and len(data) == 1:
+                ((key, data),) = data.items()
+                path = (*path, key)
+                if is_header and isinstance(data, list):
+                    latest[path] = latest.get(path, -1) + 1
+                if isinstance(data, list) or not is_header:
+                    found.setdefault(path, place)
+                if is_header and path in latest:
+                    path = (*path, latest[path])
+            if is_header:
+                found.setdefault(path, place)
+                table = path
+            begin = at + 1
+        return found
 
-    def _resolve(self, keys: tuple[str, ...]) -> Keys:
-        """A header's keys as a path: through an array of tables it means the array's latest table."""
-        path: Keys = ()
-        for key in keys:
-            path = (*path, key)
-            if path in self._arrays:
-                path = (*path, self._arrays[path] - 1)
-        return path
+    def _read(self, begin: int, at: int) -> dict[str, Any]:
+        """The statement that begins on a line, as far as it goes up to the end of another."""
+        return tomllib.loads("\n".join((*self._lines[begin : at + 1], self._ends[at])))
 
-    def _read_keys(self, position: int) -> tuple[tuple[str, ...], int]:
-        """A key, dotted or not, and the position behind it."""
-        keys: list[str] = []
-        while True:
-            match = _KEY.match(self._text, position)
-            if match is None:
-                return tuple(keys) or ("",), position + 1
-            raw = match["key"]
-            keys.append(next(iter(tomllib.loads(f"{raw} = 0"))) if raw[0] in "\"'" else raw)
-            position = match.end()
-            if not self._text.startswith(".", position):
-                return tuple(keys), position
-            position += 1
-
-    def _read_pair(self, table: Keys, position: int) -> int:
-        keys, end = self._read_keys(position)
-        for depth in range(1, len(keys) + 1):
-            self._note((*table, *keys[:depth]), position)
-        if self._text.startswith("=", end):
-            end += 1
-        while end < len(self._text) and self._text[end] in " \t":
-            end += 1
-        return self._read_value((*table, *keys), end)
-
-    def _read_value(self, path: Keys, position: int) -> int:
-        """Notes what is inside a value; returns the position behind it, which is always further on."""
-        opener = self._text[position : position + 1]
-        if opener == "[":
-            return self._read_array(path, position + 1)
-        if opener == "{":
-            return self._read_inline_table(path, position + 1)
-        match = _STRING.match(self._text, position) or _SCALAR.match(self._text, position)
-        return match.end() if match else position + 1
-
-    def _read_array(self, path: Keys, position: int) -> int:
-        index = 0
-        while (position := _skip(self._text, position)) < len(self._text):
-            if self._text[position] == "]":
-                return position + 1
-            self._note((*path, index), position)
-            position = self._read_value((*path, index), position)
-            index += 1
-        return position
-
-    def _read_inline_table(self, path: Keys, position: int) -> int:
-        while (position := _skip(self._text, position)) < len(self._text):
-            if self._text[position] == "}":
-                return position + 1
-            position = self._read_pair(path, position)
-        return position
-
-
-def _skip(text: str, position: int) -> int:
-    """The position of the next thing that is neither space, comma nor comment."""
-    match = _BLANK.match(text, position)
-    return match.end() if match else position
+    def _has(self, path: Keys, begin: int, at: int) -> bool:
+        value: Any = self._read(begin, at)
+        try:
+            for step in path:
+                value = value[step]
+        except (KeyError, IndexError, TypeError):
+            return False
+        return True
 
 
 T = TypeVar("T")

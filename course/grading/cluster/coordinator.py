@@ -18,7 +18,14 @@ from typing import Protocol, TypeAlias
 from course.errors import CourseError, InternalError, MissingCapabilityError
 from course.grading.cluster.worker import FORMAT, Answers, Batch, decode_answers, encode
 from course.grading.intake.students import Entry
-from course.grading.running.batch import MAX_TRIES, Graded, as_error, killed_its_grader, without_grading
+from course.grading.running.batch import (
+    MAX_TRIES,
+    Graded,
+    as_error,
+    job_of,
+    killed_its_grader,
+    without_grading,
+)
 from course.grading.running.grader import Job
 from course.scoring.judging.submission import Terms
 from course.scoring.verdict import Problem
@@ -173,9 +180,7 @@ class _Coordinator:
             if entry is None:
                 return
             if entry.submission is not None:
-                exercise = entry.exercise
-                job = Job(exercise.id, dict(entry.submission.files), self._version(exercise.id))
-                self._waiting.append(_Work(entry, job))
+                self._waiting.append(_Work(entry, job_of(entry, self._version(entry.exercise.id))))
             elif entry.problem is not None:
                 self._done.append(Graded(entry, without_grading(entry, "ungradable", entry.problem)))
 

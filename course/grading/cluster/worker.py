@@ -24,11 +24,10 @@ from typing import TypeVar
 import msgspec
 
 from course.errors import CourseError, InternalError
-from course.grading.pipes import read_frame, write_frame
-from course.grading.running.batch import MAX_TRIES, answer_to, hang_s, start_grader
+from course.grading.running.batch import WarmGrader, start_grader
 from course.grading.running.grader import Answer, Config, Job
 from course.grading.running.snapshot import Snapshot, frozen, in_use
-from course.scoring.judging.submission import Submission, Terms
+from course.scoring.judging.submission import Terms
 from course.scoring.verdict import Problem
 
 # ---
@@ -184,69 +183,23 @@ def _answers(batch: Batch) -> Iterator[Answer]:
         _give_back(grader)
 
 
-class _WarmGrader:
-    """A grader process, started when there is something to grade and replaced when it dies.
+class _WarmGrader(WarmGrader):
+    """One that ends when it has had no work for a while; its processor is chosen when it starts."""
 
-    Args:
-        config: how to grade; the processor is chosen here.
-    """
-
-    def __init__(self, config: Config) -> None:
-        self.config = config
-        self._process: subprocess.Popen[bytes] | None = None
-        self._seat: socket.socket | None = None
-        self._retirement: threading.Timer | None = None
-
-    def answer(self, job: Job) -> Answer:
-        """The grader's answer; an empty one if this submission killed every grader it was given to.
-
-        Raises:
-            InternalError: no grader can be started here.
-        """
-        for _ in range(MAX_TRIES):
-            answer = self._ask(job)
-            if answer is not None:
-                return answer
-            self.close()
-        return Answer(number=job.number, sha256=Submission(job.files).sha256)
-
-    def _ask(self, job: Job) -> Answer | None:
-        process = self._process or self._start()
-        assert process.stdin is not None
-        assert process.stdout is not None
-        too_long = threading.Timer(hang_s(self.config.terms.timeout), process.kill)
-        too_long.daemon = True
-        too_long.start()
-        try:
-            with contextlib.suppress(BrokenPipeError):  # it died: reading from it will say so
-                write_frame(process.stdin, job)
-            frame = read_frame(process.stdout)
-        finally:
-            too_long.cancel()
-        return answer_to(job, frame)
+    _seat: socket.socket | None = None
+    _retirement: threading.Timer | None = None
 
     def _start(self) -> subprocess.Popen[bytes]:
-        for _ in range(MAX_TRIES):
-            number, self._seat = _take_seat()
-            process = self._process = start_grader(msgspec.structs.replace(self.config, processor=number))
-            assert process.stdout is not None
-            if read_frame(process.stdout) is not None:
-                return process
-            self.close()
-        raise InternalError(
+        number, self._seat = _take_seat()
+        return start_grader(msgspec.structs.replace(self.config, processor=number))
+
+    def _cannot_start(self) -> InternalError:
+        return InternalError(
             "A grader process cannot start there.", help="The worker's log has what it printed."
         )
 
-    def close(self) -> None:
-        """End the process; the next job gets another one."""
-        process, self._process = self._process, None
-        if process is not None:
-            process.kill()  # its sandbox ends with it
-            process.wait()
-            for pipe in (process.stdin, process.stdout):
-                with contextlib.suppress(OSError):
-                    if pipe is not None:
-                        pipe.close()
+    def close(self, patience_s: float = 0.0) -> None:
+        super().close(patience_s)
         if self._seat is not None:
             self._seat.close()
             self._seat = None

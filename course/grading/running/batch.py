@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import contextlib
 import os
-import selectors
 import subprocess
 import sys
+import threading
 import time
-from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from typing import Self
 
@@ -27,7 +27,7 @@ from course.grading.running.grader import Answer, Config, Job
 from course.grading.running.snapshot import in_use
 from course.isolation.deadline import WALL
 from course.isolation.launch import keep_private, sweep_after_the_dead
-from course.scoring.judging.submission import Terms
+from course.scoring.judging.submission import Submission, Terms
 from course.scoring.remote import BUDGET_S
 from course.scoring.verdict import Problem, Verdict, not_graded
 
@@ -50,24 +50,6 @@ class Graded:
     verdict: Verdict
     version: str = ""
     asked: Mapping[str, Sequence[str]] = field(default_factory=dict)
-
-
-@dataclass
-class _Work:
-    entry: Entry
-    job: Job
-    tries: int = 0
-
-
-@dataclass
-class _Grader:
-    """A grader process and the work it has in hand."""
-
-    number: int
-    process: subprocess.Popen[bytes]
-    work: _Work | None = None
-    ready: bool = False
-    since: float = field(default_factory=time.monotonic)
 
 
 def grade_all(entries: Iterable[Entry], terms: Terms, *, graders: int = 1) -> Iterator[Graded]:
@@ -105,9 +87,93 @@ def start_grader(config: Config) -> subprocess.Popen[bytes]:
     return process
 
 
-def hang_s(timeout: float) -> float:
-    """Wall seconds after which a grader hangs: longer than a submission may take by its own deadlines."""
-    return WALL * (BUDGET_S + timeout) + 30.0
+class WarmGrader:
+    """A grader process, started when there is something to grade and replaced when it dies.
+
+    Args:
+        config: how to grade.
+    """
+
+    def __init__(self, config: Config) -> None:
+        self.config = config
+        self._process: subprocess.Popen[bytes] | None = None
+        self._over = False
+
+    def answer(self, job: Job) -> Answer:
+        """The grader's answer; an empty one if this submission killed every grader it was given to.
+
+        Raises:
+            InternalError: no grader can be started here.
+        """
+        for _ in range(MAX_TRIES):
+            answer = _answer_to(job, self._said(self._process or self._started(), job))
+            if answer is not None:
+                return answer
+            self.close()
+        return Answer(number=job.number, sha256=Submission(job.files).sha256)
+
+    def _started(self) -> subprocess.Popen[bytes]:
+        for _ in range(MAX_TRIES):
+            if self._over:
+                break
+            process = self._process = self._start()
+            if self._said(process) is not None:
+                return process
+            self.close()
+        raise self._cannot_start()
+
+    def _start(self) -> subprocess.Popen[bytes]:
+        return start_grader(self.config)
+
+    def _cannot_start(self) -> InternalError:
+        return InternalError("A grader process cannot start; what it printed is above.")
+
+    def _said(self, process: subprocess.Popen[bytes], job: Job | None = None) -> bytes | None:
+        """What a process says to a job, or first of all; None once it is dead.
+
+        One that hangs, longer than a submission may take by its own deadlines, or was stopped, is killed.
+        """
+        until = time.monotonic() + WALL * (BUDGET_S + self.config.terms.timeout) + 30.0
+        heard = threading.Event()
+
+        def watch() -> None:
+            while not heard.wait(_TICK_S):
+                if self._over or time.monotonic() > until or _is_stopped(process.pid):
+                    process.kill()  # its pipes close
+
+        threading.Thread(target=watch, daemon=True).start()
+        assert process.stdin is not None
+        assert process.stdout is not None
+        try:
+            with contextlib.suppress(BrokenPipeError):  # it died: reading from it will say so
+                if job is not None:
+                    write_frame(process.stdin, job)
+            return read_frame(process.stdout)
+        finally:
+            heard.set()
+
+    def end(self) -> None:
+        """Have the thread that waits for an answer wait no longer, and start no other process."""
+        self._over = True
+        process = self._process
+        if process is not None:
+            process.kill()
+
+    def close(self, patience_s: float = 0.0) -> None:
+        """End the process, which has so many seconds to clean up; the next job gets another one."""
+        process, self._process = self._process, None
+        if process is None:
+            return
+        with contextlib.suppress(OSError):
+            if process.stdin:
+                process.stdin.close()  # it ends at end of file, its sandbox with it
+        try:
+            process.wait(patience_s)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+        if process.stdout:
+            process.stdout.close()
 
 
 class Graders:
@@ -119,16 +185,11 @@ class Graders:
     """
 
     def __init__(self, terms: Terms, graders: int) -> None:
-        self._entries: Iterator[Entry] = iter(())
-        self._terms = terms
         self._frozen = in_use(terms.graders)
         self._places = graders
-        self._again: deque[_Work] = deque()
-        self._done: deque[Graded] = deque()
-        self._graders: dict[int, _Grader] = {}
-        self._selector = selectors.DefaultSelector()
-        self._hang_s = hang_s(terms.timeout)  # only a fault of ours gets here
-        self._false_starts = 0
+        self._graders = [WarmGrader(Config(terms, number)) for number in range(graders)]
+        self._idle = self._graders[::-1]
+        self._threads = ThreadPoolExecutor(graders)
 
     def __enter__(self) -> Self:
         return self
@@ -138,138 +199,44 @@ class Graders:
 
     def grade(self, entries: Iterable[Entry]) -> Iterator[Graded]:
         """As ``grade_all``; a class must be finished before the next is begun."""
-        self._entries = iter(entries)
-        for number in range(self._places):
-            if not self._feed(number):
-                break
+        entries = iter(entries)
+        at_work: dict[Future[Answer], Entry] = {}
+        arrived: list[tuple[Entry, Answer]] = []
         while True:
-            while self._done:
-                yield self._done.popleft()
-            if not any(grader.work for grader in self._graders.values()):
-                if not self._again:
-                    return
-                self._feed(next(iter(self._graders), 0))
-                continue
-            for key, _ in self._selector.select(_TICK_S):
-                self._collect(self._graders[key.data])
-            self._end_hung()
+            while len(at_work) < self._places and (entry := next(entries, None)) is not None:
+                if entry.submission is not None:
+                    version = self._frozen.version(entry.exercise.id) if self._frozen else ""
+                    at_work[self._threads.submit(self._answer, job_of(entry, version))] = entry
+                elif entry.problem is not None:
+                    yield Graded(entry, without_grading(entry, "ungradable", entry.problem))
+            for entry, answer in arrived:
+                if answer.error is not None:
+                    raise as_error(answer.error, answer.exit_code)
+                verdict = answer.verdict or without_grading(entry, "grader_error", killed_its_grader())
+                yield Graded(entry, verdict, answer.version, answer.asked)
+            if not at_work:
+                return
+            done, _ = wait(at_work, return_when=FIRST_COMPLETED)
+            arrived = [(at_work.pop(future), future.result()) for future in done]
+
+    def _answer(self, job: Job) -> Answer:
+        grader = self._idle.pop()
+        try:
+            return grader.answer(job)
+        finally:
+            self._idle.append(grader)
 
     def close(self) -> None:
         """End the processes."""
-        for grader in self._graders.values():
-            with contextlib.suppress(OSError):
-                if grader.process.stdin:
-                    grader.process.stdin.close()  # it ends at end of file, its sandbox with it
-        for grader in self._graders.values():
-            try:
-                grader.process.wait(0 if grader.work else 5)
-            except subprocess.TimeoutExpired:
-                grader.process.kill()
-                grader.process.wait()
-            if grader.process.stdout:
-                grader.process.stdout.close()
-        self._selector.close()
+        for grader in self._graders:
+            if grader in self._idle:
+                self._threads.submit(grader.close, 5.0)
+            else:
+                grader.end()
+        self._threads.shutdown()
+        for grader in self._graders:
+            grader.close()
         sweep_after_the_dead()  # nobody comes after the last grader, should that one have been killed
-
-    # -- work -----------------------------------------------------------------------------------------
-
-    def _next(self) -> _Work | None:
-        """The next submission; entries that need no grader are finished on the way."""
-        if self._again:
-            return self._again.popleft()
-        for entry in self._entries:
-            if entry.submission is not None:
-                exercise = entry.exercise.id
-                version = self._frozen.version(exercise) if self._frozen else ""
-                files = dict(entry.submission.files)
-                return _Work(entry, Job(exercise, files, version, only=entry.only, asks=entry.asks))
-            if entry.problem is not None:
-                self._done.append(Graded(entry, without_grading(entry, "ungradable", entry.problem)))
-        return None
-
-    def _feed(self, number: int) -> bool:
-        """Give a grader its next submission, starting it if need be; False when there is none left."""
-        work = self._next()
-        if work is None:
-            return False
-        grader = self._graders.get(number) or self._start(number)
-        grader.work = work
-        grader.since = time.monotonic()
-        assert grader.process.stdin is not None
-        with contextlib.suppress(BrokenPipeError):  # it died: reading from it will say so
-            write_frame(grader.process.stdin, work.job)
-        return True
-
-    def _start(self, number: int) -> _Grader:
-        process = start_grader(Config(self._terms, number))
-        assert process.stdout is not None
-        grader = _Grader(number, process)
-        self._graders[number] = grader
-        self._selector.register(process.stdout, selectors.EVENT_READ, number)
-        return grader
-
-    def _collect(self, grader: _Grader) -> None:
-        """Take a grader's answer, or note its death, and give it or its successor more to do."""
-        assert grader.process.stdout is not None
-        frame = read_frame(grader.process.stdout)
-        if not grader.ready and frame is not None:
-            grader.ready, self._false_starts = True, 0
-            return
-        work, grader.work = grader.work, None
-        if not grader.ready:
-            self._start_again(grader, work)
-            return
-        answer = answer_to(work.job, frame) if work is not None else None
-        if answer is None or work is None:
-            self._bury(grader)
-            if work is not None:
-                self._retry(work)
-        elif answer.error is not None:
-            raise as_error(answer.error, answer.exit_code)
-        else:
-            assert answer.verdict is not None
-            self._done.append(Graded(work.entry, answer.verdict, answer.version, answer.asked))
-        self._feed(grader.number)
-
-    def _start_again(self, grader: _Grader, work: _Work | None) -> None:
-        """Replace a grader that died before any submission came near it.
-
-        Raises:
-            InternalError: none can start.
-        """
-        self._false_starts += 1
-        if self._false_starts >= MAX_TRIES:
-            raise InternalError("A grader process cannot start; what it printed is above.")
-        self._bury(grader)
-        if work is not None:
-            self._again.append(work)
-        self._feed(grader.number)
-
-    def _retry(self, work: _Work) -> None:
-        work.tries += 1
-        if work.tries < MAX_TRIES:
-            self._again.append(work)
-            return
-        self._done.append(
-            Graded(work.entry, without_grading(work.entry, "grader_error", killed_its_grader()))
-        )
-
-    def _bury(self, grader: _Grader) -> None:
-        assert grader.process.stdout is not None
-        self._selector.unregister(grader.process.stdout)
-        grader.process.kill()
-        grader.process.wait()
-        grader.process.stdout.close()
-        if grader.process.stdin:
-            with contextlib.suppress(OSError):
-                grader.process.stdin.close()
-        del self._graders[grader.number]
-
-    def _end_hung(self) -> None:
-        now = time.monotonic()
-        for grader in list(self._graders.values()):
-            if grader.work and (now - grader.since > self._hang_s or _is_stopped(grader.process.pid)):
-                grader.process.kill()  # its pipe closes, and the next round finds it dead
 
 
 def _is_stopped(pid: int) -> bool:
@@ -281,7 +248,14 @@ def _is_stopped(pid: int) -> bool:
     return False
 
 
-def answer_to(job: Job, frame: bytes | None) -> Answer | None:
+def job_of(entry: Entry, version: str) -> Job:
+    """What a grader of that version is asked about an entry that has a submission."""
+    assert entry.submission is not None
+    files = dict(entry.submission.files)
+    return Job(entry.exercise.id, files, version, only=entry.only, asks=entry.asks)
+
+
+def _answer_to(job: Job, frame: bytes | None) -> Answer | None:
     """The answer in a grader's frame; None if there is none, or one to something else than was asked.
 
     A grader that answers another question than it was asked counts as dead, because something else may have

@@ -26,8 +26,8 @@ key = "not a key"
 list = [
     1,
     # between
-    [2, 3], {x = 4,
-    "y z" = 5},
+    [2, 3], {x = 4, w = [
+    0], "y z" = 5},
 ]
 
 [[task]]

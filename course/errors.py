@@ -17,7 +17,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+#: The exit code of a command that was stopped with Ctrl-C.
+INTERRUPTED = 130
+
 __all__ = [
+    "INTERRUPTED",
     "ContentError",
     "CourseError",
     "IntegrityError",

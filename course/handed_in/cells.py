@@ -18,15 +18,9 @@ from typing import Any
 import msgspec
 
 from course.errors import UngradableError, UsageError
+from course.handed_in.limits import MAX_CELLS, MAX_CODE, MAX_NOTEBOOK
 
-__all__ = ["MAX_CELLS", "MAX_CODE", "MAX_NOTEBOOK", "CodeCell", "code_cells", "read_notebook", "typed_cell"]
-
-#: Pictures in outputs make notebooks large; they are skipped, but they have to be read past.
-MAX_NOTEBOOK = 32 << 20
-#: The most code in all cells together, in characters: the limit of a module.
-MAX_CODE = 1 << 20
-#: Code cells; the longest notebooks that people write have some hundreds.
-MAX_CELLS = 2000
+__all__ = ["CodeCell", "code_cells", "read_notebook", "typed_cell"]
 
 _FIX = "Save it from Jupyter again, or hand in the .py file."
 #: Cell magics whose body is Python of this notebook; the cells of all others are something else.

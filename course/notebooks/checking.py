@@ -21,6 +21,7 @@ from course.catalog.models import Exercise
 from course.errors import CourseError, NotFoundError, UngradableError, UsageError
 from course.figures.described import Curve
 from course.handed_in.cells import CodeCell, code_cells, read_notebook, typed_cell
+from course.handed_in.limits import MAX_FILE, SOURCES
 from course.handed_in.notebook import SETUP, NotebookSource, source_of
 from course.notebooks.build import pieces
 from course.notebooks.show import ReportPage
@@ -396,10 +397,6 @@ def _names(cell: CodeCell) -> set[str]:
 # ---
 
 
-#: The size of a file that a grading run takes at most, in bytes.
-_MOST_BYTES = 1_000_000
-
-
 def check(exercise_id: str, task: str | None, source: Source | None) -> CheckTable:
     """See ``course.notebooks.check``."""
     from course.catalog.load import Catalog
@@ -449,7 +446,7 @@ def checked(
 def _submission(exercise: Exercise, source: Source | None) -> Submission:
     if source is None:
         return at_hand(_shell(), exercise).submission(exercise)
-    if isinstance(source, str) and "\n" not in source and source.endswith((".py", ".ipynb")):
+    if isinstance(source, str) and "\n" not in source and source.endswith(SOURCES):
         source = Path(source)
     if isinstance(source, Path):
         return _of_file(exercise, source)
@@ -486,9 +483,9 @@ def _of_file(exercise: Exercise, path: Path) -> Submission:
 def _of_text(exercise: Exercise, text: bytes) -> Submission:
     from course.scoring.judging.session import Submission
 
-    if len(text) > _MOST_BYTES:
+    if len(text) > MAX_FILE:
         raise UngradableError(
-            f"This is more than {_MOST_BYTES:,} bytes of code.",
+            f"This is more than {MAX_FILE:,} bytes of code.",
             help="Keep data out of it; the exercise needs none.",
             code="too_large",
         )

@@ -13,16 +13,13 @@ from typing import TYPE_CHECKING
 from course.catalog.models import CourseRef, Exercise
 from course.cli.frame.replies import WrittenFile
 from course.errors import CourseError, MissingCapabilityError, NotFoundError, UngradableError, UsageError
+from course.handed_in.limits import MAX_FILE
 from course.ids import WARM_UPS
 from course.progress.history import History
 
 if TYPE_CHECKING:
     from course.catalog.load import Catalog
     from course.progress.workspace import Workspace
-
-
-#: The largest file that a grading run accepts, in bytes; larger ones are refused here too.
-MAX_FILE_BYTES = 1_000_000
 
 
 @dataclass
@@ -123,9 +120,9 @@ class Here:
         try:
             if not path.is_file():
                 raise UngradableError(f"{shown} is not a file.", help="Move it away.", code="no_file")
-            if path.stat().st_size > MAX_FILE_BYTES:
+            if path.stat().st_size > MAX_FILE:
                 raise UngradableError(
-                    f"{shown} is larger than {MAX_FILE_BYTES:,} bytes.",
+                    f"{shown} is larger than {MAX_FILE:,} bytes.",
                     help="Keep data out of the file; the exercise needs none.",
                     code="too_large",
                 )

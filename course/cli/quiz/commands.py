@@ -23,7 +23,7 @@ from course.cli.quiz.screen import (
     printed_seed,
     start,
 )
-from course.errors import UsageError
+from course.errors import INTERRUPTED, UsageError
 from course.progress import quiz
 from course.progress.quiz import Attempt
 from course.quizzing.answers import read_answers
@@ -32,8 +32,6 @@ from course.quizzing.bank import PosedQuestion
 from course.quizzing.desk import Due, finished, fits
 
 __all__ = ["app", "history", "review", "take"]
-
-INTERRUPTED = 130
 
 _HELP = {"help_option_names": ["-h", "--help"]}
 

@@ -20,12 +20,13 @@ from course.cli.frame.completion import (
     task_ids,
 )
 from course.cli.frame.console import Console, current
-from course.cli.frame.here import MAX_FILE_BYTES, Here, cwd
+from course.cli.frame.here import Here, cwd
 from course.cli.frame.replies import NextStep
 from course.cli.home.advice import after_warm_up
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.replies import Hint, Reflect, ReflectPoint, Solution
 from course.errors import CourseError, IntegrityError, MissingCapabilityError, NotFoundError, UsageError
+from course.handed_in.limits import MAX_FILE
 from course.progress.history import History, fingerprint
 
 PACKS = "*.coursepack"
@@ -370,8 +371,8 @@ def _read(path: Path) -> str:
         data = full.read_bytes()
     except OSError as error:
         raise UsageError(f"{path} cannot be read ({error.strerror or error}).", code="unreadable") from error
-    if len(data) > MAX_FILE_BYTES:
-        raise UsageError(f"{path} is larger than {MAX_FILE_BYTES:,} bytes.", code="too_large")
+    if len(data) > MAX_FILE:
+        raise UsageError(f"{path} is larger than {MAX_FILE:,} bytes.", code="too_large")
     return data.decode("utf-8", errors="replace").strip()
 
 

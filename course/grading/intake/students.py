@@ -28,18 +28,17 @@ from typing import Any
 from course.catalog.models import Exercise
 from course.errors import InternalError, UngradableError
 from course.grading.gradebook.records import SubmittedAt
-from course.grading.intake.archives import MAX_FILE, ArchiveContent, RefusedError, reader
+from course.grading.intake.archives import ArchiveContent, RefusedError, reader
 from course.grading.intake.downloads import Place, Student
 from course.grading.intake.triage import Candidate, Found, described, found_for, survey
 from course.grading.results.roster import decoded
-from course.handed_in.cells import MAX_NOTEBOOK
+from course.handed_in.limits import MAX_FILE, MAX_NOTEBOOK
 from course.handed_in.notebook import RECORD
 from course.printable import one_line
 from course.scoring.judging.session import Submission
 from course.scoring.verdict import Problem
 
 __all__ = [
-    "MAX_FILE",
     "Entry",
     "read_quiz",
     "read_student",
@@ -318,7 +317,7 @@ def _submission(exercise: Exercise, name: str, content: bytes) -> Submission:
         return Submission({exercise.module: content})
     source, record = reader.notebook(content, exercise, shown)
     if len(source) > MAX_FILE:
-        message = f"The functions of {shown} are larger than 1 MB."
+        message = f"The functions of {shown} are larger than {MAX_FILE >> 20} MB."
         raise RefusedError("too_large", message, "Hand in source code only.")
     return Submission({exercise.module: source, RECORD: record})
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from course.handed_in.limits import MAX_FILE
+
 
 def test_check_says_message_then_advice_then_numbers(course, write):
     write("wrong", "RIGHT")
@@ -155,10 +157,15 @@ def test_a_missing_file_exits_3_and_says_how_to_get_it_back(course, workspace):
     assert "course start doubling" in ran.err
 
 
-def test_a_file_that_is_far_too_large_is_not_read(course, workspace):
-    (workspace / "doubling" / "doubling.py").write_bytes(b"#" * 1_000_001)
+def test_a_file_is_refused_at_home_where_a_grading_run_refuses_it(course, workspace, write):
+    write("RIGHT", "RIGHT")
+    path = workspace / "doubling" / "doubling.py"
+    path.write_bytes(path.read_bytes().ljust(MAX_FILE - 1, b"#") + b"\n")
+    assert course("check").code == 0
+    path.write_bytes(path.read_bytes() + b"\n")
     ran = course("check", "--json")
     assert (ran.code, ran.json["error"]["code"]) == (3, "too_large")
+    assert "1,048,576 bytes" in ran.json["error"]["message"]
 
 
 def test_check_all_takes_every_started_exercise_and_the_worst_exit_code(course, workspace, write):

@@ -16,7 +16,8 @@ from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.errors import NotFoundError
 from course.grading.intake.downloads import Place, Student, class_list
-from course.grading.intake.students import MAX_FILE, Entry, read_student
+from course.grading.intake.students import Entry, read_student
+from course.handed_in.limits import MAX_FILE, MAX_FILES
 from tests.unit.grading.made import read_class
 
 SOURCE = b"def double(x):\n    return 2 * x\n"
@@ -183,7 +184,7 @@ def _bomb(path: Path) -> None:
 
 
 def _many(path: Path) -> None:
-    archive(path, {f"file{number}.txt": b"" for number in range(21)})
+    archive(path, {f"file{number}.txt": b"" for number in range(MAX_FILES + 1)})
 
 
 def _lying_size(path: Path) -> None:

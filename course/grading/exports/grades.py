@@ -9,7 +9,7 @@ import os
 import re
 import sys
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import IO
 
@@ -18,6 +18,7 @@ import msgspec
 from course.catalog.models import CourseRef
 from course.errors import MissingCapabilityError, UsageError
 from course.grading.results.effective import NOT_YET, Effective, Results
+from course.grading.results.roster import Person
 from course.printable import one_line
 from course.scoring.verdict import CheckResult, Problem, finite
 
@@ -128,11 +129,28 @@ def replacing(path: Path) -> Iterator[IO[bytes]]:
 # ---
 
 
-_COLUMNS = (
-    "student", "exercise", "score", "max_score", "passed", "state", "reason", "late_s", "isolation",
-    "raw_score", "late_penalty", "override_reason", "submitted_at", "graded_at",
-)  # fmt: skip
-_PERSON = ("name", "email", "section")
+#: The columns of ``grades.csv``, in order; those of ``_PERSON`` follow where there is a roster.
+_COLUMNS: dict[str, Callable[[Effective], str]] = {
+    "student": lambda one: one.student,
+    "exercise": lambda one: one.exercise,
+    "score": lambda one: number(one.score),
+    "max_score": lambda one: number(one.max_score),
+    "passed": lambda one: "yes" if one.passed else "no",
+    "state": lambda one: one.verdict.state,
+    "reason": lambda one: one.verdict.error.code if one.verdict.error else "",
+    "late_s": lambda one: "" if one.late is None else f"{one.late:.0f}",
+    "isolation": lambda one: one.verdict.isolation,
+    "raw_score": lambda one: number(one.raw_score),
+    "late_penalty": lambda one: number(one.penalty),
+    "override_reason": lambda one: one.override.reason if one.override else "",
+    "submitted_at": lambda one: utc(one.submitted_at),
+    "graded_at": lambda one: one.result.graded_at,
+}
+_PERSON: dict[str, Callable[[Person], str]] = {
+    "name": lambda person: person.name,
+    "email": lambda person: person.email,
+    "section": lambda person: person.section,
+}
 
 
 class OverrideLine(msgspec.Struct, frozen=True):
@@ -234,29 +252,13 @@ def write_csv(path: Path, results: Results, chosen: Iterable[Effective] | None =
         MissingCapabilityError: it cannot be written.
     """
     wanted = results.all() if chosen is None else chosen
-    headings = (*_COLUMNS, *_PERSON) if results.roster else _COLUMNS
+    headings = [*_COLUMNS, *(_PERSON if results.roster else ())]
     write_bytes(path, csv_bytes(headings, (_row(results, effective) for effective in wanted)))
 
 
 def _row(results: Results, effective: Effective) -> list[str]:
-    verdict, override = effective.verdict, effective.override
-    cells = [
-        effective.student,
-        effective.exercise,
-        number(effective.score),
-        number(effective.max_score),
-        "yes" if effective.passed else "no",
-        verdict.state,
-        verdict.error.code if verdict.error else "",
-        "" if effective.late is None else f"{effective.late:.0f}",
-        verdict.isolation,
-        number(effective.raw_score),
-        number(effective.penalty),
-        override.reason if override else "",
-        utc(effective.submitted_at),
-        effective.result.graded_at,
-    ]
+    cells = [cell(effective) for cell in _COLUMNS.values()]
     if results.roster:
         person = results.person(effective.student)
-        cells += [person.name, person.email, person.section] if person else ["", "", ""]
+        cells += [cell(person) if person else "" for cell in _PERSON.values()]
     return cells

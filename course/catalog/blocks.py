@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import assert_never
 
 __all__ = [
     "Block",
     "Callout",
-    "CalloutKind",
     "CodeCell",
     "Command",
     "CommandList",
@@ -223,9 +223,7 @@ class Prediction:
     blocks: tuple[Block, ...]
 
 
-#: Closed on purpose: an unknown label is a typing error, not a new kind.
-CalloutKind = str
-CALLOUTS: tuple[CalloutKind, ...] = ("myth", "fact", "analogy", "answer", "remember", "note")
+CALLOUTS = ("myth", "fact", "analogy", "answer", "remember", "note")
 
 
 @dataclass(frozen=True, slots=True)
@@ -233,7 +231,7 @@ class Callout:
     """A passage with a role of its own: one of CALLOUTS."""
 
     line: int
-    kind: CalloutKind
+    kind: str
     blocks: tuple[Block, ...]
 
 
@@ -306,6 +304,8 @@ def plain_text(inlines: Inlines) -> str:
                 parts.append(plain_text(children))
             case LineBreak():
                 parts.append(" ")
+            case _:
+                assert_never(inline)
     return "".join(parts)
 
 
@@ -325,8 +325,12 @@ def walk_blocks(blocks: tuple[Block, ...]) -> Iterator[Block]:
             case ListBlock(items=items):
                 for item in items:
                     yield from walk_blocks(item)
-            case _:
+            case Heading() | Paragraph() | Table() | CodeCell() | Listing() | MathBlock() | Diagram():
                 pass
+            case Figure() | CommandList() | Sources() | Task():  # a task's text is not part of the lesson
+                pass
+            case _:
+                assert_never(block)
 
 
 def walk_inlines(blocks: tuple[Block, ...]) -> Iterator[tuple[Block, Inline]]:
@@ -345,8 +349,12 @@ def _lines_of(block: Block) -> tuple[Inlines, ...]:
             return (*header, *(cell for row in rows for cell in row))
         case Sources(items=items):
             return items
-        case _:
+        case CodeCell() | Listing() | MathBlock() | Diagram() | CommandList() | Task():
             return ()
+        case ListBlock() | Prediction() | Callout():  # their lines stand in the blocks they hold
+            return ()
+        case _:
+            assert_never(block)
 
 
 def _flatten(inlines: Inlines) -> Iterator[Inline]:

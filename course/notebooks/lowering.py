@@ -9,6 +9,7 @@ from __future__ import annotations
 import html
 import re
 from collections.abc import Callable
+from typing import assert_never
 
 from course.catalog import blocks as b
 
@@ -59,8 +60,10 @@ class Lowering:
                 text = self._commands(commands)
             case b.Sources(items=items):
                 text = "\n".join(f"- {self.inlines(item)}" for item in items)
-            case _:
+            case b.CodeCell() | b.Figure() | b.Prediction() | b.Task():
                 raise TypeError(f"{type(block).__name__} is a cell of its own")
+            case _:
+                assert_never(block)
         return text
 
     def blocks(self, blocks: tuple[b.Block, ...]) -> str:
@@ -96,8 +99,10 @@ class Lowering:
                 shown = f"[{self.inlines(children)}]({self._link(target)})"
             case b.Value(text=words):
                 shown = escaped(words)
-            case _:
+            case b.LineBreak():
                 shown = "  \n"
+            case _:
+                assert_never(inline)
         return shown
 
     def _list(self, start: int | None, items: tuple[tuple[b.Block, ...], ...]) -> str:

@@ -14,6 +14,7 @@ import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import assert_never
 
 from course.catalog import blocks as b
 from course.catalog.markdown import read_blocks, read_task
@@ -194,8 +195,10 @@ def words_of(block: b.Block) -> str:
                 parts += [b.plain_text(item) for item in items]
             case b.Task(title=title, blocks=task):
                 parts += [title, *map(words_of, task)]
+            case b.CodeCell() | b.ListBlock() | b.Prediction() | b.Callout():
+                pass  # a hidden cell has none, and what the others hold comes next
             case _:
-                pass
+                assert_never(inner)
     return "\n".join(part for part in parts if part)
 
 

@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import assert_never
 
 from rich import box
 from rich.console import Console, ConsoleOptions, Group, RenderableType
@@ -171,8 +172,10 @@ class PlainPrinter:
             case b.Sources(items=items):
                 for number, item in enumerate(items, start=1):
                     self._say(f"Source {number}: {self._words(item)}")
-            case _:
+            case b.CodeCell():
                 pass
+            case _:
+                assert_never(block)
 
     def _prose(self, text: str, *, whole: bool = False) -> None:
         for line in [text] if whole else sentences(text):
@@ -242,6 +245,8 @@ class PlainPrinter:
                     parts.append(link_words(self._catalog, target, self._words(children)))
                 case b.LineBreak():
                     parts.append(" ")
+                case _:
+                    assert_never(inline)
         return "".join(parts)
 
 
@@ -358,8 +363,10 @@ class FancyPrinter:
                 return _commands((b.Command(f"course warmup {name}", f"{what.capitalize()}: {title}"),))
             case b.Sources(items=items):
                 return self._bullets([self._text(item) for item in items])
-            case _:
+            case b.CodeCell():
                 return None
+            case _:
+                assert_never(block)
 
     def _heading(self, level: int, inlines: b.Inlines) -> RenderableType:
         text = self._text(inlines)
@@ -465,6 +472,8 @@ class FancyPrinter:
                     text.append_text(self._link(target, children))
                 case b.LineBreak():
                     text.append("\n")
+                case _:
+                    assert_never(inline)
         return text
 
     def _link(self, target: str, children: b.Inlines) -> Text:

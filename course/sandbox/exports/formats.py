@@ -13,6 +13,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import assert_never
 from xml.etree import ElementTree as ET
 
 from course.errors import UsageError
@@ -416,21 +417,24 @@ def _add_link(model: ET.Element, chosen: Chosen, part: Part) -> None:
 
 
 def _add_geometry(geometry: ET.Element, part: Part) -> None:
-    if part.shape == "circle":
-        _text(ET.SubElement(geometry, "sphere"), "radius", number(part.radius))
-    elif part.shape == "segment":
-        (ax, ay), (bx, by) = part.outline
-        capsule = ET.SubElement(geometry, "capsule")
-        _text(capsule, "radius", number(part.radius))
-        _text(capsule, "length", number(math.hypot(bx - ax, by - ay)))
-    elif part.size is not None:
-        size = f"{number(part.size[0])} {number(2 * DEPTH)} {number(part.size[1])}"
-        _text(ET.SubElement(geometry, "box"), "size", size)
-    else:
-        polyline = ET.SubElement(geometry, "polyline")
-        for x, y in (*part.outline, part.outline[0]):
-            _text(polyline, "point", f"{number(x)} {number(y)}")
-        _text(polyline, "height", number(2 * DEPTH))
+    match part.shape:
+        case "circle":
+            _text(ET.SubElement(geometry, "sphere"), "radius", number(part.radius))
+        case "segment":
+            (ax, ay), (bx, by) = part.outline
+            capsule = ET.SubElement(geometry, "capsule")
+            _text(capsule, "radius", number(part.radius))
+            _text(capsule, "length", number(math.hypot(bx - ax, by - ay)))
+        case "polygon" if part.size is not None:
+            size = f"{number(part.size[0])} {number(2 * DEPTH)} {number(part.size[1])}"
+            _text(ET.SubElement(geometry, "box"), "size", size)
+        case "polygon":
+            polyline = ET.SubElement(geometry, "polyline")
+            for x, y in (*part.outline, part.outline[0]):
+                _text(polyline, "point", f"{number(x)} {number(y)}")
+            _text(polyline, "height", number(2 * DEPTH))
+        case _:
+            assert_never(part.shape)
 
 
 # ---
@@ -509,21 +513,24 @@ def _add_body(world: ET.Element, assets: ET.Element, part: Part) -> ET.Element:
         moments = " ".join(number(moment) for moment in moment_3d(part))
         ET.SubElement(body, "inertial", pos="0 0 0", mass=number(part.mass), diaginertia=moments)
     geom = ET.SubElement(body, "geom", name=part.name, contype="0", conaffinity="0", rgba=_rgba(part.colour))
-    if part.shape == "circle":
-        # In the plane a sphere is a disc, and spheres touch in one point.
-        geom.attrib |= {"type": "sphere", "size": number(part.radius)}
-    elif part.shape == "segment":
-        (ax, ay), (bx, by) = part.outline
-        ends = " ".join(map(number, (ax, 0.0, ay, bx, 0.0, by)))
-        geom.attrib |= {"type": "capsule", "size": number(part.radius), "fromto": ends}
-    elif part.size is not None:
-        size = " ".join(map(number, (part.size[0] / 2, DEPTH, part.size[1] / 2)))
-        geom.attrib |= {"type": "box", "size": size}
-    else:
-        corners = [(x, y, z) for y in (-DEPTH, DEPTH) for x, z in part.outline]
-        vertices = " ".join(number(value) for corner in corners for value in corner)
-        ET.SubElement(assets, "mesh", name=part.name, vertex=vertices)
-        geom.attrib |= {"type": "mesh", "mesh": part.name}
+    match part.shape:
+        case "circle":
+            # In the plane a sphere is a disc, and spheres touch in one point.
+            geom.attrib |= {"type": "sphere", "size": number(part.radius)}
+        case "segment":
+            (ax, ay), (bx, by) = part.outline
+            ends = " ".join(map(number, (ax, 0.0, ay, bx, 0.0, by)))
+            geom.attrib |= {"type": "capsule", "size": number(part.radius), "fromto": ends}
+        case "polygon" if part.size is not None:
+            size = " ".join(map(number, (part.size[0] / 2, DEPTH, part.size[1] / 2)))
+            geom.attrib |= {"type": "box", "size": size}
+        case "polygon":
+            corners = [(x, y, z) for y in (-DEPTH, DEPTH) for x, z in part.outline]
+            vertices = " ".join(number(value) for corner in corners for value in corner)
+            ET.SubElement(assets, "mesh", name=part.name, vertex=vertices)
+            geom.attrib |= {"type": "mesh", "mesh": part.name}
+        case _:
+            assert_never(part.shape)
     return body
 
 

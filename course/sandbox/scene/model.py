@@ -12,7 +12,7 @@ import math
 import random
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Literal
+from typing import Annotated, Literal, assert_never
 
 import msgspec
 from msgspec import Meta
@@ -32,6 +32,9 @@ Name = Annotated[str, Meta(pattern=r"^[a-z][a-z0-9]*(-[a-z0-9]+)*$", max_length=
 Pattern = Annotated[str, Meta(pattern=r"^(\*|[a-z][a-z0-9]*(-[a-z0-9]+)*(-?\*)?)$", max_length=41)]
 
 Point = tuple[Coordinate, Coordinate]
+#: The shape of a body as a scene says it, and as the engine and all views know it: a box has four corners.
+Shape = Literal["circle", "box", "polygon", "segment"]
+Form = Literal["circle", "polygon", "segment"]
 
 
 class Material(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -99,7 +102,7 @@ class Body(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """
 
     name: Name
-    shape: Literal["circle", "box", "polygon", "segment"]
+    shape: Shape
     material: Name
     position: Point = (0.0, 0.0)
     angle_deg: Annotated[float, Meta(ge=-3600, le=3600)] = 0.0
@@ -325,7 +328,7 @@ class Part:
     """
 
     name: str
-    shape: str
+    shape: Form
     outline: tuple[Vector, ...]
     radius: float
     x: float
@@ -445,16 +448,20 @@ def _part(body: Body, material: Material, name: str, place: Vector, colour: str)
 
 
 def _outline(body: Body) -> tuple[tuple[Vector, ...], float]:
-    if body.shape == "circle":
-        return (), body.radius or 0.0
-    if body.shape == "segment":
-        return body.points or (), (body.thickness or 0.0) / 2
-    if body.shape == "box":
-        width, height = body.size or (0.0, 0.0)
-        w, h = width / 2, height / 2
-        return ((-w, -h), (w, -h), (w, h), (-w, h)), 0.0
     points = body.points or ()
-    return (points if signed_area(points) > 0 else points[::-1]), 0.0
+    match body.shape:
+        case "circle":
+            return (), body.radius or 0.0
+        case "segment":
+            return points, (body.thickness or 0.0) / 2
+        case "box":
+            width, height = body.size or (0.0, 0.0)
+            w, h = width / 2, height / 2
+            return ((-w, -h), (w, -h), (w, h), (-w, h)), 0.0
+        case "polygon":
+            return (points if signed_area(points) > 0 else points[::-1]), 0.0
+        case _:
+            assert_never(body.shape)
 
 
 def _turned(x: float, y: float, angle: float) -> Vector:

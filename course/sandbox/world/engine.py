@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, assert_never
 
 import numpy as np
 import pymunk
@@ -292,12 +292,15 @@ class Space:
             body.velocity = part.vx, part.vy
             body.angular_velocity = part.spin
         shape: pymunk.Shape
-        if part.shape == "circle":
-            shape = pymunk.Circle(body, part.radius)
-        elif part.shape == "segment":
-            shape = pymunk.Segment(body, part.outline[0], part.outline[1], part.radius)
-        else:
-            shape = pymunk.Poly(body, list(part.outline))
+        match part.shape:
+            case "circle":
+                shape = pymunk.Circle(body, part.radius)
+            case "segment":
+                shape = pymunk.Segment(body, part.outline[0], part.outline[1], part.radius)
+            case "polygon":
+                shape = pymunk.Poly(body, list(part.outline))
+            case _:
+                assert_never(part.shape)
         shape.elasticity = part.restitution
         shape.friction = part.friction
         self.space.add(body, shape)

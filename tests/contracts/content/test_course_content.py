@@ -18,11 +18,11 @@ from course.authoring.exercises.diagnosis import (
 from course.authoring.exercises.grading import solution_path
 from course.authoring.report import AuditReport, Findings
 from course.catalog.load import Catalog
-from course.grading import kit
 from course.handed_in import limits
 from course.ids import WARM_UPS
 from course.isolation.probe import kept_sandboxes
 from course.progress.history import NO_MISTAKE
+from course.scoring import kit
 from course.scoring.checks.collected import words
 from course.scoring.judging.session import GradingSession, Submission
 from tests.contracts.content.audited import CATALOG, EXERCISES, IN_PART, programs

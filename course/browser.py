@@ -14,8 +14,6 @@ import threading
 from collections.abc import Callable
 from urllib.parse import urlsplit
 
-__all__ = ["can_open", "invite", "keep_closed", "opened", "over_ssh"]
-
 #: Browsers that run in this terminal: they would take it over, and draw no canvas.
 _IN_TERMINAL = frozenset({"elinks", "links", "lynx", "w3m", "www-browser"})
 _DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")

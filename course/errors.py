@@ -20,18 +20,6 @@ from pathlib import Path
 #: The exit code of a command that was stopped with Ctrl-C.
 INTERRUPTED = 130
 
-__all__ = [
-    "INTERRUPTED",
-    "ContentError",
-    "CourseError",
-    "IntegrityError",
-    "InternalError",
-    "MissingCapabilityError",
-    "NotFoundError",
-    "UngradableError",
-    "UsageError",
-]
-
 
 class CourseError(Exception):
     """Base of every deliberate error.

@@ -18,18 +18,6 @@ from typing import Any
 
 from course.errors import MissingCapabilityError
 
-__all__ = [
-    "CONTAINER",
-    "PARTS",
-    "Part",
-    "Requirement",
-    "available",
-    "load",
-    "require",
-    "requirement_of",
-    "requirements",
-]
-
 _DISTRIBUTION = "physics-sim-course"
 _EXTRA = re.compile(r"""extra\s*==\s*['"]([^'"]+)['"]""")
 

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 else:
     _Widget = object  # Textual takes a widget's style from its first base that is one
 
-__all__ = ["Field", "FullScreenApp", "InOrder", "Overlay", "TextOverlay"]
-
 #: How long a message stays in the last line, in s.
 _MESSAGE = 4.0
 

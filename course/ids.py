@@ -11,8 +11,6 @@ from typing import Self
 
 from course.errors import UsageError
 
-__all__ = ["WARM_UPS", "ExerciseId", "LessonId", "QuestionId", "SceneId"]
-
 #: The folder that warm-ups lie in: among the exercises, their solutions, and in a workspace.
 WARM_UPS = "warm-ups"
 

@@ -10,8 +10,6 @@ import os
 import re
 import shlex
 
-__all__ = ["command", "one_line", "printable", "steady", "unheeded"]
-
 _UNUSUAL = re.compile(r"[^ -~]")
 _UNUSUAL_IN_LINES = re.compile(r"[^\n\t -~]")
 #: Control characters other than tab and newline; separators of lines; marks that turn the direction of text.

@@ -26,17 +26,6 @@ from course.figures.registry import figure_ids
 if TYPE_CHECKING:
     IsCommand = Callable[[tuple[str, ...]], bool]
 
-__all__ = [
-    "WORDS",
-    "Coverage",
-    "Part",
-    "Section",
-    "as_markdown",
-    "check_coverage",
-    "read_coverage",
-    "written_to",
-]
-
 _LINES = re.compile(r"([1-9]\d*)(?:-([1-9]\d*))?")
 _KINDS = ("heading", "objective", "example", "exercise", "question")
 #: How the course treats a part of the chapter, in one word.

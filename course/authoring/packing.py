@@ -13,8 +13,6 @@ from course.catalog.load import Catalog
 from course.catalog.pack import pack_bytes
 from course.errors import ContentError, UsageError
 
-__all__ = ["write_pack"]
-
 
 def write_pack(catalog: Catalog, exercise_ids: Sequence[str], output: Path) -> dict[str, tuple[str, ...]]:
     """Write a pack with the model solution, and its prose if there is any, of each exercise.

@@ -9,8 +9,6 @@ from typing import TypeAlias
 
 from course.errors import ContentError
 
-__all__ = ["AuditProblem", "AuditReport", "Findings", "Progress"]
-
 #: Called with steps done, steps in all, and what is being done now.
 Progress: TypeAlias = "Callable[[int, int, str], None]"
 

@@ -20,8 +20,6 @@ from course.catalog.load import Catalog
 from course.errors import UsageError
 from course.ids import WARM_UPS, ExerciseId, LessonId, QuestionId, SceneId
 
-__all__ = ["Function", "new_exercise", "new_lesson", "new_question", "new_scene", "new_warm_up"]
-
 _TEMPLATES = Path(__file__).parent / "templates"
 
 

@@ -10,36 +10,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import assert_never
 
-__all__ = [
-    "Block",
-    "Callout",
-    "CodeCell",
-    "Command",
-    "CommandList",
-    "Diagram",
-    "Figure",
-    "Formula",
-    "Heading",
-    "Inline",
-    "Inlines",
-    "LineBreak",
-    "Link",
-    "ListBlock",
-    "Listing",
-    "MathBlock",
-    "Paragraph",
-    "Prediction",
-    "Sources",
-    "Span",
-    "Table",
-    "Text",
-    "Value",
-    "plain_text",
-    "slug",
-    "walk_blocks",
-    "walk_inlines",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Text:

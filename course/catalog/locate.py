@@ -16,8 +16,6 @@ from pathlib import Path
 from course.errors import InternalError, MissingCapabilityError, UsageError
 from course.ids import WARM_UPS
 
-__all__ = ["ENVIRONMENT_VARIABLE", "NAMES", "PLACES", "Content", "chosen", "content"]
-
 ENVIRONMENT_VARIABLE = "COURSE_CONTENT"
 #: The folders of a course in which each exercise has one of its own.
 PLACES = ("exercises", "solutions", "graders")

@@ -13,15 +13,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from course.catalog import blocks as b
-from course.catalog.mathtext import MathError, math_spoken, math_text
+from course.catalog.mathtext import math_spoken, math_text
+from course.catalog.mathtree import MathError
 from course.catalog.reading import split_front_matter
 from course.errors import ContentError
 
 if TYPE_CHECKING:
     from markdown_it import MarkdownIt
     from markdown_it.tree import SyntaxTreeNode
-
-__all__ = ["parse_lesson", "read_blocks", "read_task"]
 
 _YEAR = re.compile(r"\b(?:19|20)\d\d\b")
 _ALTERNATIVE = re.compile(r"^\s*%\s*(text|spoken):\s*(.*?)\s*$")

@@ -25,8 +25,6 @@ from course.catalog.mathtree import (
     read_math,
 )
 
-__all__ = ["MathError", "math_spoken", "math_text"]
-
 _RAISED = dict(
     zip(
         "0123456789+−()=abcdefghijklmnoprstuvwxyzᵀ°′",

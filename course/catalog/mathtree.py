@@ -9,22 +9,6 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-__all__ = [
-    "ACCENTS",
-    "Accent",
-    "Atom",
-    "Fence",
-    "Fraction",
-    "Grid",
-    "MathError",
-    "Node",
-    "Root",
-    "Row",
-    "Script",
-    "is_factor",
-    "read_math",
-]
-
 
 class MathError(ValueError):
     """A formula uses something that has no agreed text form."""

@@ -15,23 +15,6 @@ import msgspec
 
 from course.ids import WARM_UPS, ExerciseId, LessonId
 
-__all__ = [
-    "FORMAT_VERSION",
-    "CourseRef",
-    "Exercise",
-    "Found",
-    "Hints",
-    "Lesson",
-    "Mutant",
-    "MutantList",
-    "Objective",
-    "Rubric",
-    "Syllabus",
-    "Task",
-    "TaskHints",
-    "fields_of",
-]
-
 #: Files that declare a newer format are refused: an older program must not half-understand them.
 FORMAT_VERSION = 1
 

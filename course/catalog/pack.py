@@ -27,8 +27,6 @@ import msgspec
 from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
 from course.ids import ExerciseId
 
-__all__ = ["MAX_FILES", "MAX_FILE_BYTES", "MAX_TOTAL_BYTES", "Pack", "pack_bytes", "read_pack", "zip_entry"]
-
 FORMAT = "course-solutions"
 FORMAT_VERSION = 1
 MANIFEST = "manifest.json"

@@ -39,8 +39,6 @@ from course.engines.scenarios import get as get_scenario
 if TYPE_CHECKING:
     Progress = Callable[[int, int, str], None]
 
-__all__ = ["LADDER", "QUICK_LADDER", "Request", "compare", "state_of"]
-
 #: The steps that show how an error shrinks, s; the middle one is the step of everything else.
 LADDER = tuple(1.0 / rate for rate in (60, 120, 240, 480, 960))
 QUICK_LADDER = tuple(1.0 / rate for rate in (120, 240, 480))

@@ -9,8 +9,6 @@ from course.engines.registry import ENGINES
 from course.engines.results import DEFAULT, TUNED, Row, Setting
 from course.engines.scenarios import DT, IMPACTS, SCENARIOS
 
-__all__ = ["chaos", "defaults", "findings", "fingerprints", "phases", "same_algorithm", "slope"]
-
 #: Two engines whose energies agree to this fraction after ten seconds of chaos use the same algorithm: in
 #: double precision MuJoCo, Bullet 3 and DART agree to 1e-10, and PhysX in single precision to 1 %.
 _SAME = 1e-6

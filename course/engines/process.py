@@ -16,8 +16,6 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-__all__ = ["START_S", "EngineProcess"]
-
 #: How long an engine may take to load, s: usually 0.1 to 0.6, several times that from a cold disk.
 START_S = 60.0
 #: Every engine runs on one processor core: rates can be compared, and sums do not depend on the order of

@@ -12,8 +12,6 @@ import msgspec
 from course.engines.results import Comparison, Reference, Row, Setting
 from course.engines.scenarios import DT
 
-__all__ = ["FORMAT_VERSION", "encoded", "load", "row"]
-
 FORMAT_VERSION = 1
 _RATES = ("steps_per_second", "slowest", "fastest", "pymunk_steps_per_second")
 

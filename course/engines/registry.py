@@ -10,8 +10,6 @@ from course.engines.base import Adapter
 from course.errors import NotFoundError
 from course.extras import requirement_of
 
-__all__ = ["ENGINES", "Availability", "EngineInfo", "availability", "get", "load"]
-
 
 @dataclass(frozen=True, slots=True)
 class EngineInfo:

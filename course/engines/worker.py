@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
     from course.engines.base import Adapter, Scene, World
 
-__all__ = ["EngineServer", "main"]
-
 
 class EngineServer:
     """Runs jobs with one engine.

@@ -23,17 +23,6 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-__all__ = [
-    "ENERGY_Z",
-    "PHASE_STEPS",
-    "PHASE_Z",
-    "crossing",
-    "energy_error",
-    "error_against_step",
-    "phase_portraits",
-    "stability",
-]
-
 #: What the figures show and their captions quote.
 PHASE_Z, PHASE_STEPS = 0.85, 120
 ENERGY_Z = 0.5

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
     Builder = Callable[[], Figure]
 
-__all__ = ["FIGURES", "SCREEN_DPI", "Builder", "build", "figure_ids", "png", "save"]
-
 #: Figure id -> module under course.figures and the function in it that draws the figure.
 FIGURES: dict[str, tuple[str, str]] = {
     "integrators-phase": ("integrators", "phase_portraits"),

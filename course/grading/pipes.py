@@ -24,8 +24,6 @@ except ImportError:  # Windows has none of these limits
     resource = None  # type: ignore[assignment]
 from collections.abc import Iterator
 
-__all__ = ["limit_cpu", "limit_memory", "read_frame", "served", "write_frame"]
-
 _LENGTH = struct.Struct("<I")
 #: Wall seconds that a process has to clean up after the one it worked for is gone.
 _LAST_S = 3.0

@@ -24,17 +24,6 @@ from course.quizzing.attempt import MarkedQuestion, Result, mark, needed
 from course.quizzing.bank import MAX_SEED, Bank
 from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility
 
-__all__ = [
-    "EXERCISE_ID",
-    "GRADER_REVISION",
-    "QuizScore",
-    "checked_record",
-    "grade_quiz",
-    "quiz_version",
-    "record_sha256",
-    "score_record",
-]
-
 #: The quiz's id among the exercises of a gradebook; no exercise may have it.
 EXERCISE_ID = "quiz"
 #: Increased when the scoring of records changes; part of the grader's version.

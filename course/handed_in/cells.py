@@ -20,8 +20,6 @@ import msgspec
 from course.errors import UngradableError, UsageError
 from course.handed_in.limits import MAX_CELLS, MAX_CODE, MAX_NOTEBOOK
 
-__all__ = ["CodeCell", "code_cells", "read_notebook", "typed_cell"]
-
 _FIX = "Save it from Jupyter again, or hand in the .py file."
 #: Cell magics whose body is Python of this notebook; the cells of all others are something else.
 _PYTHON_MAGICS = frozenset({"time", "timeit", "capture", "prun", "memit", "mprun", "lprun"})

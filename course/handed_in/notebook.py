@@ -24,8 +24,6 @@ from course.printable import one_line
 from course.scoring.judging.session import Submission
 from course.scoring.verdict import Places
 
-__all__ = ["RECORD", "SETUP", "SOLUTION", "NotebookSource", "notebook_source", "opened", "source_of"]
-
 #: Roles that the course gives cells it generates.
 SOLUTION, SETUP = "solution", "setup"
 #: Under this name a submission says which cells its module was made of.

@@ -14,8 +14,6 @@ import time
 from time import monotonic
 from typing import Protocol
 
-__all__ = ["WALL", "Deadline", "ProcessClock"]
-
 #: The wall limit, as a multiple: a machine may have six times as much to do as it has processors for.
 WALL = 6.0
 _TICK_S = 0.1  # how often a worker that does not answer is looked at

@@ -21,20 +21,6 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Protocol
 
-__all__ = [
-    "LIMITS",
-    "MAX_OUTPUT",
-    "START_TIMEOUT",
-    "TICK_S",
-    "Channel",
-    "Exit",
-    "Handle",
-    "Level",
-    "Limits",
-    "Spawner",
-    "ticking",
-]
-
 START_TIMEOUT = 30.0  # s; starting takes about 0.2, a laptop that wakes up may take far longer
 #: How often a blocked read or write returns to look at the clock, in s; it ends by the deadline plus this.
 TICK_S = 0.1

@@ -11,8 +11,6 @@ from course.notebooks.lowering import escaped
 from course.quizzing.attempt import MarkedQuestion, Result
 from course.quizzing.bank import PosedQuestion
 
-__all__ = ["SEED", "Marks", "marked", "quiz_notebook"]
-
 #: A notebook's questions stay the same; ``course quiz take`` draws new ones each time.
 SEED = 1
 

@@ -16,8 +16,6 @@ from course.notebooks.lowering import escaped
 from course.sandbox.runs.running import Run
 from course.sandbox.scene.model import Scene
 
-__all__ = ["STILL", "Film", "alive", "film", "play", "sandbox_notebook"]
-
 #: Set in the environment of a kernel whose outputs are saved: a live view cannot be saved.
 STILL = "COURSE_NOTEBOOK_STILL"
 

@@ -15,23 +15,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from course.progress.store import Event
 
-__all__ = [
-    "ANSWER",
-    "DONE",
-    "MAX_RECORDS",
-    "REVIEW",
-    "START",
-    "Attempt",
-    "QuizHistory",
-    "Review",
-    "answer_data",
-    "done_data",
-    "quiz_history",
-    "records",
-    "review_data",
-    "start_data",
-]
-
 START, ANSWER, DONE, REVIEW = "quiz-start", "quiz-answer", "quiz-done", "quiz-review"
 
 #: Attempts that travel in a submission at most; a grading run refuses more.

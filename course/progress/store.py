@@ -21,8 +21,6 @@ from course.errors import IntegrityError, MissingCapabilityError
 if TYPE_CHECKING:
     import sqlite3
 
-__all__ = ["SCHEMA_VERSION", "Event", "Repair", "Store"]
-
 #: Raised when the tables change; a record written by a newer course is refused, not guessed at.
 SCHEMA_VERSION = 1
 #: How long a writer waits for another one. In s.

@@ -25,8 +25,6 @@ from course.errors import ContentError, CourseError, MissingCapabilityError, Not
 from course.ids import WARM_UPS
 from course.progress.store import Store
 
-__all__ = ["FORMAT_VERSION", "MARKER", "Workspace", "same_text", "write_atomically"]
-
 MARKER = "course.toml"
 FORMAT_VERSION = 1
 

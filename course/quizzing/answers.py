@@ -25,8 +25,6 @@ from course.catalog.reading import LineMap, syntax_error_line
 from course.errors import UsageError
 from course.quizzing.bank import Bank, PosedQuestion
 
-__all__ = ["FORMAT_VERSION", "AnswerFile", "read_answers"]
-
 FORMAT_VERSION = 1
 MAX_BYTES = 100_000
 

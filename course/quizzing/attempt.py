@@ -11,17 +11,6 @@ from fractions import Fraction
 from course.errors import UsageError
 from course.quizzing.bank import MAX_SEED, Bank, Choice, PosedQuestion
 
-__all__ = [
-    "PASS_SHARE",
-    "MarkedQuestion",
-    "Result",
-    "check_seed",
-    "fresh_seed",
-    "mark",
-    "mark_sentence",
-    "needed",
-]
-
 #: The share of the questions that passes. A fraction: 0.7 as a float is a little less than 7/10.
 PASS_SHARE = Fraction(7, 10)
 

@@ -23,8 +23,6 @@ from course.catalog.questions import Formula, FormulaError, Question, Variant, r
 from course.catalog.reading import Document
 from course.errors import NotFoundError
 
-__all__ = ["LETTERS", "MAX_SEED", "Bank", "Choice", "PosedQuestion", "pose_case", "same_answer"]
-
 MAX_SEED = 2**31 - 1
 LETTERS = "abcd"
 

@@ -20,8 +20,6 @@ from course.catalog import blocks as b
 from course.catalog.markdown import read_blocks, read_task
 from course.catalog.models import Exercise, Lesson
 
-__all__ = ["Cell", "Question", "Script", "Section", "is_unseen", "read_script", "words_of"]
-
 
 @dataclass(frozen=True, slots=True)
 class Section:

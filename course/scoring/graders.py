@@ -15,8 +15,6 @@ from course.catalog.load import Catalog
 from course.catalog.locate import PLACES, Content
 from course.catalog.models import Exercise
 
-__all__ = ["LEFT_OUT", "grader_files", "grader_version"]
-
 _PACKAGE = Path(__file__).resolve().parents[1]
 #: The parts of this package that a grader process imports, and those that checks may import.
 _CODE = (

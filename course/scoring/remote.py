@@ -20,8 +20,6 @@ T = TypeVar("T")
 #: A step's name, the system that was marched along, and its times and states: t, (q, v).
 March = tuple[str, Any, Any, Any]
 
-__all__ = ["BUDGET_S", "Heard", "RemoteSubmission"]
-
 #: Seconds of CPU time for all of one submission; checks after that end as timeouts. By the wall clock there
 #: are ``WALL`` times as many.
 BUDGET_S = 60.0

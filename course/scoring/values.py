@@ -23,25 +23,6 @@ from course.scoring.verdict import Finding
 if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
-__all__ = [
-    "Inspected",
-    "as_array",
-    "as_bool",
-    "as_integer",
-    "as_list",
-    "as_march",
-    "as_matrix",
-    "as_number",
-    "as_pair",
-    "as_record",
-    "as_text",
-    "as_tuple",
-    "as_vector",
-    "kind_of",
-    "overwritten",
-    "plain",
-]
-
 _SHOWN = 24  # numbers of an array that a finding shows
 #: Verdicts are sent and stored with signed integers of 64 bits.
 _STORED_BITS = 63

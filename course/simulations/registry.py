@@ -9,8 +9,6 @@ from typing import cast
 from course.errors import NotFoundError
 from course.simulations.base import Simulation
 
-__all__ = ["CHAPTER", "SIMULATIONS", "get"]
-
 #: The four that an introduction begins with, in their order.
 CHAPTER = ("free-fall", "projectile", "collision", "integrators")
 

@@ -18,8 +18,6 @@ from course.errors import UsageError
 if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
-__all__ = ["KINDS", "ImuStream", "OdometryStream", "ScanStream", "Stream", "TruthStream", "streams_from"]
-
 
 @dataclass(frozen=True, eq=False)
 class ImuStream:

@@ -18,8 +18,6 @@ from course.catalog.models import Exercise, Mutant
 from course.scoring.failures import OURS
 from course.scoring.verdict import CheckResult, Status, Verdict
 
-__all__ = ["Fault", "MutantOutcome", "judge", "mutant_path", "run_mutants"]
-
 
 @dataclass(frozen=True, slots=True)
 class Fault:

@@ -19,8 +19,6 @@ from course.catalog import blocks as b
 from course.catalog.markdown import read_blocks
 from course.errors import ContentError
 
-__all__ = ["CellRun", "LessonRun", "ValueRun", "as_written", "run_cells", "run_lesson", "update_outputs"]
-
 _NUMBER = re.compile(r"(?P<sign>[-+−]?)(?P<digits>\d[\d,]*(?:\.(?P<decimals>\d+))?)(?P<exponent>e[-+]?\d+)?")
 
 

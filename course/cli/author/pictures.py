@@ -24,8 +24,6 @@ from course.cli.frame.here import load_catalog
 from course.errors import InternalError
 from course.progress.workspace import write_atomically
 
-__all__ = ["PICTURES", "pictures"]
-
 #: The digests, beside the pictures.
 _MADE_FROM = "made-from.json"
 _COLUMNS = 84

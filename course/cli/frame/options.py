@@ -11,8 +11,6 @@ from dataclasses import dataclass
 
 from course.cli.frame.console import Settings
 
-__all__ = ["Line", "global_options"]
-
 _FLAGS = {"--json": "json", "--plain": "plain", "--quiet": "quiet", "-q": "quiet", "--version": "version"}
 
 

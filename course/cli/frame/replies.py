@@ -11,22 +11,6 @@ from typing import Any, ClassVar
 
 import msgspec
 
-__all__ = [
-    "Backup",
-    "Bare",
-    "Envelope",
-    "ErrorBody",
-    "ErrorReply",
-    "FileReply",
-    "Help",
-    "NextStep",
-    "Schema",
-    "Schemas",
-    "Version",
-    "WrittenFile",
-    "encode",
-]
-
 
 class NextStep(msgspec.Struct, frozen=True):
     """The command to run next."""

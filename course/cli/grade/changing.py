@@ -49,8 +49,6 @@ from course.grading.similar import Similar, page
 from course.printable import one_line
 from course.scoring.verdict import format_points, in_points
 
-__all__ = ["late", "override", "rerun", "similar"]
-
 _SHOWN = 20
 
 

@@ -9,8 +9,6 @@ from course.cli.grade.export import export
 from course.cli.grade.running import explain, run
 from course.cli.grade.settling import assign, log, salvage
 
-__all__ = ["app"]
-
 app = typer.Typer(
     help="Grade a class.",
     no_args_is_help=True,

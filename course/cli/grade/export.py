@@ -22,8 +22,6 @@ from course.grading.results.roster import Roster, read_roster
 from course.printable import command, one_line
 from course.scoring.verdict import LARGEST_SEED
 
-__all__ = ["export"]
-
 _SHOWN = 20
 
 

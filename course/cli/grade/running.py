@@ -43,8 +43,6 @@ from course.scoring.verdict import LARGEST_SEED, format_points, in_points
 if TYPE_CHECKING:
     from course.grading.running.run import GradeAll, RunOptions, Summary, Ungraded
 
-__all__ = ["checks_gave", "explain", "run", "score_of"]
-
 _MOST_TROUBLED = 20
 
 

@@ -23,8 +23,6 @@ from course.grading.running.assign import Assigned, Unsettled
 from course.printable import command, one_line
 from course.scoring.verdict import format_points
 
-__all__ = ["assign", "log", "salvage"]
-
 _SHOWN = 200
 
 

@@ -11,15 +11,6 @@ from course.progress.history import fingerprint
 from course.progress.quiz import quiz_history
 from course.scoring.verdict import Verdict, format_points
 
-__all__ = [
-    "after_report",
-    "after_warm_up",
-    "exercise_ahead",
-    "hint_is_due",
-    "next_in_course",
-    "next_step",
-]
-
 
 def next_step(here: Here, exercise: Exercise, verdict: Verdict, source: bytes) -> str:
     """After a check: hand in, take a hint if one is due, or go on working."""

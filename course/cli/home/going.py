@@ -11,8 +11,6 @@ from course.cli.frame.replies import NextStep
 from course.cli.home.advice import exercise_ahead, next_in_course
 from course.cli.home.replies import Go, Next
 
-__all__ = ["go", "next_command"]
-
 #: A step in words, by its command.
 _WHY = {
     "lesson": "the next lesson you have not read to its end",

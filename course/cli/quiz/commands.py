@@ -31,8 +31,6 @@ from course.quizzing.attempt import MarkedQuestion, check_seed, mark, mark_sente
 from course.quizzing.bank import PosedQuestion
 from course.quizzing.desk import Due, finished, fits
 
-__all__ = ["app", "history", "review", "take"]
-
 _HELP = {"help_option_names": ["-h", "--help"]}
 
 app = typer.Typer(

@@ -28,8 +28,6 @@ from course.reading.cells import CellOutput
 from course.reading.parts import Cell, Question, read_script
 from course.reading.record import JUDGEMENTS, InProgress, Place, find
 
-__all__ = ["LineReader"]
-
 _STOP = ("q", "quit", "n", "no")
 _ON = "Enter goes on"
 #: After this time a running cell is announced, in s.

@@ -31,8 +31,6 @@ from course.sandbox.scene.loading import scene_ids as known_scenes
 from course.sandbox.scene.model import Scene
 from course.sandbox.scene.rules import SETTINGS
 
-__all__ = ["app", "export", "list_scenes", "play", "replay"]
-
 
 class _Scenes(TyperGroup):
     """`course sandbox SCENE` plays it: no command is named like a scene."""

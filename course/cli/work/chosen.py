@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from course.handed_in.notebook import NotebookSource
     from course.scoring.judging.session import Submission
 
-__all__ = ["StudentWork", "as_handed_in", "asked_for", "chosen_work", "work_of", "worked_on"]
-
 NOTEBOOK = ".ipynb"
 
 

@@ -22,8 +22,6 @@ from course.errors import UsageError
 from course.figures.described import Plot
 from course.scoring.failures import Report, Section
 
-__all__ = ["report"]
-
 
 def report(
     exercise: ExerciseName = None,

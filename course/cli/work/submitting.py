@@ -31,8 +31,6 @@ from course.progress.quiz import quiz_history, records
 from course.progress.workspace import write_atomically
 from course.scoring.verdict import Verdict, format_points
 
-__all__ = ["archive", "submit"]
-
 
 def submit(
     output: Annotated[

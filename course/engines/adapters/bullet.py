@@ -17,9 +17,6 @@ from panda3d.core import BitMask32, ConfigVariableBool, ConfigVariableInt, NodeP
 
 from course.engines.base import Body, Motion, Scene
 
-__all__ = ["ADAPTER", "BulletAdapter", "BulletWorld"]
-
-
 #: The package's own default.
 _ITERATIONS = 10
 

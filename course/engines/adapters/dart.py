@@ -15,8 +15,6 @@ import numpy as np
 
 from course.engines.base import Body, Motion, Scene
 
-__all__ = ["ADAPTER", "DartAdapter", "DartWorld"]
-
 
 class DartWorld:
     """A scene as a DART world of skeletons."""

@@ -17,8 +17,6 @@ import numpy as np
 
 from course.engines.base import Motion, Scene
 
-__all__ = ["ADAPTER", "MujocoAdapter", "MujocoWorld"]
-
 
 class MujocoWorld:
     """A scene as a MuJoCo model and its data."""

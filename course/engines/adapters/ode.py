@@ -18,8 +18,6 @@ from panda3d.core import Quat, Vec4
 
 from course.engines.base import Body, Motion, Scene
 
-__all__ = ["ADAPTER", "OdeAdapter", "OdeWorld"]
-
 #: The maximum number of points between two bodies; two cubes face to face have at most eight.
 _POINTS = 8
 

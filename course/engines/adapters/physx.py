@@ -20,8 +20,6 @@ with warnings.catch_warnings():
     from sapien import physx
 from collections.abc import Mapping
 
-__all__ = ["ADAPTER", "PhysxAdapter", "PhysxWorld"]
-
 
 class PhysxWorld:
     """A scene in a PhysX system; nothing that draws is made."""

@@ -16,8 +16,6 @@ import pybullet as p
 
 from course.engines.base import Body, Motion, Scene
 
-__all__ = ["ADAPTER", "PybulletAdapter", "PybulletWorld"]
-
 
 class PybulletWorld:
     """A scene in its own physics server, without a window."""

@@ -15,8 +15,6 @@ import pymunk
 
 from course.engines.base import Body, Motion, NotApplicableError, Scene, Wall
 
-__all__ = ["ADAPTER", "PymunkAdapter", "PymunkWorld"]
-
 
 class PymunkWorld:
     """A scene as a pymunk space."""

@@ -13,8 +13,6 @@ import rapier3d as rapier
 
 from course.engines.base import Body, Motion, Scene
 
-__all__ = ["ADAPTER", "RapierAdapter", "RapierWorld"]
-
 
 class RapierWorld:
     """A scene as a Rapier world."""

@@ -23,8 +23,6 @@ from course.grading.running.grader import Job
 from course.scoring.judging.session import Terms
 from course.scoring.verdict import Problem
 
-__all__ = ["LostBatch", "Outcome", "Workers", "grade_on"]
-
 #: Submissions in a batch, at first and at most. In between, as many as take a worker about ``_BATCH_S`` wall
 #: seconds: sending a batch costs all processes together some 20 ms, and results arrive batch by batch.
 _FIRST, _MOST = 8, 64

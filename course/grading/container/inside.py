@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from course.grading.running.snapshot import Unpacked
     from course.scoring.verdict import Verdict
 
-__all__ = ["SNAPSHOT", "grade", "main"]
-
 #: The graders, beside the configuration.
 SNAPSHOT = "graders.zip"
 

@@ -21,8 +21,6 @@ from course.grading.exports.grades import write_bytes
 from course.grading.exports.selection import Written
 from course.grading.running.snapshot import Snapshot
 
-__all__ = ["write_autograder"]
-
 _PACKAGE = Path(__file__).resolve().parents[2]
 #: The content of a wheel, which the snapshot has.
 _CONTENT = {"content", "lessons", "__pycache__"}

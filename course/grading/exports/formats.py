@@ -17,8 +17,6 @@ from course.grading.results.effective import Results
 if TYPE_CHECKING:
     Writer = Callable[[Path, Results, ExportOptions], Written]
 
-__all__ = ["AUTOGRADER", "FORMATS", "export"]
-
 #: Needs no gradebook, and so is not one of the formats below.
 AUTOGRADER = "gradescope-autograder"
 

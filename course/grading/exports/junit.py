@@ -22,8 +22,6 @@ from course.grading.results.effective import Effective, Results
 from course.printable import one_line
 from course.scoring.verdict import CheckResult, Problem, Status
 
-__all__ = ["suite", "write_junit"]
-
 #: What XML 1.0 cannot hold in any spelling.
 _IMPOSSIBLE = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 

@@ -48,8 +48,6 @@ from course.grading.gradebook.records import (
 )
 from course.scoring.verdict import Verdict, finite
 
-__all__ = ["Gradebook"]
-
 _CHECKPOINT_S = 5.0  # the most that a power cut costs
 
 

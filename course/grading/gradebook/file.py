@@ -28,21 +28,6 @@ from typing import Any
 from course.errors import CourseError, IntegrityError, MissingCapabilityError, NotFoundError, UsageError
 from course.printable import command
 
-__all__ = [
-    "FORMAT_VERSION",
-    "SEAL",
-    "TABLES",
-    "begin_writing",
-    "create",
-    "explained",
-    "open_file",
-    "release",
-    "row_digest",
-    "row_into",
-    "seal",
-    "unseal",
-]
-
 #: 2 had no seal; 3 had no digests of rows, no snapshots and no journal; 4 did not know who waits. All can be
 #: read.
 FORMAT_VERSION = 5

@@ -9,17 +9,6 @@ import msgspec
 
 from course.scoring.verdict import Verdict
 
-__all__ = [
-    "Decision",
-    "GradedExercise",
-    "Key",
-    "Override",
-    "PlatformIdentity",
-    "Result",
-    "Run",
-    "SubmittedAt",
-]  # fmt: skip
-
 
 @dataclass(frozen=True, order=True)
 class Key:

@@ -38,14 +38,6 @@ from course.printable import one_line
 from course.scoring.judging.session import Submission
 from course.scoring.verdict import Problem
 
-__all__ = [
-    "Entry",
-    "read_quiz",
-    "read_student",
-    "submission_from",
-    "witnesses",
-]
-
 
 @dataclass(frozen=True)
 class Entry:

@@ -21,8 +21,6 @@ from course.grading.intake.downloads import IGNORED, Place, plain
 from course.handed_in.limits import HANDED_IN
 from course.printable import one_line
 
-__all__ = ["Candidate", "Found", "described", "found_for", "survey"]
-
 #: How far one student's folder is searched: depth of folders, entries, files read, and files that killed the
 #: reading process, which may have taken ten seconds each.
 _DEEP, _ENTRIES, _READ, _FATAL = 6, 2000, 60, 3

@@ -17,8 +17,6 @@ from course.grading.results.roster import COLUMNS, Person, Roster
 if TYPE_CHECKING:
     Stage = Callable[[Person], list[Person]]
 
-__all__ = ["Merged", "merged"]
-
 #: Columns whose value is one student's own, the surest first.
 _IDS = ("canvas_id", "sis_user_id", "moodle_key", "login", "email")
 

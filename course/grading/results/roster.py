@@ -33,11 +33,6 @@ from course.errors import UsageError
 from course.grading.gradebook.records import PlatformIdentity
 from course.printable import one_line
 
-__all__ = [
-    "COLUMNS", "FOR_TESTS", "Column", "Person", "Roster", "decoded", "in_english", "moodle_key",
-    "read_roster", "read_text",
-]  # fmt: skip
-
 COLUMNS = (
     "student", "name", "email", "login", "canvas_id", "sis_user_id", "section", "moodle_key",
     "extension_days",

@@ -29,8 +29,6 @@ from course.scoring.judging.session import Terms
 if TYPE_CHECKING:
     from course.grading.running.run import GradeAll
 
-__all__ = ["Assigned", "Assignment", "Unsettled", "assign", "named", "proposals", "unsettled"]
-
 _MAX_REASON = 2000
 
 

@@ -31,19 +31,6 @@ from course.scoring.judging.session import Terms
 from course.scoring.remote import BUDGET_S
 from course.scoring.verdict import Problem, Verdict, not_graded
 
-__all__ = [
-    "MAX_TRIES",
-    "Graded",
-    "Graders",
-    "answer_to",
-    "as_error",
-    "grade_all",
-    "hang_s",
-    "killed_its_grader",
-    "start_grader",
-    "without_grading",
-]
-
 #: After so many deaths of graders a submission is not tried again and counts as our fault; or no grader
 #: starts.
 MAX_TRIES = 3

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
     from course.scoring.judging.session import GradingSession
 
-__all__ = ["Answer", "Config", "Job", "main"]
-
 #: Sessions, each with a sandbox of some 30 MB; more than a class has exercises. An audit has forty.
 _MOST_OPEN = 10
 

@@ -31,8 +31,6 @@ from course.scoring.verdict import Verdict
 if TYPE_CHECKING:
     from course.grading.running.run import GradeAll
 
-__all__ = ["Change", "CheckChange", "Regraded", "RerunOptions", "rerun"]
-
 #: Characters of a snapshot's digest that name it.
 _LEAST_DIGITS = 6
 

@@ -14,8 +14,6 @@ from course.sandbox.scene.loading import Chosen, Comparison, compare, question, 
 from course.sandbox.world.accounts import Event
 from course.sandbox.world.world import World
 
-__all__ = ["Experiment", "Narrator"]
-
 #: Sentences that a view gets when it opens in the middle of a run.
 _KEPT = 60
 #: A pair that touches again within this time, in s, is not reported again.

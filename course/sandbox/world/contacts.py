@@ -11,8 +11,6 @@ from course.sandbox.scene.model import Part
 from course.sandbox.world.accounts import Clock, Event
 from course.sandbox.world.engine import Block, Floats, Ledger, Space
 
-__all__ = ["MINOR", "ContactCollector", "contact_events"]
-
 #: Contacts softer than this, in m/s, belong to resting and rolling.
 MINOR = 0.05
 

@@ -15,8 +15,6 @@ import pytest
 
 from course.scoring.remote import RemoteSubmission
 
-__all__ = ["MARKERS", "CheckPlugin"]
-
 MARKERS = (
     "points(n): what the check is worth",
     "task(name): the function whose points these are",

@@ -12,17 +12,6 @@ from course.scoring.remote import RemoteSubmission
 from course.scoring.values import kind_of, plain
 from course.scoring.verdict import CheckResult, Finding, Places, Problem, Status
 
-__all__ = [
-    "NOT_JUDGED",
-    "found",
-    "left_out_notes",
-    "load_problem",
-    "no_functions",
-    "result",
-    "skipped",
-    "unjudged",
-]
-
 #: Diagnosis of a check that broke on a student's value and not on the model solution's.
 NOT_JUDGED = "NOT_JUDGED"
 _MOST_NOTES = 5

@@ -17,8 +17,6 @@ from course.scoring.verdict import Divergence
 if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
-__all__ = ["Counted", "acceleration", "black_box", "counted", "first_divergence"]
-
 
 class Counted:
     """A callback that remembers how it was called.

@@ -28,24 +28,6 @@ from course.scoring.failures import CheckFailed, Comparison, broke_at
 from course.scoring.values import Inspected, as_array, as_list, as_number, as_vector, plain
 from course.scoring.verdict import Divergence, Finding, Tolerance
 
-__all__ = [
-    "Diagnose",
-    "attempt",
-    "expect_accepts",
-    "expect_array",
-    "expect_bounded",
-    "expect_close",
-    "expect_conserved",
-    "expect_equal",
-    "expect_evaluations",
-    "expect_length",
-    "expect_order",
-    "expect_raises",
-    "expect_true",
-    "expect_untouched",
-    "fail",
-]
-
 _Part = TypeVar("_Part", bound=msgspec.Struct | None)
 Diagnose = Diagnosis | str | Callable[[], Diagnosis | str | None] | None
 

@@ -16,8 +16,6 @@ from course.physics.systems import System
 if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
-__all__ = ["CHECKPOINTS", "Marches", "Problem", "march_all_errors", "march_errors"]
-
 #: Instants at which a trajectory is compared with the reference. There are several, because the error of a
 #: correct method can pass through zero at one of them: at half a period from rest, semi-implicit Euler shows
 #: order 2.

@@ -13,8 +13,6 @@ from course.full_screen import TextOverlay
 from course.reading.parts import Question
 from course.reading.record import InProgress, Judgement, Place
 
-__all__ = ["ReaderApp"]
-
 _JUDGED: dict[str, Judgement] = {"1": "right", "2": "nearly", "3": "wrong"}
 
 

@@ -15,8 +15,6 @@ from textual.widgets.option_list import Option
 
 from course.full_screen import Field, InOrder, Overlay
 
-__all__ = ["ChoiceOverlay", "Edit", "Find", "Predict"]
-
 
 class Predict(Overlay[str]):
     """The question, and a field for the prediction. Dismissed with it, or None."""

@@ -15,8 +15,6 @@ from course.reading.cells import CellOutput
 from course.reading.parts import Cell
 from course.reading.record import InProgress, Place
 
-__all__ = ["CellsApp"]
-
 
 class CellsApp(LessonApp):
     """A lesson on the whole screen, whose cells run in place."""

@@ -13,9 +13,6 @@ from course.cli.reading.screen.printing import Item
 from course.cli.reading.screen.tasks import hint_is_named, line_to_mend
 from course.errors import CourseError
 
-__all__ = ["TasksApp"]
-
-
 _BUSY = "Something is being checked already."
 
 

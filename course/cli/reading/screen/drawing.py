@@ -22,8 +22,6 @@ from rich.text import Text
 from course.browser import opened
 from course.cli.frame.pictures import half_blocks
 
-__all__ = ["Drawer"]
-
 #: A figure's height, in cells, as a share of its width; its caption stands below it on the same screen.
 _LOW = 0.26
 _CAPTION = 5

@@ -6,8 +6,6 @@ from pathlib import Path
 
 from course.errors import MissingCapabilityError
 
-__all__ = ["write_new"]
-
 
 def write_new(name: str, text: str) -> Path:
     """Write a file into the current folder; an existing one keeps its name and content.

@@ -14,8 +14,6 @@ from textual.widget import Widget
 from course.cli.reading.screen.printing import BlockRows, Item, ScreenPrinter
 from course.reading.record import Layout, Place, Row
 
-__all__ = ["Book", "Page", "Words"]
-
 #: Lines around the text: a head, a position bar and a line of keys; below this height no head.
 _LOW = 16
 _MARGIN = 2

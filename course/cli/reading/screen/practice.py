@@ -21,8 +21,6 @@ from course.catalog.models import Exercise
 from course.errors import CourseError
 from course.progress.workspace import Workspace
 
-__all__ = ["Practice", "Standing"]
-
 #: Time limit of a command, in s; the checks' own deadlines are shorter.
 _PATIENCE = 120.0
 

@@ -25,8 +25,6 @@ from course.cli.reading.screen.tasks import standing_lines
 from course.reading.parts import Cell, Question
 from course.reading.record import InProgress, Row
 
-__all__ = ["BlockRows", "Item", "ScreenPrinter"]
-
 #: Prose is this wide at most; a cell's two outputs stand side by side where both fit.
 COLUMN = 80
 _BESIDE = 2 * 58 + 3

@@ -12,8 +12,6 @@ from course.reading.cells import CellOutput, CellRunner
 from course.reading.parts import Cell
 from course.reading.record import InProgress
 
-__all__ = ["Bench"]
-
 
 class Bench:
     """Where the cells of one lesson run.

@@ -27,8 +27,6 @@ from course.progress.store import Event
 from course.reading.parts import Script, read_script
 from course.reading.record import InProgress, Place
 
-__all__ = ["LessonApp"]
-
 #: A place is recorded once the reader has stayed there this long, in s.
 _SETTLED = 1.0
 #: How often the last line and running work are looked at, in s.

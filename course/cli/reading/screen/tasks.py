@@ -13,8 +13,6 @@ from course.cli.reading.screen.practice import Standing
 from course.cli.work.verdict import line_of, unread_line
 from course.scoring.verdict import CheckResult, numbers_of
 
-__all__ = ["hint_is_named", "line_to_mend", "standing_lines"]
-
 #: Lines of what a student's code printed: there is more to see on a screen than these.
 _PRINTED = 4
 

@@ -15,8 +15,6 @@ from course.cli.reading.screen.printing import BlockRows, ScreenPrinter
 from course.reading.parts import Script
 from course.reading.record import InProgress, Layout
 
-__all__ = ["contents", "fitting", "keys_table", "position", "shortened", "tail"]
-
 _SHORT_OF = "…"
 _BETWEEN, _ALL_KEYS = "   ", "? keys"
 

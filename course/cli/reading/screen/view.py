@@ -11,8 +11,6 @@ from course.progress.store import Event
 from course.progress.workspace import Workspace
 from course.reading.record import InProgress, Writer
 
-__all__ = ["is_possible", "read"]
-
 
 def is_possible() -> bool:
     """Whether this terminal can be drawn on: a user is there, and non-ASCII letters are shown."""

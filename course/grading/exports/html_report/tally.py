@@ -13,8 +13,6 @@ from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.results.effective import Effective
 from course.scoring.verdict import CheckResult, Status, Visibility
 
-__all__ = ["CappedList", "CheckTally", "DiagnosisTally", "ExerciseTally", "Tally", "TaskTally"]
-
 #: Rows of a list on the class page; the tables of numbers have the whole class.
 MOST_ROWS = 200
 _SLOWEST = 5

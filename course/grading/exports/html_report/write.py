@@ -15,8 +15,6 @@ from course.grading.exports.html_report.tally import Tally
 from course.grading.exports.selection import ExportOptions, Written, select
 from course.grading.results.effective import Effective, Results
 
-__all__ = ["write_html", "write_pages"]
-
 _PAGE = re.compile(r"[1-9][0-9]*\.html")
 
 

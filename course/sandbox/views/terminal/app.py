@@ -34,8 +34,6 @@ from course.sandbox.views.terminal.words import (
 )
 from course.sandbox.world.world import World
 
-__all__ = ["SandboxApp"]
-
 #: A run that is over sooner than this, in s, starts in slow motion, so that it can be seen.
 _BLINK, _SEEN = 0.5, 3.0
 #: How often numbers and curves are written anew, in s: the eye reads no faster.

@@ -18,8 +18,6 @@ from course.sandbox.scene.loading import NO_GUESS, guess_of
 from course.sandbox.scene.model import Scene
 from course.sandbox.views.terminal.words import KEYS, clean
 
-__all__ = ["Page", "PageOverlay", "QuestionOverlay", "comparison", "help_pages"]
-
 #: A heading and paragraphs, or lines of two columns.
 Page = Sequence[str | tuple[str, str]]
 

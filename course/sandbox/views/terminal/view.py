@@ -12,8 +12,6 @@ from course.sandbox.scene.loading import Chosen, Comparison
 from course.sandbox.scene.model import Scene
 from course.sandbox.world.world import World
 
-__all__ = ["play"]
-
 
 def play(
     world: World,

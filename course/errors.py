@@ -17,6 +17,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+#: The exit code of a command that was stopped with Ctrl-C.
+INTERRUPTED = 130
+
 
 class CourseError(Exception):
     """Base of every deliberate error.

@@ -44,7 +44,7 @@ def unheeded(text: str) -> str:
     """Text as it may stand in the log of a workflow on GitHub, which obeys what it reads there.
 
     The runner takes ``::command::`` at the beginning of a line and ``##[command]`` anywhere in one for a word
-    to itself (``TryParseV2`` and ``TryParse`` in ``actions/runner``, src/Runner.Common/ActionCommand.cs). One
+    to itself (TryParseV2 and TryParse in actions/runner, src/Runner.Common/ActionCommand.cs). One
     such line forges an annotation, or stops all that follow. Elsewhere the text is as it was.
     """
     if os.environ.get("GITHUB_ACTIONS") != "true":

@@ -93,10 +93,6 @@ class Content:
         """Its solutions; None where this installation has none."""
         return None if self.solutions is None else self.solutions / self.place_of(exercise_id)
 
-    def grader_folder(self, exercise_id: str) -> Path | None:
-        """Its hidden checks; None where this installation has none."""
-        return None if self.graders is None else self.graders / self.place_of(exercise_id)
-
 
 def content() -> Content:
     """The content that this process is to use.

@@ -7,6 +7,7 @@ bars, an exponent with no raised form in Unicode is written with ^. A formula ne
 from __future__ import annotations
 
 from textwrap import dedent
+from typing import assert_never
 
 from course.catalog.mathtree import (
     ACCENTS,
@@ -91,6 +92,8 @@ def _text(node: Node) -> str:  # noqa: PLR0911 - one return per kind of node
             return left + _text(body) + right
         case Grid(lines=lines):
             return _grid_text(lines)
+        case _:
+            assert_never(node)
 
 
 def _row_text(items: tuple[Node, ...]) -> str:
@@ -220,6 +223,8 @@ def _spoken(node: Node) -> str:  # noqa: PLR0911 - one return per kind of node
             return f"{opening} {_spoken(body)} {closing}"
         case Grid(lines=lines):
             return "\n".join(" ".join(_spoken(cell) for cell in line) for line in lines)
+        case _:
+            assert_never(node)
 
 
 def _row_spoken(items: tuple[Node, ...]) -> str:

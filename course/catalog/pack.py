@@ -34,7 +34,6 @@ MAX_FILES = 200
 MAX_FILE_BYTES = 1_000_000
 MAX_TOTAL_BYTES = 5_000_000
 
-_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest date a zip can hold
 _ENTRY = re.compile(r"solutions/(?P<exercise>[^/]+)/(?P<name>[A-Za-z0-9_][A-Za-z0-9_.-]{0,99})")
 #: The exceptions of zipfile for bytes that are not a zip, or are a damaged one.
 _NOT_A_ZIP = (
@@ -119,9 +118,9 @@ def pack_bytes(course_id: str, course_version: str, solutions: Mapping[str, Mapp
     head = msgspec.json.format(msgspec.json.encode(manifest), indent=1) + b"\n"
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as archive:
-        archive.writestr(_entry_info(MANIFEST), head)
+        archive.writestr(zip_entry(MANIFEST), head)
         for path in sorted(entries):
-            archive.writestr(_entry_info(path), entries[path])
+            archive.writestr(zip_entry(path), entries[path])
     return buffer.getvalue()
 
 
@@ -210,10 +209,11 @@ def _check_entry(path: str, content: bytes) -> tuple[str, str]:
     return ExerciseId(match["exercise"]), match["name"]
 
 
-def _entry_info(name: str) -> zipfile.ZipInfo:
-    info = zipfile.ZipInfo(name, date_time=_EPOCH)
-    info.create_system = 3  # Unix everywhere, or the bytes would depend on who packs
-    info.external_attr = (stat.S_IFREG | 0o644) << 16
+def zip_entry(name: str, mode: int = 0o644) -> zipfile.ZipInfo:
+    """A file in a zip whose bytes depend on neither the hour nor the machine that packs it."""
+    info = zipfile.ZipInfo(name, date_time=(1980, 1, 1, 0, 0, 0))  # the earliest date a zip can hold
+    info.create_system = 3  # Unix everywhere
+    info.external_attr = (stat.S_IFREG | mode) << 16
     return info
 
 

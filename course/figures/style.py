@@ -118,7 +118,7 @@ def new_figure(height_in: float, rows: int = 1, columns: int = 1, **grid: Any) -
 
     Args:
         height_in: height, inches.
-        grid: passed on to ``Figure.subplots`` (sharex, sharey, ...).
+        grid: passed on to matplotlib's ``subplots`` (sharex, sharey, ...).
     """
     figure = Figure(figsize=(WIDTH_IN, height_in))
     FigureCanvasAgg(figure)

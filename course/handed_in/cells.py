@@ -18,10 +18,7 @@ from typing import Any
 import msgspec
 
 from course.errors import UngradableError, UsageError
-from course.handed_in import MAX_CODE, MAX_NOTEBOOK
-
-#: Code cells; the longest notebooks that people write have some hundreds.
-MAX_CELLS = 2000
+from course.handed_in.limits import MAX_CELLS, MAX_CODE, MAX_NOTEBOOK
 
 _FIX = "Save it from Jupyter again, or hand in the .py file."
 #: Cell magics whose body is Python of this notebook; the cells of all others are something else.

@@ -20,9 +20,9 @@ from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.errors import CourseError, NotFoundError, UngradableError, UsageError
 from course.figures.described import Curve, plot_of
-from course.handed_in import MAX_CODE
 from course.handed_in.attempts import Attempt, attempt
 from course.handed_in.cells import CodeCell, code_cells, read_notebook, typed_cell
+from course.handed_in.limits import MAX_FILE, SOURCES
 from course.handed_in.notebook import SETUP, NotebookSource, notebook_source, source_of
 from course.notebooks.build import pieces
 from course.notebooks.show import ReportPage, image_of
@@ -434,7 +434,7 @@ def check(exercise_id: str, task: str | None, source: Source | None, shell: Any 
 
 
 def _submission(exercise: Exercise, source: Source) -> Submission:
-    if isinstance(source, str) and "\n" not in source and source.endswith((".py", ".ipynb")):
+    if isinstance(source, str) and "\n" not in source and source.endswith(SOURCES):
         source = Path(source)
     if isinstance(source, Path):
         return _of_file(exercise, source)
@@ -466,9 +466,9 @@ def _of_file(exercise: Exercise, path: Path) -> Submission:
 
 
 def _of_text(exercise: Exercise, text: bytes) -> Submission:
-    if len(text) > MAX_CODE:
+    if len(text) > MAX_FILE:
         raise UngradableError(
-            f"This is more than {MAX_CODE:,} bytes of code.",
+            f"This is more than {MAX_FILE:,} bytes of code.",
             help="Keep data out of it; the exercise needs none.",
             code="too_large",
         )

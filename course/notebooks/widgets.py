@@ -66,7 +66,7 @@ class Predict(Form):
     """A field that waits for a prediction.
 
     Args:
-        asked: see ``predicting.Asked``; that module imports this one.
+        asked: see ``predicting.LessonPrediction``; that module imports this one.
 
     Raises:
         RuntimeError: no event loop runs here, as one does in every kernel.
@@ -226,7 +226,7 @@ class QuizForm(Form):
     """An attempt at the quiz.
 
     Args:
-        taken: see ``taking.Taken``; that module imports this one.
+        taken: see ``predicting.OngoingAttempt``; that module imports this one.
 
     Raises:
         RuntimeError: no event loop runs here, as one does in every kernel.

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 
+from course.catalog.pack import zip_entry
 from course.isolation.deadline import Deadline
 from course.isolation.failures import IsolationError, StudentFailure
 from course.isolation.levels import Level, Spawner
@@ -38,8 +39,6 @@ _COURSE = "course"
 #: Packages that a cell's process may have as they are, quick to load, each with what it needs itself.
 _LIGHT = {"numpy": (), "msgspec": (), "pymunk": ("cffi",)}
 _DATA = frozenset({".json", ".toml"})
-#: Archives are stamped alike, so that the same modules give the same bytes.
-_STAMP = (1980, 1, 1, 0, 0, 0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +124,7 @@ def _zipped(files: dict[str, bytes]) -> bytes:
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, data in sorted(files.items()):
-            archive.writestr(zipfile.ZipInfo(name, _STAMP), data, zipfile.ZIP_DEFLATED)
+            archive.writestr(zip_entry(name), data, zipfile.ZIP_DEFLATED)
     return out.getvalue()
 
 

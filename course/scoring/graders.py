@@ -22,8 +22,7 @@ _CODE = (
     "simulations",
 )  # fmt: skip
 _FILES = (
-    "grading/__init__.py", "grading/kit.py", "grading/pipes.py",
-    "grading/running/__init__.py", "grading/running/grader.py",
+    "grading/__init__.py", "grading/pipes.py", "grading/running/__init__.py", "grading/running/grader.py",
 )  # fmt: skip
 #: Folders without a part in grading: an exercise's wrong and its unusual solutions.
 LEFT_OUT = frozenset({"accepted", "mutants"})

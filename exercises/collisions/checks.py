@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from course.grading import kit
+from course.scoring import kit
 
 bundles = kit.companion("collisions", "bundles")
 tracks, engine = bundles.tracks, bundles.engine

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 paths = kit.companion("collisions", "paths")
 

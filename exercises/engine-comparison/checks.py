@@ -10,7 +10,7 @@ import math
 
 import pytest
 
-from course.grading import kit
+from course.scoring import kit
 
 bench = kit.companion("engine-comparison", "bench")
 boxes = kit.companion("engine-comparison", "boxes")

@@ -6,7 +6,7 @@ import itertools
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 bench = kit.companion("engine-comparison", "bench")
 boxes = kit.companion("engine-comparison", "boxes")

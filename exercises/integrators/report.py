@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from course.grading import kit
 from course.physics import exact, invariants, systems
+from course.scoring import kit
 
 STEPS = {
     "explicit_euler_step": "explicit Euler",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from course.grading import kit
+from course.scoring import kit
 
 cart = kit.companion("sim-to-real", "cart")
 words = kit.companion("sim-to-real", "words")

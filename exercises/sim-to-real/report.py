@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 cart = kit.companion("sim-to-real", "cart")
 words = kit.companion("sim-to-real", "words")

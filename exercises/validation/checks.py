@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from course.grading import kit
 from course.physics import systems
+from course.scoring import kit
 
 probes = kit.companion("validation", "probes")
 shared = kit.companion("validation", "expectations")

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 shared = kit.companion("validation", "expectations")
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from course.grading import kit
 from course.physics.systems import AveragePolynomial
+from course.scoring import kit
 
 dataset = kit.companion("validation", "dataset")
 twins = kit.companion("validation", "twins")

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 paths = kit.companion("collisions", "paths")
 motions = kit.sibling(__file__, "motions")

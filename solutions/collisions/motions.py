@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from course.grading import kit
+from course.scoring import kit
 
 paths = kit.companion("collisions", "paths")
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 paths = kit.companion("collisions", "paths")
 draws = kit.sibling(__file__, "draws")

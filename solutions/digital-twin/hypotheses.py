@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 
-from course.grading import kit
+from course.scoring import kit
 
 formulas, motions = (kit.sibling(__file__, name) for name in ("formulas", "motions"))
 

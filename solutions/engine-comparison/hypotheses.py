@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 choosing = kit.sibling(__file__, "choosing")
 model = kit.sibling(__file__, "engine_comparison")

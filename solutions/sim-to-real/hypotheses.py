@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 model = kit.sibling(__file__, "sim_to_real")
 NAMES = model.NAMES

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 model = kit.sibling(__file__, "validation")
 MEASURES = ("rmse", "bias", "lag_s", "coverage")

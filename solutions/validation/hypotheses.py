@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 model, formulas, facts = (kit.sibling(__file__, name) for name in ("validation", "formulas", "facts"))
 MEASURES = facts.MEASURES

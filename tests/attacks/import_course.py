@@ -4,7 +4,7 @@ import importlib
 
 found = []
 for name in (
-    "course.physics.integrators", "course.grading.kit", "course.isolation.session", "course.catalog.locate",
+    "course.physics.integrators", "course.scoring.kit", "course.isolation.session", "course.catalog.locate",
     "solutions.arena.arena", "tests.attacks.arena.solutions.arena.arena", "graders.arena.checks", "conftest",
 ):
     try:

@@ -26,7 +26,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "benchmarks")]
 
 
 from course.authoring.exercises.grading import LocalSubmission  # noqa: E402
-from course.grading import kit  # noqa: E402
+from course.scoring import kit  # noqa: E402
 from course.scoring.failures import finding_of  # noqa: E402
 from course.scoring.judging.explaining import Explainer  # noqa: E402
 from course.scoring.judging.outcomes import found  # noqa: E402

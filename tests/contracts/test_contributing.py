@@ -12,7 +12,7 @@ import pytest
 
 from course.authoring.exercises.diagnosis import build
 from course.catalog.load import Catalog
-from course.grading import kit
+from course.scoring import kit
 from course.scoring.checks.collected import words as known_words
 from course.scoring.judging.session import GradingSession, report_of
 from course.scoring.judging.submission import Submission
@@ -35,7 +35,7 @@ def blocks(kind: str, language: str = "python") -> list[str]:
 
 def checks() -> str:
     """The examples as a file of checks, each with the markers that the page leaves out."""
-    parts = ["import numpy as np\nimport pytest\n\nfrom course.grading import kit\n", *blocks("top")]
+    parts = ["import numpy as np\nimport pytest\n\nfrom course.scoring import kit\n", *blocks("top")]
     parts += [block.replace('@pytest.mark.requires("other_check")', "#") for block in blocks("check")]
     for number, body in enumerate(blocks("example")):
         parts.append(
@@ -55,9 +55,9 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     shutil.copytree(root / "exercises" / "halving", folder)
     (folder / "checks.py").write_text(checks())
     (folder / "checking").mkdir()
-    diagnosis = "from course.grading import kit\n\n" + blocks("diagnosis")[0]
+    diagnosis = "from course.scoring import kit\n\n" + blocks("diagnosis")[0]
     (folder / "checking" / "diagnosis.py").write_text(diagnosis)
-    (folder / "report.py").write_text("from course.grading import kit\n\n" + blocks("report")[0])
+    (folder / "report.py").write_text("from course.scoring import kit\n\n" + blocks("report")[0])
     (folder / "exercise.toml").write_text(
         'format_version = 1\nid = "growth"\ntitle = "Growth"\nmodule = "growth.py"\norder = 9\n'
         'lesson = "half-as-much"\nsummary = "It grows."\n[[task]]\nid = "double"\ntitle = "D"\npoints = 9\n'

@@ -6,7 +6,6 @@ import re
 from pathlib import Path
 
 from course import errors
-from course.cli.frame import app
 from course.cli.frame.schemas import reply_types
 from course.cli.setup.making import KINDS
 from course.cli.work.verdict import FORMATS
@@ -18,7 +17,7 @@ TEXT = (Path(__file__).parents[2] / "docs" / "scripts.md").read_text("utf-8")
 def test_the_exit_codes_are_those_of_the_program():
     kinds = (kind for kind in vars(errors).values() if isinstance(kind, type))
     known = {kind.exit_code for kind in kinds if issubclass(kind, errors.CourseError)}
-    known |= {0, 1, Summary(unrecognised=["a file"]).exit_code, app.OUR_FAULT, app.INTERRUPTED}
+    known |= {0, 1, Summary(unrecognised=["a file"]).exit_code, errors.INTERRUPTED}
     assert {int(code) for code in re.findall(r"^\| (\d+) \|", TEXT, re.MULTILINE)} == known
 
 

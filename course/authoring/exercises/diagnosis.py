@@ -38,7 +38,7 @@ from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.catalog.reading import read_text
 from course.errors import ContentError
-from course.grading import kit
+from course.scoring import kit
 from course.scoring.checks.collected import companion_path, words
 from course.scoring.explain.fingerprint import numbers_of
 from course.scoring.explain.story import (

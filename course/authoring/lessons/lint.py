@@ -11,6 +11,7 @@ import re
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import assert_never
 from urllib.parse import unquote
 
 from course.authoring.lessons.cells import run_lesson
@@ -196,8 +197,12 @@ def _without_code_spans(blocks: tuple[b.Block, ...]) -> tuple[b.Block, ...]:
             case b.Table(line, header, rows, align):
                 clean = tuple(tuple(_no_code(cell) for cell in row) for row in rows)
                 prose.append(b.Table(line, header, clean, align))
-            case _:
+            case b.Heading() | b.CodeCell() | b.Listing() | b.MathBlock() | b.Diagram() | b.CommandList():
                 pass
+            case b.Sources() | b.ListBlock() | b.Prediction() | b.Callout() | b.Task():
+                pass  # what the last four hold comes by itself
+            case _:
+                assert_never(block)
     return tuple(prose)
 
 
@@ -216,8 +221,14 @@ def _too_wide(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
                 texts = [("text", line, text)]
             case b.MathBlock(line, _, text):
                 texts = [("formula", line, text)]
-            case _:
+            case b.CodeCell() | b.CommandList() | b.Task():
                 continue
+            case b.Heading() | b.Paragraph() | b.ListBlock() | b.Table() | b.Figure():
+                continue
+            case b.Prediction() | b.Callout() | b.Sources():
+                continue
+            case _:
+                assert_never(block)
         for kind, line, text in texts:
             widest = max((len(row) for row in text.splitlines()), default=0)
             if widest > MAX_COLUMNS:

@@ -13,7 +13,6 @@ from course.authoring.audit import audit
 from course.authoring.coverage import Coverage, as_markdown, check_coverage, read_coverage, written_to
 from course.authoring.exercises.grading import instructors
 from course.authoring.exercises.mutants import MutantOutcome, run_mutants
-from course.authoring.exercises.proofs import kill_table
 from course.authoring.packing import write_pack
 from course.authoring.report import AuditProblem, AuditReport
 from course.catalog.load import Catalog
@@ -29,14 +28,12 @@ from course.cli.author.replies import (
     CoverageRow,
     MutantRow,
 )
-from course.cli.frame import here
 from course.cli.frame.completion import exercise_ids, lesson_ids
 from course.cli.frame.console import Console, current, meter
 from course.cli.frame.here import load_catalog
 from course.cli.frame.registry import COMMANDS
 from course.cli.frame.replies import filled
 from course.errors import ContentError, UsageError
-from course.progress.workspace import write_atomically
 from course.sandbox.scene.loading import scene_ids
 from course.scoring.verdict import in_points
 from course.simulations.registry import SIMULATIONS
@@ -458,10 +455,6 @@ def mutants(
             metavar="ID", help="An exercise; all of them if left out.", autocompletion=exercise_ids
         ),
     ] = None,
-    table: Annotated[
-        Path | None,
-        typer.Option("--table", metavar="FILE", help="Write which check catches which mutant, as Markdown."),
-    ] = None,
 ) -> int:
     """Show the feedback for each wrong solution.
 
@@ -471,8 +464,6 @@ def mutants(
 
     console, catalog = current(), load_catalog()
     instructors(catalog)
-    if table is not None and name is not None:
-        raise UsageError("--table writes the page of all exercises.", help=f"Leave {name} out.")
     chosen = catalog.exercises() if name is None else (catalog.exercise(name),)
     rows = []
     for exercise in chosen:
@@ -486,16 +477,8 @@ def mutants(
         f"{counted(len(rows), 'mutant')}: "
         + ("each is caught as it says." if ok else f"{wrong} not caught as they should be.")
     )
-    if table is not None and ok:
-        _write_table(console, catalog, table)
     console.emit(AuthorMutants(ok=ok, exit_code=0 if ok else 1, mutants=tuple(rows)))
     return 0 if ok else 1
-
-
-def _write_table(console: Console, catalog: Catalog, path: Path) -> None:
-    full = here.target(path, "--table", ("md",))
-    write_atomically(full, kill_table(catalog).encode())  # generated, and under version control: no copy
-    console.line(f"Wrote {full}")
 
 
 def _show_mutants(console: Console, exercise: Exercise, outcomes: tuple[MutantOutcome, ...]) -> None:

@@ -26,10 +26,8 @@ from course import __version__
 from course.cli.frame.console import Console, current, install
 from course.cli.frame.options import Line, global_options
 from course.cli.frame.registry import HOME, LazyGroup, build, find, understood
-from course.errors import CourseError, NotFoundError, UsageError
+from course.errors import INTERRUPTED, CourseError, InternalError, NotFoundError, UsageError
 
-INTERRUPTED = 130
-OUR_FAULT = 70
 SHELLS = ("bash", "zsh", "fish", "powershell", "pwsh")
 
 
@@ -248,7 +246,7 @@ def _crash(console: Console, line: Line, error: BaseException) -> int:
 
     where = write_report(error)
     message = f"A fault in the course, not in your work ({type(error).__name__}); the details are in {where}."
-    return _say(console, line, OUR_FAULT, "internal", message)
+    return _say(console, line, InternalError.exit_code, "internal", message)
 
 
 # ---

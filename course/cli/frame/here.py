@@ -14,7 +14,7 @@ from course.catalog.models import CourseRef, Exercise
 from course.cli.frame.console import current
 from course.cli.frame.replies import Backup, Envelope, WrittenFile
 from course.errors import CourseError, MissingCapabilityError, NotFoundError, UngradableError, UsageError
-from course.handed_in import MAX_CODE
+from course.handed_in.limits import MAX_FILE
 from course.ids import WARM_UPS
 from course.progress.history import History, history_of
 from course.progress.standing import Standing
@@ -120,9 +120,9 @@ class Here:
         try:
             if not path.is_file():
                 raise UngradableError(f"{shown} is not a file.", help="Move it away.", code="no_file")
-            if path.stat().st_size > MAX_CODE:
+            if path.stat().st_size > MAX_FILE:
                 raise UngradableError(
-                    f"{shown} is larger than {MAX_CODE:,} bytes.",
+                    f"{shown} is larger than {MAX_FILE:,} bytes.",
                     help="Keep data out of the file; the exercise needs none.",
                     code="too_large",
                 )

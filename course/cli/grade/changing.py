@@ -29,7 +29,7 @@ from course.cli.grade.options import (
 from course.cli.grade.options import points as _points
 from course.cli.grade.replies import LateOne
 from course.cli.grade.running import checks_gave
-from course.errors import UsageError
+from course.errors import InternalError, UsageError
 from course.grading.exports.grades import grade_line, utc, write_bytes
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import SubmittedAt
@@ -88,7 +88,7 @@ def rerun(
     catalog = load_catalog()
     with open_results(out, writing=not dry_run) as results, console.working("Grading again"):
         done = regrade(results, catalog, options, grade=partial(grade_all, graders=jobs))
-    code = 70 if done.faults else 0
+    code = InternalError.exit_code if done.faults else 0
     if console.json:
         console.emit(
             filled(GradeRerun, done, ok=not code, exit_code=code, dry_run=dry_run, grader_error=done.faults)

@@ -30,7 +30,7 @@ from course.cli.grade.options import (
     show_roster,
 )
 from course.cli.work.verdict import show_everything
-from course.errors import CourseError, NotFoundError, UsageError
+from course.errors import INTERRUPTED, CourseError, NotFoundError, UsageError
 from course.grading.exports.grades import grade_line
 from course.grading.gradebook.records import Decision, Result
 from course.grading.results.effective import MISSING, NOT_YET, Effective
@@ -45,7 +45,6 @@ if TYPE_CHECKING:
     from course.grading.running.run import GradeAll, RunOptions, Summary, Ungraded
 
 _MOST_TROUBLED = 20
-INTERRUPTED = 130
 
 
 def run(

@@ -23,15 +23,13 @@ from course.cli.quiz.screen import (
     printed_seed,
     start,
 )
-from course.errors import UsageError
+from course.errors import INTERRUPTED, UsageError
 from course.progress import quiz
 from course.progress.quiz import Attempt
 from course.quizzing.answers import read_answers
 from course.quizzing.attempt import MarkedQuestion, check_seed, mark, mark_sentence, needed
 from course.quizzing.bank import PosedQuestion
 from course.quizzing.desk import Due, finished, fits
-
-INTERRUPTED = 130
 
 _HELP = {"help_option_names": ["-h", "--help"]}
 

@@ -76,18 +76,15 @@ _SET = typer.Option(
 @app.callback(epilog="Example: course sandbox play newtons-cradle")
 def menu(
     ctx: typer.Context,
-    list_: Annotated[bool, typer.Option("--list", help="List the scenes; the same as `list`.")] = False,
 ) -> int | None:
     """Play with collisions, and see where the energy goes.
 
     Without a command: a menu in a terminal, the list of scenes anywhere else.
     """
     if ctx.invoked_subcommand is not None:
-        if list_:
-            raise UsageError("--list stands alone.", help="Try `course sandbox --list`.")
         return None
     console = current()
-    asks = console.interactive and console.fancy and not list_
+    asks = console.interactive and console.fancy
     _list(console, None, asks=asks)
     if not asks:
         return 0

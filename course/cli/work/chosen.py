@@ -17,8 +17,8 @@ from course.catalog.models import Exercise
 from course.cli.frame.here import Here, cwd
 from course.cli.frame.replies import FileReply
 from course.errors import CourseError, NotFoundError, UngradableError
-from course.handed_in import MAX_CODE
 from course.handed_in.cells import read_notebook
+from course.handed_in.limits import MAX_FILE
 from course.notebooks.cells import dumped
 from course.notebooks.merge import is_untouched
 from course.printable import command
@@ -195,9 +195,9 @@ def _notebook(here: Here, exercise: Exercise) -> StudentWork:
         )
     data = read_notebook(path)
     module = notebook_source(data, exercise, name)
-    if len(module.source) > MAX_CODE:
+    if len(module.source) > MAX_FILE:
         raise UngradableError(
-            f"The functions of {name} are larger than {MAX_CODE:,} bytes.",
+            f"The functions of {name} are larger than {MAX_FILE:,} bytes.",
             help="Keep data out of them; the exercise needs none.",
             code="too_large",
         )
@@ -253,8 +253,8 @@ def _handed_in_notebook(here: Here, exercise: Exercise) -> tuple[StudentWork | N
         small = _without_outputs(notebook.data)
     except (ValueError, RecursionError):
         return None, "its outputs cannot be read; clear them in Jupyter and save it again"
-    if len(small) > MAX_CODE:
-        return None, f"larger than {MAX_CODE:,} bytes without its outputs, which no grading run takes"
+    if len(small) > MAX_FILE:
+        return None, f"larger than {MAX_FILE:,} bytes without its outputs, which no grading run takes"
     return replace(notebook, data=small), ""
 
 

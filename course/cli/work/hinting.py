@@ -26,7 +26,7 @@ from course.cli.home.advice import after_warm_up
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.replies import Hint, Reflect, ReflectPoint, Solution
 from course.errors import CourseError, IntegrityError, MissingCapabilityError, NotFoundError, UsageError
-from course.handed_in import MAX_CODE
+from course.handed_in.limits import MAX_FILE
 from course.progress.history import History, fingerprint
 
 PACKS = "*.coursepack"
@@ -362,8 +362,8 @@ def _read(path: Path) -> str:
         data = full.read_bytes()
     except OSError as error:
         raise UsageError(f"{path} cannot be read ({error.strerror or error}).", code="unreadable") from error
-    if len(data) > MAX_CODE:
-        raise UsageError(f"{path} is larger than {MAX_CODE:,} bytes.", code="too_large")
+    if len(data) > MAX_FILE:
+        raise UsageError(f"{path} is larger than {MAX_FILE:,} bytes.", code="too_large")
     return data.decode("utf-8", errors="replace").strip()
 
 

@@ -18,6 +18,7 @@ from typing import Annotated, Any
 import typer
 
 from course.catalog.models import Exercise
+from course.catalog.pack import zip_entry
 from course.cli.frame.completion import exercise_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd
@@ -25,15 +26,12 @@ from course.cli.frame.replies import FileReply
 from course.cli.work.chosen import StudentWork, as_handed_in, work_of
 from course.cli.work.replies import Submit, SubmitFile
 from course.errors import CourseError, UngradableError, UsageError
-from course.handed_in import MAX_HANDED_IN, attempts
+from course.handed_in import attempts
+from course.handed_in.limits import FORMAT_VERSION, MANIFEST, MAX_UNPACKED
 from course.progress.history import fingerprint
 from course.progress.quiz import quiz_history, records
 from course.progress.workspace import write_atomically
 from course.scoring.verdict import Verdict, format_points
-
-FORMAT_VERSION = 1
-MANIFEST = "submission.json"
-_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest date a zip can hold
 
 
 def submit(
@@ -118,10 +116,7 @@ def archive(
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as packed:
         for path in sorted(entries):
-            info = zipfile.ZipInfo(path, date_time=_EPOCH)
-            info.create_system = 3  # Unix everywhere, or the bytes would depend on who packs
-            info.external_attr = 0o100644 << 16
-            packed.writestr(info, entries[path])
+            packed.writestr(zip_entry(path), entries[path])
     return buffer.getvalue()
 
 
@@ -133,9 +128,9 @@ def _packed(here: Here, works: Sequence[StudentWork], quiz: Sequence[Mapping[str
         {work.path: work.data for work in works},
         quiz,
     )
-    if len(data) > MAX_HANDED_IN:
+    if len(data) > MAX_UNPACKED:
         raise UngradableError(
-            f"Together the files are larger than {MAX_HANDED_IN:,} bytes, which no grading run unpacks.",
+            f"Together the files are larger than {MAX_UNPACKED:,} bytes, which no grading run unpacks.",
             help="Keep data out of them.",
             code="too_large",
         )

@@ -31,7 +31,7 @@ from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.hinting import give_hint
 from course.cli.work.replies import Check, Watch, WatchRun
 from course.cli.work.verdict import is_unwritten, show_loading, show_verdict
-from course.errors import CourseError, UngradableError
+from course.errors import INTERRUPTED, CourseError, UngradableError
 from course.handed_in import attempts
 from course.handed_in.attempts import Attempt
 from course.scoring.judging.session import GradingSession
@@ -108,7 +108,6 @@ def keys_of_terminal(on_key: Callable[[str], None]) -> Iterator[Keys | None]:
         termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
 
 
-INTERRUPTED = 130
 #: A save counts as done once the file has not changed for this long, in ms.
 QUIET_MS = 20
 #: A save that never ends is checked after this long anyway, in ms.

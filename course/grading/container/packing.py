@@ -14,6 +14,7 @@ from pathlib import Path
 
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
+from course.catalog.pack import zip_entry
 from course.extras import CONTAINER, requirement_of
 from course.grading.container.inside import SNAPSHOT
 from course.grading.exports.grades import write_bytes
@@ -21,7 +22,6 @@ from course.grading.exports.selection import Written
 from course.grading.running.snapshot import Snapshot
 
 _PACKAGE = Path(__file__).resolve().parents[2]
-_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest date a zip can hold
 #: The content of a wheel, which the snapshot has.
 _CONTENT = {"content", "lessons", "__pycache__"}
 
@@ -122,7 +122,4 @@ def _package() -> Iterator[tuple[str, Path]]:
 
 
 def _put(packed: zipfile.ZipFile, name: str, content: bytes, *, executable: bool = False) -> None:
-    info = zipfile.ZipInfo(name, date_time=_EPOCH)
-    info.create_system = 3  # Unix everywhere, or the bytes would depend on who packs
-    info.external_attr = (0o100755 if executable else 0o100644) << 16
-    packed.writestr(info, content, zipfile.ZIP_DEFLATED)
+    packed.writestr(zip_entry(name, 0o755 if executable else 0o644), content, zipfile.ZIP_DEFLATED)

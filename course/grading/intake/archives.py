@@ -30,7 +30,17 @@ from course.errors import InternalError, UngradableError
 from course.grading.intake.downloads import IGNORED, is_meant
 from course.grading.pipes import limit_cpu, limit_memory, read_frame, served, write_frame
 from course.grading.quiz import checked_record
-from course.handed_in import MAX_CODE, MAX_HANDED_IN, MAX_NOTEBOOK
+from course.handed_in.limits import (
+    FORMAT_VERSION,
+    MANIFEST,
+    MAX_ARCHIVE,
+    MAX_CODE,
+    MAX_FILE,
+    MAX_FILES,
+    MAX_NOTEBOOK,
+    MAX_UNPACKED,
+    SOURCES,
+)
 from course.handed_in.notebook import notebook_source
 from course.printable import one_line
 from course.scoring.verdict import Problem
@@ -44,9 +54,6 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 Members = dict[str, zipfile.ZipInfo]
 
-MAX_FILES = 20
-MAX_ARCHIVE = 6 << 20  # no archive of files within the limits is larger
-FORMAT_VERSION = 1
 
 _ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".whl", ".jar")
 
@@ -153,7 +160,7 @@ def outline_of(path: Path, skip: tuple[str, ...]) -> list[tuple[str, bytes]]:
         return [
             (info.filename, _unpacked(path, archive, info))
             for info in members.values()
-            if info.filename not in skip and info.filename.casefold().endswith((".py", ".ipynb"))
+            if info.filename not in skip and info.filename.casefold().endswith(SOURCES)
         ]
 
     return _opened(path, read)
@@ -185,7 +192,7 @@ def _opened(path: Path, read: Callable[[zipfile.ZipFile, Members], T]) -> T:
         if not stat.S_ISREG(path.lstat().st_mode):
             raise _refused(path, "it is not a regular file")
         if path.stat().st_size > MAX_ARCHIVE:
-            raise _refused(path, "it is larger than 6 MB")
+            raise _refused(path, f"it is larger than {MAX_ARCHIVE >> 20} MB")
         with zipfile.ZipFile(path) as archive:
             return read(archive, _checked_members(path, archive.infolist()))
     except RefusedError:
@@ -207,8 +214,8 @@ def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
     files = [info for info in infos if not info.is_dir() and not _is_clutter(info.filename)]
     if len(files) > MAX_FILES:
         raise _refused(path, f"it holds more than {MAX_FILES} files")
-    if sum(info.file_size for info in files) > MAX_HANDED_IN:
-        raise _refused(path, "it unpacks to more than 5 MB")
+    if sum(info.file_size for info in files) > MAX_UNPACKED:
+        raise _refused(path, f"it unpacks to more than {MAX_UNPACKED >> 20} MB")
     members: Members = {}
     for info in files:
         name = PurePosixPath(info.filename.replace("\\", "/"))
@@ -245,15 +252,15 @@ def _is_clutter(name: str) -> bool:
 def _unpacked(path: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
     """A member's content; the size in its header is not trusted."""
     with archive.open(info) as handle:
-        content = handle.read(MAX_CODE + 1)
-    if len(content) > MAX_CODE:
-        raise _refused(path, f"{info.filename} unpacks to more than 1 MB")
+        content = handle.read(MAX_FILE + 1)
+    if len(content) > MAX_FILE:
+        raise _refused(path, f"{info.filename} unpacks to more than {MAX_FILE >> 20} MB")
     return content
 
 
 def _manifest(path: Path, archive: zipfile.ZipFile, members: Members) -> dict[str, Any]:
     """The metadata that ``course submit`` wrote; empty for an archive made by hand."""
-    info = members.get("submission.json")
+    info = members.get(MANIFEST)
     if info is None:
         return {}
     manifest: Any = None
@@ -268,7 +275,7 @@ def _manifest(path: Path, archive: zipfile.ZipFile, members: Members) -> dict[st
             )
         case {"format_version": int(), "files": dict(files)} if files or manifest.get("quiz"):
             return dict(manifest)
-    raise _refused(path, "its submission.json is damaged")
+    raise _refused(path, f"its {MANIFEST} is damaged")
 
 
 # ---

@@ -24,6 +24,7 @@ from typing import Any, Literal
 from course import extras
 from course.errors import NotFoundError, UsageError
 from course.grading.gradebook.records import PlatformIdentity
+from course.handed_in.limits import HANDED_IN
 
 # ---
 # File names, and the spellings of them that are accepted without asking.
@@ -70,8 +71,6 @@ _CANVAS = re.compile(
     re.S,
 )
 _METADATA = "submission_metadata.yml"
-#: The suffixes of files that can be handed in.
-_HANDED_IN = (".py", ".ipynb", ".zip")
 _MAX_METADATA = 200 << 20
 _SHOWN = 5
 
@@ -218,7 +217,7 @@ def _recognised(folder: Path, names: list[str]) -> str:
 
 
 def _may_be_handed_in(name: str) -> bool:
-    return name.lower().endswith(_HANDED_IN)
+    return name.lower().endswith(HANDED_IN)
 
 
 def _text(name: str) -> str:

@@ -32,7 +32,7 @@ from course.grading.intake.archives import ArchiveContent, RefusedError, reader
 from course.grading.intake.downloads import Place, Student
 from course.grading.intake.triage import Candidate, Found, described, found_for, survey
 from course.grading.results.roster import decoded
-from course.handed_in import MAX_CODE, MAX_NOTEBOOK
+from course.handed_in.limits import MAX_FILE, MAX_NOTEBOOK
 from course.handed_in.notebook import RECORD
 from course.printable import one_line
 from course.scoring.judging.submission import Submission
@@ -263,7 +263,7 @@ def _content(place: Place, path: Path, *, notebook: bool) -> bytes:
     for part in path.relative_to(place.root).parents:
         if part.name and (place.root / part).is_symlink():
             raise RefusedError("symlink", f"{part} is a link.", "Hand in the folder itself.")
-    return _read_regular(path, place.shown(path), MAX_NOTEBOOK if notebook else MAX_CODE)
+    return _read_regular(path, place.shown(path), MAX_NOTEBOOK if notebook else MAX_FILE)
 
 
 def submission_from(exercise: Exercise, path: Path, member: str = "") -> Submission:
@@ -279,7 +279,7 @@ def submission_from(exercise: Exercise, path: Path, member: str = "") -> Submiss
     if member:
         content = reader.member(path, member)
     else:
-        content = _read_regular(path, path.name, MAX_NOTEBOOK if notebook else MAX_CODE)
+        content = _read_regular(path, path.name, MAX_NOTEBOOK if notebook else MAX_FILE)
     return _submission(
         exercise, "named.ipynb" if notebook else "named.py", content if notebook else _utf8(content)
     )
@@ -308,8 +308,8 @@ def _submission(exercise: Exercise, name: str, content: bytes) -> Submission:
     if not name.casefold().endswith(".ipynb"):
         return Submission({exercise.module: content})
     source, record = reader.notebook(content, exercise, shown)
-    if len(source) > MAX_CODE:
-        message = f"The functions of {shown} are larger than 1 MB."
+    if len(source) > MAX_FILE:
+        message = f"The functions of {shown} are larger than {MAX_FILE >> 20} MB."
         raise RefusedError("too_large", message, "Hand in source code only.")
     return Submission({exercise.module: source, RECORD: record})
 

@@ -18,9 +18,9 @@ import msgspec
 from course.catalog.models import Exercise
 from course.grading.intake.archives import RefusedError, reader
 from course.grading.intake.downloads import IGNORED, Place, plain
+from course.handed_in.limits import HANDED_IN
 from course.printable import one_line
 
-_KINDS = (".py", ".ipynb", ".zip")
 #: How far one student's folder is searched: depth of folders, entries, files read, and files that killed the
 #: reading process, which may have taken ten seconds each.
 _DEEP, _ENTRIES, _READ, _FATAL = 6, 2000, 60, 3
@@ -98,7 +98,7 @@ def _files(place: Place) -> list[tuple[str, Path]]:
         return [
             (name, path)
             for name, path in place.files
-            if name.casefold().endswith(_KINDS) and path.is_file() and not path.is_symlink()
+            if name.casefold().endswith(HANDED_IN) and path.is_file() and not path.is_symlink()
         ]
     search = _Search()
     _search(place.root, "", 0, search)
@@ -119,7 +119,7 @@ def _search(folder: Path, above: str, depth: int, search: _Search) -> None:
         if entry.is_dir(follow_symlinks=False):
             if depth < _DEEP:
                 _search(folder / entry.name, f"{above}{entry.name}/", depth + 1, search)
-        elif entry.name.casefold().endswith(_KINDS) and entry.is_file(follow_symlinks=False):
+        elif entry.name.casefold().endswith(HANDED_IN) and entry.is_file(follow_symlinks=False):
             search.files.append((above + entry.name, folder / entry.name))
 
 

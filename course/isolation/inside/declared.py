@@ -19,9 +19,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["ImportNotDeclaredError", "Imports", "StandIn"]
-
-
 _BINARY = ("add", "sub", "mul", "matmul", "truediv", "floordiv", "mod", "divmod", "pow", "and", "or", "xor")
 _UNPACK = opcode.opmap["UNPACK_SEQUENCE"]
 

@@ -35,8 +35,6 @@ if TYPE_CHECKING:
 
     from .frames import Names
 
-__all__ = ["OTHER", "Reader", "quick"]
-
 _N, _T, _F, _I, _FL, _S, _Y = (ord(tag) for tag in "NTFifsy")
 _L, _D, _R, _TB, _A, _V, _C, _W, _P, _G = (ord(tag) for tag in "ldrtavcwpg")
 

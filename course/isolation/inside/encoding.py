@@ -32,8 +32,6 @@ if TYPE_CHECKING:
 
     Parts = list[bytes | memoryview]
 
-__all__ = ["put"]
-
 _PLAIN_LISTS = frozenset((list, tuple))
 _FLOATS = frozenset((float, np.float64))
 #: Arrays from this size on are not copied before the frame is put together, bytes.

@@ -20,8 +20,6 @@ from . import declared, statements
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-__all__ = ["Fault", "Loading"]
-
 _MOST_FAULTS = 20
 
 

@@ -23,26 +23,6 @@ try:
 except ImportError:  # Windows, where none of this runs but the file is still type-checked and copied
     resource: Any = None  # type: ignore[no-redef]
 
-__all__ = [
-    "LockdownError",
-    "allowed_calls",
-    "apply_limits",
-    "apply_seccomp",
-    "become_unprivileged",
-    "die_first",
-    "die_with_parent",
-    "drop_bounding_set",
-    "drop_capabilities",
-    "landlock_abi",
-    "landlock_apply",
-    "landlock_ruleset",
-    "mount_tmpfs",
-    "new_pid_namespace",
-    "not_dumpable",
-    "seccomp_program",
-    "unshare_worker",
-]
-
 NOBODY = 65534
 
 _CLONE_NEWNS = 0x00020000

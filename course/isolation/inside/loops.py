@@ -12,8 +12,6 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-__all__ = ["Methods", "each", "fold", "march"]
-
 _MAX_DEPTH = 32  # of a value that is recorded; the wire refuses a deeper one anyway
 
 

@@ -28,8 +28,6 @@ if TYPE_CHECKING:
 from ...physics import systems
 from . import declared, loading, loops, wire
 
-__all__ = ["CappedText", "Worker"]
-
 Kind = wire.Kind
 
 #: How much of what a submission prints is kept; the rest is dropped without an error.

@@ -12,7 +12,7 @@ import platform
 import shutil
 import subprocess
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, assert_never
 
 import msgspec
 
@@ -391,24 +391,26 @@ class Film:
 
     def _draw_part(self, pen: ImageDraw, part: Part, x: float, y: float, angle: float) -> None:
         c, s = math.cos(angle), math.sin(angle)
-        if part.shape == "circle":
-            centre, r = self._at(x, y), part.radius * self._scale
-            box = (centre[0] - r, centre[1] - r, centre[0] + r, centre[1] + r)
-            pen.ellipse(box, fill=part.colour, outline=_INK, width=2)
-            if not part.fixed:  # a mark, so that turning is seen
-                edge = (centre[0] + r * c, centre[1] - r * s)
-                pen.line([centre, edge], fill=_INK, width=2)
-            return
         corners = [self._at(x + c * px - s * py, y + s * px + c * py) for px, py in part.outline]
-        if part.shape == "segment":
-            pen.line(corners, fill=part.colour, width=max(2, round(2 * part.radius * self._scale)))
-            return
-        pen.polygon(corners, fill=part.colour, outline=_INK, width=2)
-        if part.wheels is not None:
-            for side in (0.5, -0.5):
-                px, py = self._at(x - s * side * part.wheels.track, y + c * side * part.wheels.track)
-                dx, dy = 0.06 * self._scale * c, -0.06 * self._scale * s
-                pen.line([(px - dx, py - dy), (px + dx, py + dy)], fill=_INK, width=8)
+        match part.shape:
+            case "circle":
+                centre, r = self._at(x, y), part.radius * self._scale
+                box = (centre[0] - r, centre[1] - r, centre[0] + r, centre[1] + r)
+                pen.ellipse(box, fill=part.colour, outline=_INK, width=2)
+                if not part.fixed:  # a mark, so that turning is seen
+                    edge = (centre[0] + r * c, centre[1] - r * s)
+                    pen.line([centre, edge], fill=_INK, width=2)
+            case "segment":
+                pen.line(corners, fill=part.colour, width=max(2, round(2 * part.radius * self._scale)))
+            case "polygon":
+                pen.polygon(corners, fill=part.colour, outline=_INK, width=2)
+                if part.wheels is not None:
+                    for side in (0.5, -0.5):
+                        px, py = self._at(x - s * side * part.wheels.track, y + c * side * part.wheels.track)
+                        dx, dy = 0.06 * self._scale * c, -0.06 * self._scale * s
+                        pen.line([(px - dx, py - dy), (px + dx, py + dy)], fill=_INK, width=8)
+            case _:
+                assert_never(part.shape)
 
     def _at(self, x: float, y: float) -> tuple[float, float]:
         """A place in pixels of the large picture; far outside it is cut, which PIL needs."""

@@ -32,6 +32,9 @@ Name = Annotated[str, Meta(pattern=r"^[a-z][a-z0-9]*(-[a-z0-9]+)*$", max_length=
 Pattern = Annotated[str, Meta(pattern=r"^(\*|[a-z][a-z0-9]*(-[a-z0-9]+)*(-?\*)?)$", max_length=41)]
 
 Point = tuple[Coordinate, Coordinate]
+#: The shape of a body as a scene says it, and as the engine and all views know it: a box has four corners.
+Shape = Literal["circle", "box", "polygon", "segment"]
+Form = Literal["circle", "polygon", "segment"]
 
 
 class Material(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -99,7 +102,7 @@ class Body(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """
 
     name: Name
-    shape: Literal["circle", "box", "polygon", "segment"]
+    shape: Shape
     material: Name
     position: Point = (0.0, 0.0)
     angle_deg: Annotated[float, Meta(ge=-3600, le=3600)] = 0.0
@@ -325,7 +328,7 @@ class Part:
     """
 
     name: str
-    shape: Literal["circle", "polygon", "segment"]
+    shape: Form
     outline: tuple[Vector, ...]
     radius: float
     x: float

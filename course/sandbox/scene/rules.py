@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from course.catalog.reading import Document
 from course.errors import UsageError
 from course.sandbox.scene import expression
-from course.sandbox.scene.model import Body, Joint, Probe, Scene, layout, signed_area
+from course.sandbox.scene.model import Body, Joint, Probe, Scene, Shape, layout, signed_area
 
 # ---
 # The settings that can be changed in any running world, and their ranges.
@@ -100,7 +100,12 @@ FIELDS = ("x", "y", "vx", "vy", "mass", "radius", "restitution", "friction")
 #: Names that a formula may use besides parameters and bodies.
 WORDS = ("g", "step", "iterations", "duration", "left", "right")
 
-_NEEDS = {"circle": ("radius",), "box": ("size",), "polygon": ("points",), "segment": ("points", "thickness")}
+_NEEDS: dict[Shape, tuple[str, ...]] = {
+    "circle": ("radius",),
+    "box": ("size",),
+    "polygon": ("points",),
+    "segment": ("points", "thickness"),
+}
 _SHAPE_KEYS = ("radius", "size", "points", "thickness")
 _MOST = 1000
 #: Quantities that several bodies have together.

@@ -55,7 +55,7 @@ def read(answer: Any, reader: Callable[[Any], Any] | None) -> Any:
     """The part of an answer that counts: the result of the exercise's reader.
 
     Args:
-        reader: from ``questions.READ``; an answer that it cannot read counts like an exception.
+        reader: ``READ`` of the exercise's questions; an answer that it cannot read counts like an exception.
     """
     if reader is None or (isinstance(answer, dict) and answer.keys() == {"raised"}):
         return answer

@@ -237,7 +237,7 @@ def _odd(value: Any) -> bool:
 # Whether a function answers the same question the same way, whatever it was asked before.
 #
 # The calls of failed checks are made again in a worker of its own, the last one first. Only functions that
-# could keep something are listened to (``explain.calls.may_remember``), so most submissions pay nothing.
+# could keep something are listened to (``fingerprint.may_remember``), so most submissions pay nothing.
 
 
 #: Calls that are made again, at most: mistakes of this kind show within a few.

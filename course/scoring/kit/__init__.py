@@ -2,7 +2,7 @@
 
 Public checks and hidden graders both import this module, and nothing else from the grading side::
 
-    from course.grading import kit
+    from course.scoring import kit
     from course.physics import systems
 
 Three groups of names come from here. ``as_...`` read what a student's function returned, which may be any

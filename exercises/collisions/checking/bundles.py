@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 probes = kit.companion("collisions", "probes")
 tracks = kit.companion("collisions", "tracks")

@@ -12,7 +12,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 named = kit.words("collisions")
 

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 _probes = kit.companion("collisions", "probes")
 named = _probes.named

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from course.grading import kit
+from course.scoring import kit
 
 twins = kit.companion("digital-twin", "twin_probes")
 

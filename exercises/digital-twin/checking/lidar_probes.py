@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 draws = kit.companion("digital-twin", "sensor_probes")
 named = draws.named

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 TASK = "characterise"
 

@@ -6,7 +6,7 @@ import copy
 import itertools
 from typing import Any
 
-from course.grading import kit
+from course.scoring import kit
 
 named = kit.words("engine-comparison")
 

@@ -6,7 +6,7 @@ import dataclasses
 import math
 from typing import Any
 
-from course.grading import kit
+from course.scoring import kit
 
 bench = kit.companion("engine-comparison", "bench")
 probes = kit.companion("engine-comparison", "probes")

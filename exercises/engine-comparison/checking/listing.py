@@ -8,7 +8,7 @@ import re
 import weakref
 from typing import Any
 
-from course.grading import kit
+from course.scoring import kit
 
 named = kit.words("engine-comparison")
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from course.grading import kit
 from course.physics.systems import FreeFall, LinearStep, Oscillator
+from course.scoring import kit
 
 probes = kit.companion("integrators", "probes")
 

@@ -11,7 +11,6 @@ import math
 
 import numpy as np
 
-from course.grading import kit
 from course.physics.exact import reference
 from course.physics.integrators import (
     RK4,
@@ -23,6 +22,7 @@ from course.physics.integrators import (
 )
 from course.physics.invariants import convergence_order
 from course.physics.systems import DrivenPendulum, FreeFall, LinearStep, Oscillator
+from course.scoring import kit
 
 named = kit.words("integrators")
 

@@ -6,7 +6,7 @@ import functools
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 bench = kit.companion("sim-to-real", "bench")
 cart = kit.companion("sim-to-real", "cart")

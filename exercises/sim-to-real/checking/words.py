@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from course.grading import kit
+from course.scoring import kit
 
 cart = kit.companion("sim-to-real", "cart")
 named = kit.words("sim-to-real")

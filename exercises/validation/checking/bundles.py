@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 probes = kit.companion("validation", "probes_verdict")
 twins = kit.companion("validation", "twins")

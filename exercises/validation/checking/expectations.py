@@ -11,8 +11,8 @@ import math
 
 import numpy as np
 
-from course.grading import kit
 from course.physics import systems
+from course.scoring import kit
 
 probes = kit.companion("validation", "probes")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 probes = kit.companion("validation", "probes")
 shared = kit.companion("validation", "expectations")

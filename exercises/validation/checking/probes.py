@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 named = kit.words("validation")
 

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from course.grading import kit
+from course.scoring import kit
 
 ROUNDING = "closed form: only rounding is allowed"
 

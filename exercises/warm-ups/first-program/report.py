@@ -1,6 +1,6 @@
 """What the program prints now, beside what it printed before and what theory says."""
 
-from course.grading import kit
+from course.scoring import kit
 
 #: What the program as it was handed out says, once it no longer stops: a test runs it.
 BEFORE = ("9.999 m", "1.99 s", "10.00 m", "10.00 m", "0.0055 m", "0.0055 m")

@@ -2,7 +2,7 @@
 
 import pytest
 
-from course.grading import kit
+from course.scoring import kit
 
 
 @pytest.mark.task("friction_coefficient")

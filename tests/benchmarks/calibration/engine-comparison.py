@@ -17,7 +17,7 @@ from collections import defaultdict
 import numpy as np
 from recorder import ROOT, Recorder, Tables, local_run, noting, report, tasks_of
 
-from course.grading import kit
+from course.scoring import kit
 
 EXERCISE = "engine-comparison"
 

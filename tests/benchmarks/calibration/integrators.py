@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 import recorder
 
-from course.grading import kit
 from course.physics.invariants import convergence_order
+from course.scoring import kit
 from course.scoring.kit.marching import march_all_errors
 
 

@@ -26,7 +26,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "benchmarks")]
 
 import local_run  # noqa: E402
 
-from course.grading import kit  # noqa: E402
+from course.scoring import kit  # noqa: E402
 
 
 class Recorder:

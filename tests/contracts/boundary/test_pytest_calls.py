@@ -28,7 +28,7 @@ _CHECKS = '''
     """Checks that tell through the submission what became of them."""
 
     import pytest
-    from course.grading.kit import CheckFailed, Finding
+    from course.scoring.kit import CheckFailed, Finding
 
 
     @pytest.fixture

@@ -18,10 +18,11 @@ from course.authoring.exercises.diagnosis import (
 from course.authoring.exercises.grading import solution_path
 from course.authoring.report import AuditReport, Findings
 from course.catalog.load import Catalog
-from course.grading import kit
+from course.handed_in import limits
 from course.ids import WARM_UPS
 from course.isolation.probe import kept_sandboxes
 from course.progress.history import NO_MISTAKE
+from course.scoring import kit
 from course.scoring.checks.collected import words
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission
@@ -83,6 +84,11 @@ def test_a_warm_up_names_each_of_its_mistakes_apart(catalog: Catalog) -> None:
     for warm_up in catalog.warm_ups():
         codes = [mutant.diagnosis for mutant in catalog.mutants(warm_up)]
         assert len(set(codes)) == len(codes), warm_up.id
+
+
+def test_a_grading_run_opens_the_zip_of_a_student_who_did_everything(catalog: Catalog) -> None:
+    """`course submit --warm-ups` puts a file for each in, and the manifest."""
+    assert len([*catalog.exercises(), *catalog.warm_ups()]) + 1 <= limits.MAX_FILES
 
 
 def test_exercises_and_lists_of_them_know_no_warm_ups(catalog: Catalog) -> None:

@@ -17,7 +17,7 @@ from course.authoring.exercises.grading import compose, solution_path
 from course.authoring.exercises.mutants import mutant_path
 from course.catalog.load import Catalog
 from course.catalog.locate import content
-from course.grading import kit
+from course.scoring import kit
 from course.scoring.explain.story import TABLE, read_table
 from course.scoring.failures import OURS
 from course.scoring.judging.session import GradingSession

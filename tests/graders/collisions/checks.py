@@ -10,7 +10,7 @@ import math
 import numpy as np
 import pytest
 
-from course.grading import kit
+from course.scoring import kit
 
 bundles = kit.companion("collisions", "bundles")
 draws = kit.reference("collisions", "draws")

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from course.grading import kit
+from course.scoring import kit
 
 actuators = kit.companion("digital-twin", "actuator_bundles")
 bundles = kit.companion("digital-twin", "bundles")

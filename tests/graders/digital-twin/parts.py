@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 actuators = kit.companion("digital-twin", "actuator_bundles")
 bundles = kit.companion("digital-twin", "bundles")

@@ -12,7 +12,7 @@ import math
 import numpy as np
 import pytest
 
-from course.grading import kit
+from course.scoring import kit
 
 bench = kit.companion("engine-comparison", "bench")
 named = kit.words("engine-comparison")

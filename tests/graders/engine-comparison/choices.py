@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 
-from course.grading import kit
+from course.scoring import kit
 
 bench = kit.companion("engine-comparison", "bench")
 choosing = kit.reference("engine-comparison", "choosing")

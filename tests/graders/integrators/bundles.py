@@ -11,8 +11,8 @@ import math
 
 import numpy as np
 
-from course.grading import kit
 from course.physics import invariants, systems
+from course.scoring import kit
 
 probes = kit.companion("integrators", "probes")
 cases = kit.companion("integrators", "cases")

@@ -12,8 +12,8 @@ from itertools import cycle
 import numpy as np
 import pytest
 
-from course.grading import kit
 from course.physics import invariants, systems
+from course.scoring import kit
 
 probes = kit.companion("integrators", "probes")
 bundles = kit.sibling(__file__, "bundles")

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from course.grading import kit
 from course.physics import systems
+from course.scoring import kit
 
 probes = kit.companion("integrators", "probes")
 bundles = kit.sibling(__file__, "bundles")

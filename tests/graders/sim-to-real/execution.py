@@ -9,7 +9,7 @@ import weakref
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 cart = kit.companion("sim-to-real", "cart")
 words = kit.companion("sim-to-real", "words")

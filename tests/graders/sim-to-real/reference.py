@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from course.grading import kit
+from course.scoring import kit
 
 bench = kit.companion("sim-to-real", "bench")
 cart = kit.companion("sim-to-real", "cart")

@@ -24,9 +24,7 @@ def sandbox(*arguments: str, cwd: Path, code: int = 0, way=in_process) -> subpro
     return done
 
 
-@pytest.mark.parametrize(
-    ("arguments", "way"), [([], in_process), (["--list"], in_process), (["list"], as_process)]
-)
+@pytest.mark.parametrize(("arguments", "way"), [([], in_process), (["list"], as_process)])
 def test_the_list_comes_out_of_a_pipe(tmp_path: Path, arguments: list[str], way) -> None:
     out = sandbox(*arguments, cwd=tmp_path, way=way).stdout
     assert "newtons-cradle" in out

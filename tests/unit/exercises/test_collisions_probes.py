@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course.grading import kit
 from course.physics.body import Body
 from course.physics.contact import Surface
 from course.physics.simulator import Simulator
 from course.physics.state import RigidBodyState
+from course.scoring import kit
 from course.scoring.checks.plugin import MARKERS
 
 ROOT = Path(__file__).parents[3]

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from course.authoring.exercises.grading import LocalSubmission
-from course.grading import kit
+from course.scoring import kit
 
 ROOT = Path(__file__).resolve().parents[3]
 SOLUTION = ROOT / "solutions" / "digital-twin"

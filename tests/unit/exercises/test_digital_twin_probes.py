@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from course.authoring.exercises.grading import LocalSubmission
-from course.grading import kit
+from course.scoring import kit
 from course.scoring.explain import fingerprint, matching, read_table
 from course.scoring.explain.fingerprint import read
 from course.scoring.explain.story import is_right

@@ -8,8 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from course.grading import kit
 from course.physics import systems
+from course.scoring import kit
 
 probes = kit.companion("integrators", "probes")
 formulas = kit.reference("integrators", "formulas")

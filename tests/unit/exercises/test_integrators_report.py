@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from course.figures.plots import render
-from course.grading import kit
+from course.scoring import kit
 
 report = kit.companion("integrators", "report")
 formulas = kit.reference("integrators", "formulas")
@@ -99,7 +99,7 @@ def test_it_knows_none_of_the_four_steps():
         for name in node.names
     ]
     assert sorted(name for name in imported if name.startswith("course.")) == [
-        "course.grading.kit",
+        "course.scoring.kit",
         "course.physics.exact",
         "course.physics.invariants",
         "course.physics.systems",

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course.grading import kit
+from course.scoring import kit
 
 ROOT = Path(__file__).resolve().parents[3]
 bench = kit.companion("sim-to-real", "bench")

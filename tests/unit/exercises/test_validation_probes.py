@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from course.grading import kit
+from course.scoring import kit
 
 ROOT = Path(__file__).resolve().parents[3]
 GRADERS = ROOT / "tests" / "graders" / "validation" / "checks.py"

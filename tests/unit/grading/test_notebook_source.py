@@ -9,7 +9,7 @@ import pytest
 
 from course.catalog.models import Exercise, Task
 from course.errors import UngradableError
-from course.handed_in import MAX_CODE, MAX_NOTEBOOK
+from course.handed_in.limits import MAX_CODE, MAX_NOTEBOOK
 from course.handed_in.notebook import NotebookSource, notebook_source
 
 EXERCISE = Exercise(

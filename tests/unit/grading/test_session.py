@@ -13,7 +13,7 @@ import pytest
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.errors import ContentError, MissingCapabilityError
-from course.grading import kit
+from course.scoring import kit
 from course.scoring.checks.collected import Check
 from course.scoring.graders import grader_version
 from course.scoring.judging.session import GradingSession

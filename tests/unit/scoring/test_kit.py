@@ -13,10 +13,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from course.grading import kit
-from course.grading.kit import CheckFailed, Diagnosis, Inspected, StudentFailure
 from course.physics import exact, systems
-from course.scoring import failures
+from course.scoring import failures, kit
+from course.scoring.kit import CheckFailed, Diagnosis, Inspected, StudentFailure
 from course.scoring.values import as_march, plain
 from course.scoring.verdict import Divergence
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from course.grading import kit
+from course.scoring import kit
 
 GIVEN = {"stretch": 0.1, "rate": 2.0, "h": 0.05, "n": 200}
 ROUNDING = "only rounding is allowed"

@@ -9,11 +9,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from typing import assert_never
 
 import numpy as np
 from numpy.typing import NDArray
 
-from course.sandbox.scene.model import Part
+from course.sandbox.scene.model import Form, Part
 from course.sandbox.world.engine import Floats
 from course.sandbox.world.world import Snapshot
 
@@ -56,7 +57,6 @@ class Group:
     Attributes:
         rows: which of the world's parts, (m,).
         window: side of the square of pixels that holds any of them.
-        shape: "circle", "polygon" or "segment".
         radius: in pixels, (m,); the outline is grown by it.
         normals, offsets: of a polygon's sides, outward, in the body's frame, (m, k, 2) and (m, k) in pixels.
         ends: of segments, in pixels, (m, 2, 2).
@@ -64,7 +64,7 @@ class Group:
 
     rows: Ints
     window: int
-    shape: str
+    shape: Form
     radius: Floats
     normals: Floats
     offsets: Floats
@@ -96,16 +96,20 @@ class Group:
     def _distance(self, dx: Floats, dy: Floats, angle: Floats) -> Floats:
         """From each pixel to the outline, in pixels; below 0 inside. (m, window, window)."""
         grown = self.radius[:, None, None]
-        if self.shape == "circle":
-            return np.asarray(np.sqrt(dx * dx + dy * dy) - grown)
         c, s = np.cos(angle), np.sin(angle)
-        if self.shape == "segment":
-            return self._to_segment(dx, dy, c[:, None, None], s[:, None, None]) - grown
-        nx, ny = self.normals[..., 0], self.normals[..., 1]
-        # Pixels count downward, so the turned normal's y changes its sign.
-        across, down = c[:, None] * nx - s[:, None] * ny, -(s[:, None] * nx + c[:, None] * ny)
-        sides = across[..., None, None] * dx[:, None] + down[..., None, None] * dy[:, None]
-        return np.asarray((sides - self.offsets[..., None, None]).max(axis=1) - grown)
+        match self.shape:
+            case "circle":
+                return np.asarray(np.sqrt(dx * dx + dy * dy) - grown)
+            case "segment":
+                return self._to_segment(dx, dy, c[:, None, None], s[:, None, None]) - grown
+            case "polygon":
+                nx, ny = self.normals[..., 0], self.normals[..., 1]
+                # Pixels count downward, so the turned normal's y changes its sign.
+                across, down = c[:, None] * nx - s[:, None] * ny, -(s[:, None] * nx + c[:, None] * ny)
+                sides = across[..., None, None] * dx[:, None] + down[..., None, None] * dy[:, None]
+                return np.asarray((sides - self.offsets[..., None, None]).max(axis=1) - grown)
+            case _:
+                assert_never(self.shape)
 
     def _to_segment(self, dx: Floats, dy: Floats, c: Floats, s: Floats) -> Floats:
         bx, by = c * dx - s * dy, -s * dx - c * dy
@@ -130,7 +134,7 @@ def grouped(parts: Sequence[Part], camera: Camera, *, fixed: bool) -> tuple[Grou
         fixed: which of the two.
     """
     sizes = reaches(parts) * camera.scale
-    sorts: dict[tuple[str, int, int], list[int]] = {}
+    sorts: dict[tuple[Form, int, int], list[int]] = {}
     for i, part in enumerate(parts):
         if part.fixed is fixed:
             key = part.shape, len(part.outline), _window(sizes[i])
@@ -147,7 +151,7 @@ def _window(reach: float) -> int:
     return side
 
 
-def _group(shape: str, window: int, rows: list[int], parts: Sequence[Part], scale: float) -> Group:
+def _group(shape: Form, window: int, rows: list[int], parts: Sequence[Part], scale: float) -> Group:
     chosen = [parts[i] for i in rows]
     radius = np.array([part.radius * scale for part in chosen])
     normals, offsets = np.zeros((len(rows), 0, 2)), np.zeros((len(rows), 0))
@@ -179,7 +183,7 @@ _HAND = 0xFFC857
 _SPARK = np.array([255.0, 244.0, 214.0])
 _HALF, _SPACE = ord("▀"), ord(" ")
 #: The characters used without colour.
-_GLYPHS = {"circle": "o", "polygon": "#", "segment": "="}
+_GLYPHS: dict[Form, str] = {"circle": "o", "polygon": "#", "segment": "="}
 _FIXED, _LINE, _BURST, _POINTER = "▒", "·", "*", "+"
 _ARROWS = "→↗↑↖←↙↓↘"
 #: A body gets its label inside if it is at least this wide, in pixels; smaller ones when names are asked for.

@@ -10,7 +10,7 @@ import math
 from collections import deque
 from collections.abc import Callable
 from time import perf_counter
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, assert_never
 
 import msgspec
 import numpy as np
@@ -430,6 +430,8 @@ class Session:
                 world.paused = False
             case Watch(on):
                 page.watching = on
+            case _:
+                assert_never(request)
 
     def _push(self, name: str, vx: float, vy: float) -> None:
         world = self.world

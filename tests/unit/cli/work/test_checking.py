@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from course.handed_in import MAX_CODE
+from course.handed_in.limits import MAX_FILE
 
 
 def test_check_says_message_then_advice_then_numbers(course, write):
@@ -158,7 +158,7 @@ def test_a_missing_file_exits_3_and_says_how_to_get_it_back(course, workspace):
 
 
 def test_a_file_that_is_far_too_large_is_not_read(course, workspace):
-    (workspace / "doubling" / "doubling.py").write_bytes(b"#" * (MAX_CODE + 1))
+    (workspace / "doubling" / "doubling.py").write_bytes(b"#" * (MAX_FILE + 1))
     ran = course("check", "--json")
     assert (ran.code, ran.json["error"]["code"]) == (3, "too_large")
 

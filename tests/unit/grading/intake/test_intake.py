@@ -17,7 +17,7 @@ from course.catalog.models import Exercise
 from course.errors import NotFoundError
 from course.grading.intake.downloads import Place, Student, class_list
 from course.grading.intake.students import Entry, read_student
-from course.handed_in import MAX_CODE
+from course.handed_in.limits import MAX_FILE, MAX_FILES
 from tests.unit.grading.made import read_class
 
 SOURCE = b"def double(x):\n    return 2 * x\n"
@@ -113,10 +113,10 @@ def test_a_notebook_larger_than_a_module_may_be_is_read_past_its_outputs(
     tmp_path: Path, doubling: Exercise
 ) -> None:
     large = json.loads(notebook(SOURCE.decode()))
-    large["cells"][0]["outputs"] = [{"output_type": "stream", "name": "stdout", "text": "x" * 2 * MAX_CODE}]
+    large["cells"][0]["outputs"] = [{"output_type": "stream", "name": "stdout", "text": "x" * 2 * MAX_FILE}]
     (tmp_path / "doubling.ipynb").write_text(json.dumps(large), "utf-8")
     assert entry(tmp_path, doubling).submission is not None
-    (tmp_path / "doubling.ipynb").write_bytes(notebook(SOURCE.decode(), f"def double(): '{'x' * MAX_CODE}'"))
+    (tmp_path / "doubling.ipynb").write_bytes(notebook(SOURCE.decode(), f"def double(): '{'x' * MAX_FILE}'"))
     assert reason(tmp_path, doubling) == "too_large"
 
 
@@ -148,7 +148,7 @@ def test_a_module_and_a_notebook_are_never_guessed_between(tmp_path: Path, doubl
 
 def test_what_is_not_a_plain_file_of_reasonable_size_is_refused(tmp_path: Path, doubling: Exercise) -> None:
     target = tmp_path / "doubling.py"
-    target.write_bytes(b"#" * (MAX_CODE + 1))
+    target.write_bytes(b"#" * (MAX_FILE + 1))
     assert reason(tmp_path, doubling) == "too_large"
     target.write_bytes(b" \n\t")
     assert reason(tmp_path, doubling) == "empty_file"
@@ -184,13 +184,13 @@ def _bomb(path: Path) -> None:
 
 
 def _many(path: Path) -> None:
-    archive(path, {f"file{number}.txt": b"" for number in range(21)})
+    archive(path, {f"file{number}.txt": b"" for number in range(MAX_FILES + 1)})
 
 
 def _lying_size(path: Path) -> None:
-    archive(path, {"doubling/doubling.py": b"#" * (MAX_CODE + 1)}, manifest=False)
+    archive(path, {"doubling/doubling.py": b"#" * (MAX_FILE + 1)}, manifest=False)
     raw = bytearray(path.read_bytes())
-    size = (MAX_CODE + 1).to_bytes(4, "little")
+    size = (MAX_FILE + 1).to_bytes(4, "little")
     while (at := raw.find(size)) >= 0:
         raw[at : at + 4] = (100).to_bytes(4, "little")
     path.write_bytes(raw)

@@ -19,7 +19,7 @@ from course.grading.intake import archives, students
 from course.grading.intake.archives import Reader, RefusedError
 from course.grading.intake.downloads import Place, Student
 from course.grading.quiz import grade_quiz
-from course.handed_in.cells import MAX_CELLS
+from course.handed_in.limits import MAX_CELLS
 from course.handed_in.notebook import MAX_NOTES, notebook_source
 from course.quizzing.bank import Bank
 from tests.benchmarks.fuzz.run import run

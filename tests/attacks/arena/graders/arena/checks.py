@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from course.grading import kit
+from course.scoring import kit
 from course.physics import systems
 
 SECRET = 7919.104729

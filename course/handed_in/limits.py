@@ -1,0 +1,29 @@
+"""What a grading run takes: the files, how large they may be, and the zip that ``course submit`` writes.
+
+What a student is told at home and what a grading run refuses are read from here, so they cannot differ.
+"""
+
+from __future__ import annotations
+
+#: The suffixes of files with a student's functions, and of all that can be handed in.
+SOURCES = (".py", ".ipynb")
+HANDED_IN = (*SOURCES, ".zip")
+
+#: The largest module, in bytes.
+MAX_FILE = 1 << 20
+#: The most code in all cells of a notebook together, in characters: the limit of a module.
+MAX_CODE = MAX_FILE
+#: The largest notebook, in bytes. Pictures in outputs make notebooks large; they are skipped, but they have
+#: to be read past.
+MAX_NOTEBOOK = 32 << 20
+#: Code cells; the longest notebooks that people write have some hundreds.
+MAX_CELLS = 2000
+
+#: Files in an archive: every exercise and warm-up of a course, and its manifest.
+MAX_FILES = 100
+#: All files of an archive together, in bytes, and the archive: none of files within the limits is larger.
+MAX_UNPACKED = 5 << 20
+MAX_ARCHIVE = 6 << 20
+#: The member that says what an archive holds, and the version of its form.
+MANIFEST = "submission.json"
+FORMAT_VERSION = 1

@@ -21,6 +21,7 @@ from course.cli.frame.console import (
     current,
 )
 from course.cli.frame.here import Here, cwd, find_workspace, load_catalog, write
+from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Backup, Envelope
 from course.cli.work import checking
 from course.cli.work.replies import Check
@@ -199,12 +200,7 @@ def put(folder: Path, notebook: Generated, *, update: bool = True) -> NotebookFi
 # ---
 
 
-app = typer.Typer(
-    help="Get lessons and exercises as Jupyter notebooks.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
+app = group(COMMANDS["notebook"].summary)
 
 FORMATS = ("jupyter", "nbgrader")
 Ids = Annotated[

@@ -14,7 +14,8 @@ from course.errors import UsageError
 #: The folder that warm-ups lie in: among the exercises, their solutions, and in a workspace.
 WARM_UPS = "warm-ups"
 
-_PATTERN = re.compile(r"[a-z][a-z0-9]*(?:-[a-z0-9]+)*")
+#: Lower-case words joined by hyphens.
+SLUG = re.compile(r"[a-z][a-z0-9]*(?:-[a-z0-9]+)*")
 _MAX_LENGTH = 60
 
 
@@ -25,7 +26,7 @@ class _Id(str):
     kind = "id"
 
     def __new__(cls, text: str) -> Self:
-        if len(text) > _MAX_LENGTH or not _PATTERN.fullmatch(text):
+        if len(text) > _MAX_LENGTH or not SLUG.fullmatch(text):
             raise UsageError(
                 f"{text[:80]!r} is not a valid {cls.kind} id.",
                 help=f"Use lower-case words joined by hyphens, at most {_MAX_LENGTH} letters: sim-to-real.",

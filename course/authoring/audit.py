@@ -6,7 +6,6 @@ problems at once, so that an author can work through a list.
 
 from __future__ import annotations
 
-import re
 import time
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -26,7 +25,7 @@ from course.authoring.exercises.source import CheckSource, audit_style
 from course.authoring.lessons.lint import LinkChecker, audit_lesson, audit_syllabus
 from course.authoring.report import AuditReport, Findings, Progress
 from course.catalog.load import Catalog
-from course.catalog.markdown import read_task
+from course.catalog.markdown import YEAR, read_task
 from course.catalog.models import Exercise
 from course.catalog.questions import Question, read_questions
 from course.catalog.reading import Document
@@ -44,8 +43,6 @@ LEAST_VARIANTS = 4
 
 #: The id under which a gradebook keeps the quiz.
 _TAKEN = "quiz"
-
-_YEAR = re.compile(r"\b(?:19|20)\d\d\b")
 
 
 def audit_quiz(catalog: Catalog, findings: Findings, only: str | None = None) -> tuple[str, ...]:
@@ -100,7 +97,7 @@ def _audit_question(catalog: Catalog, document: Document[Question], findings: Fi
                 "Tie a wrong option to it, or remove it.",
             )
     for index, variant in enumerate(question.variant):
-        if not _YEAR.search(variant.source) and not any(number.formula for number in variant.number):
+        if not YEAR.search(variant.source) and not any(number.formula for number in variant.number):
             wrong(
                 ("variant", index, "source"),
                 f"the source of variant {variant.id} has no date.",

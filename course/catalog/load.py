@@ -31,7 +31,7 @@ from course.catalog.models import (
 )
 from course.catalog.reading import Document, read_document, read_text, split_front_matter
 from course.errors import ContentError, NotFoundError, UsageError
-from course.ids import WARM_UPS, ExerciseId, LessonId
+from course.ids import SLUG, WARM_UPS, ExerciseId, LessonId
 
 # ---
 # Rules for a course file beyond the right keys and types.
@@ -41,7 +41,6 @@ from course.ids import WARM_UPS, ExerciseId, LessonId
 
 
 _MODULE = re.compile(r"[a-z][a-z0-9_]*\.py")
-_COURSE_ID = re.compile(r"[a-z][a-z0-9]*(?:-[a-z0-9]+)*")
 #: A warm-up is done within one sitting with its lesson. In minutes.
 MOST_MINUTES = 15
 #: Names that have a role in the exercise's folder.
@@ -51,7 +50,7 @@ _TAKEN_MODULES = {"checks.py", "questions.py", "report.py"}
 def check_syllabus(document: Document[Syllabus]) -> None:
     """Ids are well formed and no lesson is listed twice."""
     syllabus = document.value
-    if not _COURSE_ID.fullmatch(syllabus.id):
+    if not SLUG.fullmatch(syllabus.id):
         document.fail(("id",), "`id` is not lower-case words joined by hyphens.", fix="Write: physics-sim")
     _check_words(document, ("title",), syllabus.title)
     for index, lesson_id in enumerate(syllabus.lessons):

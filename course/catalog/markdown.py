@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from markdown_it import MarkdownIt
     from markdown_it.tree import SyntaxTreeNode
 
-_YEAR = re.compile(r"\b(?:19|20)\d\d\b")
+#: What dates a source.
+YEAR = re.compile(r"\b(?:19|20)\d\d\b")
 _ALTERNATIVE = re.compile(r"^\s*%\s*(text|spoken):\s*(.*?)\s*$")
 _ACCESSIBLE = re.compile(r"^\s*accDescr:\s*(.+?)\s*$", re.MULTILINE)
 _TARGET = re.compile(r"https://\S+|(?:lesson|exercise):[a-z][a-z0-9-]*(?:#[\w-]+)?|#[\w-]+")
@@ -191,7 +192,7 @@ class _Builder:
         for item in items:
             if len(item) != 1 or not isinstance(item[0], b.Paragraph):
                 raise self._wrong(line, "a source is one paragraph", "Keep each source in one list item.")
-            if not _YEAR.search(b.plain_text(item[0].inlines)):
+            if not YEAR.search(b.plain_text(item[0].inlines)):
                 raise self._wrong(
                     item[0].line, "a source has no date", "Give the year it was published or read."
                 )

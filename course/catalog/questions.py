@@ -21,7 +21,7 @@ import msgspec
 
 from course.catalog.reading import Document, read_document
 from course.errors import UsageError
-from course.ids import QuestionId
+from course.ids import SLUG, QuestionId
 
 # ---
 # Arithmetic that a content file may contain: numbers, names, + - * / ** and a few functions.
@@ -136,7 +136,6 @@ MAX_CASES = 500
 _DIGITS = range(1, 7)
 
 _PLACEHOLDER = re.compile(r"\{([^{}]*)\}")
-_SLUG = re.compile(r"[a-z][a-z0-9]*(?:-[a-z0-9]+)*")
 
 Where = tuple[str | int, ...]
 
@@ -390,7 +389,7 @@ def _check_placeholders(document: Document[Question], where: Where, variant: Var
 
 
 def _check_slug(document: Document[Any], where: Where, name: str, kind: str) -> None:
-    if not _SLUG.fullmatch(name):
+    if not SLUG.fullmatch(name):
         document.fail(
             where,
             f"{name!r} is not a valid name of a {kind}.",

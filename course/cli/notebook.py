@@ -22,6 +22,7 @@ from course.cli.frame.console import (
     current,
 )
 from course.cli.frame.here import cwd, find_workspace, here_or_outside, load_catalog, write
+from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Backup, Envelope
 from course.cli.work.checking import reply_to
 from course.cli.work.replies import Check
@@ -188,12 +189,7 @@ def put(folder: Path, notebook: Generated, *, update: bool = True) -> NotebookFi
     return said(action=action, backup=write(path, data, why="notebook").backup)
 
 
-app = typer.Typer(
-    help="Write notebooks, check them, bring them up to date.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
+app = group(COMMANDS["notebook"].summary)
 
 FORMATS = ("jupyter", "nbgrader")
 Ids = Annotated[

@@ -15,6 +15,7 @@ import typer
 from course.cli.frame import here
 from course.cli.frame.completion import simulation_ids, simulation_settings
 from course.cli.frame.console import Console, current
+from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Envelope, WrittenFile, filled
 from course.errors import UsageError
 from course.simulations.base import Result, Row, Simulation
@@ -135,12 +136,7 @@ class SimAll(Envelope, tag="course.sim-all/1", frozen=True, kw_only=True):
     insights: tuple[str, ...]
 
 
-app = typer.Typer(
-    help="Run a simulation and compare with theory.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
+app = group(COMMANDS["sim"].summary)
 
 #: The common finding of the introductory simulations.
 CONCEPTS = (

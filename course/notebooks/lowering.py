@@ -13,15 +13,15 @@ from typing import assert_never
 
 from course.catalog import blocks as b
 
-#: The heading of each kind of box, and JupyterLab's colour for it.
-LABELS = {
-    "myth": ("Myth", "danger"),
-    "fact": ("Fact", "success"),
-    "analogy": ("Analogy", "info"),
-    "answer": ("Answer", "success"),
-    "remember": ("Remember", "warning"),
-    "note": ("Note", "info"),
-    "predict": ("Predict", "info"),
+#: JupyterLab's colour for each kind of box.
+_COLOURS = {
+    "myth": "danger",
+    "fact": "success",
+    "analogy": "info",
+    "answer": "success",
+    "remember": "warning",
+    "note": "info",
+    "predict": "info",
 }
 
 _SPECIAL = re.compile(r"([\\`*_\[\]<>$|])")
@@ -72,10 +72,9 @@ class Lowering:
 
     def boxed(self, kind: str, blocks: tuple[b.Block, ...]) -> str:
         """A passage in a box with a heading."""
-        label, colour = LABELS[kind]
         # Jupyter renders Markdown inside HTML only between empty lines.
         return (
-            f'<div class="alert alert-block alert-{colour}">\n<b>{label}.</b>\n\n'
+            f'<div class="alert alert-block alert-{_COLOURS[kind]}">\n<b>{kind.capitalize()}.</b>\n\n'
             f"{self.blocks(blocks)}\n\n</div>"
         )
 

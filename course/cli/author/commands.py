@@ -31,7 +31,7 @@ from course.cli.author.replies import (
 from course.cli.frame.completion import exercise_ids, lesson_ids
 from course.cli.frame.console import Console, current, meter
 from course.cli.frame.here import load_catalog
-from course.cli.frame.registry import COMMANDS
+from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import filled
 from course.errors import ContentError, UsageError
 from course.sandbox.scene.loading import scene_ids
@@ -131,20 +131,8 @@ def counted(number: int, word: str) -> str:
     return f"{number} {word}" if number == 1 else f"{number} {word}s"
 
 
-_HELP = {"help_option_names": ["-h", "--help"]}
-
-app = typer.Typer(
-    help="Write and check the course itself.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    context_settings=_HELP,
-)
-_new = typer.Typer(
-    help="Write the files of something new.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    context_settings=_HELP,
-)
+app = group(COMMANDS["author"].summary)
+_new = group("Write the files of something new.")
 app.add_typer(_new, name="new", epilog="Example: course author new exercise pendulum-clock")
 
 

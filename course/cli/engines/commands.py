@@ -16,6 +16,7 @@ from course.cli.frame import here
 from course.cli.frame.completion import engine_ids, scenario_ids
 from course.cli.frame.console import Console, current, meter
 from course.cli.frame.here import inserted
+from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Envelope, WrittenFile, filled
 from course.engines.registry import ENGINES
 from course.engines.results import Comparison, EngineState
@@ -185,12 +186,7 @@ def figures(comparison: Comparison, path: Path) -> list[tuple[Path, bytes]]:
     return [(inserted(path, name), data) for name, data in pictures.items()]
 
 
-app = typer.Typer(
-    help="Compare real physics engines on this machine.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
+app = group(COMMANDS["engines"].summary)
 
 #: The longest and the shortest step that make sense in the scenarios, s.
 _LONGEST, _SHORTEST = 0.02, 1e-4

@@ -232,15 +232,26 @@ class LazyGroup(TyperGroup):
         return name, command, rest
 
 
-def build(group: type[TyperGroup], *, fancy: bool) -> typer.Typer:
+#: Of every command and every group of them.
+OPTIONS: dict[str, Any] = {
+    "pretty_exceptions_enable": False,
+    "context_settings": {"help_option_names": ["-h", "--help"]},
+}
+
+
+def group(summary: str) -> typer.Typer:
+    """A group of commands, without them; alone it shows its help."""
+    return typer.Typer(help=summary, no_args_is_help=True, **OPTIONS)
+
+
+def build(cls: type[TyperGroup], *, fancy: bool) -> typer.Typer:
     """The empty program: its commands come from ``COMMANDS``."""
     return typer.Typer(
         name="course",
-        cls=group,
+        cls=cls,
         invoke_without_command=True,
         rich_markup_mode="rich" if fancy else None,
-        pretty_exceptions_enable=False,
-        context_settings={"help_option_names": ["-h", "--help"]},
+        **OPTIONS,
     )
 
 
@@ -256,11 +267,6 @@ def _load(name: str, entry: Entry, mode: Any) -> Any:
         target.info.name = name
         target.rich_markup_mode = mode
         return typer.main.get_group(target)
-    app = typer.Typer(
-        add_completion=False,
-        rich_markup_mode=mode,
-        pretty_exceptions_enable=False,
-        context_settings={"help_option_names": ["-h", "--help"]},
-    )
+    app = typer.Typer(add_completion=False, rich_markup_mode=mode, **OPTIONS)
     app.command(name, epilog=f"Example: {entry.example}\n\n{GLOBAL_OPTIONS}")(target)
     return typer.main.get_command(app)

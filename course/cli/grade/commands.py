@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-import typer
-
+from course.cli.frame.registry import COMMANDS, group
 from course.cli.grade.changing import late, override, rerun, similar
 from course.cli.grade.export import export
 from course.cli.grade.running import explain, run
 from course.cli.grade.settling import assign, log, salvage
 
-app = typer.Typer(
-    help="Grade a class.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
+app = group(COMMANDS["grade"].summary)
 
 
 @app.callback()

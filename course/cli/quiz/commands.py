@@ -10,6 +10,7 @@ from typing import Annotated, NoReturn
 import typer
 
 from course.cli.frame.console import Console, current
+from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import NextStep
 from course.cli.quiz import screen
 from course.cli.quiz.screen import (
@@ -31,14 +32,7 @@ from course.quizzing.attempt import MarkedQuestion, check_seed, mark, mark_sente
 from course.quizzing.bank import PosedQuestion
 from course.quizzing.desk import Due, finished, fits
 
-_HELP = {"help_option_names": ["-h", "--help"]}
-
-app = typer.Typer(
-    help="Answer the quiz, and review what was missed.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    context_settings=_HELP,
-)
+app = group(COMMANDS["quiz"].summary)
 
 AnswersOption = Annotated[
     Path | None,

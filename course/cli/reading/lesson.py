@@ -34,16 +34,8 @@ from course.reading.parts import Section, read_script
 # Words shared by all ways of printing a lesson.
 
 
-#: The heading of a passage with a role.
-LABELS = {
-    "predict": "Predict first",
-    "answer": "Answer",
-    "myth": "Myth",
-    "fact": "Fact",
-    "analogy": "Analogy",
-    "remember": "Remember",
-    "note": "Note",
-}
+#: The heading of a prediction; that of another passage is its kind.
+_PREDICT = "Predict first"
 
 _SCIENTIFIC = re.compile(r"^([-+−]?[\d.]+)e([-+]?\d+)")
 _RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
@@ -158,9 +150,9 @@ class PlainPrinter:
             case b.Figure():
                 self._figure(block)
             case b.Prediction(blocks=inner):
-                self._labelled(LABELS["predict"], inner)
+                self._labelled(_PREDICT, inner)
             case b.Callout(kind=kind, blocks=inner):
-                self._labelled(LABELS[kind], inner)
+                self._labelled(kind.capitalize(), inner)
             case b.CommandList(commands=commands):
                 for command in commands:
                     self._say(f"Try: {command.command}")
@@ -379,7 +371,8 @@ class FancyPrinter:
         return Group(Text(""), text, Text("─" * min(self._prose, text.cell_len), style="dim"))
 
     def _passage(self, kind: str, inner: tuple[b.Block, ...]) -> RenderableType:
-        label = Text(LABELS[kind], style=f"bold {_COLOURS[kind]}")
+        heading = _PREDICT if kind == "predict" else kind.capitalize()
+        label = Text(heading, style=f"bold {_COLOURS[kind]}")
         shown: list[RenderableType] = [label]
         for index, block in enumerate(inner):
             piece = self._block(block)

@@ -14,6 +14,7 @@ from course.cli.frame.completion import choice_of, scene_ids, scene_settings
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd
 from course.cli.frame.here import target as target_file
+from course.cli.frame.registry import COMMANDS, OPTIONS
 from course.cli.frame.replies import filled
 from course.cli.sandbox import play as sandbox_files
 from course.cli.sandbox import play as sandbox_play
@@ -59,10 +60,9 @@ def _suggest(name: str, commands: list[str]) -> None:
 
 app = typer.Typer(
     cls=_Scenes,
-    help="Play with collisions, and see where the energy goes.",
+    help=COMMANDS["sandbox"].summary,
     invoke_without_command=True,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    **OPTIONS,
 )
 
 _SCENE = typer.Argument(

@@ -99,8 +99,8 @@ def acceleration(fn: Callable[[float, Array, Array], ArrayLike], d: int) -> Coun
 def black_box(**methods: Callable[..., Any]) -> dict[str, Any]:
     """An object for the student's code to experiment with: its methods are functions evaluated on this side.
 
-    Pass it to ``call`` of a submission as an argument. The student's code sees an object with these methods, but
-    not what is behind them.
+    Pass it to ``call`` of a submission as an argument. The student's code sees an object with these methods,
+    but not what is behind them.
     """
     return {"$methods": methods}
 

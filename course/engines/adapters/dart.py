@@ -13,9 +13,9 @@ from typing import Any
 import dartpy as dart
 import numpy as np
 
-from course.engines.base import Body, Motion, Scene
+from course.engines.base import Adapter, Body, Motion, Scene
 
-__all__ = ["ADAPTER", "DartAdapter", "DartWorld"]
+__all__ = ["ADAPTER", "DartWorld"]
 
 
 class DartWorld:
@@ -121,12 +121,4 @@ def _inertia(body: Body) -> Any:
     return dart.dynamics.Inertia(body.mass, np.zeros(3), np.eye(3) * body.inertia)
 
 
-class DartAdapter:
-    """See ``Adapter``."""
-
-    def build(self, scene: Scene, options: Mapping[str, Any]) -> DartWorld:
-        """See ``Adapter``."""
-        return DartWorld(scene, options)
-
-
-ADAPTER = DartAdapter()
+ADAPTER = Adapter(DartWorld)

@@ -15,9 +15,9 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from course.engines.base import Motion, Scene
+from course.engines.base import Adapter, Motion, Scene
 
-__all__ = ["ADAPTER", "MujocoAdapter", "MujocoWorld"]
+__all__ = ["ADAPTER", "MujocoWorld"]
 
 
 class MujocoWorld:
@@ -132,12 +132,4 @@ def _join(values: Any) -> str:
     return " ".join(repr(float(value)) for value in values)
 
 
-class MujocoAdapter:
-    """See ``Adapter``."""
-
-    def build(self, scene: Scene, options: Mapping[str, Any]) -> MujocoWorld:
-        """See ``Adapter``."""
-        return MujocoWorld(scene, options)
-
-
-ADAPTER = MujocoAdapter()
+ADAPTER = Adapter(MujocoWorld)

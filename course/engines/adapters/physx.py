@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from course.engines.base import Body, Motion, Scene
+from course.engines.base import Adapter, Body, Motion, Scene
 
 with warnings.catch_warnings():
     # It looks for Vulkan, which draws; nothing is drawn here.
@@ -20,7 +20,7 @@ with warnings.catch_warnings():
     from sapien import physx
 from collections.abc import Mapping
 
-__all__ = ["ADAPTER", "PhysxAdapter", "PhysxWorld"]
+__all__ = ["ADAPTER", "PhysxWorld"]
 
 
 class PhysxWorld:
@@ -144,12 +144,4 @@ class PhysxWorld:
 _FLOOR = sapien.Pose(q=[0.7071067811865476, 0.0, -0.7071067811865476, 0.0])
 
 
-class PhysxAdapter:
-    """See ``Adapter``."""
-
-    def build(self, scene: Scene, options: Mapping[str, Any]) -> PhysxWorld:
-        """See ``Adapter``."""
-        return PhysxWorld(scene, options)
-
-
-ADAPTER = PhysxAdapter()
+ADAPTER = Adapter(PhysxWorld)

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 import pybullet as p
 
-from course.engines.base import Body, Motion, Scene
+from course.engines.base import Adapter, Body, Motion, Scene
 
-__all__ = ["ADAPTER", "PybulletAdapter", "PybulletWorld"]
+__all__ = ["ADAPTER", "PybulletWorld"]
 
 
 class PybulletWorld:
@@ -153,12 +153,4 @@ class PybulletWorld:
             p.disconnect(self._server)
 
 
-class PybulletAdapter:
-    """See ``Adapter``."""
-
-    def build(self, scene: Scene, options: Mapping[str, Any]) -> PybulletWorld:
-        """See ``Adapter``."""
-        return PybulletWorld(scene, options)
-
-
-ADAPTER = PybulletAdapter()
+ADAPTER = Adapter(PybulletWorld)

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from course.engines.base import Body, Motion, NotApplicableError, Scene, Wall
+from course.engines.base import Adapter, Body, Motion, NotApplicableError, Scene, Wall
 
-__all__ = ["ADAPTER", "PymunkAdapter", "PymunkWorld"]
+__all__ = ["ADAPTER", "PymunkWorld"]
 
 
 class PymunkWorld:
@@ -98,12 +98,4 @@ class PymunkWorld:
         return len(touching), max(touching, default=0.0)
 
 
-class PymunkAdapter:
-    """See ``Adapter``."""
-
-    def build(self, scene: Scene, options: Mapping[str, Any]) -> PymunkWorld:
-        """See ``Adapter``."""
-        return PymunkWorld(scene, options)
-
-
-ADAPTER = PymunkAdapter()
+ADAPTER = Adapter(PymunkWorld)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 import itertools
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any, Literal, Protocol
@@ -152,18 +152,16 @@ class Tuning:
 AS_IT_COMES = Tuning()
 
 
-class Adapter(Protocol):
-    """One engine."""
+@dataclass(frozen=True, slots=True)
+class Adapter:
+    """One engine.
 
-    def build(self, scene: Scene, options: Mapping[str, Any]) -> World:
-        """Put a scene into the engine.
+    Attributes:
+        build: puts a scene into the engine. Its options are empty for the engine as it comes, otherwise the
+            result of ``tuning``; it raises NotApplicableError if the engine cannot express the scene.
+    """
 
-        Args:
-            options: empty for the engine as it comes; otherwise the result of ``settings.tuning``.
-
-        Raises:
-            NotApplicableError: the engine cannot express the scene.
-        """
+    build: Callable[[Scene, Mapping[str, Any]], World]
 
 
 def energy(scene: Scene, motion: Motion) -> float:

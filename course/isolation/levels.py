@@ -7,9 +7,9 @@ A canary tries each promise of a level (``course.isolation.probe``); docs/gradin
         other something
     L1  a worker of its own that can be ended, and deadlines; nothing keeps it from what its user may do
 
-A new kind of worker gives a ``Spawner``, its ``Handle`` and a ``Channel``, and is entered in ``spawn.MAKERS``
-under the level whose promise it keeps. It may be less than a process of this system: what tells the grader
-from the worker is the wire, not the operating system.
+A new kind of worker gives a ``Spawner``, its ``Handle`` and a ``Channel``, and is entered in
+``spawn.spawner`` under the level whose promise it keeps. It may be less than a process of this system: what
+tells the grader from the worker is the wire, not the operating system.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@
     L1  one plain process per worker: the wire protocol and deadlines, nothing else
 
 The rest of the program talks to a ``Handle``: a channel, a way to kill, and how it ended. What that must be
-is written in ``course.isolation.levels``; ``MAKERS`` is where another kind of worker is entered, and nothing
+is written in ``course.isolation.levels``; ``spawner`` is where another kind of worker is entered, and nothing
 above this package has to know of it.
 """
 
@@ -23,7 +23,7 @@ import struct
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -454,26 +454,13 @@ class _ProcessHandle:
         return Exit(max(code, 0), max(-code, 0))
 
 
-def _plain(level: Level, imports: tuple[str, ...], limits: Limits) -> Spawner:  # noqa: ARG001 - one of MAKERS
-    return ProcessSpawner(view_for(imports), imports, limits)
-
-
-def _forked(level: Level, imports: tuple[str, ...], limits: Limits) -> Spawner:
-    return ZygoteSpawner(level, view_for(imports), imports, limits)
-
-
-#: A function that makes the spawner of each level, from the level, the packages to import and the limits.
-MAKERS: dict[Level, Callable[[Level, tuple[str, ...], Limits], Spawner]] = {
-    Level.L1: _plain,
-    Level.L2: _forked,
-    Level.L3: _forked,
-}
-
-
 def spawner(level: Level, imports: tuple[str, ...], *, limits: Limits = LIMITS) -> Spawner:
     """A spawner for submissions that may import ``imports``.
 
     Raises:
         IsolationError: this machine cannot provide that level.
     """
-    return MAKERS[level](level, imports, limits)
+    view = view_for(imports)
+    if level is Level.L1:
+        return ProcessSpawner(view, imports, limits)
+    return ZygoteSpawner(level, view, imports, limits)

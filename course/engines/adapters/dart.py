@@ -13,7 +13,7 @@ from typing import Any
 import dartpy as dart
 import numpy as np
 
-from course.engines.base import Body, Motion, Scene
+from course.engines.base import Adapter, Body, Motion, Scene
 
 
 class DartWorld:
@@ -119,12 +119,4 @@ def _inertia(body: Body) -> Any:
     return dart.dynamics.Inertia(body.mass, np.zeros(3), np.eye(3) * body.inertia)
 
 
-class DartAdapter:
-    """See ``Adapter``."""
-
-    def build(self, scene: Scene, options: Mapping[str, Any]) -> DartWorld:
-        """See ``Adapter``."""
-        return DartWorld(scene, options)
-
-
-ADAPTER = DartAdapter()
+ADAPTER = Adapter(DartWorld)

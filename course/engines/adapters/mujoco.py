@@ -15,7 +15,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from course.engines.base import Motion, Scene
+from course.engines.base import Adapter, Motion, Scene
 
 
 class MujocoWorld:
@@ -130,12 +130,4 @@ def _join(values: Any) -> str:
     return " ".join(repr(float(value)) for value in values)
 
 
-class MujocoAdapter:
-    """See ``Adapter``."""
-
-    def build(self, scene: Scene, options: Mapping[str, Any]) -> MujocoWorld:
-        """See ``Adapter``."""
-        return MujocoWorld(scene, options)
-
-
-ADAPTER = MujocoAdapter()
+ADAPTER = Adapter(MujocoWorld)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from course.engines.base import Body, Motion, Scene
+from course.engines.base import Adapter, Body, Motion, Scene
 
 with warnings.catch_warnings():
     # It looks for Vulkan, which draws; nothing is drawn here.
@@ -142,12 +142,4 @@ class PhysxWorld:
 _FLOOR = sapien.Pose(q=[0.7071067811865476, 0.0, -0.7071067811865476, 0.0])
 
 
-class PhysxAdapter:
-    """See ``Adapter``."""
-
-    def build(self, scene: Scene, options: Mapping[str, Any]) -> PhysxWorld:
-        """See ``Adapter``."""
-        return PhysxWorld(scene, options)
-
-
-ADAPTER = PhysxAdapter()
+ADAPTER = Adapter(PhysxWorld)

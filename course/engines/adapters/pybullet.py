@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pybullet as p
 
-from course.engines.base import Body, Motion, Scene
+from course.engines.base import Adapter, Body, Motion, Scene
 
 
 class PybulletWorld:
@@ -151,12 +151,4 @@ class PybulletWorld:
             p.disconnect(self._server)
 
 
-class PybulletAdapter:
-    """See ``Adapter``."""
-
-    def build(self, scene: Scene, options: Mapping[str, Any]) -> PybulletWorld:
-        """See ``Adapter``."""
-        return PybulletWorld(scene, options)
-
-
-ADAPTER = PybulletAdapter()
+ADAPTER = Adapter(PybulletWorld)

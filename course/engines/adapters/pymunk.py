@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from course.engines.base import Body, Motion, NotApplicableError, Scene, Wall
+from course.engines.base import Adapter, Body, Motion, NotApplicableError, Scene, Wall
 
 
 class PymunkWorld:
@@ -96,12 +96,4 @@ class PymunkWorld:
         return len(touching), max(touching, default=0.0)
 
 
-class PymunkAdapter:
-    """See ``Adapter``."""
-
-    def build(self, scene: Scene, options: Mapping[str, Any]) -> PymunkWorld:
-        """See ``Adapter``."""
-        return PymunkWorld(scene, options)
-
-
-ADAPTER = PymunkAdapter()
+ADAPTER = Adapter(PymunkWorld)

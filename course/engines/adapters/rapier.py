@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import rapier3d as rapier
 
-from course.engines.base import Body, Motion, Scene
+from course.engines.base import Adapter, Body, Motion, Scene
 
 
 class RapierWorld:
@@ -110,12 +110,4 @@ class RapierWorld:
         return len(depths), max(depths, default=0.0)
 
 
-class RapierAdapter:
-    """See ``Adapter``."""
-
-    def build(self, scene: Scene, options: Mapping[str, Any]) -> RapierWorld:
-        """See ``Adapter``."""
-        return RapierWorld(scene, options)
-
-
-ADAPTER = RapierAdapter()
+ADAPTER = Adapter(RapierWorld)

@@ -12,7 +12,7 @@ import pytest
 
 from course.catalog.load import Catalog
 from course.catalog.locate import ENVIRONMENT_VARIABLE, content
-from course.isolation import spawn
+from course.isolation import probe
 from course.isolation.inside.worker import Worker
 from course.isolation.levels import TICK_S, Exit, Level
 from course.scoring.judging.session import GradingSession
@@ -80,7 +80,7 @@ class InThread:
     level = Level.L1
     spawned = 0
 
-    def __init__(self, level, imports, limits):
+    def __init__(self, level, imports):
         assert level is Level.L1
         self._imports = frozenset(imports)
 
@@ -119,7 +119,7 @@ class InThread:
 @pytest.fixture
 def in_thread(monkeypatch, tmp_path):
     """Workers are threads: what loading changes of this process is put back afterwards."""
-    monkeypatch.setitem(spawn.MAKERS, Level.L1, InThread)
+    monkeypatch.setattr(probe, "spawner", InThread)
     monkeypatch.setenv(ENVIRONMENT_VARIABLE, str(MINI_COURSE))
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", [*sys.path])

@@ -10,13 +10,14 @@ from __future__ import annotations
 import functools
 import json
 import os
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 from course.errors import InternalError, MissingCapabilityError, UsageError
 from course.ids import WARM_UPS
 
-__all__ = ["ENVIRONMENT_VARIABLE", "NAMES", "PLACES", "Content", "chosen", "content"]
+__all__ = ["ENVIRONMENT_VARIABLE", "NAMES", "PLACES", "Content", "cache_folder", "chosen", "content"]
 
 ENVIRONMENT_VARIABLE = "COURSE_CONTENT"
 #: The folders of a course in which each exercise has one of its own.
@@ -171,6 +172,20 @@ def _installed(package: Path) -> Content:
         solutions=_if_there(root / "solutions"),
         graders=_if_there(root / "tests" / "graders"),
     )
+
+
+def cache_folder(name: str) -> Path:
+    """Where this system keeps caches of the course; COURSE_CACHE names another folder."""
+    if own := os.environ.get("COURSE_CACHE"):
+        return Path(own) / name
+    home = Path.home()
+    if sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
+    elif sys.platform == "darwin":
+        base = home / "Library" / "Caches"
+    else:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache")
+    return base / "physics-sim-course" / name
 
 
 def _if_there(folder: Path) -> Path | None:

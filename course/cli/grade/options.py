@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import msgspec
 import typer
@@ -15,8 +15,11 @@ from course.errors import UsageError
 from course.grading.intake.downloads import LAYOUTS
 from course.grading.results.effective import ScoreChange
 from course.grading.running.rerun import Change
+from course.grading.running.snapshot import FOREIGN, ForeignGradersError
 from course.printable import one_line
 from course.scoring.verdict import format_points
+
+T = TypeVar("T")
 
 _LEVELS = {"auto": (None, "L2"), "strict": ("L3", "L3"), "process": ("L1", "L1")}
 
@@ -108,6 +111,32 @@ Share = Annotated[
         help="Show pairs with at least this much in common, such as 0.6 or 60%.",
     ),
 ]
+
+
+Yes = Annotated[bool, typer.Option("--yes", "-y", help="Run the graders that are kept there; do not ask.")]
+
+
+def agreed(console: Console, attempt: Callable[[str], T], *, yes: bool) -> T:
+    """Do what runs the graders in a gradebook; if they are not this checkout's, only once a person agrees.
+
+    Args:
+        attempt: is given the digest of the graders that may run though they are somebody else's.
+        yes: they may, whoever made them.
+    """
+    try:
+        return attempt("")
+    except ForeignGradersError as error:
+        if yes:
+            console.warn(error.message)
+        elif not console.interactive:
+            raise
+        else:
+            console.line(f"{error.message} {FOREIGN}")
+            if not console.confirm("Do you trust whoever made this gradebook, and run them?"):
+                raise UsageError(
+                    "Nothing was run, and nothing was changed.", code="foreign_graders"
+                ) from None
+        return attempt(error.sha256)
 
 
 # ---

@@ -22,7 +22,7 @@ from course.grading.intake.students import Entry, submission_from
 from course.grading.intake.triage import Found
 from course.grading.results.effective import Effective, Results, counted
 from course.grading.running.batch import Graded, grade_all
-from course.grading.running.snapshot import Snapshot, Unpacked, frozen, kept
+from course.grading.running.snapshot import Unpacked, fresh, frozen, kept
 from course.printable import command
 from course.scoring.judging.session import Terms
 
@@ -177,6 +177,7 @@ def assign(
     grade: GradeAll = grade_all,
     level: str | None = None,
     at_least: str = "L2",
+    accepted: str = "",
 ) -> list[Assigned]:
     """Accept files as submissions, and grade them with the graders of the run.
 
@@ -184,10 +185,11 @@ def assign(
         results: over a gradebook opened for writing.
         reason: why these files are the students'.
         level, at_least: as in ``Terms``.
+        accepted: as in ``RerunOptions``.
 
     Raises:
         UngradableError: a file cannot be read.
-        UsageError: there is no reason.
+        UsageError: there is no reason, or the run's graders are not this checkout's.
     """
     reason = reason.strip()
     if not reason or len(reason) > _MAX_REASON:
@@ -197,7 +199,7 @@ def assign(
             code="no_reason",
         )
     book, options = results.book, results.book.run_options()
-    snapshot = kept(book, options.get("snapshot")) or Snapshot.take(catalog.content)
+    snapshot = kept(book, options.get("snapshot"), catalog.content, accepted) or fresh(catalog.content)
     timeout = float(options.get("timeout", 10.0))
     done: list[Assigned] = []
     with frozen(snapshot) as graders:

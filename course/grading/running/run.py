@@ -36,6 +36,7 @@ from course.grading.running.snapshot import (
     among_graders,
     begin,
     export_all,
+    fresh,
     frozen,
     kept,
     note_without_work,
@@ -175,6 +176,7 @@ class RunOptions:
         seed: of the run; None draws one, and a resumed run keeps its own.
         layout: what kind of folder it is; "auto" finds out.
         roster: who is enrolled, merged into the gradebook's own; None keeps that.
+        accepted: digest of graders in the gradebook that may run though they are not this checkout's.
     """
 
     exercises: tuple[str, ...] = ()
@@ -184,6 +186,7 @@ class RunOptions:
     resume: bool = False
     layout: str = "auto"
     roster: Roster | None = None
+    accepted: str = ""
 
 
 def grade_class(
@@ -205,7 +208,7 @@ def grade_class(
     Raises:
         MissingCapabilityError: there are no hidden graders here, no sufficient protection, or no room.
         NotFoundError: no such folder, exercise or student.
-        UsageError: ``out`` exists, is in use, or lies among the submissions.
+        UsageError: ``out`` exists, is in use, lies among the submissions, or has somebody else's graders.
     """
     catalog.content.instructors()
     _exercises(catalog, options.exercises)
@@ -220,7 +223,7 @@ def grade_class(
     with (
         taken_back(out) as taken,
         begin(out, folder, resume=options.resume) as book,
-        frozen(_begun_with(book, options) or Snapshot.take(catalog.content)) as graders,
+        frozen(_begun_with(book, options, catalog) or fresh(catalog.content)) as graders,
     ):
         run = _Run(members.students, graders, folder, options, book)
         if options.resume and (out / "grades.csv").is_file():
@@ -246,9 +249,10 @@ def grade_class(
     return summary
 
 
-def _begun_with(book: Gradebook, options: RunOptions) -> Snapshot | None:
+def _begun_with(book: Gradebook, options: RunOptions, catalog: Catalog) -> Snapshot | None:
     """The graders of a resumed run; None for a new run, or one of an older format."""
-    return kept(book, book.run_options().get("snapshot")) if options.resume else None
+    sha256 = book.run_options().get("snapshot") if options.resume else None
+    return kept(book, sha256, catalog.content, options.accepted)
 
 
 def edited_since(results: Results, catalog: Catalog) -> list[str]:

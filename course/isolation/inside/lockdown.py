@@ -291,8 +291,8 @@ _CALLS = """
 # Two workers that run at once must not talk to each other. So these are left out too: sysinfo (how much
 # memory others use), getpgid, getsid, getpriority and get_robust_list (whether a process exists),
 # membarrier (interrupts the others), futex_waitv (its flags are out of a filter's reach), set_robust_list
-# (wakes any thread that waits at an address), fadvise64 (drops a file that all can read from memory, which the
-# next one notices), file locks; what follows is allowed with some arguments only.
+# (wakes any thread that waits at an address), fadvise64 (drops a file that all can read from
+# memory, which the next one notices), file locks; what follows is allowed with some arguments only.
 _OWN_PID = 0xFEEDFACE  # replaced by the worker's own pid when the filter is put in place
 _FUTEX_PRIVATE = 128
 _MSG_NOSIGNAL = 0x4000

@@ -26,6 +26,7 @@ import msgspec
 
 from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
 from course.ids import ExerciseId
+from course.strangers import read_bytes
 
 __all__ = ["MAX_FILES", "MAX_FILE_BYTES", "MAX_TOTAL_BYTES", "Pack", "pack_bytes", "read_pack"]
 
@@ -136,10 +137,7 @@ def read_pack(path: Path) -> Pack:
         MissingCapabilityError: it has a format newer than this program.
     """
     try:
-        size = path.stat().st_size
-        if size > MAX_TOTAL_BYTES + MAX_FILES * 1000:
-            raise _damaged(path, "it is larger than any pack")
-        data = path.read_bytes()
+        data = read_bytes(path, MAX_TOTAL_BYTES + MAX_FILES * 1000)
     except (FileNotFoundError, NotADirectoryError):
         raise NotFoundError(f"There is no file {path}.", help="Check the name of the pack.") from None
     except OSError as error:

@@ -24,6 +24,7 @@ from pathlib import Path
 from course.errors import ContentError, CourseError, MissingCapabilityError, NotFoundError, UsageError
 from course.ids import WARM_UPS
 from course.progress.store import Store
+from course.strangers import read_bytes, toml
 
 __all__ = ["FORMAT_VERSION", "MARKER", "Workspace", "same_text", "write_atomically"]
 
@@ -247,7 +248,7 @@ def _read_marker(marker: Path) -> tuple[str, str]:
     fix = "Correct the file, or move it away and run `course init` here again: no exercise is touched."
     try:
         # An editor of another system may have put a byte-order mark in front; TOML allows none.
-        table = tomllib.loads(marker.read_text(encoding="utf-8-sig"))
+        table = toml(read_bytes(marker).decode("utf-8-sig"))
     except tomllib.TOMLDecodeError as error:
         line = re.search(r"line (\d+)", str(error))
         problem = f"not valid TOML: {error}."

@@ -15,6 +15,7 @@ from course.cli.frame.replies import WrittenFile
 from course.errors import CourseError, MissingCapabilityError, NotFoundError, UngradableError, UsageError
 from course.ids import WARM_UPS
 from course.progress.history import History
+from course.strangers import read_bytes
 
 if TYPE_CHECKING:
     from course.catalog.load import Catalog
@@ -129,7 +130,7 @@ class Here:
                     help="Keep data out of the file; the exercise needs none.",
                     code="too_large",
                 )
-            return path.read_bytes()
+            return read_bytes(path)
         except OSError as error:
             raise UngradableError(
                 f"{shown} cannot be read ({error.strerror or error}).",

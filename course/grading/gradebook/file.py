@@ -27,6 +27,7 @@ from typing import Any
 
 from course.errors import CourseError, IntegrityError, MissingCapabilityError, NotFoundError, UsageError
 from course.printable import command
+from course.strangers import no_programs
 
 __all__ = [
     "FORMAT_VERSION",
@@ -48,6 +49,8 @@ __all__ = [
 FORMAT_VERSION = 5
 #: The name of the seal among the facts about a run.
 SEAL = "seal"
+#: Instructions of SQLite until it is open; a class of a thousand takes three.
+_MILLIONS = 200
 _APPLICATION_ID = 0x636F7273  # "cors": tells this file from any other SQLite database
 
 #: The tables of formats 1 to 3. Since then each has a last column: the digest of its row.
@@ -311,6 +314,7 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
         db.execute("PRAGMA locking_mode = EXCLUSIVE")
     _know_digests(db)
     version = _checked_format(db, path)
+    no_programs(db, millions=_MILLIONS)
     if version == 1:
         db.executescript(f"BEGIN EXCLUSIVE; {_FROM_1} PRAGMA user_version = 3; COMMIT;")
     if writing:
@@ -339,6 +343,7 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
         for statement in filter(str.strip, _SINCE_3.split(";")):
             if statement.split("EXISTS ")[1].split()[0] not in made:
                 db.execute(statement.replace("CREATE TABLE", "CREATE TEMP TABLE"))
+    db.set_progress_handler(None, 0)  # what is in it has an end: it was all read for its digest
 
 
 def _know_digests(db: sqlite3.Connection) -> None:

@@ -32,6 +32,7 @@ import msgspec
 from course.errors import UsageError
 from course.grading.gradebook.records import PlatformIdentity
 from course.printable import one_line
+from course.strangers import read_bytes
 
 __all__ = [
     "COLUMNS", "FOR_TESTS", "Column", "Person", "Roster", "decoded", "in_english", "moodle_key",
@@ -262,10 +263,7 @@ def read_text(path: Path) -> str:
         UsageError: it cannot be read, is too large, or is not text.
     """
     try:
-        raw = path.read_bytes()
-        if len(raw) > _MAX_BYTES:
-            raise _wrong(path, "it is larger than 20 MB")
-        return decoded(raw)
+        return decoded(read_bytes(path))
     except OSError as error:
         raise _wrong(path, f"it cannot be read ({error.strerror})") from None
     except UnicodeError:

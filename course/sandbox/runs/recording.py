@@ -20,6 +20,7 @@ from course.errors import IntegrityError, MissingCapabilityError, NotFoundError,
 from course.sandbox.scene.model import Part, Scene
 from course.sandbox.world.engine import versions
 from course.sandbox.world.world import Snapshot, World
+from course.strangers import read_bytes
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -152,7 +153,7 @@ def read(path: Path) -> Replay:
         IntegrityError: it is damaged, or has no end.
     """
     try:
-        data = path.read_bytes()
+        data = read_bytes(path)
     except OSError as error:
         reason = error.strerror or error
         raise NotFoundError(

@@ -28,7 +28,7 @@ from course.errors import IntegrityError, MissingCapabilityError, NotFoundError,
 from course.ids import ExerciseId
 from course.strangers import read_bytes
 
-__all__ = ["MAX_FILES", "MAX_FILE_BYTES", "MAX_TOTAL_BYTES", "Pack", "pack_bytes", "read_pack"]
+__all__ = ["MAX_FILES", "MAX_FILE_BYTES", "MAX_TOTAL_BYTES", "NOT_A_ZIP", "Pack", "pack_bytes", "read_pack"]
 
 FORMAT = "course-solutions"
 FORMAT_VERSION = 1
@@ -40,7 +40,7 @@ MAX_TOTAL_BYTES = 5_000_000
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest date a zip can hold
 _ENTRY = re.compile(r"solutions/(?P<exercise>[^/]+)/(?P<name>[A-Za-z0-9_][A-Za-z0-9_.-]{0,99})")
 #: The exceptions of zipfile for bytes that are not a zip, or are a damaged one.
-_NOT_A_ZIP = (
+NOT_A_ZIP = (
     zipfile.BadZipFile,
     zlib.error,
     struct.error,
@@ -147,7 +147,7 @@ def read_pack(path: Path) -> Pack:
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             return _read_archive(path, archive)
-    except _NOT_A_ZIP as error:
+    except NOT_A_ZIP as error:
         raise _damaged(path, f"it is not a readable zip ({type(error).__name__})") from None
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
@@ -200,18 +201,25 @@ def points(score: float | None, most: float | None = None) -> str:
     return format_points(score) + ("" if most is None else f" of {format_points(most)}")
 
 
+class _Counted(msgspec.Struct):
+    """What counted for one student."""
+
+    score: float | None = None
+    of: float | None = None
+    reason: str | None = None
+    state: str | None = None
+    file: str = ""
+
+
 def in_words(text: str) -> str:
     """What counted, as a decision keeps it, for a person: a score, and why there was none."""
-    try:
-        kept = msgspec.json.decode(text)
-    except msgspec.DecodeError:
-        kept = text
-    if isinstance(kept, dict):
-        score = kept.get("score")
-        why = kept.get("reason") or (kept.get("state") if score is None else "")
-        words = (points(score, kept.get("of")), str(why or ""), str(kept.get("file", "")))
+    with suppress(msgspec.MsgspecError, RecursionError):
+        kept = msgspec.json.decode(text, type=_Counted)
+        why = kept.reason or (kept.state if kept.score is None else "")
+        words = (points(kept.score, kept.of), why or "", kept.file)
         return one_line(", ".join(filter(None, words)))
-    if isinstance(kept, list):  # of a class: student, exercise, score
-        shown = [f"{student} {exercise} {points(score)}" for student, exercise, score in kept[:_FEW]]
-        return one_line("; ".join(shown + ["..."] * (len(kept) > _FEW)))
-    return one_line(str(kept)[:_SHOWN])
+    with suppress(msgspec.MsgspecError, RecursionError):
+        rows = msgspec.json.decode(text, type=list[tuple[str, str, float | None]])
+        shown = [f"{student} {exercise} {points(score)}" for student, exercise, score in rows[:_FEW]]
+        return one_line("; ".join(shown + ["..."] * (len(rows) > _FEW)))
+    return one_line(text[:_SHOWN])

@@ -25,8 +25,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from course.errors import CourseError, IntegrityError, MissingCapabilityError, NotFoundError, UsageError
-from course.printable import command
+from course.printable import command, one_line
 from course.strangers import no_programs
 
 __all__ = [
@@ -51,6 +53,7 @@ FORMAT_VERSION = 5
 SEAL = "seal"
 #: Instructions of SQLite until it is open; a class of a thousand takes three.
 _MILLIONS = 200
+_MOST_SAID = 200
 _APPLICATION_ID = 0x636F7273  # "cors": tells this file from any other SQLite database
 
 #: The tables of formats 1 to 3. Since then each has a last column: the digest of its row.
@@ -192,7 +195,7 @@ def _rescue(path: Path) -> str:
 
 @contextlib.contextmanager
 def explained(path: Path) -> Iterator[None]:
-    """SQLite's errors as sentences.
+    """Errors of SQLite, and of what reads the content of a row, as sentences.
 
     Raises:
         UsageError: another process is using the file.
@@ -203,9 +206,9 @@ def explained(path: Path) -> Iterator[None]:
         yield
     except sqlite3.OperationalError as error:
         raise _operational(path, error) from None
-    except sqlite3.DatabaseError as error:
+    except (sqlite3.DatabaseError, msgspec.MsgspecError, RecursionError) as error:
         raise IntegrityError(
-            f"{path} is damaged: {error}.",
+            f"{path} is damaged: {one_line(str(error))[:_MOST_SAID]}.",
             help=_rescue(path),
         ) from None
 

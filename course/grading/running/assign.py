@@ -16,6 +16,7 @@ import msgspec
 
 from course.catalog.load import Catalog
 from course.errors import NotFoundError, UngradableError, UsageError
+from course.grading.gradebook.file import explained
 from course.grading.gradebook.records import Decision, Key, Result, SubmittedAt
 from course.grading.intake.archives import RefusedError
 from course.grading.intake.students import Entry, submission_from
@@ -72,7 +73,9 @@ class Assigned:
 
 def unsettled(results: Results) -> list[Unsettled]:
     """The unsettled cases, ordered by student and exercise; a score by hand settles one."""
-    listed = {about: msgspec.json.decode(text, type=Found) for about, text in results.book.found().items()}
+    with explained(results.book.path):
+        found = results.book.found().items()
+        listed = {about: msgspec.json.decode(text, type=Found) for about, text in found}
     return [
         Unsettled(
             item.student, item.exercise, listed.get((item.student, item.exercise), Found(error.code, ())),

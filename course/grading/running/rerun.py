@@ -16,6 +16,7 @@ import msgspec
 from course.catalog.load import Catalog
 from course.catalog.questions import read_questions
 from course.errors import IntegrityError, NotFoundError
+from course.grading.gradebook.file import explained
 from course.grading.gradebook.records import Key, Result
 from course.grading.intake.students import Entry
 from course.grading.quiz import EXERCISE_ID as QUIZ
@@ -233,7 +234,8 @@ class _Rerun:
 
     def _quiz(self, key: Key) -> Iterator[tuple[Effective, Effective]]:
         files = self._results.book.submission(key.submission_sha256)
-        record = msgspec.json.decode(files[QUIZ_RECORD]) if files else None
+        with explained(self._results.book.path):
+            record = msgspec.json.decode(files.get(QUIZ_RECORD, b"")) if files else None
         verdict = grade_quiz(self._bank, record) if record is not None and self._bank.ids else None
         if verdict is None:
             self.counts.kept += 1

@@ -486,7 +486,7 @@ def _members(folder: Path, options: RunOptions) -> ClassList:
 
 
 def _seed(book: Gradebook, options: RunOptions) -> int:
-    recorded = book.meta().get("seed")
+    recorded = str(Results(book).seed) if "seed" in book.meta() else None
     if recorded is not None and options.seed not in (None, int(recorded)):
         raise UsageError(
             f"This gradebook was begun with --seed {recorded}.",

@@ -27,10 +27,12 @@ import msgspec
 
 from course.catalog.load import Catalog
 from course.catalog.locate import NAMES, PLACES, Content, cache_folder, chosen
+from course.catalog.pack import NOT_A_ZIP
 from course.errors import IntegrityError, MissingCapabilityError, UsageError
 from course.grading.exports.grades import write_csv, write_jsonl
 from course.grading.exports.html_report.write import write_pages
 from course.grading.gradebook.book import Gradebook
+from course.grading.gradebook.file import explained
 from course.grading.gradebook.salvage import back_up
 from course.grading.results.effective import Results, recorded
 from course.grading.results.merge import Merged, merged
@@ -190,7 +192,7 @@ def _members(packed: bytes) -> Iterator[tuple[str, bytes]]:
                 if info.filename.startswith("/") or ".." in info.filename.split("/") or "\\" in info.filename:
                     raise _damaged("")
                 yield info.filename, archive.read(info)
-    except (zipfile.BadZipFile, zipfile.LargeZipFile, EOFError, ValueError, OSError, RuntimeError):
+    except (zipfile.LargeZipFile, *NOT_A_ZIP):
         raise _damaged("") from None
 
 
@@ -419,6 +421,7 @@ def remember(book: Gradebook, new: Roster) -> Merged:
 
 def note_without_work(book: Gradebook, students: set[str]) -> None:
     """Keep the names of the students in whose folders there is nothing to grade: no result names them."""
-    known: list[str] = msgspec.json.decode(book.meta().get("without_work", "[]"))
+    with explained(book.path):
+        known = msgspec.json.decode(book.meta().get("without_work", "[]"), type=list[str])
     names = sorted({*known, *students} - set(book.student_ids()))
     book.set_meta(without_work=msgspec.json.encode(names).decode() if names else None)

@@ -192,7 +192,7 @@ DOORS = {
     "answers-json": Door("answers.json", "json", ("-C", "ws", "quiz", "take", "--answers", "../answers.json")),
     "recording": Door("run.jsonl", "json", ("sandbox", "replay", "run.jsonl")),
     "notebook": Door("my.ipynb", "json", ("notebook", "check", "my.ipynb", "--exercise", "doubling")),
-    "notebook-of-the-course": Door("nb/doubling/doubling.ipynb", "json", ("notebook", "update", "--out", "nb")),
+    "notebook-of-the-course": Door("nb/exercises/doubling.ipynb", "json", ("notebook", "update", "--out", "nb")),
     "notebook-submitted": Door("ws/doubling/doubling.ipynb", "json", ("-C", "ws", "submit")),
     "work": Door("ws/doubling/doubling.py", "python", ("-C", "ws", "check", "doubling")),
     "work-diff": Door("ws/doubling/doubling.py", "python", ("-C", "ws", "diff", "doubling")),

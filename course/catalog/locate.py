@@ -10,6 +10,7 @@ from __future__ import annotations
 import functools
 import json
 import os
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -165,6 +166,20 @@ def _installed(package: Path) -> Content:
         solutions=_if_there(root / "solutions"),
         graders=_if_there(root / "tests" / "graders"),
     )
+
+
+def cache_folder(name: str) -> Path:
+    """Where this system keeps caches of the course; COURSE_CACHE names another folder."""
+    if own := os.environ.get("COURSE_CACHE"):
+        return Path(own) / name
+    home = Path.home()
+    if sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
+    elif sys.platform == "darwin":
+        base = home / "Library" / "Caches"
+    else:
+        base = Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache")
+    return base / "physics-sim-course" / name
 
 
 def _if_there(folder: Path) -> Path | None:

@@ -26,6 +26,7 @@ import msgspec
 
 from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
 from course.ids import ExerciseId
+from course.strangers import read_bytes
 
 FORMAT = "course-solutions"
 FORMAT_VERSION = 1
@@ -36,7 +37,7 @@ MAX_TOTAL_BYTES = 5_000_000
 
 _ENTRY = re.compile(r"solutions/(?P<exercise>[^/]+)/(?P<name>[A-Za-z0-9_][A-Za-z0-9_.-]{0,99})")
 #: The exceptions of zipfile for bytes that are not a zip, or are a damaged one.
-_NOT_A_ZIP = (
+NOT_A_ZIP = (
     zipfile.BadZipFile,
     zlib.error,
     struct.error,
@@ -133,10 +134,7 @@ def read_pack(path: Path) -> Pack:
         MissingCapabilityError: it has a format newer than this program.
     """
     try:
-        size = path.stat().st_size
-        if size > MAX_TOTAL_BYTES + MAX_FILES * 1000:
-            raise _damaged(path, "it is larger than any pack")
-        data = path.read_bytes()
+        data = read_bytes(path, MAX_TOTAL_BYTES + MAX_FILES * 1000)
     except (FileNotFoundError, NotADirectoryError):
         raise NotFoundError(f"There is no file {path}.", help="Check the name of the pack.") from None
     except OSError as error:
@@ -146,7 +144,7 @@ def read_pack(path: Path) -> Pack:
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             return _read_archive(path, archive)
-    except _NOT_A_ZIP as error:
+    except NOT_A_ZIP as error:
         raise _damaged(path, f"it is not a readable zip ({type(error).__name__})") from None
 
 

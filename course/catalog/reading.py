@@ -20,6 +20,7 @@ import msgspec
 
 from course.catalog.models import FORMAT_VERSION
 from course.errors import ContentError
+from course.strangers import read_bytes, toml
 
 # ---
 # On which line of a TOML text a value stands.
@@ -193,7 +194,7 @@ def read_text(path: Path) -> str:
         ContentError: the file is missing, unreadable, not UTF-8, or starts with a byte order mark.
     """
     try:
-        data = path.read_bytes()
+        data = read_bytes(path)
     except (FileNotFoundError, NotADirectoryError):
         raise ContentError(path, None, "the file is missing.", help="Restore it or write it.") from None
     except OSError as error:
@@ -240,7 +241,7 @@ def read_document(
     """
     source = read_text(path) if text is None else text
     try:
-        data = tomllib.loads(source)
+        data = toml(source)
     except tomllib.TOMLDecodeError as error:
         raise ContentError(
             path,

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import msgspec
 
+from course.catalog.locate import cache_folder
 from course.engines import reference
 from course.engines.process import EngineProcess
 from course.engines.registry import ENGINES, Availability, EngineInfo, availability, get
@@ -30,7 +31,6 @@ from course.engines.results import (
     EngineState,
     Row,
     Setting,
-    cache_folder,
     this_machine,
 )
 from course.engines.scenarios import BOXES, DT, SCENARIOS
@@ -175,7 +175,7 @@ def compare(request: Request, progress: Progress = lambda _done, _total, _what: 
     ]
     machine = this_machine()
     wanted = [job for job in jobs if states[job.engine.id].usable]
-    run = _Run(request, Cache(cache_folder(), machine), progress, len(wanted))
+    run = _Run(request, Cache(cache_folder("engines"), machine), progress, len(wanted))
     _measure(run, wanted)
     rows = [
         run.rows.get(job) or job.row(status="not_installed", message=states[job.engine.id].missing)

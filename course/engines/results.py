@@ -9,7 +9,6 @@ import json
 import os
 import platform
 import subprocess
-import sys
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -187,20 +186,6 @@ class Comparison(msgspec.Struct, frozen=True, kw_only=True):
 #
 # A measurement is stored under everything it depends on: the engine's version, the measuring code, the
 # machine, the scenario and how it was run. Failures are not stored, because the next try may succeed.
-
-
-def cache_folder() -> Path:
-    """Where this system keeps caches; COURSE_CACHE names another folder."""
-    if own := os.environ.get("COURSE_CACHE"):
-        return Path(own) / "engines"
-    home = Path.home()
-    if sys.platform == "win32":
-        base = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
-    elif sys.platform == "darwin":
-        base = home / "Library" / "Caches"
-    else:
-        base = Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache")
-    return base / "physics-sim-course" / "engines"
 
 
 @functools.cache

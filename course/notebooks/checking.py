@@ -29,6 +29,7 @@ from course.notebooks.show import ReportPage, image_of
 from course.progress.workspace import Recorder, not_recorded
 from course.scoring.judging.submission import Submission
 from course.scoring.verdict import CheckResult, Verdict, format_points, numbers_of
+from course.strangers import read_bytes
 
 if TYPE_CHECKING:
     from course.notebooks import Source
@@ -460,7 +461,7 @@ def _of_file(exercise: Exercise, path: Path) -> Submission:
     if path.suffix == ".ipynb":
         return notebook_source(read_notebook(path), exercise, path.name).submission(exercise)
     try:
-        return _of_text(exercise, path.read_bytes())
+        return _of_text(exercise, read_bytes(path))
     except OSError as error:
         raise NotFoundError(f"{path} cannot be read: {error.strerror or error}.", code="no_file") from error
 

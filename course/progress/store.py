@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from course.errors import IntegrityError, MissingCapabilityError
+from course.strangers import no_programs
 
 if TYPE_CHECKING:
     import sqlite3
@@ -40,6 +41,8 @@ _SCHEMA = (
     """CREATE TRIGGER event_is_never_removed BEFORE DELETE ON event
         BEGIN SELECT RAISE(ABORT, 'events are only ever added'); END""",
 )
+#: Bytes of one event, and instructions of SQLite for one command: thirty times what a year of work takes.
+_LONGEST, _MILLIONS = 10_000_000, 5
 _INSERT = "INSERT INTO event (at, kind, subject, data) VALUES (?, ?, ?, ?)"
 _SELECT = "SELECT id, at, kind, subject, data FROM event"
 
@@ -184,6 +187,8 @@ class Store:
                 self.path.parent.mkdir(parents=True, exist_ok=True)
             database = sqlite3.connect(self.path, timeout=BUSY_TIMEOUT, isolation_level=None)
             with contextlib.closing(database):
+                database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _LONGEST)
+                no_programs(database, _SCHEMA, millions=_MILLIONS)
                 self._prepare(database, create=create)
                 yield database
         except sqlite3.Error as error:
@@ -249,6 +254,7 @@ def _salvage(damaged: Path) -> list[tuple[str, str, str, str]]:
 
     rows: list[tuple[str, str, str, str]] = []
     with contextlib.suppress(sqlite3.Error), contextlib.closing(sqlite3.connect(damaged)) as database:
+        no_programs(database, _SCHEMA, millions=_MILLIONS)
         cursor = database.execute(f"{_SELECT} ORDER BY id")
         while (row := cursor.fetchone()) is not None:
             with contextlib.suppress(_UnreadableError):

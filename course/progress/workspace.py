@@ -26,6 +26,7 @@ from typing import Any
 from course.errors import ContentError, CourseError, MissingCapabilityError, NotFoundError, UsageError
 from course.ids import WARM_UPS
 from course.progress.store import Store
+from course.strangers import read_bytes, toml
 
 MARKER = "course.toml"
 FORMAT_VERSION = 1
@@ -39,6 +40,8 @@ format_version = {format_version}
 id = "{course_id}"
 version = "{version}"
 """
+#: Bytes of a file that was handed out; the largest has a thirtieth.
+_MOST_GIVEN = 1 << 18
 _VERSION_LINE = re.compile(r'^(version\s*=\s*)"[^"\n]*"', re.MULTILINE)
 
 
@@ -122,7 +125,7 @@ class Workspace:
     def given(self, place: str, name: str) -> bytes | None:
         """A file as it was last handed out; None if it never was."""
         try:
-            return self._given_path(place, name).read_bytes()
+            return read_bytes(self._given_path(place, name), _MOST_GIVEN)
         except OSError:
             return None
 
@@ -292,7 +295,7 @@ def _read_marker(marker: Path) -> tuple[str, str]:
     fix = "Correct the file, or move it away and run `course init` here again: no exercise is touched."
     try:
         # An editor of another system may have put a byte-order mark in front; TOML allows none.
-        table = tomllib.loads(marker.read_text(encoding="utf-8-sig"))
+        table = toml(read_bytes(marker).decode("utf-8-sig"))
     except tomllib.TOMLDecodeError as error:
         line = re.search(r"line (\d+)", str(error))
         problem = f"not valid TOML: {error}."

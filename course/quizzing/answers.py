@@ -24,6 +24,7 @@ from typing import Any, NoReturn
 from course.catalog.reading import LineMap, syntax_error_line
 from course.errors import UsageError
 from course.quizzing.bank import Bank, PosedQuestion
+from course.strangers import read_bytes, toml
 
 FORMAT_VERSION = 1
 MAX_BYTES = 100_000
@@ -174,8 +175,7 @@ def read_answers(path: Path) -> AnswerFile:
 
 def _read(path: Path) -> str:
     try:
-        with path.open("rb") as handle:
-            data = handle.read(MAX_BYTES + 1)
+        data = read_bytes(path, MAX_BYTES)
     except OSError as error:
         raise UsageError(
             f"{path} cannot be read: {error.strerror or error}.",
@@ -199,12 +199,10 @@ def _read(path: Path) -> str:
 
 def _parse_toml(path: Path, text: str) -> dict[str, Any]:
     try:
-        return tomllib.loads(text)
+        return toml(text)
     except tomllib.TOMLDecodeError as error:
         reason = str(error).rsplit(" (at ", 1)[0]
         raise _syntax(path, syntax_error_line(error, text), f"not valid TOML: {reason}") from None
-    except RecursionError:
-        raise _syntax(path, 1, "nested too deeply") from None
 
 
 def _parse_json(path: Path, text: str) -> dict[str, Any]:

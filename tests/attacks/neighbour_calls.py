@@ -7,6 +7,7 @@ import struct
 libc = ctypes.CDLL(None, use_errno=True)
 shared = ctypes.cast(libc.getpid, ctypes.c_void_p).value & ~0xFFF  # a page of the C library, in all of them
 blank = ctypes.create_string_buffer(4096)
+library = os.open(os.__file__, os.O_RDONLY)
 timeout = struct.pack("qq", 0, 1000)
 parent = os.getppid() or 4242  # none where it is pid 1 of a namespace
 waiter = struct.pack("QQII", 0, shared, 2, 0)
@@ -39,6 +40,10 @@ calls = {
     "statfs": (137, b"/", blank),
     "epoll": (291, 0),
     "eventfd": (290, 0, 0),
+    "drop from the page cache": (221, library, 0, 0, 4),
+    "read ahead": (187, library, 0, 4096),
+    "what is in the page cache": (451, library, blank, blank, 0),
+    "read only what is in the page cache": (327, library, blank, 1, 0, 0, 8),
 }
 
 

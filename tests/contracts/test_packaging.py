@@ -23,6 +23,7 @@ ROOT = Path(__file__).parents[2]
 COPIED = (
     ".gitignore",
     "pyproject.toml",
+    "hatch_build.py",
     "README.md",
     "LICENSE",
     "CHANGELOG.md",
@@ -52,6 +53,25 @@ TRAPS = (
     "course/build/trap.py",
     "trap.py",
 )
+#: Files that lie where those of a role lie, and have none: each is left out, and named.
+PLANTED = (
+    "course/trap.env",
+    "course/lessons/trap-notes.md",
+    "course/physics/trap students.csv",
+    "course/scoring/checks/trap.ini",
+    "course/sandbox/scenes/trap",
+    "course/trap-module.py",
+    "exercises/.env-trap",
+    "exercises/trap.csv",
+    "exercises/integrators/.env.trap",
+    "exercises/integrators/trap_solution.py",
+    "exercises/integrators/trap.md",
+    "exercises/integrators/checking/trap.xlsx",
+    "exercises/integrators/solutions-trap/integrators.py",
+    "exercises/warm-ups/fall-time/trap-fall_time.py",
+    "quiz/trap.toml.bak",
+    "quiz/trap students.toml",
+)
 
 FORBIDDEN = {"solutions", "tests", "graders", "docs", ".ci", "mutants", "accepted", "__pycache__"}
 
@@ -68,20 +88,27 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
             shutil.copytree(path, folder / name, ignore=ignore)
         elif path.exists():
             shutil.copy(path, folder / name)
-    for trap in TRAPS:
+    for trap in (*TRAPS, *PLANTED):
         (folder / trap).parent.mkdir(parents=True, exist_ok=True)
         (folder / trap).write_text("trap = 1\n")
+    (folder / "secret").write_text("trap = 1\n")
+    (folder / "exercises" / "integrators" / "rubric.toml").symlink_to("../../secret")  # a role's name
     return folder
 
 
 def _build(source: Path, out: Path, kind: str) -> Path:
     """Build offline with the backend that is installed; ``kind`` is "wheel", "sdist" or "editable"."""
+    return _built(source, out, kind)[0]
+
+
+def _built(source: Path, out: Path, kind: str) -> tuple[Path, str]:
+    """The archive, and what the builder said."""
     code = f"import hatchling.build as b, sys; print(b.build_{kind}(sys.argv[1]))"
     done = subprocess.run(
         [sys.executable, "-c", code, str(out)], cwd=source, capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
-    return out / done.stdout.split()[-1]
+    return out / done.stdout.split()[-1], done.stdout + done.stderr
 
 
 @pytest.fixture(scope="module")
@@ -118,6 +145,35 @@ def test_nothing_of_the_instructors_is_inside(kind: str, request: pytest.Fixture
     assert [name for name in names if "trap" in name] == []
     assert [name for name in names if FORBIDDEN & set(name.split("/"))] == []
     assert [name for name in names if name.endswith("mutants.toml")] == []
+
+
+@pytest.mark.parametrize("kind", ["wheel", "sdist"])
+def test_what_has_no_role_is_left_out_and_named(source: Path, kind: str, tmp_path: Path) -> None:
+    archive, said = _built(source, tmp_path, kind)
+    assert not [
+        name for name in _names(archive) if "trap" in name or name.endswith("integrators/rubric.toml")
+    ]
+    named = {line.rpartition(" role: ")[2].strip("'\"") for line in said.splitlines() if " role: " in line}
+    folders = {"exercises/integrators/solutions-trap/integrators.py": "exercises/integrators/solutions-trap"}
+    assert {folders.get(trap, trap) for trap in PLANTED} <= named
+    assert "exercises/integrators/rubric.toml" in named
+    assert not {name for name in named if "__pycache__" in name or "_cache" in name}
+
+
+def test_a_checkout_has_no_file_without_a_role(tmp_path: Path) -> None:
+    assert " role: " not in _built(ROOT, tmp_path, "wheel")[1]
+
+
+def test_git_has_no_say_in_what_is_inside(source: Path, wheel: Path, tmp_path: Path) -> None:
+    copy = tmp_path / "repository"
+    shutil.copytree(source, copy, symlinks=True)
+    git = ["git", "-c", "user.name=n", "-c", "user.email=n@example.org"]
+    subprocess.run([*git, "init", "-q"], cwd=copy, check=True)
+    subprocess.run(
+        [*git, "add", "-f", "exercises/integrators/trap.md", "course/trap.env"], cwd=copy, check=True
+    )
+    (copy / ".gitignore").write_text("*.toml\n*.py\n")
+    assert sorted(_names(_build(copy, tmp_path, "wheel"))) == sorted(_names(wheel))
 
 
 def test_no_line_of_a_solution_or_grader_is_inside_the_wheel(wheel: Path) -> None:

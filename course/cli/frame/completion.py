@@ -119,12 +119,14 @@ def simulation_settings(ctx: Any, incomplete: str) -> list[str]:
 
 def scene_settings(ctx: Any, incomplete: str) -> list[str]:
     """The names that ``--set`` takes for the scene on the line, with the equals sign."""
-    import tomllib
+    from pathlib import Path
+
+    from course.strangers import read_bytes, toml
 
     name = _given(ctx, "scene")
     path = Path(name) if name.endswith(".toml") else _scenes() / f"{name}.toml"
     try:
-        found = tomllib.loads(path.read_text(encoding="utf-8")).get("parameter", ())
+        found = toml(read_bytes(path).decode()).get("parameter", ())
     except (OSError, ValueError):
         return []
     return _beginning(incomplete, (f"{one['name']}=" for one in found))
@@ -155,9 +157,12 @@ def _in_gradebook(ctx: Any, query: str) -> list[Any]:
     import sqlite3
     from contextlib import closing
 
+    from course.strangers import no_programs
+
     path = Path(_given(ctx, "out"), "gradebook.sqlite").resolve()
     try:
         with closing(sqlite3.connect(f"{path.as_uri()}?mode=ro", uri=True)) as book:
+            no_programs(book, millions=5)
             return [value for (value,) in book.execute(query)]
     except sqlite3.Error:
         return []

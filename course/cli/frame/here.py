@@ -19,6 +19,7 @@ from course.ids import WARM_UPS
 from course.progress.history import History, history_of
 from course.progress.standing import Standing
 from course.progress.workspace import Recorder, Workspace, write_atomically
+from course.strangers import read_bytes
 
 if TYPE_CHECKING:
     from course.catalog.load import Catalog
@@ -126,7 +127,7 @@ class Here:
                     help="Keep data out of the file; the exercise needs none.",
                     code="too_large",
                 )
-            return path.read_bytes()
+            return read_bytes(path)
         except OSError as error:
             raise UngradableError(
                 f"{shown} cannot be read ({error.strerror or error}).",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import nullcontext
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -21,6 +22,8 @@ from course.cli.grade.options import (
     Out,
     Reason,
     Share,
+    Yes,
+    agreed,
     levels,
     moved_scores,
     show_change,
@@ -69,6 +72,7 @@ def rerun(
     isolation: Isolation = "auto",
     against: Against = "",
     reason: Annotated[str, typer.Option("--reason", metavar="TEXT", help="Kept with the regrading.")] = "",
+    yes: Yes = False,
 ) -> int:
     """Grade again, with the present graders or earlier ones.
 
@@ -86,8 +90,13 @@ def rerun(
     level, at_least = levels(isolation)
     options = RerunOptions(dry_run, everything, level, at_least, timeout, against, reason)
     catalog = load_catalog()
-    with open_results(out, writing=not dry_run) as results, console.working("Grading again"):
-        done = regrade(results, catalog, options, grade=partial(grade_all, graders=jobs))
+
+    def grading(accepted: str) -> Regraded:
+        mine = replace(options, accepted=accepted)
+        with open_results(out, writing=not dry_run) as results, console.working("Grading again"):
+            return regrade(results, catalog, mine, grade=partial(grade_all, graders=jobs))
+
+    done = agreed(console, grading, yes=yes)
     code = InternalError.exit_code if done.faults else 0
     if console.json:
         console.emit(

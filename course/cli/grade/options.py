@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import msgspec
 import typer
@@ -15,8 +16,11 @@ from course.errors import UsageError
 from course.grading.intake.downloads import LAYOUTS
 from course.grading.results.effective import ScoreChange
 from course.grading.running.rerun import Change
+from course.grading.running.snapshot import FOREIGN, ForeignGradersError
 from course.printable import one_line
 from course.scoring.verdict import format_points
+
+T = TypeVar("T")
 
 _LEVELS = {"auto": (None, "L2"), "strict": ("L3", "L3"), "process": ("L1", "L1")}
 
@@ -110,6 +114,32 @@ Share = Annotated[
 ]
 
 
+Yes = Annotated[bool, typer.Option("--yes", "-y", help="Run the graders that are kept there; do not ask.")]
+
+
+def agreed(console: Console, attempt: Callable[[str], T], *, yes: bool) -> T:
+    """Do what runs the graders in a gradebook; if they are not this checkout's, only once a person agrees.
+
+    Args:
+        attempt: is given the digest of the graders that may run though they are somebody else's.
+        yes: they may, whoever made them.
+    """
+    try:
+        return attempt("")
+    except ForeignGradersError as error:
+        if yes:
+            console.warn(error.message)
+        elif not console.interactive:
+            raise
+        else:
+            console.line(f"{error.message} {FOREIGN}")
+            if not console.confirm("Do you trust whoever made this gradebook, and run them?"):
+                raise UsageError(
+                    "Nothing was run, and nothing was changed.", code="foreign_graders"
+                ) from None
+        return attempt(error.sha256)
+
+
 # ---
 # A change of a student's result, and what was kept about it, as a terminal shows them.
 
@@ -171,18 +201,25 @@ def points(score: float | None, most: float | None = None) -> str:
     return format_points(score) + ("" if most is None else f" of {format_points(most)}")
 
 
+class _Counted(msgspec.Struct):
+    """What counted for one student."""
+
+    score: float | None = None
+    of: float | None = None
+    reason: str | None = None
+    state: str | None = None
+    file: str = ""
+
+
 def in_words(text: str) -> str:
     """What counted, as a decision keeps it, for a person: a score, and why there was none."""
-    try:
-        kept = msgspec.json.decode(text)
-    except msgspec.DecodeError:
-        kept = text
-    if isinstance(kept, dict):
-        score = kept.get("score")
-        why = kept.get("reason") or (kept.get("state") if score is None else "")
-        words = (points(score, kept.get("of")), str(why or ""), str(kept.get("file", "")))
+    with suppress(msgspec.MsgspecError, RecursionError):
+        kept = msgspec.json.decode(text, type=_Counted)
+        why = kept.reason or (kept.state if kept.score is None else "")
+        words = (points(kept.score, kept.of), why or "", kept.file)
         return one_line(", ".join(filter(None, words)))
-    if isinstance(kept, list):  # of a class: student, exercise, score
-        shown = [f"{student} {exercise} {points(score)}" for student, exercise, score in kept[:_FEW]]
-        return one_line("; ".join(shown + ["..."] * (len(kept) > _FEW)))
-    return one_line(str(kept)[:_SHOWN])
+    with suppress(msgspec.MsgspecError, RecursionError):
+        rows = msgspec.json.decode(text, type=list[tuple[str, str, float | None]])
+        shown = [f"{student} {exercise} {points(score)}" for student, exercise, score in rows[:_FEW]]
+        return one_line("; ".join(shown + ["..."] * (len(rows) > _FEW)))
+    return one_line(text[:_SHOWN])

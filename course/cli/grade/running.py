@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, nullcontext
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -24,6 +25,8 @@ from course.cli.grade.options import (
     Protection,
     RosterFile,
     Scheduler,
+    Yes,
+    agreed,
     in_words,
     levels,
     show_change,
@@ -73,6 +76,7 @@ def run(
     roster: RosterFile = None,
     local_cluster: LocalCluster = None,
     scheduler: Scheduler = None,
+    yes: Yes = False,
 ) -> int:
     """Grade a folder of submissions.
 
@@ -91,10 +95,15 @@ def run(
     people = read_roster(roster) if roster else None
     options = RunOptions(tuple(exercise or ()), tuple(only or ()), terms, seed, resume, layout, people)
     progress = _progress(console, catalog.ref)
-    try:
+
+    def grading(accepted: str) -> tuple[Summary, tuple[Change, ...]]:
+        mine = replace(options, accepted=accepted)
         with _graders(jobs, local_cluster, scheduler) as grade, progress as report:
-            summary = grade_class(submissions, out, catalog, options, report, grade=grade)
-            changes = _would_change(console, summary, out, catalog, terms, grade)
+            summary = grade_class(submissions, out, catalog, mine, report, grade=grade)
+            return summary, _would_change(console, summary, out, catalog, terms, grade)
+
+    try:
+        summary, changes = agreed(console, grading, yes=yes)
     except KeyboardInterrupt:
         raise _interrupted(progress, out) from None
     _show_summary(console, summary, out, options, changes)

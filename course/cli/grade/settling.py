@@ -12,7 +12,7 @@ from course.cli.frame.completion import exercise_ids, student_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
 from course.cli.frame.replies import filled
-from course.cli.grade.options import Isolation, Jobs, Out, in_words, levels
+from course.cli.grade.options import Isolation, Jobs, Out, Yes, agreed, in_words, levels
 from course.cli.grade.replies import AssignedOne, UnsettledOne
 from course.errors import UsageError
 from course.grading.gradebook.book import Gradebook
@@ -49,6 +49,7 @@ def assign(
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Grade and show, but store nothing.")] = False,
     jobs: Jobs = 1,
     isolation: Isolation = "auto",
+    yes: Yes = False,
 ) -> int:
     """Assign a file to a student, and grade it.
 
@@ -74,16 +75,21 @@ def assign(
         level, at_least = levels(isolation)
         reason = reason or ("the match that was proposed" if accept_names else "")
         grade = partial(grade_all, graders=jobs)
-        with previewed(out) if dry_run else open_results(out, writing=True) as results:
-            if student is not None and file is not None:
-                wanted = [assigning.named(results, student, file, exercise)]
-            else:
-                wanted = [one for one in assigning.proposals(results) if exercise in {None, one.exercise}]
-            with console.working("Grading"):
-                done = assigning.assign(
-                    results, load_catalog(), wanted, reason, grade=grade, level=level, at_least=at_least
-                )
-            left = assigning.unsettled(results)
+
+        def assigned(accepted: str) -> tuple[list[Assigned], list[Unsettled]]:
+            with previewed(out) if dry_run else open_results(out, writing=True) as results:
+                if student is not None and file is not None:
+                    wanted = [assigning.named(results, student, file, exercise)]
+                else:
+                    wanted = [one for one in assigning.proposals(results) if exercise in {None, one.exercise}]
+                with console.working("Grading"):
+                    done = assigning.assign(
+                        results, load_catalog(), wanted, reason, grade=grade, level=level, at_least=at_least,
+                        accepted=accepted,
+                    )  # fmt: skip
+                return done, assigning.unsettled(results)
+
+        done, left = agreed(console, assigned, yes=yes)
     if console.json:
         shown = tuple(map(_assigned_one, done)), tuple(map(_unsettled_one, left))
         console.emit(GradeAssign(dry_run=dry_run, assigned=shown[0], unsettled=shown[1]))

@@ -30,6 +30,7 @@ from course.grading.running.batch import Graded
 from course.grading.running.snapshot import in_use
 from course.isolation.launch import private_folder, remove_tree
 from course.scoring.judging.submission import Terms
+from course.strangers import read_bytes
 
 # ---
 # Whether a scheduler can be reached with the present settings, found out before anything is started.
@@ -86,10 +87,10 @@ def _address(named: str) -> str:
     if not named.endswith(".json"):
         return named
     try:
-        found: Any = json.loads(Path(named).read_text("utf-8"))
+        found: Any = json.loads(read_bytes(Path(named)).decode())
     except OSError as error:
         raise _silent(named, error) from None
-    except ValueError:
+    except (ValueError, RecursionError):
         found = None
     address = found.get("address") if isinstance(found, dict) else None
     if not isinstance(address, str):

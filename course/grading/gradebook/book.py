@@ -20,7 +20,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 import msgspec
 
@@ -48,6 +48,9 @@ from course.grading.gradebook.records import (
 )
 from course.scoring.verdict import Verdict, finite
 
+#: Bytes of all files of one submission, unpacked.
+_MOST_UNPACKED = 64 << 20
+T = TypeVar("T")
 _CHECKPOINT_S = 5.0  # the most that a power cut costs
 
 
@@ -130,13 +133,13 @@ class Gradebook:
         """Every grading and regrading, oldest first."""
         with explained(self.path):
             rows = self._db.execute("SELECT number, kind, started_at, options FROM runs ORDER BY number")
-            return [Run(number, kind, at, msgspec.json.decode(options)) for number, kind, at, options in rows]
+            return [_as(Run, (number, kind, at, _options(options))) for number, kind, at, options in rows]
 
     def run_options(self) -> dict[str, Any]:
         """The options of the latest run; empty if none was noted."""
         with explained(self.path):
             row = self._db.execute("SELECT options FROM runs ORDER BY number DESC LIMIT 1").fetchone()
-        return dict(msgspec.json.decode(row[0])) if row else {}
+            return _options(row[0]) if row else {}
 
     def set_exercises(self, exercises: Iterable[GradedExercise]) -> None:
         """Note the exercises that are graded; earlier ones stay."""
@@ -152,7 +155,7 @@ class Gradebook:
             rows = self._db.execute(
                 "SELECT id, title, max_points, pass_share, position FROM exercises ORDER BY position, id"
             ).fetchall()
-        return tuple(GradedExercise(*row) for row in rows)
+        return tuple(_as(GradedExercise, row) for row in rows)
 
     # -- students -------------------------------------------------------------------------------------
 
@@ -168,7 +171,7 @@ class Gradebook:
         """The students' identities in the system they were downloaded from; empty for plain folders."""
         with explained(self.path):
             rows = self._db.execute("SELECT student, identity FROM students").fetchall()
-        return {student: msgspec.json.decode(text, type=PlatformIdentity) for student, text in rows}
+            return {student: msgspec.json.decode(text, type=PlatformIdentity) for student, text in rows}
 
     def add_times(self, times: Iterable[SubmittedAt], *, replace: bool = False) -> None:
         """Note when things were handed in. Of one witness's times for one content the earliest stays."""
@@ -184,7 +187,7 @@ class Gradebook:
         """All known times of submission."""
         with explained(self.path):
             for row in self._db.execute("SELECT student, exercise, submission_sha256, source, at FROM times"):
-                yield SubmittedAt(*row)
+                yield _as(SubmittedAt, row)
 
     # -- results --------------------------------------------------------------------------------------
 
@@ -238,8 +241,8 @@ class Gradebook:
                 " AND submission_sha256 = ? AND seed = ? ORDER BY number DESC LIMIT 1",
                 (key.student, key.exercise, key.submission_sha256, key.seed),
             ).fetchone()
-        if row is None or msgspec.json.decode(row[1], type=_State).state == "grader_error":
-            return None
+            if row is None or msgspec.json.decode(row[1], type=_State).state == "grader_error":
+                return None
         return int(row[0])
 
     def results(self, student: str | None = None, exercise: str | None = None) -> Iterator[Result]:
@@ -278,7 +281,8 @@ class Gradebook:
                 *key, graded_at, run, number, body, digest = row
                 if _sha256(body) != digest:
                     raise _failed_checksum(f"The result of {key[0]!r} for {key[1]}", self.path)
-                yield Result(Key(*key), msgspec.json.decode(body, type=Verdict), graded_at, run, number)
+                verdict = msgspec.json.decode(body, type=Verdict)
+                yield Result(_as(Key, key), verdict, str(graded_at), int(run), int(number))
 
     def student_ids(self) -> list[str]:
         """All students with a result, by name."""
@@ -301,7 +305,9 @@ class Gradebook:
         if row is None:
             return None
         try:
-            return msgspec.msgpack.decode(zlib.decompress(row[0]), type=dict[str, bytes])
+            unpacking = zlib.decompressobj()
+            files = unpacking.decompress(row[0], _MOST_UNPACKED)
+            return msgspec.msgpack.decode(files, type=dict[str, bytes])
         except (zlib.error, msgspec.DecodeError, TypeError):
             raise _failed_checksum(f"The submission {sha256[:12]}", self.path) from None
 
@@ -335,7 +341,7 @@ class Gradebook:
             for *row, digest in self._db.execute(query):
                 if _sha256(repr(tuple(row))) != digest:
                     raise _failed_checksum(f"The override for {row[0]!r} and {row[1]}", self.path)
-                found.append(Override(*row))
+                found.append(_as(Override, row))
         return found
 
     def note(self, decision: Decision) -> None:
@@ -355,7 +361,7 @@ class Gradebook:
                 " ORDER BY number",
                 (student, exercise),
             ).fetchall()
-        return [Decision(*row) for row in rows]
+            return [_as(Decision, row) for row in rows]
 
     def set_waiting(self, students: Iterable[str], *, others: bool) -> None:
         """Note whose work a run has still to look at.
@@ -469,6 +475,29 @@ def _failed_checksum(what: str, path: Path) -> IntegrityError:
 def _sha256(body: bytes | str) -> str:
     # A file edited by hand may have text where bytes were: that is damage, and must not crash.
     return hashlib.sha256(body.encode() if isinstance(body, str) else body).hexdigest()
+
+
+class _Options(msgspec.Struct):
+    """What is used of a run's options, and what each of them is."""
+
+    snapshot: str | None = None
+    folder: str = ""
+    timeout: float = 10.0
+    level: str | None = None
+    at_least: str = ""
+    reason: str = ""
+    who: str = ""
+
+
+def _options(text: str) -> dict[str, Any]:
+    msgspec.json.decode(text, type=_Options)
+    return msgspec.json.decode(text, type=dict[str, Any])
+
+
+def _as(kind: type[T], row: Iterable[object]) -> T:
+    """A row as a type: whoever wrote the file may have put anything into a column."""
+    names = [field.name for field in msgspec.inspect.type_info(kind).fields]  # type: ignore[attr-defined]
+    return msgspec.convert(dict(zip(names, row, strict=False)), kind)
 
 
 def whoami() -> str:

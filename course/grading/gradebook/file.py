@@ -25,14 +25,20 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from course.errors import CourseError, IntegrityError, MissingCapabilityError, NotFoundError, UsageError
-from course.printable import command
+from course.printable import command, one_line
+from course.strangers import no_programs
 
 #: 2 had no seal; 3 had no digests of rows, no snapshots and no journal; 4 did not know who waits. All can be
 #: read.
 FORMAT_VERSION = 5
 #: The name of the seal among the facts about a run.
 SEAL = "seal"
+#: Instructions of SQLite until it is open; a class of a thousand takes three.
+_MILLIONS = 200
+_MOST_SAID = 200
 _APPLICATION_ID = 0x636F7273  # "cors": tells this file from any other SQLite database
 
 #: The tables of formats 1 to 3. Since then each has a last column: the digest of its row.
@@ -174,7 +180,7 @@ def _rescue(path: Path) -> str:
 
 @contextlib.contextmanager
 def explained(path: Path) -> Iterator[None]:
-    """SQLite's errors as sentences.
+    """Errors of SQLite, and of what reads the content of a row, as sentences.
 
     Raises:
         UsageError: another process is using the file.
@@ -185,9 +191,9 @@ def explained(path: Path) -> Iterator[None]:
         yield
     except sqlite3.OperationalError as error:
         raise _operational(path, error) from None
-    except sqlite3.DatabaseError as error:
+    except (sqlite3.DatabaseError, msgspec.MsgspecError, RecursionError) as error:
         raise IntegrityError(
-            f"{path} is damaged: {error}.",
+            f"{path} is damaged: {one_line(str(error))[:_MOST_SAID]}.",
             help=_rescue(path),
         ) from None
 
@@ -296,6 +302,7 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
         db.execute("PRAGMA locking_mode = EXCLUSIVE")
     _know_digests(db)
     version = _checked_format(db, path)
+    no_programs(db, millions=_MILLIONS)
     if version == 1:
         db.executescript(f"BEGIN EXCLUSIVE; {_FROM_1} PRAGMA user_version = 3; COMMIT;")
     if writing:
@@ -324,6 +331,7 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
         for statement in filter(str.strip, _SINCE_3.split(";")):
             if statement.split("EXISTS ")[1].split()[0] not in made:
                 db.execute(statement.replace("CREATE TABLE", "CREATE TEMP TABLE"))
+    db.set_progress_handler(None, 0)  # what is in it has an end: it was all read for its digest
 
 
 def _know_digests(db: sqlite3.Connection) -> None:

@@ -331,18 +331,30 @@ def _table_of(number: int | None, values: Row) -> str | None:
     return None
 
 
+class _Decided(msgspec.Struct):
+    """What the journal keeps of an override."""
+
+    number: int
+    score: float | None
+
+
+class _Graders(msgspec.Struct):
+    """Which graders a run had, of its options."""
+
+    snapshot: str | None = None
+
+
 def _take_decided(found: dict[str, dict[Row, Row]]) -> None:
     """Overrides that only the journal has."""
     for row in found["journal"].values():
         _, at, _, kind, student, exercise, reason, _, after = row
         if kind in {"override", "lift"}:
-            decided = msgspec.json.decode(str(after))
-            number = decided["number"]
-            score = None if decided["score"] is None else float(decided["score"])
-            cells = (student, exercise, score, reason, at)
-            if (number,) not in found["overrides"]:
-                digest = hashlib.sha256(repr(cells).encode()).hexdigest()
-                found["overrides"][number,] = (number, *cells, digest)
+            with contextlib.suppress(msgspec.MsgspecError, RecursionError):
+                decided = msgspec.json.decode(str(after), type=_Decided)
+                cells = (student, exercise, decided.score, reason, at)
+                if (decided.number,) not in found["overrides"]:
+                    digest = hashlib.sha256(repr(cells).encode()).hexdigest()
+                    found["overrides"][decided.number,] = (decided.number, *cells, digest)
 
 
 def _write(found: dict[str, dict[Row, Row]], target: Path) -> None:
@@ -374,6 +386,7 @@ def _lost(found: dict[str, dict[Row, Row]]) -> Iterator[str]:
             yield f"what {row[2]!s} handed in for {row[3]!s}"
     packed = {key[0] for key in found["snapshots"]}
     for row in found["runs"].values():
-        snapshot = msgspec.json.decode(str(row[3])).get("snapshot")
-        if snapshot and snapshot not in packed:
-            yield f"the graders of run {row[0]!s}"
+        with contextlib.suppress(msgspec.MsgspecError, RecursionError):
+            snapshot = msgspec.json.decode(str(row[3]), type=_Graders).snapshot
+            if snapshot and snapshot not in packed:
+                yield f"the graders of run {row[0]!s}"

@@ -25,6 +25,7 @@ from course import extras
 from course.errors import NotFoundError, UsageError
 from course.grading.gradebook.records import PlatformIdentity
 from course.handed_in.limits import HANDED_IN
+from course.strangers import read_bytes
 
 # ---
 # File names, and the spellings of them that are accepted without asking.
@@ -343,10 +344,7 @@ def _metadata(path: Path) -> dict[str, Any]:
     yaml = extras.load("gradescope")
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
-        if path.stat().st_size > _MAX_METADATA:
-            raise UsageError(f"{path} is larger than 200 MB.", help="Download the submissions again.")
-        with path.open("rb") as handle:
-            content = yaml.load(handle, loader)
+        content = yaml.load(read_bytes(path, _MAX_METADATA), loader)
     except (OSError, yaml.YAMLError, ValueError, RecursionError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise UsageError(
@@ -364,7 +362,9 @@ def _submitters(about: Any) -> list[PlatformIdentity]:
     found = []
     for item in listed if isinstance(listed, list) else ():
         facts = item if isinstance(item, dict) else {}
-        name, sid, email = (str(facts.get(f":{field}") or "").strip() for field in ("name", "sid", "email"))
+        # Text or a number: aliases can make a list whose text would have no end.
+        told = (facts.get(f":{field}") for field in ("name", "sid", "email"))
+        name, sid, email = (str(fact).strip() if isinstance(fact, str | int) else "" for fact in told)
         if name or sid or email:
             found.append(PlatformIdentity("gradescope", sid or email, name, email, sid))
     return found

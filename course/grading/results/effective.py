@@ -25,6 +25,7 @@ import msgspec
 from course.catalog.models import CourseRef
 from course.errors import NotFoundError, UsageError
 from course.grading.gradebook.book import Gradebook
+from course.grading.gradebook.file import explained
 from course.grading.gradebook.records import Decision, GradedExercise, Key, Override, Result, SubmittedAt
 from course.grading.results.late import Policy, lateness, parse_policy
 from course.grading.results.roster import FOR_TESTS, Person, Roster
@@ -132,10 +133,14 @@ class Results:
         self.folder = book.path.parent
         meta = book.meta()
         self.course = CourseRef(meta.get("course", ""), meta.get("version", ""))
-        self.seed = int(meta.get("seed", 0))
-        self.policy: Policy | None = parse_policy(meta["late_policy"]) if "late_policy" in meta else None
-        self.roster = roster or (Roster.load(meta["roster"]) if "roster" in meta else None)
-        self._without_work = set(msgspec.json.decode(meta.get("without_work", "[]"), type=list[str]))
+        kept = f"The late policy in {book.path}"
+        self.policy: Policy | None = (
+            parse_policy(meta["late_policy"], kept) if "late_policy" in meta else None
+        )
+        with explained(book.path):
+            self.seed = msgspec.json.decode(meta.get("seed", "0"), type=int)
+            self.roster = roster or (Roster.load(meta["roster"]) if "roster" in meta else None)
+            self._without_work = set(msgspec.json.decode(meta.get("without_work", "[]"), type=list[str]))
         self.waiting = book.waiting()
         self.downloads = book.students()
         self._exercises = {exercise.id: exercise for exercise in book.exercises()}

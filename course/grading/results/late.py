@@ -40,6 +40,7 @@ import msgspec
 from course.errors import MissingCapabilityError, UsageError
 from course.grading.gradebook.records import SubmittedAt
 from course.grading.results.roster import decoded, in_english, moodle_key
+from course.strangers import read_bytes, toml
 
 FORMAT_VERSION = 1
 _DAY_S = 86_400.0
@@ -133,7 +134,7 @@ def read_policy(path: Path) -> tuple[Policy, str]:
         MissingCapabilityError: it is in a newer format.
     """
     try:
-        text = path.read_text("utf-8-sig")
+        text = read_bytes(path).decode("utf-8-sig")
     except (OSError, UnicodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not UTF-8"
         raise UsageError(f"{path} cannot be read: {reason}.", help="Name a late policy.") from None
@@ -148,7 +149,7 @@ def parse_policy(text: str, name: str = "The late policy") -> Policy:
         MissingCapabilityError: it is in a newer format.
     """
     try:
-        raw = tomllib.loads(text)
+        raw = toml(text)
     except tomllib.TOMLDecodeError as error:
         raise _wrong(name, str(error)) from None
     version = raw.get("format_version")
@@ -236,7 +237,7 @@ def read_times(path: Path) -> list[SubmittedAt] | Worksheet:
         UsageError: it cannot be read or is not such a list; the message names the line.
     """
     try:
-        text = decoded(path.read_bytes())
+        text = decoded(read_bytes(path))
     except (OSError, UnicodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not text"
         raise _wrong_times(path, f"it cannot be read ({reason})") from None

@@ -32,6 +32,7 @@ import msgspec
 from course.errors import UsageError
 from course.grading.gradebook.records import PlatformIdentity
 from course.printable import one_line
+from course.strangers import read_bytes
 
 COLUMNS = (
     "student", "name", "email", "login", "canvas_id", "sis_user_id", "section", "moodle_key",
@@ -257,10 +258,7 @@ def read_text(path: Path) -> str:
         UsageError: it cannot be read, is too large, or is not text.
     """
     try:
-        raw = path.read_bytes()
-        if len(raw) > _MAX_BYTES:
-            raise _wrong(path, "it is larger than 20 MB")
-        return decoded(raw)
+        return decoded(read_bytes(path))
     except OSError as error:
         raise _wrong(path, f"it cannot be read ({error.strerror})") from None
     except UnicodeError:

@@ -16,13 +16,14 @@ import msgspec
 
 from course.catalog.load import Catalog
 from course.errors import NotFoundError, UngradableError, UsageError
+from course.grading.gradebook.file import explained
 from course.grading.gradebook.records import Decision, Key, Result, SubmittedAt
 from course.grading.intake.archives import RefusedError
 from course.grading.intake.students import Entry, submission_from
 from course.grading.intake.triage import Found
 from course.grading.results.effective import Effective, Results, counted
 from course.grading.running.batch import Graded, grade_all
-from course.grading.running.snapshot import Snapshot, Unpacked, frozen, kept
+from course.grading.running.snapshot import Unpacked, fresh, frozen, kept
 from course.printable import command
 from course.scoring.judging.submission import Terms
 
@@ -70,7 +71,9 @@ class Assigned:
 
 def unsettled(results: Results) -> list[Unsettled]:
     """The unsettled cases, ordered by student and exercise; a score by hand settles one."""
-    listed = {about: msgspec.json.decode(text, type=Found) for about, text in results.book.found().items()}
+    with explained(results.book.path):
+        found = results.book.found().items()
+        listed = {about: msgspec.json.decode(text, type=Found) for about, text in found}
     return [
         Unsettled(
             item.student, item.exercise, listed.get((item.student, item.exercise), Found(error.code, ())),
@@ -175,6 +178,7 @@ def assign(
     grade: GradeAll = grade_all,
     level: str | None = None,
     at_least: str = "L2",
+    accepted: str = "",
 ) -> list[Assigned]:
     """Accept files as submissions, and grade them with the graders of the run.
 
@@ -182,10 +186,11 @@ def assign(
         results: over a gradebook opened for writing.
         reason: why these files are the students'.
         level, at_least: as in ``Terms``.
+        accepted: as in ``RerunOptions``.
 
     Raises:
         UngradableError: a file cannot be read.
-        UsageError: there is no reason.
+        UsageError: there is no reason, or the run's graders are not this checkout's.
     """
     reason = reason.strip()
     if not reason or len(reason) > _MAX_REASON:
@@ -195,7 +200,7 @@ def assign(
             code="no_reason",
         )
     book, options = results.book, results.book.run_options()
-    snapshot = kept(book, options.get("snapshot")) or Snapshot.take(catalog.content)
+    snapshot = kept(book, options.get("snapshot"), catalog.content, accepted) or fresh(catalog.content)
     timeout = float(options.get("timeout", 10.0))
     done: list[Assigned] = []
     with frozen(snapshot) as graders:

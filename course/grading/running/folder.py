@@ -14,6 +14,7 @@ from course.errors import MissingCapabilityError, UsageError
 from course.grading.exports.grades import write_csv, write_jsonl
 from course.grading.exports.html_report.write import write_pages
 from course.grading.gradebook.book import Gradebook
+from course.grading.gradebook.file import explained
 from course.grading.gradebook.salvage import back_up
 from course.grading.results.effective import Results, recorded
 from course.grading.results.merge import Merged, merged
@@ -158,6 +159,7 @@ def remember(book: Gradebook, new: Roster) -> Merged:
 
 def note_without_work(book: Gradebook, students: set[str]) -> None:
     """Keep the names of the students in whose folders there is nothing to grade: no result names them."""
-    known: list[str] = msgspec.json.decode(book.meta().get("without_work", "[]"))
+    with explained(book.path):
+        known = msgspec.json.decode(book.meta().get("without_work", "[]"), type=list[str])
     names = sorted({*known, *students} - set(book.student_ids()))
     book.set_meta(without_work=msgspec.json.encode(names).decode() if names else None)

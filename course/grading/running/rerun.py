@@ -16,6 +16,7 @@ import msgspec
 from course.catalog.load import Catalog
 from course.catalog.questions import read_questions
 from course.errors import IntegrityError, NotFoundError
+from course.grading.gradebook.file import explained
 from course.grading.gradebook.records import Key, Result
 from course.grading.intake.students import Entry
 from course.grading.quiz import EXERCISE_ID as QUIZ
@@ -23,7 +24,7 @@ from course.grading.quiz import grade_quiz, quiz_version
 from course.grading.results.effective import Effective, Results
 from course.grading.running.batch import grade_all
 from course.grading.running.run import QUIZ_RECORD, graded_exercises
-from course.grading.running.snapshot import Snapshot, Unpacked, frozen, kept
+from course.grading.running.snapshot import Snapshot, Unpacked, fresh, frozen, kept
 from course.quizzing.bank import Bank
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import Verdict
@@ -47,6 +48,7 @@ class RerunOptions:
         against: the graders to use, as the number of a run or the beginning of a snapshot's digest; empty
             takes those of the course as it is now.
         reason: why, for the record.
+        accepted: digest of graders in the gradebook that may run though they are not this checkout's.
     """
 
     dry_run: bool = False
@@ -56,6 +58,7 @@ class RerunOptions:
     timeout: float | None = None
     against: str = ""
     reason: str = ""
+    accepted: str = ""
 
 
 class CheckChange(msgspec.Struct, frozen=True):
@@ -131,7 +134,7 @@ def rerun(
         NotFoundError: the gradebook has no such graders.
         IntegrityError: a submission in the gradebook is damaged.
     """
-    snapshot, recorded = _graders(results, catalog, options.against)
+    snapshot, recorded = _graders(results, catalog, options)
     changes = []
     with frozen(snapshot) as graders:
         task = _Rerun(results, graders, recorded, options)
@@ -148,17 +151,18 @@ def rerun(
     )
 
 
-def _graders(results: Results, catalog: Catalog, against: str) -> tuple[Snapshot, dict[str, Any]]:
+def _graders(results: Results, catalog: Catalog, options: RerunOptions) -> tuple[Snapshot, dict[str, Any]]:
     """The graders to use, and the options of the run they judged before."""
-    book = results.book
+    book, against = results.book, options.against
     if not against:
         catalog.content.instructors()
-        return Snapshot.take(catalog.content), book.run_options()
+        return fresh(catalog.content), book.run_options()
     runs = [run for run in book.runs() if run.options.get("snapshot")]
     wanted = [run for run in runs if str(run.number) == against]
     if not wanted and len(against) >= _LEAST_DIGITS:  # fewer could be the number of a run that is not there
         wanted = [run for run in runs if run.options["snapshot"].startswith(against)]
-    snapshot = kept(book, wanted[-1].options["snapshot"]) if wanted else None
+    sha256 = wanted[-1].options["snapshot"] if wanted else None
+    snapshot = kept(book, sha256, catalog.content, options.accepted)
     if snapshot is None:
         raise NotFoundError(
             f"The gradebook has no graders of a run or a snapshot {against!r}.",
@@ -228,7 +232,8 @@ class _Rerun:
 
     def _quiz(self, key: Key) -> Iterator[tuple[Effective, Effective]]:
         files = self._results.book.submission(key.submission_sha256)
-        record = msgspec.json.decode(files[QUIZ_RECORD]) if files else None
+        with explained(self._results.book.path):
+            record = msgspec.json.decode(files.get(QUIZ_RECORD, b"")) if files else None
         verdict = grade_quiz(self._bank, record) if record is not None and self._bank.ids else None
         if verdict is None:
             self.counts.kept += 1

@@ -30,7 +30,7 @@ from course.grading.results.merge import Merged
 from course.grading.results.roster import Roster
 from course.grading.running.batch import Graded, grade_all
 from course.grading.running.folder import BOOK, begin, export_all, note_without_work, remember, taken_back
-from course.grading.running.snapshot import Snapshot, Unpacked, among_graders, frozen, kept
+from course.grading.running.snapshot import Snapshot, Unpacked, among_graders, fresh, frozen, kept
 from course.quizzing.attempt import needed
 from course.quizzing.bank import Bank
 from course.scoring.failures import OURS
@@ -161,6 +161,7 @@ class RunOptions:
         seed: of the run; None draws one, and a resumed run keeps its own.
         layout: what kind of folder it is; "auto" finds out.
         roster: who is enrolled, merged into the gradebook's own; None keeps that.
+        accepted: digest of graders in the gradebook that may run though they are not this checkout's.
     """
 
     exercises: tuple[str, ...] = ()
@@ -170,6 +171,7 @@ class RunOptions:
     resume: bool = False
     layout: str = "auto"
     roster: Roster | None = None
+    accepted: str = ""
 
 
 def grade_class(
@@ -191,7 +193,7 @@ def grade_class(
     Raises:
         MissingCapabilityError: there are no hidden graders here, no sufficient protection, or no room.
         NotFoundError: no such folder, exercise or student.
-        UsageError: ``out`` exists, is in use, or lies among the submissions.
+        UsageError: ``out`` exists, is in use, lies among the submissions, or has somebody else's graders.
     """
     catalog.content.instructors()
     _exercises(catalog, options.exercises)
@@ -206,7 +208,7 @@ def grade_class(
     with (
         taken_back(out) as taken,
         begin(out, folder, resume=options.resume) as book,
-        frozen(_begun_with(book, options) or Snapshot.take(catalog.content)) as graders,
+        frozen(_begun_with(book, options, catalog) or fresh(catalog.content)) as graders,
     ):
         run = _Run(members.students, graders, folder, options, book)
         if options.resume and (out / "grades.csv").is_file():
@@ -232,9 +234,10 @@ def grade_class(
     return summary
 
 
-def _begun_with(book: Gradebook, options: RunOptions) -> Snapshot | None:
+def _begun_with(book: Gradebook, options: RunOptions, catalog: Catalog) -> Snapshot | None:
     """The graders of a resumed run; None for a new run, or one of an older format."""
-    return kept(book, book.run_options().get("snapshot")) if options.resume else None
+    sha256 = book.run_options().get("snapshot") if options.resume else None
+    return kept(book, sha256, catalog.content, options.accepted)
 
 
 def edited_since(results: Results, catalog: Catalog) -> list[str]:
@@ -468,7 +471,7 @@ def _members(folder: Path, options: RunOptions) -> ClassList:
 
 
 def _seed(book: Gradebook, options: RunOptions) -> int:
-    recorded = book.meta().get("seed")
+    recorded = str(Results(book).seed) if "seed" in book.meta() else None
     if recorded is not None and options.seed not in (None, int(recorded)):
         raise UsageError(
             f"This gradebook was begun with --seed {recorded}.",

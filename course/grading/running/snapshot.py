@@ -23,10 +23,12 @@ from importlib.util import cache_from_source
 from pathlib import Path
 
 from course.catalog.load import Catalog
-from course.catalog.locate import NAMES, PLACES, Content, chosen
-from course.errors import IntegrityError
+from course.catalog.locate import NAMES, PLACES, Content, cache_folder, chosen
+from course.catalog.pack import NOT_A_ZIP
+from course.errors import IntegrityError, UsageError
 from course.grading.gradebook.book import Gradebook
 from course.isolation.launch import private_folder, remove_tree
+from course.printable import one_line
 from course.scoring.graders import grader_files, grader_version
 
 _PACKAGE = Path(__file__).resolve().parents[2]
@@ -34,6 +36,9 @@ _MAX_UNPACKED = 200 << 20
 #: A compiled file is used only if it is so many seconds younger than its source: one that was compiled in the
 #: second of an edit may be of the text before.
 _SETTLED_S = 2.0
+_FILES_NAMED = 5
+#: What it means to grade with the code in a gradebook.
+FOREIGN = "They are programs, and would run as you, outside any sandbox."
 
 
 @dataclass(frozen=True)
@@ -79,14 +84,75 @@ class Snapshot:
         return cls(sha256, packed)
 
 
-def kept(book: Gradebook, sha256: str | None) -> Snapshot | None:
+class ForeignGradersError(UsageError):
+    """A gradebook's graders are code that this checkout never had, and nobody has agreed to run it."""
+
+    def __init__(self, book: Gradebook, sha256: str, differing: list[str]) -> None:
+        run = next((run for run in book.runs() if run.options.get("snapshot") == sha256), None)
+        who, at = (run.options.get("who", "?"), run.started_at) if run else ("?", "?")
+        files = ", ".join(differing[:_FILES_NAMED]) + (", ..." if len(differing) > _FILES_NAMED else "")
+        many = "one file differs" if len(differing) == 1 else f"{len(differing)} files differ"
+        super().__init__(
+            f"This gradebook's graders are not this checkout's: {many} ({one_line(files)}). It says that"
+            f" {one_line(str(who))} began the run with them, at {one_line(str(at))}.",
+            help=f"{FOREIGN} If you trust whoever made this gradebook, add --yes;"
+            " `course grade rerun` without --against grades with this checkout's.",
+            code="foreign_graders",
+        )
+        self.sha256 = sha256
+
+
+def fresh(content: Content) -> Snapshot:
+    """The graders as they are now, for a gradebook; this checkout knows them again when it has changed."""
+    snapshot = Snapshot.take(content)
+    with contextlib.suppress(OSError):
+        known = _known(content, snapshot.sha256)
+        known.parent.mkdir(parents=True, exist_ok=True)
+        known.touch()
+    return snapshot
+
+
+def kept(book: Gradebook, sha256: str | None, content: Content, accepted: str = "") -> Snapshot | None:
     """The snapshot of that digest in a gradebook; None where it has none.
+
+    It is code, which a grader runs as the user who grades. So it must be this checkout's own, or accepted.
+
+    Args:
+        content: what this checkout grades with.
+        accepted: the digest of a snapshot that may run, whoever made it.
 
     Raises:
         IntegrityError: it is damaged.
+        ForeignGradersError: it is neither, nor has this checkout begun a run with it.
     """
     packed = book.snapshot(sha256) if sha256 else None
-    return Snapshot.of(packed, sha256) if packed and sha256 else None
+    if not packed or not sha256:
+        return None
+    snapshot = Snapshot.of(packed, sha256)
+    if accepted != sha256 and not _is_known(content, sha256):
+        own = dict(grader_files(content))
+        differing = [name for name, body in _members(packed) if not _is_same(name, body, own.get(name))]
+        if differing:
+            raise ForeignGradersError(book, sha256, differing)
+    return snapshot
+
+
+def _is_same(name: str, body: bytes, path: Path | None) -> bool:
+    """Whether a file of a snapshot is what lies here; how folders are called is no code."""
+    return name == f"content/{NAMES}" or (path is not None and path.read_bytes() == body)
+
+
+def _known(content: Content, sha256: str) -> Path:
+    """An empty file that says: this checkout, with this content, has begun a run with these graders."""
+    about = hashlib.sha256(f"{_PACKAGE}\0{content.root}\0{sha256}".encode("utf-8", "surrogateescape"))
+    return cache_folder("graders") / about.hexdigest()
+
+
+def _is_known(content: Content, sha256: str) -> bool:
+    with contextlib.suppress(OSError):
+        # A cache that many share says nothing that another could have written.
+        return _known(content, sha256).stat().st_uid == (os.getuid() if hasattr(os, "getuid") else 0)
+    return False
 
 
 def among_graders(folder: Path, content: Content) -> bool:
@@ -116,7 +182,7 @@ def _members(packed: bytes) -> Iterator[tuple[str, bytes]]:
                 if info.filename.startswith("/") or ".." in info.filename.split("/") or "\\" in info.filename:
                     raise _damaged("")
                 yield info.filename, archive.read(info)
-    except (zipfile.BadZipFile, zipfile.LargeZipFile, EOFError, ValueError, OSError, RuntimeError):
+    except (zipfile.LargeZipFile, *NOT_A_ZIP):
         raise _damaged("") from None
 
 

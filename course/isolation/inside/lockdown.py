@@ -252,7 +252,7 @@ _CALLS = """
     readlinkat=267/78 getcwd=79/17 chdir=80/49 fchdir=81/50 getdents64=217/61 getdents=78/-
     mkdir=83/- mkdirat=258/34 unlink=87/- unlinkat=263/35 rmdir=84/- rename=82/- renameat=264/38
     renameat2=316/276 ftruncate=77/46 fsync=74/82 fdatasync=75/83 dup=32/23 dup3=292/24 dup2=33/-
-    pipe=22/- pipe2=293/59 umask=95/166 fadvise64=221/223 copy_file_range=326/285 sendfile=40/71
+    pipe=22/- pipe2=293/59 umask=95/166 copy_file_range=326/285 sendfile=40/71
     # memory
     mmap=9/222 munmap=11/215 mprotect=10/226 mremap=25/216 brk=12/214 rseq=334/293
     # signals to itself and timers
@@ -271,7 +271,8 @@ _CALLS = """
 # Two workers that run at once must not talk to each other. So these are left out too: sysinfo (how much
 # memory others use), getpgid, getsid, getpriority and get_robust_list (whether a process exists),
 # membarrier (interrupts the others), futex_waitv (its flags are out of a filter's reach), set_robust_list
-# (wakes any thread that waits at an address), file locks; what follows is allowed with some arguments only.
+# (wakes any thread that waits at an address), fadvise64 (drops a file that all can read from
+# memory, which the next one notices), file locks; what follows is allowed with some arguments only.
 _OWN_PID = 0xFEEDFACE  # replaced by the worker's own pid when the filter is put in place
 _FUTEX_PRIVATE = 128
 _MSG_NOSIGNAL = 0x4000

@@ -204,7 +204,9 @@ class Worker:
         sys.meta_path.insert(0, imports)
         try:
             source = importlib.util.decode_source(files[main])
-        except (SyntaxError, ValueError, UnicodeError) as error:
+        except (SyntaxError, ValueError, LookupError) as error:
+            if isinstance(error, LookupError):  # rot13, hex, zlib: codecs, and not of text
+                error = SyntaxError("the encoding that its first lines declare is none of text")
             self._send(Kind.REFUSED, {"stage": "syntax", **_described(error)})
             return
         module = loading.Loading(source, main, imports, needed)

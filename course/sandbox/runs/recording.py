@@ -17,9 +17,11 @@ from typing import TYPE_CHECKING, Any, assert_never
 import msgspec
 
 from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
+from course.printable import one_line
 from course.sandbox.scene.model import Part, Scene
 from course.sandbox.world.engine import versions
 from course.sandbox.world.world import Snapshot, World
+from course.strangers import read_bytes
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -31,6 +33,8 @@ FORMAT = "course.sandbox-recording/1"
 EVERY = 240
 #: Steps that a recording may hold; a day at 1/240 s is 20.7 million.
 _MOST_TICKS = 100_000_000
+#: Characters of what a parser says, which may quote the whole file.
+_MOST_SAID = 200
 #: The methods that a line of a recording may call.
 _INPUTS = {"reset", "set", "grab", "drag", "release", "throw", "spawn"}
 
@@ -152,7 +156,7 @@ def read(path: Path) -> Replay:
         IntegrityError: it is damaged, or has no end.
     """
     try:
-        data = path.read_bytes()
+        data = read_bytes(path)
     except OSError as error:
         reason = error.strerror or error
         raise NotFoundError(
@@ -164,10 +168,11 @@ def read(path: Path) -> Replay:
     for number, line in enumerate(lines, 1):
         try:
             decoded.append(decoder.decode(line))
-        except msgspec.DecodeError as error:
+        except (msgspec.DecodeError, RecursionError) as error:
+            why = one_line(str(error))[:_MOST_SAID]
             if number == 1:
-                raise UsageError(f"{path} is not a recording: {error}.", code="bad_recording") from error
-            raise IntegrityError(f"{path}:{number} is damaged: {error}.", code="damaged_recording") from error
+                raise UsageError(f"{path} is not a recording: {why}.", code="bad_recording") from error
+            raise IntegrityError(f"{path}:{number} is damaged: {why}.", code="damaged_recording") from error
     return _checked(path, decoded)
 
 

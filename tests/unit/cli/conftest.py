@@ -139,6 +139,7 @@ def course(monkeypatch, tmp_path, capsys):
     from course.handed_in import attempts
 
     monkeypatch.setenv("COURSE_CONTENT", str(MINI_COURSE))
+    monkeypatch.setenv("COURSE_CACHE", str(tmp_path / ".cache"))
     monkeypatch.setenv("COLUMNS", "80")
     for name in ("FORCE_COLOR", "NO_COLOR", "TTY_COMPATIBLE"):
         monkeypatch.delenv(name, raising=False)

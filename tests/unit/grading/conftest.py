@@ -18,9 +18,10 @@ MINI = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
 
 
 @pytest.fixture(autouse=True)
-def _chosen(monkeypatch: pytest.MonkeyPatch) -> None:
+def _chosen(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory) -> None:
     """What looks for the course of this process finds the miniature one, for as long as a test lasts."""
     monkeypatch.setenv("COURSE_CONTENT", str(MINI))
+    monkeypatch.setenv("COURSE_CACHE", str(tmp_path_factory.getbasetemp() / "cache"))
 
 
 @pytest.fixture(scope="module")

@@ -118,7 +118,8 @@ def test_restricted_calls_depend_on_their_argument(machine: str, name: str) -> N
 
 _CHANNELS = [
     "sysinfo", "getpgid", "getsid", "getpriority", "get_robust_list", "set_robust_list", "membarrier",
-    "futex_waitv", "flock", "mincore", "statfs", "fstatfs",
+    "futex_waitv", "flock", "mincore", "statfs", "fstatfs", "fadvise64", "readahead", "sync_file_range",
+    "cachestat", "preadv2",
 ]  # fmt: skip
 
 

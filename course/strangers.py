@@ -1,0 +1,126 @@
+"""Files that a stranger may have made: read within a size, a depth and a time, whatever they are.
+
+What is wrong is raised as the errors that readers of files know anyway (``OSError``, ``TOMLDecodeError``,
+``sqlite3.DatabaseError``), so that each of them says it in its own words.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import stat
+import tomllib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import sqlite3
+    from collections.abc import Collection
+    from pathlib import Path
+
+#: Bytes of a file that a person writes or a platform exports.
+MOST = 20 << 20
+#: The same of a TOML file, which takes Python a second for each of these.
+_MOST_TOML = 1 << 20
+#: Tables and lists within each other; the course's own files have five.
+_DEEPEST = 50
+_DOTTED = re.compile(
+    r"""(?:^|[\[{,])[ \t]*(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){50}""", re.MULTILINE
+)
+#: Names under which a shell hands over what another program writes.
+_HANDED_OVER = ("/dev/fd/", "/dev/stdin", "/proc/self/fd/")
+#: Instructions of SQLite between two looks at whether a file has an end.
+_LOOK = 1_000_000
+
+
+def read_bytes(path: Path, most: int = MOST) -> bytes:
+    """The content of an ordinary file.
+
+    Args:
+        most: bytes that it may have.
+
+    Raises:
+        OSError: it cannot be read, is larger, or is a folder, a device or a pipe (which may never answer).
+            ``strerror`` says which.
+    """
+    handed_over = str(path).startswith(_HANDED_OVER)
+    flags = os.O_RDONLY | (0 if handed_over else getattr(os, "O_NONBLOCK", 0)) | getattr(os, "O_BINARY", 0)
+    with open(os.open(path, flags), "rb") as handle:  # noqa: PTH123 - of an open descriptor
+        mode = os.fstat(handle.fileno()).st_mode
+        if not (stat.S_ISREG(mode) or (handed_over and stat.S_ISFIFO(mode))):
+            raise OSError(errno.EINVAL, "it is a device or a pipe, and no file", str(path))
+        data = handle.read(most + 1)
+    if len(data) > most:
+        raise OSError(errno.EFBIG, f"it is larger than {most >> 20} MB", str(path))
+    return data
+
+
+def toml(text: str) -> dict[str, Any]:
+    """A TOML text as tables and lists.
+
+    Raises:
+        TOMLDecodeError: it is none, is larger or deeper than any that a person writes, or has a whole number
+            that TOML does not allow.
+    """
+    if len(text) > _MOST_TOML:
+        raise tomllib.TOMLDecodeError("It is larger than 1 MB")
+    if found := _DOTTED.search(text):  # which takes the square of its length in time and memory
+        raise _at(text, found.start() + 1, "Nested too deeply")
+    try:
+        document = tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        raise
+    except RecursionError:
+        raise tomllib.TOMLDecodeError("Nested too deeply") from None
+    except ValueError:  # of int(), at thousands of digits
+        raise tomllib.TOMLDecodeError("A whole number has more than 64 bits") from None
+    level: list[Any] = [document]
+    for _ in range(_DEEPEST):
+        if any(type(item) is int and not -(1 << 63) <= item < 1 << 63 for item in level):
+            raise tomllib.TOMLDecodeError("A whole number has more than 64 bits")
+        level = [
+            inner
+            for item in level
+            if isinstance(item, dict | list)
+            for inner in (item.values() if isinstance(item, dict) else item)
+        ]
+    if level:
+        raise tomllib.TOMLDecodeError("Nested too deeply")
+    return document
+
+
+def _at(text: str, position: int, problem: str) -> tomllib.TOMLDecodeError:
+    return tomllib.TOMLDecodeError(f"{problem} (at line {text.count(chr(10), 0, position) + 1}, column 1)")
+
+
+def no_programs(database: sqlite3.Connection, allowed: Collection[str] = (), *, millions: int) -> None:
+    """Refuse a database that computes while it is read or written, and one that would be read for ever.
+
+    Views, triggers, virtual tables, computed columns and computed indexes are programs, and a view may have
+    no end. A damaged file may lead in circles.
+
+    Args:
+        allowed: the statements of those that the course itself makes.
+        millions: of instructions that may follow; a row takes some ten, and a second has fifty millions.
+
+    Raises:
+        sqlite3.DatabaseError: it has one; from here on, also whatever takes more instructions.
+    """
+    import sqlite3
+
+    looks = iter(range(millions))
+    database.set_progress_handler(lambda: next(looks, -1) < 0, _LOOK)
+    database.execute("PRAGMA trusted_schema = OFF")
+    for kind, name, statement in database.execute("SELECT type, name, sql FROM sqlite_schema"):
+        if statement is None or statement in allowed:
+            continue
+        plain = (
+            kind == "table" and _PLAIN_TABLE.match(str(statement)) and not _COMPUTED.search(str(statement))
+        )
+        if not (plain or (kind == "index" and _PLAIN_INDEX.fullmatch(str(statement)))):
+            raise sqlite3.DatabaseError(f"it has a {kind} that the course does not make: {str(name)[:60]!r}")
+
+
+_PLAIN_TABLE = re.compile(r"\s*CREATE\s+TABLE\b", re.IGNORECASE)
+_COMPUTED = re.compile(r"\b(AS|GENERATED|CHECK|DEFAULT)\b", re.IGNORECASE)
+_PLAIN_INDEX = re.compile(r"\s*CREATE\s+(UNIQUE\s+)?INDEX\s[^()]*\([\w\s,]*\)\s*", re.IGNORECASE)

@@ -7,10 +7,6 @@ taken out line by line, so that every other line keeps its number within its cel
 from __future__ import annotations
 
 import ast
-import itertools
-import re
-import warnings
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -18,6 +14,7 @@ from typing import Any
 import msgspec
 
 from course.errors import UngradableError, UsageError
+from course.isolation.inside import statements
 
 __all__ = ["MAX_CELLS", "MAX_CODE", "MAX_NOTEBOOK", "CodeCell", "code_cells", "read_notebook", "typed_cell"]
 
@@ -29,10 +26,6 @@ MAX_CODE = 1 << 20
 MAX_CELLS = 2000
 
 _FIX = "Save it from Jupyter again, or hand in the .py file."
-#: Cell magics whose body is Python of this notebook; the cells of all others are something else.
-_PYTHON_MAGICS = frozenset({"time", "timeit", "capture", "prun", "memit", "mprun", "lprun"})
-#: Of a line without space around it: a million spaces in a row would be tried in every way to part them.
-_MAGIC = re.compile(r"[%!?]|[\w.,\s\[\]]+=\s*[%!]|.*\S\?{1,2}$")
 
 
 class _Cell(msgspec.Struct, frozen=True):
@@ -168,24 +161,15 @@ def _language(metadata: _Metadata | None) -> str:
 
 def _code_cell(number: int, cell: _Cell) -> CodeCell:
     text, dropped = _without_magics(_text(cell).replace("\r\n", "\n").replace("\r", "\n"))
-    text, more = _without_shell(text)
+    text, more = statements.without_shell(text)
     tags = cell.metadata.get("course")
     tags = tags if isinstance(tags, dict) else {}
-    return CodeCell(number, text, _parsed(text), tags, (*dropped, *more), _text(cell), cell.id)
+    return CodeCell(number, text, statements.tree(text), tags, (*dropped, *more), _text(cell), cell.id)
 
 
 def _text(cell: _Cell) -> str:
     source = cell.source or cell.input
     return source if isinstance(source, str) else "".join(source)
-
-
-def _parsed(text: str) -> ast.Module | None:
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # about escapes in the student's strings; not our business here
-            return ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return None
 
 
 # -- what IPython adds ------------------------------------------------------------------------------------
@@ -194,88 +178,15 @@ def _parsed(text: str) -> ast.Module | None:
 def _without_magics(text: str) -> tuple[str, tuple[tuple[int, str], ...]]:
     """The text as Python, and the lines that were taken out of it."""
     first = text.lstrip("\n").partition("\n")[0]
-    if first.startswith("%%"):
-        name = first[2:].split(maxsplit=1)[0] if first[2:].strip() else ""
-        at = text.index("%%")
-        line = text.count("\n", 0, at) + 1
-        if name not in _PYTHON_MAGICS:
-            return "", ((line, first),)
-        rest, dropped = _without_magics(text[:at] + text[at + len(first) :])
-        return rest, ((line, first), *dropped)
-    if _parsed(text) is not None:
-        return text, ()  # Python as it stands, also where a line begins with a percent sign
-    lines = text.split("\n")
-    taken: list[tuple[int, str]] = []
-    for index in _statement_lines(text):
-        whole = lines[index]
-        shown = whole.strip()
-        if _MAGIC.match(shown) and _parsed(shown) is None:
-            indent = whole[: len(whole) - len(whole.lstrip())]
-            lines[index] = indent + "pass"
-            taken.append((index + 1, shown))
-    return "\n".join(lines), tuple(taken)
-
-
-def _without_shell(text: str) -> tuple[str, tuple[tuple[int, str], ...]]:
-    """The text without statements that are magics written out: get_ipython().run_line_magic(...)."""
-    tree = _parsed(text) if "get_ipython" in text else None
-    if tree is None:
-        return text, ()
-    lines = text.split("\n")
-    taken: list[tuple[int, str]] = []
-    before = 0  # the last line of the statements so far
-    for node, following in itertools.zip_longest(tree.body, tree.body[1:]):
-        first, last = node.lineno - 1, node.end_lineno or node.lineno
-        alone = before <= first and (following is None or following.lineno > last)
-        before = last
-        if alone and _asks_shell(node):
-            taken.append((node.lineno, lines[first].strip()))
-            lines[first:last] = ["pass", *[""] * (last - first - 1)]
-    return "\n".join(lines), tuple(taken)
-
-
-def _asks_shell(node: ast.stmt) -> bool:
-    inner = node.value if isinstance(node, ast.Expr) else None
-    while isinstance(inner, ast.Attribute | ast.Call):
-        inner = inner.value if isinstance(inner, ast.Attribute) else inner.func
-    return isinstance(inner, ast.Name) and inner.id == "get_ipython"
-
-
-_PIECE = re.compile(
-    # A string that is not closed ends with its line: looking for its end at each quote takes for ever.
-    r"""(?P<comment>\#[^\n]*)|(?P<triple>'{3}|\"{3})|(?P<string>'(?:\\.|[^'\\\n])*'?|"(?:\\.|[^"\\\n])*"?)"""
-    r"""|(?P<open>[(\[{])|(?P<close>[)\]}])|(?P<joined>\\\n)|(?P<end>\n)|(?P<other>.)""",
-    re.DOTALL | re.VERBOSE,
-)
-
-
-def _statement_lines(text: str) -> Iterator[int]:
-    """Indices of the lines on which a statement can begin: none inside a string or a bracket."""
-    line = depth = position = 0
-    yield 0
-    while position < len(text):
-        piece = _PIECE.match(text, position)
-        if piece is None:
-            return
-        position = piece.end()
-        kind, found = piece.lastgroup, piece.group()
-        if kind == "triple":
-            closed = text.find(found, position)
-            stop = len(text) if closed < 0 else closed + 3
-            line += text.count("\n", position, stop)
-            position = stop
-        elif kind == "string":
-            line += found.count("\n")  # escaped ones
-        elif kind == "open":
-            depth += 1
-        elif kind == "close":
-            depth = max(0, depth - 1)
-        elif kind == "joined":
-            line += 1
-        elif kind == "end":
-            line += 1
-            if depth == 0:
-                yield line
+    if not first.startswith("%%"):
+        return statements.without_magics(text)
+    name = first[2:].split(maxsplit=1)[0] if first[2:].strip() else ""
+    at = text.index("%%")
+    line = text.count("\n", 0, at) + 1
+    if name not in statements.PYTHON_MAGICS:
+        return "", ((line, first),)
+    rest, dropped = _without_magics(text[:at] + text[at + len(first) :])
+    return rest, ((line, first), *dropped)
 
 
 def read_notebook(path: Path) -> bytes:

@@ -229,12 +229,11 @@ class GradingSession:
 
     def _nothing_loaded(self, remote: RemoteSubmission, submission: Submission) -> Problem:
         """Why none of the functions is there."""
-        if not remote.faults:
+        fault = next((one for one in remote.faults if one.stage in {"syntax", "import"}), None)
+        if fault is None:
             return no_functions(self.exercise)
-        fault = remote.faults[0]
-        return load_problem(
-            LoadRefusedError(fault.stage, fault.failure, fault.text), self._places(submission)
-        )
+        refused = LoadRefusedError(fault.stage, fault.failure, fault.text, fault.code)
+        return load_problem(refused, self._places(submission))
 
     def using(self, submission: Submission, use: Callable[[RemoteSubmission], T]) -> T:
         """The result of ``use`` on a submission, loaded as for a check; one deadline applies to all of it.

@@ -7,6 +7,7 @@ taken out line by line, so that every other line keeps its number within its cel
 from __future__ import annotations
 
 import ast
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -139,11 +140,30 @@ def _decoded(data: bytes, name: str) -> _Notebook:
     try:
         return msgspec.json.decode(data.removeprefix(b"\xef\xbb\xbf"), type=_Notebook)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise UngradableError(
-            f"{name} is not a notebook: {str(error)[:200] or 'it cannot be read'}.",
-            help=_FIX,
-            code="not_a_notebook",
-        ) from None
+        message, advice = _why_unread(data, name, error)
+        raise UngradableError(message, help=advice, code="not_a_notebook") from None
+
+
+#: What ``git merge`` leaves where both sides changed the same lines.
+_MERGE = re.compile(rb"^(?:<{7}|={7}|>{7})(?: |\r?$)", re.MULTILINE)
+
+
+def _why_unread(data: bytes, name: str, error: Exception) -> tuple[str, str]:
+    """Why a file is no notebook, and what to do, in its student's words and not in a parser's."""
+    if not data.strip():
+        return f"{name} is empty.", f"Was it saved? {_FIX}"
+    if found := _MERGE.search(data):
+        line = data.count(b"\n", 0, found.start()) + 1
+        message = (
+            f"{name} has the marks of a merge in it, the first on line {line}, so no program can open it."
+        )
+        return message, "Open it in a text editor, keep one of the two versions and delete the marks."
+    if isinstance(error, msgspec.ValidationError) or "truncated" not in str(error):
+        at = re.search(r"\(byte (\d+)\)", str(error))
+        line = data.count(b"\n", 0, int(at[1])) + 1 if at else 0
+        where = f" from line {line} on" if at else ""
+        return f"{name} is not a notebook: Jupyter could not read it{where} either.", _FIX
+    return f"{name} ends in the middle: it was not saved, or not copied, to its end.", _FIX
 
 
 def _language(metadata: _Metadata | None) -> str:

@@ -13,6 +13,7 @@ import re
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -21,8 +22,10 @@ from course.errors import UngradableError
 from course.handed_in.cells import CodeCell, code_cells
 from course.isolation.inside import statements
 from course.printable import one_line
-from course.scoring.judging.session import Submission
 from course.scoring.verdict import Places
+
+if TYPE_CHECKING:  # the process that reads submissions would load all that grades
+    from course.scoring.judging.session import Submission
 
 __all__ = ["RECORD", "SETUP", "SOLUTION", "NotebookSource", "notebook_source", "opened", "source_of"]
 
@@ -69,6 +72,8 @@ class NotebookSource(Places):
 
     def submission(self, exercise: Exercise) -> Submission:
         """The module to be graded; its lines are reported as cells."""
+        from course.scoring.judging.session import Submission
+
         return Submission({exercise.module: self.source}, replace(self, module=exercise.module), self.notes)
 
     def phrase(self, line: int) -> str:
@@ -99,6 +104,8 @@ _IN_TRACE = re.compile(r"^\S+:(\d+) in ", re.MULTILINE)
 
 def opened(files: Mapping[str, bytes], exercise: Exercise) -> Submission:
     """The submission, ready for grading; with a notebook's ``RECORD``, messages name its cells."""
+    from course.scoring.judging.session import Submission
+
     record = files.get(RECORD)
     if record is None:
         return Submission(files)
@@ -137,6 +144,12 @@ def source_of(
     chosen = [cell for cell in cells if _counts(cell, exercise.id, functions)]
     if not chosen:
         listed = ", ".join(task.id for task in exercise.task)
+        if not any(cell.text.strip() for cell in cells):
+            raise UngradableError(
+                f"{name} has no code in it.",
+                help="Was it saved after you wrote it? `course notebook build` makes a new one.",
+                code="no_declared_functions",
+            )
         raise UngradableError(
             f"{name} defines none of the functions of this exercise.",
             help=f"Keep the names the notebook gave: {listed}.",

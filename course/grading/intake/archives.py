@@ -27,7 +27,8 @@ from typing import IO, TYPE_CHECKING, Any, TypeVar
 import msgspec
 
 from course.errors import InternalError, UngradableError
-from course.grading.intake.downloads import IGNORED, is_meant
+from course.grading.intake import kinds
+from course.grading.intake.downloads import is_folder_meant, is_meant
 from course.grading.pipes import limit_cpu, limit_memory, read_frame, served, write_frame
 from course.grading.quiz import checked_record
 from course.handed_in.cells import MAX_CODE, MAX_NOTEBOOK
@@ -45,10 +46,11 @@ T = TypeVar("T")
 Members = dict[str, zipfile.ZipInfo]
 
 MAX_FILE = 1 << 20
-MAX_FILES = 20
-MAX_UNPACKED = 5 << 20
-MAX_ARCHIVE = 6 << 20  # no archive of files within the limits is larger
+MAX_FILES = 500
+MAX_UNPACKED = 5 << 20  # of what may be read: an environment or a report beside it does not count
+MAX_ARCHIVE = 300 << 20
 FORMAT_VERSION = 1
+MANIFEST = "submission.json"
 
 _ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".whl", ".jar")
 
@@ -128,6 +130,9 @@ def _notes(path: Path, name: str, raw: str, wanted: list[str], exercise: Exercis
     base = PurePosixPath(name).name
     if base not in {exercise.module, PurePosixPath(exercise.module).with_suffix(".ipynb").name}:
         yield f"{base} was taken for {exercise.module}."
+    above = PurePosixPath(name).parent.as_posix()
+    if above not in {".", exercise.place}:
+        yield f"The folder {above} was taken for {exercise.place}."
     if len(wanted) > 1:
         yield f"The same file is in {path.name} {len(wanted)} times: {', '.join(wanted)}."
 
@@ -138,7 +143,7 @@ def _wanted_members(members: Members, exercise: Exercise) -> list[str]:
     found = [
         name
         for name in members
-        if PurePosixPath(name).parent.as_posix() in {".", exercise.place}
+        if is_folder_meant(PurePosixPath(name).parent.as_posix(), exercise.place)
         and any(is_meant(PurePosixPath(name).name, wanted) for wanted in names)
     ]
     return sorted(found, key=lambda name: (PurePosixPath(name).name not in names, "/" not in name, name))
@@ -155,14 +160,16 @@ def outline_of(path: Path, skip: tuple[str, ...]) -> list[tuple[str, bytes]]:
         return [
             (info.filename, _unpacked(path, archive, info))
             for info in members.values()
-            if info.filename not in skip and info.filename.casefold().endswith((".py", ".ipynb"))
+            if info.filename not in skip
+            and kinds.may_be_code(info.filename)
+            and not info.filename.endswith(MANIFEST)
         ]
 
     return _opened(path, read)
 
 
 def member_of(path: Path, name: str) -> bytes:
-    """The content of one member, by the name the zip has for it, or that name with plain slashes.
+    """The content of one member, by the name the archive has for it, or that name with plain slashes.
 
     Raises:
         RefusedError: there is none, or the archive must not be opened further.
@@ -174,7 +181,32 @@ def member_of(path: Path, name: str) -> bytes:
                 return _unpacked(path, archive, info)
         raise RefusedError("no_file", f"{path.name} holds no {name}.", "Name a file that is in it.")
 
+    if (kind := _kind(path)) in _TARS:
+        found = dict(_compressed(path, kind))
+        if name in found:
+            return found[name]
+        raise RefusedError("no_file", f"{path.name} holds no {name}.", "Name a file that is in it.")
     return _opened(path, read)
+
+
+_TARS = frozenset({"a tar archive", "a gzip archive", "a bzip2 archive", "an xz archive"})
+
+
+def _compressed(path: Path, kind: str) -> list[tuple[str, bytes]]:
+    """What may be code in an archive that is no zip, by name.
+
+    Raises:
+        RefusedError: it is damaged.
+    """
+    try:
+        return list(kinds.compressed(path, kind, MAX_FILE, MAX_UNPACKED))
+    except OSError as error:
+        raise _refused(path, f"it cannot be read ({error})") from None
+
+
+def _kind(path: Path) -> str:
+    with path.open("rb") as handle:
+        return kinds.kind_of(path.name, handle.read(512))
 
 
 def _opened(path: Path, read: Callable[[zipfile.ZipFile, Members], T]) -> T:
@@ -187,7 +219,7 @@ def _opened(path: Path, read: Callable[[zipfile.ZipFile, Members], T]) -> T:
         if not stat.S_ISREG(path.lstat().st_mode):
             raise _refused(path, "it is not a regular file")
         if path.stat().st_size > MAX_ARCHIVE:
-            raise _refused(path, "it is larger than 6 MB")
+            raise _refused(path, f"it is larger than {MAX_ARCHIVE >> 20} MB")
         with zipfile.ZipFile(path) as archive:
             return read(archive, _checked_members(path, archive.infolist()))
     except RefusedError:
@@ -206,11 +238,13 @@ def _refused(path: Path, why: str) -> RefusedError:
 
 def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
     """The members by name, without the folders around all of them; every one is harmless."""
-    files = [info for info in infos if not info.is_dir() and not _is_clutter(info.filename)]
+    plain = {info.filename.replace("\\", "/"): info for info in infos if not info.is_dir()}
+    unwanted = kinds.clutter(plain)
+    files = [info for info in infos if not info.is_dir() and not unwanted(info.filename.replace("\\", "/"))]
     if len(files) > MAX_FILES:
         raise _refused(path, f"it holds more than {MAX_FILES} files")
-    if sum(info.file_size for info in files) > MAX_UNPACKED:
-        raise _refused(path, "it unpacks to more than 5 MB")
+    if sum(info.file_size for info in files if kinds.may_be_code(info.filename)) > MAX_UNPACKED:
+        raise _refused(path, "its files unpack to more than 5 MB")
     members: Members = {}
     for info in files:
         name = PurePosixPath(info.filename.replace("\\", "/"))
@@ -239,11 +273,6 @@ def _without_top(members: Members) -> Members:
     return members
 
 
-def _is_clutter(name: str) -> bool:
-    """Whether an operating system added it to the zip."""
-    return any(part in IGNORED for part in PurePosixPath(name.replace("\\", "/")).parts)
-
-
 def _unpacked(path: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
     """A member's content; the size in its header is not trusted."""
     with archive.open(info) as handle:
@@ -255,7 +284,7 @@ def _unpacked(path: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> by
 
 def _manifest(path: Path, archive: zipfile.ZipFile, members: Members) -> dict[str, Any]:
     """The metadata that ``course submit`` wrote; empty for an archive made by hand."""
-    info = members.get("submission.json")
+    info = members.get(MANIFEST)
     if info is None:
         return {}
     manifest: Any = None
@@ -310,9 +339,9 @@ class _Request(msgspec.Struct, frozen=True):
     skip: tuple[str, ...] = ()
 
 
-#: A file by its name in its archive, the digest of its content, the names of the functions in it, and how
-#: much code was parsed to find them.
-Outline = tuple[str, str, tuple[str, ...], int]
+#: A file by its name in its archive, the digest of its content, the names of the functions in it, how much
+#: code was parsed to find them, and what it is if that is not what its name says.
+Outline = tuple[str, str, tuple[str, ...], int, str]
 
 
 class _Reply(msgspec.Struct, frozen=True):
@@ -362,7 +391,7 @@ class Reader:
         return None if told.name is None else ArchiveContent(told.name, told.content, told.notes, told.copies)
 
     def outlines(self, path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> tuple[Outline, ...]:
-        """The functions that a module or a notebook defines, or each file in an archive.
+        """What a file is, and the functions that it defines, or each file in an archive.
 
         Args:
             skip: members of the archive to ignore.
@@ -520,23 +549,43 @@ def _answer(ask: _Request) -> _Reply:
 
 
 def _outlines(path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> Iterator[Outline]:
-    if path.suffix.casefold() == ".zip":
+    with path.open("rb") as handle:
+        content = handle.read(MAX_NOTEBOOK + 1)
+    kind = kinds.kind_of(path.name, content)
+    if kind == "a zip archive" or path.suffix.casefold() == ".zip":
         files = outline_of(path, skip)
+    elif kind in _TARS:
+        files = _compressed(path, kind)
     else:
-        with path.open("rb") as handle:
-            content = handle.read(MAX_NOTEBOOK + 1)
-        files = [("", content)] if len(content) <= MAX_NOTEBOOK else []
-    for name, content in files:
-        yield name, hashlib.sha256(content).hexdigest(), *_defined(name or path.name, content, functions)
+        digest = hashlib.sha256(content).hexdigest()
+        if len(content) > MAX_NOTEBOOK:
+            yield "", digest, (), 0, "larger than 32 MB"
+        elif kind in _IS_CODE:
+            yield "", digest, *_defined(path.name, content, functions), kind
+        else:
+            yield "", digest, (), 0, kind
+        return
+    if not files:
+        yield "", hashlib.sha256(content).hexdigest(), (), 0, f"{kind} without a file of code"
+    for name, found in files:
+        what = kinds.kind_of(name, found)
+        digest = hashlib.sha256(found).hexdigest()
+        yield name, digest, *(_defined(name, found, functions) if what in _IS_CODE else ((), 0)), what
+
+
+#: What is read as code; "" is what its name says.
+_IS_CODE = frozenset({"", "a text", "a notebook"})
 
 
 def _defined(name: str, content: bytes, functions: tuple[str, ...]) -> tuple[tuple[str, ...], int]:
     """The functions among these that a file's top level defines, and how much code was parsed for that."""
+    if content[:2] in {b"\xff\xfe", b"\xfe\xff"}:
+        content = content.decode("utf-16", "replace").encode()  # as ``assign`` reads it
     if not any(function.encode() in content for function in functions):
         return (), 0  # parsing takes a hundred times as long as looking
     pieces: list[str | bytes] = [content]
     try:
-        if name.casefold().endswith(".ipynb"):
+        if name.casefold().endswith(".ipynb") or kinds.is_notebook(content):
             cells = json.loads(content).get("cells", ())
             pieces = ["".join(cell.get("source", ())) for cell in cells if cell.get("cell_type") == "code"]
     except (ValueError, AttributeError, TypeError, RecursionError):

@@ -28,6 +28,8 @@ __all__ = [
 #: Diagnosis of a check that broke on a student's value and not on the model solution's.
 NOT_JUDGED = "NOT_JUDGED"
 _MOST_NOTES = 5
+#: What ``git merge`` leaves where both sides changed the same lines.
+_MERGE = ("<<<<<<<", "=======", ">>>>>>>")
 
 
 def result(check: Check, status: Status, **fields: Any) -> CheckResult:
@@ -138,22 +140,28 @@ def left_out_notes(remote: RemoteSubmission, places: Places) -> list[str]:
 
 
 def _left_out(fault: LoadFault, faults: Sequence[LoadFault], places: Places) -> str:
-    failure = fault.failure
-    where = places.heading(failure.line) if failure.line else places.module
-    said = f": {_brief(failure)}" if failure.message else ""
+    where = places.heading(fault.failure.line) if fault.failure.line else places.module
     if fault.stage == "magic":
         return f"{where}: left out, since it is not Python: {fault.code.strip()}"
-    if fault.stage == "syntax":
-        return f"{where}: left out, since Python cannot read it{said}.{_after(newer(failure, fault.code))}"
-    if failure.type == "ImportNotDeclaredError":
-        advice = absent(failure, fault.code)
+    if fault.failure.type == "ImportNotDeclaredError":
+        advice = absent(fault.failure, fault.code)
         # A plot costs nothing, so a package that something stands for is worth a word only where it is used.
-        return f"{where}: {failure.message}.{_after(advice)}" if advice or fault.stage == "import" else ""
+        worth = advice or fault.stage == "import"
+        return f"{where}: {fault.failure.message}.{_after(advice)}" if worth else ""
+    return f"{where}: left out{_reason(fault, faults, places)}"
+
+
+def _reason(fault: LoadFault, faults: Sequence[LoadFault], places: Places) -> str:
+    failure = fault.failure
+    said = f": {_brief(failure)}" if failure.message else ""
+    if fault.stage == "syntax" and fault.code.startswith(_MERGE):
+        return ". It is the mark of a merge: keep one of the two versions, and delete the marks."
+    if fault.stage == "syntax":
+        return f", since Python cannot read it{said}.{_after(newer(failure, fault.code))}"
     if (line := _line_needed(failure, faults)) is not None:
-        return f"{where}: left out, since it needs what was left out {places.phrase(line)}."
-    if reason := lacking(failure, fault.code):
-        return f"{where}: left out. {reason}"
-    return f"{where}: left out, since it raises {failure.type} when it is loaded{said}."
+        return f", since it needs what was left out {places.phrase(line)}."
+    lacks = lacking(failure, fault.code)
+    return f". {lacks}" if lacks else f", since it raises {failure.type} when it is loaded{said}."
 
 
 def _line_needed(failure: StudentFailure, faults: Sequence[LoadFault]) -> int | None:

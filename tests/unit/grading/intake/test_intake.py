@@ -183,7 +183,7 @@ def _bomb(path: Path) -> None:
 
 
 def _many(path: Path) -> None:
-    archive(path, {f"file{number}.txt": b"" for number in range(21)})
+    archive(path, {f"file{number}.txt": b"" for number in range(501)})
 
 
 def _lying_size(path: Path) -> None:

@@ -13,6 +13,7 @@ import functools
 import hashlib
 import json
 import os
+import re
 import stat
 import subprocess
 import sys
@@ -80,12 +81,14 @@ class ArchiveContent:
         name: in the archive.
         notes: assumptions that were made, one sentence each.
         copies: the members that are the same file, this one included.
+        written: the Python and NumPy that it was written with, by its own account; empty if it has none.
     """
 
     name: str
     content: bytes
     notes: tuple[str, ...] = ()
     copies: tuple[str, ...] = ()
+    written: str = ""
 
 
 def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
@@ -115,9 +118,22 @@ def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
             )
         raw = members[name].filename
         notes = tuple(one_line(note) for note in _notes(path, name, raw, wanted, exercise))
-        return ArchiveContent(raw, content, notes, tuple(members[other].filename for other in wanted))
+        copies = tuple(members[other].filename for other in wanted)
+        return ArchiveContent(raw, content, notes, copies, _written(manifest.get("written_with")))
 
     return _opened(path, read)
+
+
+_VERSION = re.compile(r"[\w.+-]{1,40}")
+
+
+def _written(told: Any) -> str:
+    """The versions that a manifest claims, as part of a sentence."""
+    said = [(name, told.get(key)) for key, name in _TOOLS] if isinstance(told, dict) else []
+    return " and ".join(f"{name} {v}" for name, v in said if isinstance(v, str) and _VERSION.fullmatch(v))
+
+
+_TOOLS = (("python", "Python"), ("numpy", "NumPy"))
 
 
 def _notes(path: Path, name: str, raw: str, wanted: list[str], exercise: Exercise) -> Iterator[str]:
@@ -353,6 +369,7 @@ class _Reply(msgspec.Struct, frozen=True):
     record: bytes = b""
     notes: tuple[str, ...] = ()
     copies: tuple[str, ...] = ()
+    written: str = ""
     outlines: tuple[Outline, ...] = ()
 
 
@@ -388,7 +405,9 @@ class Reader:
         told = self._ask(
             _Request("archive", one_line(path.name), path=os.fsencode(path.absolute()), **_wanted(exercise))
         )
-        return None if told.name is None else ArchiveContent(told.name, told.content, told.notes, told.copies)
+        if told.name is None:
+            return None
+        return ArchiveContent(told.name, told.content, told.notes, told.copies, told.written)
 
     def outlines(self, path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> tuple[Outline, ...]:
         """What a file is, and the functions that it defines, or each file in an archive.
@@ -545,7 +564,9 @@ def _answer(ask: _Request) -> _Reply:
     found = module_in(path, exercise)
     if found is None:
         return _Reply()
-    return _Reply(name=found.name, content=found.content, notes=found.notes, copies=found.copies)
+    return _Reply(
+        name=found.name, content=found.content, notes=found.notes, copies=found.copies, written=found.written
+    )
 
 
 def _outlines(path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> Iterator[Outline]:

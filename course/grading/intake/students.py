@@ -18,12 +18,15 @@ import contextlib
 import hashlib
 import io
 import os
+import re
 import stat
 import tokenize
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
+
+import msgspec
 
 from course.catalog.models import Exercise
 from course.errors import InternalError, UngradableError
@@ -37,7 +40,7 @@ from course.handed_in.cells import MAX_NOTEBOOK
 from course.handed_in.notebook import RECORD
 from course.printable import one_line
 from course.scoring.judging.session import Submission
-from course.scoring.verdict import Problem
+from course.scoring.verdict import Problem, Verdict
 
 __all__ = [
     "MAX_FILE",
@@ -59,6 +62,7 @@ class Entry:
         problem: why there is nothing; if both are None, the exercise was not handed in.
         times: of the submission, each with its source.
         notes: assumptions that were made, and files that were left aside, one sentence each.
+        written: the Python and NumPy that it was written with, by its own account; empty if unknown.
         found: files that may be meant for the exercise, where there is a problem.
         only: ids of the checks to run; empty runs all.
         asks: which functions each check used is asked for, too.
@@ -70,9 +74,19 @@ class Entry:
     problem: Problem | None = None
     times: tuple[SubmittedAt, ...] = field(default=(), compare=False)
     notes: tuple[str, ...] = field(default=(), compare=False)
+    written: str = field(default="", compare=False)
     found: Found | None = field(default=None, compare=False)
     only: tuple[str, ...] = ()
     asks: bool = False
+
+    def told(self, verdict: Verdict) -> Verdict:
+        """A verdict on it with what there is to say of the file, and with its versions where they matter."""
+        notes = self.notes
+        said = [*verdict.warnings, *(f"{check.message} {check.help}" for check in verdict.checks)]
+        said += [verdict.error.help] if verdict.error else []
+        if self.written and any("checked with" in one for one in said):
+            notes = (*notes, f"It was written with {self.written}.")
+        return msgspec.structs.replace(verdict, warnings=(*verdict.warnings, *notes))
 
     @property
     def sha256(self) -> str:
@@ -137,7 +151,7 @@ def _entries(student: Student, exercises: Sequence[Exercise], *, required: bool)
         if isinstance(item, _FoundWork):
             times = witnesses(student, exercise.id, item.submission.sha256, item.path)
             notes = (*item.notes, *_beside(exercise, item, left))
-            yield Entry(name, exercise, item.submission, times=times, notes=notes)
+            yield Entry(name, exercise, item.submission, times=times, notes=notes, written=item.written)
         else:
             yield _without(student, exercise, item, left, required=required, alone=alone)
 
@@ -231,6 +245,7 @@ class _FoundWork:
     used: tuple[tuple[str, str], ...]
     contents: frozenset[str]
     notes: tuple[str, ...] = ()
+    written: str = ""
 
 
 def _find(place: Place, archives: list[Path], exercise: Exercise) -> _FoundWork | None:
@@ -276,7 +291,18 @@ def _find(place: Place, archives: list[Path], exercise: Exercise) -> _FoundWork 
     if len(candidates) > 1:
         notes.append(f"These are the same file: {one_line(names)}.")
     digests = frozenset({hashlib.sha256(contents[0]).hexdigest()})
-    return _FoundWork(_submission(exercise, called, contents[0]), path, tuple(used), digests, tuple(notes))
+    submission = _submission(exercise, called, contents[0])
+    written = next((held.written for _, held in packed), "")
+    if RECORD in submission.files:
+        written = _kernel(contents[0]) or written
+    return _FoundWork(submission, path, tuple(used), digests, tuple(notes), written)
+
+
+def _kernel(notebook: bytes) -> str:
+    """The Python that a notebook ran in last, by its own account; "" if it says nothing."""
+    at = notebook.rfind(b'"language_info"')
+    found = re.search(rb'"version"\s*:\s*"(\d[\w.+-]{0,40})"', notebook[at : at + 2000]) if at >= 0 else None
+    return f"Python {found[1].decode()}" if found else ""
 
 
 def _content(place: Place, path: Path, exercise: Exercise, *, notebook: bool) -> bytes:

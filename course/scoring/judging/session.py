@@ -27,6 +27,7 @@ from course.isolation.launch import keep_private
 from course.isolation.levels import Level, Spawner
 from course.isolation.probe import open_sandbox
 from course.isolation.session import LoadRefusedError
+from course.scoring import versions
 from course.scoring.checks.collected import Check, CollectedChecks, companion, companion_path, not_importable
 from course.scoring.failures import OURS, CheckFailed, Report, broke_at, finding_for, finding_of
 from course.scoring.judging.explaining import Again, Explainer
@@ -200,7 +201,10 @@ class GradingSession:
         """
         with pinned_to(self._processor):
             verdict = self._grade(submission, only)
-        return msgspec.structs.replace(verdict, warnings=(*verdict.warnings, *submission.notes))
+        told = [*submission.notes]
+        if self._terms.home:
+            told += versions.notes(submission.files[self.exercise.module], self._places(submission))
+        return msgspec.structs.replace(verdict, warnings=(*verdict.warnings, *told))
 
     def _grade(self, submission: Submission, only: Collection[str]) -> Verdict:
         self.printed = ""

@@ -114,7 +114,7 @@ def load_problem(refused: LoadRefusedError, places: Places) -> Problem:
             or "Take it out. Plots and experiments belong in a file of your own that imports this one.",
         )
     if refused.stage == "import":
-        said = f": {_brief(failure)}" if failure.message else ""
+        said = f": {failure.message.rstrip(' .')}" if failure.message else ""
         return Problem(
             "import_error",
             f"{where}: loading it raises {failure.type}{said}.",

@@ -102,6 +102,7 @@ class Terms(msgspec.Struct, frozen=True):
 Scope = Literal["public", "full"]
 T = TypeVar("T")
 
+_LESS_TIME = 4
 _PRINTED = 4000  # characters of what a submission prints in one check, or while it is loaded
 _STATUS = {
     "error": Status.ERROR,
@@ -229,6 +230,12 @@ class GradingSession:
             with contextlib.suppress(IsolationError):
                 remote.close()
         verdict = self._graded(results)
+        if not self._terms.home:
+            left_out += [
+                f"`{task}` ran out of time in one check; each further check of it had a quarter of that."
+                for task in sorted(self._hung)
+                if sum(result.task == task for result in results) > 1
+            ]
         return msgspec.structs.replace(verdict, warnings=(*verdict.warnings, *left_out))
 
     def _nothing_loaded(self, remote: RemoteSubmission, submission: Submission) -> Problem:
@@ -306,7 +313,7 @@ class GradingSession:
     def _run_one(self, check: Check, remote: RemoteSubmission, places: Places) -> CheckResult:
         self.running = check.title
         hung = check.task in self._hung
-        remote.begin_check(check.task, self.exercise.patience(check.id, hung) if self._terms.home else None)
+        remote.begin_check(check.task, self._patience(check, hung))
         start = perf_counter()
         outcome = self._checks.run(check, remote)
         self.asked[check.id], self.took[check.id] = frozenset(remote.asked), remote.used
@@ -338,6 +345,15 @@ class GradingSession:
             return result(check, Status.GRADER_ERROR, message=message, duration_ms=duration_ms)
         finding = unjudged(remote.returned, proven=bool(proven))
         return found(check, Status.FAIL, finding, duration_ms, traceback=OURS + where, stdout=printed)
+
+    def _patience(self, check: Check, hung: bool) -> float | None:
+        """Seconds of CPU time for a check; less where another of its function ran out of time before.
+
+        A function that never answers would hold a busy grader for minutes of wall time.
+        """
+        if self._terms.home:
+            return self.exercise.patience(check.id, hung)
+        return self._terms.timeout / _LESS_TIME if hung else None
 
     def _keep_curve(self, check: Check, failed: CheckFailed, remote: RemoteSubmission) -> None:
         if not self._terms.home:

@@ -39,6 +39,23 @@ def test_a_function_that_never_answers_leaves_the_other_tasks_their_time(
     assert {str(check.status) for check in results(verdict, "doublings")} == {"pass"}
 
 
+def test_once_a_function_ran_out_of_time_its_further_checks_have_a_quarter(
+    catalog: Catalog, doubling: Exercise, solution: bytes
+) -> None:
+    source = solution + b"\ndef double(x):\n    while True:\n        pass\n"
+    with GradingSession(doubling, catalog, scope="full", terms=Terms(timeout=1.0)) as session:
+        verdict = grade(session, source)
+        late = [session.took[check.id] for check in results(verdict, "double") if check.status == "timeout"]
+    assert len(late) >= 2
+    assert late[0] >= 0.9
+    assert max(late[1:]) < 0.5
+    assert verdict.warnings == (
+        "`double` ran out of time in one check; each further check of it had a quarter of that.",
+    )
+    with GradingSession(doubling, catalog, terms=Terms(timeout=1.0)) as session:
+        assert grade(session, solution).warnings == ()
+
+
 @pytest.mark.skipif(not hasattr(os, "sched_getaffinity"), reason="processes are not kept on processors here")
 def test_only_while_it_grades_does_a_session_stay_on_one_processor(
     catalog: Catalog, doubling: Exercise, solution: bytes

@@ -5,11 +5,17 @@ notes. So each file needs a role: a module of a package, one of the data files b
 files, a lesson that the syllabus names, a question, a scene. What else lies in these folders is left out and
 named. Git is not asked, so an unpacked source archive gives the same wheel. An editable installation is not
 built from this.
+
+A wheel also notes the Python and the NumPy of whoever builds it: they are those that grade, and a student's
+``course check`` warns of what these cannot read (``course/scoring/versions.py`` says how).
 """
 
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
+import tempfile
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -44,6 +50,25 @@ _UNSAID = re.compile(r"__pycache__|.*\.pyc|\..*_cache|\.hypothesis|\.ipynb_check
 _SAID = 20
 
 
+#: Run by the Python that builds, outside of the environment that pip makes for a build: NumPy is there.
+_COLLECT = """
+import importlib, json, platform, sys
+names = {}
+modules = ("numpy", "numpy.linalg", "numpy.random", "numpy.fft", "math", "cmath", "itertools", "functools",
+           "statistics", "random", "typing", "collections", "collections.abc", "contextlib", "dataclasses",
+           "operator", "fractions", "enum", "warnings")
+for module in modules:
+    try:
+        names[module] = sorted(dir(importlib.import_module(module)))
+    except ImportError:
+        pass
+numpy = sys.modules["numpy"].__version__ if "numpy" in names else ""
+print(json.dumps({"python": platform.python_version(), "numpy": numpy, "names": names,
+                  "modules": sorted(sys.stdlib_module_names)}))
+"""
+_NAME = "graded_with.json"
+
+
 class Roles(BuildHookInterface):  # type: ignore[type-arg]
     """The files of a distribution, for hatchling."""
 
@@ -52,7 +77,15 @@ class Roles(BuildHookInterface):  # type: ignore[type-arg]
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Add every file with a role, and name the others."""
         if version == "editable":
-            return
+            return  # a checkout grades with itself
+        if self.target_name == "wheel":
+            told = subprocess.run(
+                [sys.executable, "-I", "-c", _COLLECT], capture_output=True, check=True
+            ).stdout
+            self._folder = tempfile.TemporaryDirectory()
+            path = Path(self._folder.name) / _NAME
+            path.write_bytes(told)
+            build_data["force_include"][str(path)] = f"course/{_NAME}"
         root = Path(self.root)
         moved = {"exercises": "course/content/exercises", "quiz": "course/content/quiz"}
         for top in ("course", "exercises", "quiz"):
@@ -66,6 +99,11 @@ class Roles(BuildHookInterface):  # type: ignore[type-arg]
                 self.app.display_warning(f"Left out, without a role: {path.relative_to(root).as_posix()!r}")
             if len(left) > _SAID:
                 self.app.display_warning(f"Left out, without a role: {len(left) - _SAID} more in {top}")
+
+    def finalize(self, version: str, _build_data: dict[str, Any], _artifact_path: str) -> None:
+        """Let go of what was noted."""
+        if version != "editable" and self.target_name == "wheel":
+            self._folder.cleanup()
 
 
 def declared(folder: Path) -> Iterator[Path]:

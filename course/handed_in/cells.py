@@ -7,10 +7,7 @@ taken out line by line, so that every other line keeps its number within its cel
 from __future__ import annotations
 
 import ast
-import itertools
 import re
-import warnings
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -19,12 +16,9 @@ import msgspec
 
 from course.errors import UngradableError, UsageError
 from course.handed_in.limits import MAX_CELLS, MAX_CODE, MAX_NOTEBOOK
+from course.isolation.inside import statements
 
 _FIX = "Save it from Jupyter again, or hand in the .py file."
-#: Cell magics whose body is Python of this notebook; the cells of all others are something else.
-_PYTHON_MAGICS = frozenset({"time", "timeit", "capture", "prun", "memit", "mprun", "lprun"})
-#: Of a line without space around it: a million spaces in a row would be tried in every way to part them.
-_MAGIC = re.compile(r"[%!?]|[\w.,\s\[\]]+=\s*[%!]|.*\S\?{1,2}$")
 
 
 class _Cell(msgspec.Struct, frozen=True):
@@ -138,11 +132,30 @@ def _decoded(data: bytes, name: str) -> _Notebook:
     try:
         return msgspec.json.decode(data.removeprefix(b"\xef\xbb\xbf"), type=_Notebook)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        raise UngradableError(
-            f"{name} is not a notebook: {str(error)[:200] or 'it cannot be read'}.",
-            help=_FIX,
-            code="not_a_notebook",
-        ) from None
+        message, advice = _why_unread(data, name, error)
+        raise UngradableError(message, help=advice, code="not_a_notebook") from None
+
+
+#: What ``git merge`` leaves where both sides changed the same lines.
+_MERGE = re.compile(rb"^(?:<{7}|={7}|>{7})(?: |\r?$)", re.MULTILINE)
+
+
+def _why_unread(data: bytes, name: str, error: Exception) -> tuple[str, str]:
+    """Why a file is no notebook, and what to do, in its student's words and not in a parser's."""
+    if not data.strip():
+        return f"{name} is empty.", f"Was it saved? {_FIX}"
+    if found := _MERGE.search(data):
+        line = data.count(b"\n", 0, found.start()) + 1
+        message = (
+            f"{name} has the marks of a merge in it, the first on line {line}, so no program can open it."
+        )
+        return message, "Open it in a text editor, keep one of the two versions and delete the marks."
+    if isinstance(error, msgspec.ValidationError) or "truncated" not in str(error):
+        at = re.search(r"\(byte (\d+)\)", str(error))
+        line = data.count(b"\n", 0, int(at[1])) + 1 if at else 0
+        where = f" from line {line} on" if at else ""
+        return f"{name} is not a notebook: Jupyter could not read it{where} either.", _FIX
+    return f"{name} ends in the middle: it was not saved, or not copied, to its end.", _FIX
 
 
 def _language(metadata: _Metadata | None) -> str:
@@ -160,24 +173,15 @@ def _language(metadata: _Metadata | None) -> str:
 
 def _code_cell(number: int, cell: _Cell) -> CodeCell:
     text, dropped = _without_magics(_text(cell).replace("\r\n", "\n").replace("\r", "\n"))
-    text, more = _without_shell(text)
+    text, more = statements.without_shell(text)
     tags = cell.metadata.get("course")
     tags = tags if isinstance(tags, dict) else {}
-    return CodeCell(number, text, _parsed(text), tags, (*dropped, *more), _text(cell), cell.id)
+    return CodeCell(number, text, statements.tree(text), tags, (*dropped, *more), _text(cell), cell.id)
 
 
 def _text(cell: _Cell) -> str:
     source = cell.source or cell.input
     return source if isinstance(source, str) else "".join(source)
-
-
-def _parsed(text: str) -> ast.Module | None:
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # about escapes in the student's strings; not our business here
-            return ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return None
 
 
 # -- what IPython adds ------------------------------------------------------------------------------------
@@ -186,88 +190,15 @@ def _parsed(text: str) -> ast.Module | None:
 def _without_magics(text: str) -> tuple[str, tuple[tuple[int, str], ...]]:
     """The text as Python, and the lines that were taken out of it."""
     first = text.lstrip("\n").partition("\n")[0]
-    if first.startswith("%%"):
-        name = first[2:].split(maxsplit=1)[0] if first[2:].strip() else ""
-        at = text.index("%%")
-        line = text.count("\n", 0, at) + 1
-        if name not in _PYTHON_MAGICS:
-            return "", ((line, first),)
-        rest, dropped = _without_magics(text[:at] + text[at + len(first) :])
-        return rest, ((line, first), *dropped)
-    if _parsed(text) is not None:
-        return text, ()  # Python as it stands, also where a line begins with a percent sign
-    lines = text.split("\n")
-    taken: list[tuple[int, str]] = []
-    for index in _statement_lines(text):
-        whole = lines[index]
-        shown = whole.strip()
-        if _MAGIC.match(shown) and _parsed(shown) is None:
-            indent = whole[: len(whole) - len(whole.lstrip())]
-            lines[index] = indent + "pass"
-            taken.append((index + 1, shown))
-    return "\n".join(lines), tuple(taken)
-
-
-def _without_shell(text: str) -> tuple[str, tuple[tuple[int, str], ...]]:
-    """The text without statements that are magics written out: get_ipython().run_line_magic(...)."""
-    tree = _parsed(text) if "get_ipython" in text else None
-    if tree is None:
-        return text, ()
-    lines = text.split("\n")
-    taken: list[tuple[int, str]] = []
-    before = 0  # the last line of the statements so far
-    for node, following in itertools.zip_longest(tree.body, tree.body[1:]):
-        first, last = node.lineno - 1, node.end_lineno or node.lineno
-        alone = before <= first and (following is None or following.lineno > last)
-        before = last
-        if alone and _asks_shell(node):
-            taken.append((node.lineno, lines[first].strip()))
-            lines[first:last] = ["pass", *[""] * (last - first - 1)]
-    return "\n".join(lines), tuple(taken)
-
-
-def _asks_shell(node: ast.stmt) -> bool:
-    inner = node.value if isinstance(node, ast.Expr) else None
-    while isinstance(inner, ast.Attribute | ast.Call):
-        inner = inner.value if isinstance(inner, ast.Attribute) else inner.func
-    return isinstance(inner, ast.Name) and inner.id == "get_ipython"
-
-
-_PIECE = re.compile(
-    # A string that is not closed ends with its line: looking for its end at each quote takes for ever.
-    r"""(?P<comment>\#[^\n]*)|(?P<triple>'{3}|\"{3})|(?P<string>'(?:\\.|[^'\\\n])*'?|"(?:\\.|[^"\\\n])*"?)"""
-    r"""|(?P<open>[(\[{])|(?P<close>[)\]}])|(?P<joined>\\\n)|(?P<end>\n)|(?P<other>.)""",
-    re.DOTALL | re.VERBOSE,
-)
-
-
-def _statement_lines(text: str) -> Iterator[int]:
-    """Indices of the lines on which a statement can begin: none inside a string or a bracket."""
-    line = depth = position = 0
-    yield 0
-    while position < len(text):
-        piece = _PIECE.match(text, position)
-        if piece is None:
-            return
-        position = piece.end()
-        kind, found = piece.lastgroup, piece.group()
-        if kind == "triple":
-            closed = text.find(found, position)
-            stop = len(text) if closed < 0 else closed + 3
-            line += text.count("\n", position, stop)
-            position = stop
-        elif kind == "string":
-            line += found.count("\n")  # escaped ones
-        elif kind == "open":
-            depth += 1
-        elif kind == "close":
-            depth = max(0, depth - 1)
-        elif kind == "joined":
-            line += 1
-        elif kind == "end":
-            line += 1
-            if depth == 0:
-                yield line
+    if not first.startswith("%%"):
+        return statements.without_magics(text)
+    name = first[2:].split(maxsplit=1)[0] if first[2:].strip() else ""
+    at = text.index("%%")
+    line = text.count("\n", 0, at) + 1
+    if name not in statements.PYTHON_MAGICS:
+        return "", ((line, first),)
+    rest, dropped = _without_magics(text[:at] + text[at + len(first) :])
+    return rest, ((line, first), *dropped)
 
 
 def read_notebook(path: Path) -> bytes:

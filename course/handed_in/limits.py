@@ -19,11 +19,12 @@ MAX_NOTEBOOK = 32 << 20
 #: Code cells; the longest notebooks that people write have some hundreds.
 MAX_CELLS = 2000
 
-#: Files in an archive: every exercise and warm-up of a course, and its manifest.
-MAX_FILES = 100
-#: All files of an archive together, in bytes, and the archive: none of files within the limits is larger.
+#: Files in an archive; of a course's own there are some forty.
+MAX_FILES = 500
+#: All of an archive that may be read, in bytes; an environment or a report beside it does not count, and the
+#: archive itself may be larger.
 MAX_UNPACKED = 5 << 20
-MAX_ARCHIVE = 6 << 20
+MAX_ARCHIVE = 300 << 20
 #: The member that says what an archive holds, and the version of its form.
 MANIFEST = "submission.json"
 FORMAT_VERSION = 1

@@ -67,6 +67,8 @@ class NotebookSource(Places):
 
     def submission(self, exercise: Exercise) -> Submission:
         """The module to be graded; its lines are reported as cells."""
+        from course.scoring.judging.submission import Submission
+
         return Submission({exercise.module: self.source}, replace(self, module=exercise.module), self.notes)
 
     def phrase(self, line: int) -> str:
@@ -97,6 +99,8 @@ _IN_TRACE = re.compile(r"^\S+:(\d+) in ", re.MULTILINE)
 
 def opened(files: Mapping[str, bytes], exercise: Exercise) -> Submission:
     """The submission, ready for grading; with a notebook's ``RECORD``, messages name its cells."""
+    from course.scoring.judging.submission import Submission
+
     record = files.get(RECORD)
     if record is None:
         return Submission(files)
@@ -135,6 +139,12 @@ def source_of(
     chosen = [cell for cell in cells if _counts(cell, exercise.id, functions)]
     if not chosen:
         listed = ", ".join(task.id for task in exercise.task)
+        if not any(cell.text.strip() for cell in cells):
+            raise UngradableError(
+                f"{name} has no code in it.",
+                help="Was it saved after you wrote it? `course notebook build` makes a new one.",
+                code="no_declared_functions",
+            )
         raise UngradableError(
             f"{name} defines none of the functions of this exercise.",
             help=f"Keep the names the notebook gave: {listed}.",

@@ -128,7 +128,7 @@ _CALLBACK_BYTES = 16 << 20
 #: The total size of everything in one check: a check may keep all results, too. Accepted solutions of the
 #: course were seen to need 1 MB.
 _CHECK_BYTES = 32 << 20
-_MOST_FAULTS = 20
+_MOST_FAULTS = 60
 _SYSTEM_TYPES = frozenset(systems.SYSTEMS.values())
 
 
@@ -139,14 +139,16 @@ class LoadRefusedError(Exception):
         stage: "syntax", "import", "timeout" or "crash".
         failure: what happened, as far as it is known.
         text: the offending line, for a syntax error.
+        code: the line of the file.
         printed: what it printed till then.
     """
 
-    def __init__(self, stage: str, failure: StudentFailure, text: str = "") -> None:
+    def __init__(self, stage: str, failure: StudentFailure, text: str = "", code: str = "") -> None:
         super().__init__(stage, str(failure))
         self.stage = stage
         self.failure = failure
         self.text = text
+        self.code = code
         self.printed = ""
 
 
@@ -154,16 +156,19 @@ class LoadFault(NamedTuple):
     """What of a submission could not be loaded, by its own account.
 
     Attributes:
-        stage: "syntax" or "import".
+        stage: "syntax", "import", "magic" for a line of IPython's, or "absent" for an import that something
+            stands for.
         failure: why; its line is where what was left out begins.
         names: what that would have defined.
         text: the offending line, for a syntax error.
+        code: that line of the file.
     """
 
     stage: str
     failure: StudentFailure
     names: frozenset[str]
     text: str = ""
+    code: str = ""
 
 
 class RemoteFunction:
@@ -411,6 +416,11 @@ class Connection:
         fault = next((fault for fault in self.faults if function in fault.names), None)
         return StudentFailure.missing(function, fault.failure if fault else None)
 
+    def brought(self, name: str) -> StudentFailure | None:
+        """What kept a name from being defined: its statement's failure, or that of a star import."""
+        found = [fault for fault in self.faults if {name, "*"} & fault.names]
+        return max(found, key=lambda fault: name in fault.names).failure if found else None
+
     def _load(self) -> frozenset[str]:
         self._await_lockdown()
         try:
@@ -426,7 +436,8 @@ class Connection:
             return frozenset(claimed_names(value.get("names")))
         if kind == Kind.REFUSED and isinstance(value, dict):
             fault = self._fault(value)
-            raise LoadRefusedError(fault.stage, fault.failure, fault.text)
+            stage = fault.stage if fault.stage == "syntax" else "import"
+            raise LoadRefusedError(stage, fault.failure, fault.text, fault.code)
         raise LoadRefusedError("crash", self._breach("an answer of another form"))
 
     def _await_lockdown(self) -> None:
@@ -450,9 +461,11 @@ class Connection:
         failure = self._raised(value)
         line = claimed_line(value.get("at"), self._lines())
         failure.line = line or failure.line
-        stage = "syntax" if value.get("stage") == "syntax" else "import"
+        said = value.get("stage")
+        stage = said if said in ("syntax", "magic", "absent") else "import"
         names = frozenset(claimed_names(value.get("names")))
-        return LoadFault(stage, failure, names, claimed_text(value.get("text")))
+        code = self._lines()[failure.line - 1] if failure.line else ""
+        return LoadFault(stage, failure, names, claimed_text(value.get("text")), claimed_text(code, 200))
 
     def _lines(self) -> list[str]:
         return self._files[self._main].decode("utf-8", "replace").splitlines()

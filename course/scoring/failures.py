@@ -21,6 +21,7 @@ from course.figures.described import Plot
 from course.isolation.failures import StudentFailure
 from course.isolation.session import LOOP
 from course.printable import one_line
+from course.scoring.elsewhere import absent, lacking, newer, numpys
 from course.scoring.explain.story import Diagnosis
 from course.scoring.verdict import Finding, Places
 
@@ -125,10 +126,10 @@ def _left_out(failure: StudentFailure, why: StudentFailure) -> Finding:
     said = f": {one_line(why.message, _SAID).rstrip(' .')}" if why.message else ""
     if "SyntaxError" in why.bases:
         message = f"Python cannot read `{failure.type}`{where}{said}."
-        advice = "Look at that line and the one above it: a bracket, a colon, the indentation?"
+        advice = newer(why) or "Look at that line and the one above it: a bracket, a colon, the indentation?"
     else:
         message = f"`{failure.type}` could not be made: {why.type}{where}{said}."
-        advice = "Make that line work when the file is loaded, before any function is called."
+        advice = lacking(why) or "Make that line work when the file is loaded, before any function is called."
     return Finding(message=message, help=advice, diagnosis="MISSING_FUNCTION")
 
 
@@ -151,7 +152,8 @@ def _error_finding(failure: StudentFailure, *, shown: bool) -> Finding:
     if failure.type == "ImportNotDeclaredError":
         return Finding(
             message=f"Your code needs a module{where} that this exercise does not allow.",
-            help="Do without it. Plots and experiments belong in a file of your own that imports this one.",
+            help=absent(failure, shown=shown)
+            or "Do without it. Plots and experiments belong in a file of your own that imports this one.",
             diagnosis="IMPORT_NOT_ALLOWED",
             actual=failure.message,
         )
@@ -163,10 +165,27 @@ def _error_finding(failure: StudentFailure, *, shown: bool) -> Finding:
     advice = f"{begin} the function yourself and read the traceback from the bottom up."
     return Finding(
         message=f"Your code raised {name}{where}{': ' if said else ''}{said}.",
-        help=_at_a_terminal(failure) or advice,
+        help=_apart(failure, places, shown=shown) or advice,
         diagnosis="RAISED",
         actual=f"{failure.type}: {failure.message}" if failure.message else failure.type,
     )
+
+
+def _apart(failure: StudentFailure, places: Places, *, shown: bool) -> str:
+    """The advice where the function may well work for its student; "" for any other."""
+    return _at_a_terminal(failure) or _by_a_star(failure, places) or lacking(failure, shown=shown)
+
+
+def _by_a_star(failure: StudentFailure, places: Places) -> str:
+    """The advice where a name is missing that a line left out may have brought; "" for any other."""
+    why = failure.why
+    if why is None or not why.line:
+        return ""
+    if why.type == "ImportNotDeclaredError":
+        name = failure.message.partition("'")[2].partition("'")[0]
+        advice = absent(why) or numpys(name) or "Import each name from the module that has it."
+        return f"The name may come from the import {places.phrase(why.line)}, which was left out. {advice}"
+    return f"What was left out {places.phrase(why.line)} would have defined it. Make that line work first."
 
 
 def _at_a_terminal(failure: StudentFailure) -> str:

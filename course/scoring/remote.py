@@ -327,6 +327,8 @@ class RemoteSubmission:
             yield self._live()
         except StudentFailure as failure:
             failure.places = self._places
+            if failure.type == "NameError":
+                failure.why = self._connection.brought(failure.message.partition("'")[2].partition("'")[0])
             raise
 
     def _live(self) -> Connection:

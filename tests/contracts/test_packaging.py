@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import platform
 import shutil
 import subprocess
 import sys
@@ -15,6 +16,7 @@ import tarfile
 import zipfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 ROOT = Path(__file__).parents[2]
@@ -211,6 +213,14 @@ def test_the_wheel_has_everything_a_student_needs(wheel: Path) -> None:
     ):
         assert f"course/content/exercises/warm-ups/fall-time/{needed}" in names
     assert "course/lessons/syllabus.toml" in names
+
+
+def test_the_wheel_notes_the_python_and_the_numpy_that_grade(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        told = json.loads(archive.read("course/graded_with.json"))
+    assert (told["python"], told["numpy"]) == (platform.python_version(), np.__version__)
+    assert {"sqrt", "fsum"} <= set(told["names"]["math"])
+    assert "trapezoid" in told["names"]["numpy"]
 
 
 def test_the_wheel_installs_one_package_and_nothing_beside_it(wheel: Path) -> None:

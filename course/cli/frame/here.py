@@ -102,6 +102,18 @@ class Here:
         except OSError:
             return ""
 
+    def moved(self, exercise: Exercise) -> str:
+        """The exercise's file, or its notebook, in a folder of another name; "" if there is none."""
+        if self.workspace.path(exercise.place, exercise.module).parent.exists():
+            return ""
+        names = exercise.module, Path(exercise.module).with_suffix(".ipynb").name
+        try:
+            folders = [path for path in sorted(self.workspace.root.iterdir()) if path.is_dir()]
+            found = (path / name for path in folders for name in names if (path / name).is_file())
+            return next((f"{path.parent.name}/{path.name}" for path in found), "")
+        except OSError:
+            return ""
+
     def source(self, exercise: Exercise) -> bytes:
         """The student's file.
 
@@ -111,8 +123,10 @@ class Here:
         path = self.workspace.path(exercise.place, exercise.module)
         shown = self.workspace.shown(path)
         if not path.exists():
-            other = self.misnamed(exercise)
+            other, moved = self.misnamed(exercise), self.moved(exercise)
             advice = f"Rename {other} to {exercise.module}: capitals count." if other else ""
+            if moved and not other:
+                advice = f"There is {moved}. The folder must be called {exercise.place}: rename it back."
             raise UngradableError(
                 f"There is no file {shown}.",
                 help=advice or f"`course start {exercise.id}` puts one there.",

@@ -62,11 +62,15 @@ class AssignedOne(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class FoundFile(msgspec.Struct, frozen=True, kw_only=True):
-    """A file that may be meant for an exercise, and which of its functions it defines."""
+    """A file that may be meant for an exercise, and which of its functions it defines.
+
+    ``kind`` says what it is, or why it cannot be read; it is empty for a .py file or a notebook.
+    """
 
     file: str
     defines: tuple[str, ...]
     proposed: bool
+    kind: str = ""
 
 
 class UnsettledOne(msgspec.Struct, frozen=True, kw_only=True):

@@ -118,7 +118,8 @@ def _unsettled_one(item: Unsettled) -> UnsettledOne:
     from course.cli.grade.replies import FoundFile, UnsettledOne
 
     files = tuple(
-        FoundFile(file=one.name, defines=one.defines, proposed=one.proposed) for one in item.found.candidates
+        FoundFile(file=one.name, defines=one.defines, proposed=one.proposed, kind=one.kind)
+        for one in item.found.candidates
     )
     return filled(UnsettledOne, item, reason=item.found.reason, files=files)
 
@@ -144,6 +145,8 @@ def _show_unsettled(console: Console, left: list[Unsettled], out: Path) -> None:
         console.item(about, told)
         for one in item.found.candidates:
             defines = f"defines {', '.join(one.defines)}" if one.defines else "defines none of the functions"
+            if one.kind:
+                defines = f"{one.kind}; {defines}" if one.defines else one.kind
             console.item(one.name, defines + ("; proposed" if one.proposed else ""), indent=4)
     if len(left) > _SHOWN:
         console.line(f"and {len(left) - _SHOWN} more; --json lists them all.", indent=2)

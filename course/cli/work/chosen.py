@@ -139,8 +139,8 @@ def work_of(
             why_not = f"{exercise.module} was worked in too, and is handed in" if notebook else why_not
         elif notebook is not None:
             chosen.append(notebook)
-        elif module == _STUB or (module == _MISSING and exercise.id in here.workspace.started()):
-            other = here.misnamed(exercise)
+        elif module == _STUB or exercise.id in here.workspace.started() or here.moved(exercise):
+            other = here.misnamed(exercise) or here.moved(exercise)
             left_out += _reply(
                 exercise, exercise.module, f"{module}; {other} is not read" if other else module
             )

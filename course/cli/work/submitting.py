@@ -101,13 +101,18 @@ def submit(
 def archive(
     course_id: str, version: str, files: Mapping[str, bytes], quiz: Sequence[Mapping[str, object]] = ()
 ) -> bytes:
-    """The zip: each file, and ``submission.json`` with its checksum. The same arguments, the same bytes.
+    """The zip: each file, and ``submission.json`` with its checksum and this Python's and NumPy's versions.
+
+    The same arguments, the same bytes.
 
     Args:
         quiz: attempts as ``course.progress.quiz.records`` gives them; a grading run scores them again.
     """
+    from course.scoring.versions import here
+
     manifest = {
         "format_version": FORMAT_VERSION,
+        "written_with": here(),
         "course": {"id": course_id, "version": version},
         "files": {path: hashlib.sha256(data).hexdigest() for path, data in sorted(files.items())},
         "quiz": list(quiz),
@@ -247,7 +252,9 @@ def _show(
         )
     if files or quiz:
         console.line(
-            f"{MANIFEST}: the course ({here.course.id} {here.course.version}) and checksums", indent=2
+            f"{MANIFEST}: the course ({here.course.id} {here.course.version}), "
+            "checksums, and which Python and NumPy you have",
+            indent=2,
         )
     for why in dict.fromkeys(item.action for item in left_out):
         console.line(f"Left out: {', '.join(item.path for item in left_out if item.action == why)} ({why}).")

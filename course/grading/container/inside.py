@@ -97,7 +97,7 @@ def _judged(entry: Entry, terms: Terms) -> Verdict:
         (graded,) = grade_all([entry], terms)
     except CourseError as error:
         return without_grading(entry, "grader_error", Problem(error.code, error.message, error.help))
-    return graded.verdict
+    return entry.told(graded.verdict)
 
 
 def _log(verdict: Verdict) -> None:

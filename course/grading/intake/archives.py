@@ -13,6 +13,7 @@ import functools
 import hashlib
 import json
 import os
+import re
 import stat
 import subprocess
 import sys
@@ -27,7 +28,8 @@ from typing import IO, TYPE_CHECKING, Any, TypeVar
 import msgspec
 
 from course.errors import InternalError, UngradableError
-from course.grading.intake.downloads import IGNORED, is_meant
+from course.grading.intake import kinds
+from course.grading.intake.downloads import is_folder_meant, is_meant
 from course.grading.pipes import limit_cpu, limit_memory, read_frame, served, write_frame
 from course.grading.quiz import checked_record
 from course.handed_in.limits import (
@@ -39,7 +41,6 @@ from course.handed_in.limits import (
     MAX_FILES,
     MAX_NOTEBOOK,
     MAX_UNPACKED,
-    SOURCES,
 )
 from course.handed_in.notebook import notebook_source
 from course.printable import one_line
@@ -83,12 +84,14 @@ class ArchiveContent:
         name: in the archive.
         notes: assumptions that were made, one sentence each.
         copies: the members that are the same file, this one included.
+        written: the Python and NumPy that it was written with, by its own account; empty if it has none.
     """
 
     name: str
     content: bytes
     notes: tuple[str, ...] = ()
     copies: tuple[str, ...] = ()
+    written: str = ""
 
 
 def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
@@ -118,9 +121,22 @@ def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
             )
         raw = members[name].filename
         notes = tuple(one_line(note) for note in _notes(path, name, raw, wanted, exercise))
-        return ArchiveContent(raw, content, notes, tuple(members[other].filename for other in wanted))
+        copies = tuple(members[other].filename for other in wanted)
+        return ArchiveContent(raw, content, notes, copies, _written(manifest.get("written_with")))
 
     return _opened(path, read)
+
+
+_VERSION = re.compile(r"[\w.+-]{1,40}")
+
+
+def _written(told: Any) -> str:
+    """The versions that a manifest claims, as part of a sentence."""
+    said = [(name, told.get(key)) for key, name in _TOOLS] if isinstance(told, dict) else []
+    return " and ".join(f"{name} {v}" for name, v in said if isinstance(v, str) and _VERSION.fullmatch(v))
+
+
+_TOOLS = (("python", "Python"), ("numpy", "NumPy"))
 
 
 def _notes(path: Path, name: str, raw: str, wanted: list[str], exercise: Exercise) -> Iterator[str]:
@@ -133,6 +149,9 @@ def _notes(path: Path, name: str, raw: str, wanted: list[str], exercise: Exercis
     base = PurePosixPath(name).name
     if base not in {exercise.module, PurePosixPath(exercise.module).with_suffix(".ipynb").name}:
         yield f"{base} was taken for {exercise.module}."
+    above = PurePosixPath(name).parent.as_posix()
+    if above not in {".", exercise.place}:
+        yield f"The folder {above} was taken for {exercise.place}."
     if len(wanted) > 1:
         yield f"The same file is in {path.name} {len(wanted)} times: {', '.join(wanted)}."
 
@@ -143,7 +162,7 @@ def _wanted_members(members: Members, exercise: Exercise) -> list[str]:
     found = [
         name
         for name in members
-        if PurePosixPath(name).parent.as_posix() in {".", exercise.place}
+        if is_folder_meant(PurePosixPath(name).parent.as_posix(), exercise.place)
         and any(is_meant(PurePosixPath(name).name, wanted) for wanted in names)
     ]
     return sorted(found, key=lambda name: (PurePosixPath(name).name not in names, "/" not in name, name))
@@ -160,14 +179,16 @@ def outline_of(path: Path, skip: tuple[str, ...]) -> list[tuple[str, bytes]]:
         return [
             (info.filename, _unpacked(path, archive, info))
             for info in members.values()
-            if info.filename not in skip and info.filename.casefold().endswith(SOURCES)
+            if info.filename not in skip
+            and kinds.may_be_code(info.filename)
+            and not info.filename.endswith(MANIFEST)
         ]
 
     return _opened(path, read)
 
 
 def member_of(path: Path, name: str) -> bytes:
-    """The content of one member, by the name the zip has for it, or that name with plain slashes.
+    """The content of one member, by the name the archive has for it, or that name with plain slashes.
 
     Raises:
         RefusedError: there is none, or the archive must not be opened further.
@@ -179,7 +200,32 @@ def member_of(path: Path, name: str) -> bytes:
                 return _unpacked(path, archive, info)
         raise RefusedError("no_file", f"{path.name} holds no {name}.", "Name a file that is in it.")
 
+    if (kind := _kind(path)) in _TARS:
+        found = dict(_compressed(path, kind))
+        if name in found:
+            return found[name]
+        raise RefusedError("no_file", f"{path.name} holds no {name}.", "Name a file that is in it.")
     return _opened(path, read)
+
+
+_TARS = frozenset({"a tar archive", "a gzip archive", "a bzip2 archive", "an xz archive"})
+
+
+def _compressed(path: Path, kind: str) -> list[tuple[str, bytes]]:
+    """What may be code in an archive that is no zip, by name.
+
+    Raises:
+        RefusedError: it is damaged.
+    """
+    try:
+        return list(kinds.compressed(path, kind, MAX_FILE, MAX_UNPACKED))
+    except OSError as error:
+        raise _refused(path, f"it cannot be read ({error})") from None
+
+
+def _kind(path: Path) -> str:
+    with path.open("rb") as handle:
+        return kinds.kind_of(path.name, handle.read(512))
 
 
 def _opened(path: Path, read: Callable[[zipfile.ZipFile, Members], T]) -> T:
@@ -211,11 +257,13 @@ def _refused(path: Path, why: str) -> RefusedError:
 
 def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
     """The members by name, without the folders around all of them; every one is harmless."""
-    files = [info for info in infos if not info.is_dir() and not _is_clutter(info.filename)]
+    plain = {info.filename.replace("\\", "/"): info for info in infos if not info.is_dir()}
+    unwanted = kinds.clutter(plain)
+    files = [info for info in infos if not info.is_dir() and not unwanted(info.filename.replace("\\", "/"))]
     if len(files) > MAX_FILES:
         raise _refused(path, f"it holds more than {MAX_FILES} files")
-    if sum(info.file_size for info in files) > MAX_UNPACKED:
-        raise _refused(path, f"it unpacks to more than {MAX_UNPACKED >> 20} MB")
+    if sum(info.file_size for info in files if kinds.may_be_code(info.filename)) > MAX_UNPACKED:
+        raise _refused(path, f"its files unpack to more than {MAX_UNPACKED >> 20} MB")
     members: Members = {}
     for info in files:
         name = PurePosixPath(info.filename.replace("\\", "/"))
@@ -242,11 +290,6 @@ def _without_top(members: Members) -> Members:
             break
         members = {name.partition("/")[2]: info for name, info in members.items()}
     return members
-
-
-def _is_clutter(name: str) -> bool:
-    """Whether an operating system added it to the zip."""
-    return any(part in IGNORED for part in PurePosixPath(name.replace("\\", "/")).parts)
 
 
 def _unpacked(path: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
@@ -315,9 +358,9 @@ class _Request(msgspec.Struct, frozen=True):
     skip: tuple[str, ...] = ()
 
 
-#: A file by its name in its archive, the digest of its content, the names of the functions in it, and how
-#: much code was parsed to find them.
-Outline = tuple[str, str, tuple[str, ...], int]
+#: A file by its name in its archive, the digest of its content, the names of the functions in it, how much
+#: code was parsed to find them, and what it is if that is not what its name says.
+Outline = tuple[str, str, tuple[str, ...], int, str]
 
 
 class _Reply(msgspec.Struct, frozen=True):
@@ -329,6 +372,7 @@ class _Reply(msgspec.Struct, frozen=True):
     record: bytes = b""
     notes: tuple[str, ...] = ()
     copies: tuple[str, ...] = ()
+    written: str = ""
     outlines: tuple[Outline, ...] = ()
 
 
@@ -364,10 +408,12 @@ class Reader:
         told = self._ask(
             _Request("archive", one_line(path.name), path=os.fsencode(path.absolute()), **_wanted(exercise))
         )
-        return None if told.name is None else ArchiveContent(told.name, told.content, told.notes, told.copies)
+        if told.name is None:
+            return None
+        return ArchiveContent(told.name, told.content, told.notes, told.copies, told.written)
 
     def outlines(self, path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> tuple[Outline, ...]:
-        """The functions that a module or a notebook defines, or each file in an archive.
+        """What a file is, and the functions that it defines, or each file in an archive.
 
         Args:
             skip: members of the archive to ignore.
@@ -521,27 +567,49 @@ def _answer(ask: _Request) -> _Reply:
     found = module_in(path, exercise)
     if found is None:
         return _Reply()
-    return _Reply(name=found.name, content=found.content, notes=found.notes, copies=found.copies)
+    return _Reply(
+        name=found.name, content=found.content, notes=found.notes, copies=found.copies, written=found.written
+    )
 
 
 def _outlines(path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> Iterator[Outline]:
-    if path.suffix.casefold() == ".zip":
+    with path.open("rb") as handle:
+        content = handle.read(MAX_NOTEBOOK + 1)
+    kind = kinds.kind_of(path.name, content)
+    if kind == "a zip archive" or path.suffix.casefold() == ".zip":
         files = outline_of(path, skip)
+    elif kind in _TARS:
+        files = _compressed(path, kind)
     else:
-        with path.open("rb") as handle:
-            content = handle.read(MAX_NOTEBOOK + 1)
-        files = [("", content)] if len(content) <= MAX_NOTEBOOK else []
-    for name, content in files:
-        yield name, hashlib.sha256(content).hexdigest(), *_defined(name or path.name, content, functions)
+        digest = hashlib.sha256(content).hexdigest()
+        if len(content) > MAX_NOTEBOOK:
+            yield "", digest, (), 0, "larger than 32 MB"
+        elif kind in _IS_CODE:
+            yield "", digest, *_defined(path.name, content, functions), kind
+        else:
+            yield "", digest, (), 0, kind
+        return
+    if not files:
+        yield "", hashlib.sha256(content).hexdigest(), (), 0, f"{kind} without a file of code"
+    for name, found in files:
+        what = kinds.kind_of(name, found)
+        digest = hashlib.sha256(found).hexdigest()
+        yield name, digest, *(_defined(name, found, functions) if what in _IS_CODE else ((), 0)), what
+
+
+#: What is read as code; "" is what its name says.
+_IS_CODE = frozenset({"", "a text", "a notebook"})
 
 
 def _defined(name: str, content: bytes, functions: tuple[str, ...]) -> tuple[tuple[str, ...], int]:
     """The functions among these that a file's top level defines, and how much code was parsed for that."""
+    if content[:2] in {b"\xff\xfe", b"\xfe\xff"}:
+        content = content.decode("utf-16", "replace").encode()  # as ``assign`` reads it
     if not any(function.encode() in content for function in functions):
         return (), 0  # parsing takes a hundred times as long as looking
     pieces: list[str | bytes] = [content]
     try:
-        if name.casefold().endswith(".ipynb"):
+        if name.casefold().endswith(".ipynb") or kinds.is_notebook(content):
             cells = json.loads(content).get("cells", ())
             pieces = ["".join(cell.get("source", ())) for cell in cells if cell.get("cell_type") == "code"]
     except (ValueError, AttributeError, TypeError, RecursionError):

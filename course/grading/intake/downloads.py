@@ -48,6 +48,11 @@ def is_meant(name: str, wanted: str) -> bool:
     return name == wanted or plain(name) == wanted.casefold()
 
 
+def is_folder_meant(name: str, wanted: str) -> bool:
+    """Whether a folder of this name is the wanted one, or the top, which is "."."""
+    return name in {".", wanted} or _NUMBERED.sub("", name).casefold() == wanted.casefold()
+
+
 Layout = Literal["auto", "folders", "canvas", "moodle", "gradescope"]
 LAYOUTS = ("auto", "folders", "canvas", "moodle", "gradescope")
 
@@ -94,7 +99,9 @@ class Place:
         Those with exactly that name come first.
         """
         if self.files is None:
-            found = [*_entries(self.root), *_entries(self.root / inside)]
+            found = _entries(self.root)
+            for name, path in [*found, *([(inside, self.root / inside)] if "/" in inside else [])]:
+                found += _entries(path) if name != "." and is_folder_meant(name, inside) else []
         else:
             found = [(name, path) for name, path in self.files if "/" not in name]
         mine = [(name != wanted, path) for name, path in found if is_meant(name, wanted)]

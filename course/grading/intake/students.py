@@ -18,6 +18,7 @@ import contextlib
 import hashlib
 import io
 import os
+import re
 import stat
 import tokenize
 from collections.abc import Iterator, Sequence
@@ -25,18 +26,21 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from course.catalog.models import Exercise
 from course.errors import InternalError, UngradableError
 from course.grading.gradebook.records import SubmittedAt
 from course.grading.intake.archives import ArchiveContent, RefusedError, reader
 from course.grading.intake.downloads import Place, Student
+from course.grading.intake.kinds import is_notebook, kind_of
 from course.grading.intake.triage import Candidate, Found, described, found_for, survey
 from course.grading.results.roster import decoded
 from course.handed_in.limits import MAX_FILE, MAX_NOTEBOOK
 from course.handed_in.notebook import RECORD
 from course.printable import one_line
 from course.scoring.judging.submission import Submission
-from course.scoring.verdict import Problem
+from course.scoring.verdict import Problem, Verdict
 
 
 @dataclass(frozen=True)
@@ -49,6 +53,7 @@ class Entry:
         problem: why there is nothing; if both are None, the exercise was not handed in.
         times: of the submission, each with its source.
         notes: assumptions that were made, and files that were left aside, one sentence each.
+        written: the Python and NumPy that it was written with, by its own account; empty if unknown.
         found: files that may be meant for the exercise, where there is a problem.
         only: ids of the checks to run; empty runs all.
         asks: which functions each check used is asked for, too.
@@ -60,9 +65,19 @@ class Entry:
     problem: Problem | None = None
     times: tuple[SubmittedAt, ...] = field(default=(), compare=False)
     notes: tuple[str, ...] = field(default=(), compare=False)
+    written: str = field(default="", compare=False)
     found: Found | None = field(default=None, compare=False)
     only: tuple[str, ...] = ()
     asks: bool = False
+
+    def told(self, verdict: Verdict) -> Verdict:
+        """A verdict on it with what there is to say of the file, and with its versions where they matter."""
+        notes = self.notes
+        said = [*verdict.warnings, *(f"{check.message} {check.help}" for check in verdict.checks)]
+        said += [verdict.error.help] if verdict.error else []
+        if self.written and any("checked with" in one for one in said):
+            notes = (*notes, f"It was written with {self.written}.")
+        return msgspec.structs.replace(verdict, warnings=(*verdict.warnings, *notes))
 
     @property
     def sha256(self) -> str:
@@ -122,13 +137,14 @@ def _entries(student: Student, exercises: Sequence[Exercise], *, required: bool)
             taken.append((exercise, RefusedError(problem.code, problem.message, problem.help)))
     used = {at for _, item in taken if isinstance(item, _FoundWork) for at in item.used}
     left = survey(place, used, exercises)
+    alone = not used and any("archive" in one.kind for one in left)
     for exercise, item in taken:
         if isinstance(item, _FoundWork):
             times = witnesses(student, exercise.id, item.submission.sha256, item.path)
             notes = (*item.notes, *_beside(exercise, item, left))
-            yield Entry(name, exercise, item.submission, times=times, notes=notes)
+            yield Entry(name, exercise, item.submission, times=times, notes=notes, written=item.written)
         else:
-            yield _without(student, exercise, item, left, required=required)
+            yield _without(student, exercise, item, left, required=required, alone=alone)
 
 
 def _beside(exercise: Exercise, taken: _FoundWork, left: list[Candidate]) -> list[str]:
@@ -148,12 +164,17 @@ def _without(
     left: list[Candidate],
     *,
     required: bool,
+    alone: bool,
 ) -> Entry:
-    """The entry for an exercise without a usable file, with the files that may be meant."""
+    """The entry for an exercise without a usable file, with the files that may be meant.
+
+    Args:
+        alone: nothing of the student's was taken, and there is an archive, which may hold anything.
+    """
     problem = refused.problem if refused else None
     found: tuple[Candidate, ...] = ()
     if problem is None or problem.code in _FOR_TRIAGE:
-        found = found_for(exercise, left, asked=required or problem is not None)
+        found = found_for(exercise, left, asked=required or problem is not None or alone)
     if problem is None and (required or found):
         problem = _no_file(exercise, found, student.typed)
     if problem is None or not found:
@@ -183,7 +204,7 @@ _LONGEST = 200
 
 
 #: Problems that a file under another name, or a choice between files, would solve.
-_FOR_TRIAGE = {"no_file", "ambiguous_files"}
+_FOR_TRIAGE = {"no_file", "ambiguous_files", "refused_archive"}
 
 
 def _no_file(exercise: Exercise, found: tuple[Candidate, ...], typed: tuple[str, ...]) -> Problem:
@@ -215,6 +236,7 @@ class _FoundWork:
     used: tuple[tuple[str, str], ...]
     contents: frozenset[str]
     notes: tuple[str, ...] = ()
+    written: str = ""
 
 
 def _find(place: Place, archives: list[Path], exercise: Exercise) -> _FoundWork | None:
@@ -240,7 +262,7 @@ def _find(place: Place, archives: list[Path], exercise: Exercise) -> _FoundWork 
         "ambiguous_files", f"There are several files for {exercise.id}: {names}.", "Keep the one that counts."
     )
     try:
-        contents = [_content(place, path, notebook=path in notebooks) for path in files]
+        contents = [_content(place, path, exercise, notebook=path in notebooks) for path in files]
     except RefusedError as refused:
         raise (several if len(candidates) > 1 else refused) from None
     contents += [held.content for _, held in packed]
@@ -250,20 +272,59 @@ def _find(place: Place, archives: list[Path], exercise: Exercise) -> _FoundWork 
     used += [(str(path), member) for path, held in packed for member in held.copies]
     notes = [note for _, held in packed[: 1 if not files else 0] for note in held.notes]
     path = candidates[0]
+    notes += _unlike_its_name(path) if files else []
     called = path.name if files else packed[0][1].name
     if files and (given := place.given(path)) not in {exercise.module, notebook}:
         notes.append(f"{one_line(given)} was taken for {exercise.module}.")
+    above = path.parent.name if place.files is None and path.parent != place.root and files else ""
+    if above and above != exercise.place.rpartition("/")[2]:
+        notes.append(f"The folder {one_line(above)} was taken for {exercise.place}.")
     if len(candidates) > 1:
         notes.append(f"These are the same file: {one_line(names)}.")
     digests = frozenset({hashlib.sha256(contents[0]).hexdigest()})
-    return _FoundWork(_submission(exercise, called, contents[0]), path, tuple(used), digests, tuple(notes))
+    submission = _submission(exercise, called, contents[0])
+    written = next((held.written for _, held in packed), "")
+    if RECORD in submission.files:
+        written = _kernel(contents[0]) or written
+    return _FoundWork(submission, path, tuple(used), digests, tuple(notes), written)
 
 
-def _content(place: Place, path: Path, *, notebook: bool) -> bytes:
+def _kernel(notebook: bytes) -> str:
+    """The Python that a notebook ran in last, by its own account; "" if it says nothing."""
+    at = notebook.rfind(b'"language_info"')
+    found = re.search(rb'"version"\s*:\s*"(\d[\w.+-]{0,40})"', notebook[at : at + 2000]) if at >= 0 else None
+    return f"Python {found[1].decode()}" if found else ""
+
+
+def _content(place: Place, path: Path, exercise: Exercise, *, notebook: bool) -> bytes:
+    """What a file holds for an exercise; one that is a zip by its content is read as such."""
     for part in path.relative_to(place.root).parents:
         if part.name and (place.root / part).is_symlink():
             raise RefusedError("symlink", f"{part} is a link.", "Hand in the folder itself.")
-    return _read_regular(path, place.shown(path), MAX_NOTEBOOK if notebook else MAX_FILE)
+    shown = place.shown(path)
+    content = _read_regular(path, shown, MAX_NOTEBOOK)
+    kind = kind_of(path.name, content)
+    if kind == "a zip archive":
+        held = reader.module_in(path, exercise)
+        if held is None:
+            message = f"{shown} is a zip archive without a file for {exercise.id}."
+            raise RefusedError("refused_archive", message, "Hand in the file itself.")
+        return held.content
+    if kind in {"", "a notebook", "an empty file", "no text"}:
+        return _within(content, shown, MAX_NOTEBOOK if notebook or kind == "a notebook" else MAX_FILE)
+    raise RefusedError(
+        "no_code", f"{shown} is {kind}, whatever its name says.", "Hand in the .py file itself."
+    )
+
+
+def _unlike_its_name(path: Path) -> list[str]:
+    """That a file that was taken is another kind of file than its name says."""
+    with path.open("rb") as handle:
+        kind = kind_of(path.name, handle.read(1 << 16))
+    return [f"{one_line(path.name)} is {kind}, and was read as one."] if kind in _TAKEN_AS else []
+
+
+_TAKEN_AS = frozenset({"a notebook", "a zip archive"})
 
 
 def submission_from(exercise: Exercise, path: Path, member: str = "") -> Submission:
@@ -275,11 +336,15 @@ def submission_from(exercise: Exercise, path: Path, member: str = "") -> Submiss
     Raises:
         RefusedError: it cannot be read, or graded.
     """
-    notebook = (member or path.name).casefold().endswith(".ipynb")
-    if member:
-        content = reader.member(path, member)
-    else:
-        content = _read_regular(path, path.name, MAX_NOTEBOOK if notebook else MAX_FILE)
+    content = reader.member(path, member) if member else _read_regular(path, path.name, MAX_NOTEBOOK)
+    notebook = (member or path.name).casefold().endswith(".ipynb") or is_notebook(content)
+    _within(content, path.name, MAX_NOTEBOOK if notebook else MAX_FILE)
+    kind = kind_of(member or path.name, content)
+    if not notebook and kind not in {"", "a text", "an empty file", "no text"}:
+        message = f"{one_line(member or path.name)} cannot be graded: it is {kind}."
+        raise RefusedError(
+            "no_code", message, "Name a .py file or a notebook; a path into an archive has a slash."
+        )
     return _submission(
         exercise, "named.ipynb" if notebook else "named.py", content if notebook else _utf8(content)
     )
@@ -305,7 +370,7 @@ def _submission(exercise: Exercise, name: str, content: bytes) -> Submission:
     shown = name.rpartition("/")[2]
     if not content.strip():
         raise RefusedError("empty_file", f"{shown} is empty.", "Was it saved before it was handed in?")
-    if not name.casefold().endswith(".ipynb"):
+    if not name.casefold().endswith(".ipynb") and not is_notebook(content):
         return Submission({exercise.module: content})
     source, record = reader.notebook(content, exercise, shown)
     if len(source) > MAX_FILE:
@@ -328,6 +393,10 @@ def _read_regular(path: Path, shown: str, limit: int) -> bytes:
     except OSError as error:
         message = f"{shown} cannot be read: {error.strerror or error}."
         raise RefusedError("unreadable", message, _PERMISSIONS) from None
+    return _within(content, shown, limit)
+
+
+def _within(content: bytes, shown: str, limit: int) -> bytes:
     if len(content) > limit:
         advice = "Hand in source code only, and a notebook without its outputs."
         raise RefusedError("too_large", f"{shown} is larger than {limit >> 20} MB.", advice)

@@ -17,8 +17,9 @@ import msgspec
 
 from course.catalog.models import Exercise
 from course.grading.intake.archives import RefusedError, reader
-from course.grading.intake.downloads import IGNORED, Place, plain
-from course.handed_in.limits import HANDED_IN
+from course.grading.intake.downloads import Place, plain
+from course.grading.intake.kinds import is_clutter
+from course.handed_in.limits import HANDED_IN, MANIFEST
 from course.printable import one_line
 
 #: How far one student's folder is searched: depth of folders, entries, files read, and files that killed the
@@ -30,6 +31,8 @@ _CODE = 3 << 20
 #: ``integrators`` is 0.95, ``collision`` for ``integrators`` 0.3.
 _ALIKE = 0.75
 _SHOWN = 4
+#: Kinds of files that are read as code.
+_READABLE = ("", "a text", "a notebook")
 
 
 class Candidate(msgspec.Struct, frozen=True):
@@ -41,6 +44,7 @@ class Candidate(msgspec.Struct, frozen=True):
         member: in the archive; empty for a file.
         sha256: digest of its content.
         defines: names of the functions in it; only an exercise's tasks, where it is listed for an exercise.
+        kind: what it is, or why it cannot be read; empty for code and notebooks.
         proposed: it is the only match.
     """
 
@@ -50,6 +54,7 @@ class Candidate(msgspec.Struct, frozen=True):
     sha256: str = ""
     defines: tuple[str, ...] = ()
     proposed: bool = False
+    kind: str = ""
 
 
 class Found(msgspec.Struct, frozen=True):
@@ -81,7 +86,8 @@ def survey(place: Place, used: set[tuple[str, str]], exercises: Sequence[Exercis
     functions = tuple(dict.fromkeys(task.id for exercise in exercises for task in exercise.task))
     candidates: list[Candidate] = []
     left = _CODE
-    for name, path in _files(place):
+    # What is most likely work comes first, should there be more than is read.
+    for name, path in sorted(_files(place), key=lambda item: not item[0].casefold().endswith(HANDED_IN)):
         fatal = sum(not one.sha256 for one in candidates)
         if len(candidates) >= _READ or fatal >= _FATAL:
             break
@@ -95,11 +101,7 @@ def survey(place: Place, used: set[tuple[str, str]], exercises: Sequence[Exercis
 
 def _files(place: Place) -> list[tuple[str, Path]]:
     if place.files is not None:
-        return [
-            (name, path)
-            for name, path in place.files
-            if name.casefold().endswith(HANDED_IN) and path.is_file() and not path.is_symlink()
-        ]
+        return [(name, path) for name, path in place.files if path.is_file() and not path.is_symlink()]
     search = _Search()
     _search(place.root, "", 0, search)
     return search.files
@@ -114,12 +116,12 @@ def _search(folder: Path, above: str, depth: int, search: _Search) -> None:
         search.left -= 1
         if search.left < 0:
             return
-        if entry.name in IGNORED or entry.is_symlink():
+        if is_clutter(entry.name) or entry.is_symlink():
             continue
         if entry.is_dir(follow_symlinks=False):
-            if depth < _DEEP:
+            if depth < _DEEP and not (folder / entry.name / "pyvenv.cfg").exists():
                 _search(folder / entry.name, f"{above}{entry.name}/", depth + 1, search)
-        elif entry.name.casefold().endswith(HANDED_IN) and entry.is_file(follow_symlinks=False):
+        elif entry.is_file(follow_symlinks=False) and entry.name != MANIFEST:
             search.files.append((above + entry.name, folder / entry.name))
 
 
@@ -130,15 +132,22 @@ def _outlined(
     shown = one_line(os.fsencode(name).decode("utf-8", "backslashreplace"))
     try:
         outlines = reader.outlines(path, skip, functions)
-    except RefusedError:
-        return [Candidate(shown, os.fsencode(path))], 0
+    except RefusedError as refused:
+        killed = refused.problem.code == "unreadable"
+        why = refused.problem.message.removeprefix(f"{path.name}: ").rstrip(".")
+        return [Candidate(shown, os.fsencode(path), sha256="" if killed else shown, kind=why)], 0
     candidates = [
         Candidate(
-            f"{shown}/{one_line(member)}" if member else shown, os.fsencode(path), member, sha256, defines
+            f"{shown}/{one_line(member)}" if member else shown,
+            os.fsencode(path),
+            member,
+            sha256,
+            defines,
+            kind=kind,
         )
-        for member, sha256, defines, _ in outlines
+        for member, sha256, defines, _, kind in outlines
     ]
-    return candidates, sum(parsed for *_, parsed in outlines)
+    return candidates, sum(parsed for *_, parsed, _ in outlines)
 
 
 def found_for(exercise: Exercise, candidates: Iterable[Candidate], *, asked: bool) -> tuple[Candidate, ...]:
@@ -155,9 +164,11 @@ def found_for(exercise: Exercise, candidates: Iterable[Candidate], *, asked: boo
         worth = len(mine) / len(tasks) if tasks else 0.0
         alike = difflib.SequenceMatcher(None, stem, Path(plain(Path(one.name).name)).stem).ratio()
         alike = alike if alike >= _ALIKE else 0.0
-        if asked or worth >= 0.5 or alike:
-            ranked.append((worth + alike / 10, msgspec.structs.replace(one, defines=mine)))
-    ranked.sort(key=lambda item: (-item[0], item[1].name))
+        if asked or worth or alike:
+            # What cannot be read as code can be named, and not proposed.
+            rank = worth + alike / 10 if one.kind in _READABLE else 0.0
+            ranked.append((rank, msgspec.structs.replace(one, defines=mine)))
+    ranked.sort(key=lambda item: (-item[0], not item[1].name.casefold().endswith(HANDED_IN), item[1].name))
     distinct = {item[1].sha256: item[0] for item in reversed(ranked)}
     best = max(distinct.values(), default=0.0)
     # Two equally good files that differ: the grader must not decide which one counts.
@@ -172,6 +183,7 @@ def described(candidates: Sequence[Candidate]) -> str:
     told = []
     for one in candidates[:_SHOWN]:
         names = ", ".join(one.defines[:_SHOWN]) + (", ..." if len(one.defines) > _SHOWN else "")
-        told.append(f"{one.name} (defines {names})" if names else one.name)
+        facts = [*filter(None, [one.kind]), *([f"defines {names}"] if names else [])]
+        told.append(f"{one.name} ({', '.join(facts)})" if facts else one.name)
     more = len(candidates) - _SHOWN
     return ", ".join(told) + (f" and {more} more" if more > 0 else "")

@@ -15,12 +15,13 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from course.catalog.load import Catalog
-from course.errors import NotFoundError, UngradableError, UsageError
+from course.errors import CourseError, NotFoundError, UngradableError, UsageError
 from course.grading.gradebook.file import explained
 from course.grading.gradebook.records import Decision, Key, Result, SubmittedAt
 from course.grading.intake.archives import RefusedError
+from course.grading.intake.downloads import class_list
 from course.grading.intake.students import Entry, submission_from
-from course.grading.intake.triage import Found
+from course.grading.intake.triage import Candidate, Found
 from course.grading.results.effective import Effective, Results, counted
 from course.grading.running.batch import Graded, grade_all
 from course.grading.running.snapshot import Unpacked, fresh, frozen, kept
@@ -140,18 +141,36 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
     for item in mine:
         if item.exercise == exercise:
             times = item.found.times
+            inside = [one for one in item.found.candidates if one.name.startswith(f"{file}/") and one.defines]
             for one in item.found.candidates:
-                if one.name == file:
-                    return Assignment(
-                        student, exercise, one.name, Path(os.fsdecode(one.path)), one.member, times
-                    )
-    handed_in = Path(results.book.run_options().get("folder", "")) / student / file
-    place = (
-        (handed_in, "")
-        if handed_in.is_file() and not os.path.lexists(file)
-        else _on_disk(file, results.folder)
-    )
+                if one.name == file and len(inside) != 1:
+                    return _of(one, student, exercise, times)
+            if len(inside) == 1:  # of an archive, the one file with functions in it
+                return _of(inside[0], student, exercise, times)
+    lying = None if os.path.lexists(file) else _lying(results, student, file)
+    place = (lying, "") if lying else _on_disk(file, results.folder)
     return Assignment(student, exercise, file, *place, times)
+
+
+def _of(
+    one: Candidate, student: str, exercise: str, times: tuple[tuple[str, float | None], ...]
+) -> Assignment:
+    return Assignment(student, exercise, one.name, Path(os.fsdecode(one.path)), one.member, times)
+
+
+def _lying(results: Results, student: str, file: str) -> Path | None:
+    """A file by its name in the student's folder, or its name on the platform; None if it is not there."""
+    options = results.book.run_options()
+    try:
+        students = class_list(Path(options.get("folder", "")), options.get("layout", "auto")).students
+    except CourseError:
+        return None
+    place = next((one.place for one in students if one.name == student), None)
+    if place is None:
+        return None
+    if place.files is not None:
+        return next((path for name, path in place.files if name == file), None)
+    return place.root / file if (place.root / file).is_file() else None
 
 
 def _on_disk(file: str, out: Path) -> tuple[Path, str]:
@@ -160,7 +179,7 @@ def _on_disk(file: str, out: Path) -> tuple[Path, str]:
     if os.path.lexists(path):
         return path, ""
     for above in path.parents:
-        if above.suffix.casefold() == ".zip" and above.is_file():
+        if above.is_file():
             return above, path.relative_to(above).as_posix()
     raise NotFoundError(
         f"There is no file {file}.",

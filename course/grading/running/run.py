@@ -315,12 +315,8 @@ class _Run:
         for graded in grade(self._left_to_do(), terms):
             yield from self._quizzes()
             submission = graded.entry.submission
-            verdict = graded.verdict
-            if graded.entry.notes:
-                warnings = (*verdict.warnings, *graded.entry.notes)
-                verdict = msgspec.structs.replace(verdict, warnings=warnings)
             yield (
-                Result(self._key(graded.entry, graded.version), verdict),
+                Result(self._key(graded.entry, graded.version), graded.entry.told(graded.verdict)),
                 dict(submission.files) if submission else None,
             )
         yield from self._quizzes()

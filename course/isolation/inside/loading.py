@@ -27,7 +27,8 @@ class Fault:
     """What of a module was left out.
 
     Attributes:
-        stage: "syntax" or "import".
+        stage: "syntax", "import", or "magic" for a line of IPython's; "absent" for an import that something
+            stands for.
         error: why.
         line: of the module, on which it begins.
         names: what it would have defined.
@@ -72,6 +73,18 @@ class Loading:
 
         Otherwise the first of ``faults`` says why.
         """
+        magics = self._without_magics()
+        loads = self._run()
+        self.faults += [*magics, *self._refused] if loads else []
+        return loads
+
+    def _without_magics(self) -> list[Fault]:
+        """Take IPython's lines out, as of a notebook's cell; they are in files exported from one."""
+        self._source, magics = statements.without_magics(self._source)
+        self._source, more = statements.without_shell(self._source)
+        return [Fault("magic", SyntaxError(text[:200]), line, ()) for line, text in (*magics, *more)]
+
+    def _run(self) -> bool:
         try:
             whole = compile(self._source, self._main, "exec", dont_inherit=True)
         except statements.UNREADABLE as error:
@@ -157,7 +170,7 @@ class Loading:
         """Whether an import that was refused gets something that stands for the package."""
         if not isinstance(error, declared.ImportNotDeclaredError) or not self._imports.stand_in(node):
             return False
-        self._refused.append(Fault("import", error, _first_line(node), ()))
+        self._refused.append(Fault("absent", error, _first_line(node), list(statements.bound(node))))
         return True
 
     def _fault(self, stage: str, error: BaseException, line: int, names: Any) -> None:

@@ -7,6 +7,7 @@ library and nothing of this course.
 from __future__ import annotations
 
 import ast
+import itertools
 import re
 import symtable
 import warnings
@@ -14,6 +15,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
+
+__all__ = [
+    "PYTHON_MAGICS", "UNREADABLE", "Piece", "bound", "defined_in", "loaded", "needed", "parsed", "pieces",
+    "tree", "without_magics", "without_shell",
+]  # fmt: skip
 
 #: What Python raises for a text that it cannot read; the last two for nesting that its parser cannot follow.
 UNREADABLE = (SyntaxError, ValueError, RecursionError, MemoryError)
@@ -193,3 +199,115 @@ def _augmented(node: ast.AST) -> Iterator[str]:
         yield from _base(node.target)
     for child in ast.iter_child_nodes(node):
         yield from _augmented(child)
+
+
+# -- what IPython adds ------------------------------------------------------------------------------------
+
+#: Cell magics whose body is Python of this notebook; the cells of all others are something else.
+PYTHON_MAGICS = frozenset({"time", "timeit", "capture", "prun", "memit", "mprun", "lprun"})
+#: Of a line without space around it: a million spaces in a row would be tried in every way to part them.
+_MAGIC = re.compile(r"[%!?]|[\w.,\s\[\]]+=\s*[%!]|.*\S\?{1,2}$")
+
+
+def without_magics(text: str) -> tuple[str, tuple[tuple[int, str], ...]]:
+    """The text with ``pass`` for IPython's lines, (line, text) each; every other line keeps its number."""
+    if tree(text) is not None:
+        return text, ()  # Python as it stands, also where a line begins with a percent sign
+    lines = text.split("\n")
+    taken: list[tuple[int, str]] = []
+    for index in _statement_lines(text):
+        whole = lines[index]
+        shown = whole.strip()
+        if _MAGIC.match(shown) and tree(shown) is None:
+            indent = whole[: len(whole) - len(whole.lstrip())]
+            lines[index] = indent + "pass"
+            taken.append((index + 1, shown))
+    return "\n".join(lines), tuple(taken)
+
+
+def without_shell(text: str) -> tuple[str, tuple[tuple[int, str], ...]]:
+    """The text without statements that are magics written out: get_ipython().run_line_magic(...)."""
+    whole = tree(text) if "get_ipython" in text else None
+    if whole is None:
+        return text, ()
+    lines = text.split("\n")
+    taken: list[tuple[int, str]] = []
+    before = 0  # the last line of the statements so far
+    for node, following in itertools.zip_longest(whole.body, whole.body[1:]):
+        first, last = node.lineno - 1, node.end_lineno or node.lineno
+        alone = before <= first and (following is None or following.lineno > last)
+        before = last
+        if alone and _asks_shell(node):
+            code = _timed(node)
+            if code is None:
+                taken.append((node.lineno, lines[first].strip()))
+            instead = "pass" if code is None else f"exec({code!r})"
+            lines[first:last] = [instead, *[""] * (last - first - 1)]
+    return "\n".join(lines), tuple(taken)
+
+
+def _asks_shell(node: ast.stmt) -> bool:
+    inner = node.value if isinstance(node, ast.Expr) else None
+    while isinstance(inner, ast.Attribute | ast.Call):
+        inner = inner.value if isinstance(inner, ast.Attribute) else inner.func
+    return isinstance(inner, ast.Name) and inner.id == "get_ipython"
+
+
+def _timed(node: ast.stmt) -> str | None:
+    """The Python in get_ipython().run_cell_magic("time", "", ...), as an exported notebook has it."""
+    match node:
+        case ast.Expr(
+            value=ast.Call(
+                func=ast.Attribute(attr="run_cell_magic"),
+                args=[ast.Constant(value=str() as name), _, ast.Constant(value=str() as code)],
+            )
+        ) if name in PYTHON_MAGICS:
+            return code
+    return None
+
+
+_PIECE = re.compile(
+    # A string that is not closed ends with its line: looking for its end at each quote takes for ever.
+    r"""(?P<comment>\#[^\n]*)|(?P<triple>'{3}|\"{3})|(?P<string>'(?:\\.|[^'\\\n])*'?|"(?:\\.|[^"\\\n])*"?)"""
+    r"""|(?P<open>[(\[{])|(?P<close>[)\]}])|(?P<joined>\\\n)|(?P<end>\n)|(?P<other>.)""",
+    re.DOTALL | re.VERBOSE,
+)
+
+
+def _statement_lines(text: str) -> Iterator[int]:
+    """Indices of the lines on which a statement can begin: none inside a string or a bracket."""
+    line = depth = position = 0
+    yield 0
+    while position < len(text):
+        piece = _PIECE.match(text, position)
+        if piece is None:
+            return
+        position = piece.end()
+        kind, found = piece.lastgroup, piece.group()
+        if kind == "triple":
+            closed = text.find(found, position)
+            stop = len(text) if closed < 0 else closed + 3
+            line += text.count("\n", position, stop)
+            position = stop
+        elif kind == "string":
+            line += found.count("\n")  # escaped ones
+        elif kind == "open":
+            depth += 1
+        elif kind == "close":
+            depth = max(0, depth - 1)
+        elif kind == "joined":
+            line += 1
+        elif kind == "end":
+            line += 1
+            if depth == 0:
+                yield line
+
+
+def tree(text: str) -> ast.Module | None:
+    """A text's syntax tree; None if it is no Python."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # about escapes in the student's strings
+            return ast.parse(text)
+    except UNREADABLE:
+        return None

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from typing import Any
 
 import msgspec
 
 from course.catalog.models import Exercise
 from course.isolation.failures import StudentFailure
-from course.isolation.session import LOOP, LoadRefusedError
+from course.isolation.session import LOOP, LoadFault, LoadRefusedError
 from course.scoring.checks.collected import Check
+from course.scoring.elsewhere import absent, lacking, newer
 from course.scoring.judging.submission import Submission
 from course.scoring.remote import RemoteSubmission
 from course.scoring.values import kind_of, plain
@@ -20,6 +21,8 @@ from course.scoring.verdict import CheckResult, Finding, Places, Problem, Status
 #: Diagnosis of a check that broke on a student's value and not on the model solution's.
 NOT_JUDGED = "NOT_JUDGED"
 _MOST_NOTES = 5
+#: What ``git merge`` leaves where both sides changed the same lines.
+_MERGE = ("<<<<<<<", "=======", ">>>>>>>")
 
 
 def result(check: Check, status: Status, **fields: Any) -> CheckResult:
@@ -100,14 +103,15 @@ def load_problem(refused: LoadRefusedError, places: Places) -> Problem:
         return Problem(
             "import_error",
             f"{where}: {failure.message}.",
-            "Take that import out. Plots and experiments belong in a file of your own that imports this one.",
+            absent(failure, refused.code)
+            or "Take it out. Plots and experiments belong in a file of your own that imports this one.",
         )
     if refused.stage == "import":
         said = f": {failure.message.rstrip(' .')}" if failure.message else ""
         return Problem(
             "import_error",
             f"{where}: loading it raises {failure.type}{said}.",
-            _loads_elsewhere(failure) or f"A checked file must load without errors: try `python {module}`.",
+            lacking(failure, refused.code) or "Make that line work when the file is loaded, or take it out.",
         )
     message = f"{module} ends its process while it is loaded ({failure.message})."
     return Problem(
@@ -121,28 +125,52 @@ def left_out_notes(remote: RemoteSubmission, places: Places) -> list[str]:
     if remote.without is not None:
         problem = load_problem(remote.without, places)
         notes.append(f"{problem.message} Only what your functions need was loaded.")
-    for fault in remote.faults[:_MOST_NOTES]:
-        where = places.heading(fault.failure.line) if fault.failure.line else places.module
-        said = f": {fault.failure.message.rstrip(' .')}" if fault.failure.message else ""
-        if fault.stage == "syntax":
-            notes.append(f"{where}: left out, since Python cannot read it{said}.")
-        else:
-            notes.append(f"{where}: left out, since it raises {fault.failure.type} when it is loaded{said}.")
-    if len(remote.faults) > _MOST_NOTES:
+    told = [note for fault in remote.faults if (note := _left_out(fault, remote.faults, places))]
+    notes += dict.fromkeys(told[:_MOST_NOTES])
+    if len(told) > _MOST_NOTES:
         notes.append("More of the file was left out.")
     return notes
 
 
-def _loads_elsewhere(failure: StudentFailure) -> str:
-    """The advice for a file that may well load where it was written; "" for any other."""
-    if "OSError" in failure.bases:
-        return (
-            "A check runs apart from your files and from the network. Read data in a file of your own that "
-            "imports this one."
-        )
-    if failure.type == "EOFError":
-        return "Nobody types while a check runs. Ask in a file of your own that imports this one."
-    return ""
+def _left_out(fault: LoadFault, faults: Sequence[LoadFault], places: Places) -> str:
+    where = places.heading(fault.failure.line) if fault.failure.line else places.module
+    if fault.stage == "magic":
+        return f"{where}: left out, since it is not Python: {fault.code.strip()}"
+    if fault.failure.type == "ImportNotDeclaredError":
+        advice = absent(fault.failure, fault.code)
+        # A plot costs nothing, so a package that something stands for is worth a word only where it is used.
+        worth = advice or fault.stage == "import"
+        return f"{where}: {fault.failure.message}.{_after(advice)}" if worth else ""
+    return f"{where}: left out{_reason(fault, faults, places)}"
+
+
+def _reason(fault: LoadFault, faults: Sequence[LoadFault], places: Places) -> str:
+    failure = fault.failure
+    said = f": {_brief(failure)}" if failure.message else ""
+    if fault.stage == "syntax" and fault.code.startswith(_MERGE):
+        return ". It is the mark of a merge: keep one of the two versions, and delete the marks."
+    if fault.stage == "syntax":
+        return f", since Python cannot read it{said}.{_after(newer(failure, fault.code))}"
+    if (line := _line_needed(failure, faults)) is not None:
+        return f", since it needs what was left out {places.phrase(line)}."
+    lacks = lacking(failure, fault.code)
+    return f". {lacks}" if lacks else f", since it raises {failure.type} when it is loaded{said}."
+
+
+def _line_needed(failure: StudentFailure, faults: Sequence[LoadFault]) -> int | None:
+    """The line that would have defined the name that is missing."""
+    name = failure.message.partition("'")[2].partition("'")[0] if failure.type == "NameError" else ""
+    found = (fault.failure for fault in faults if name in fault.names and fault.failure is not failure)
+    return next((one.line for one in found if name and one.line), None)
+
+
+def _after(sentence: str) -> str:
+    return f" {sentence}" if sentence else ""
+
+
+def _brief(failure: StudentFailure) -> str:
+    """An exception's own words, of several lines the first."""
+    return failure.message.partition("\\n")[0].rstrip(" .:")
 
 
 def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
@@ -167,7 +195,7 @@ def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
         "triple-quoted" in failure.message
     ):  # the line is where the last quotes stand, not where they are missing
         return message, "Three quotes are missing there or further up. Look at what you changed last."
-    return message, "Run `python -m py_compile` on it, or look at that line and the one above it."
+    return message, newer(failure, refused.code) or "Look at that line and the one above it."
 
 
 def no_functions(exercise: Exercise) -> Problem:

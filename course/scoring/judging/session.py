@@ -25,6 +25,7 @@ from course.isolation.launch import keep_private
 from course.isolation.levels import Level, Spawner
 from course.isolation.probe import open_sandbox
 from course.isolation.session import LoadRefusedError
+from course.scoring import versions
 from course.scoring.checks.collected import Check, CollectedChecks, companion, companion_path, not_importable
 from course.scoring.failures import OURS, CheckFailed, Report, broke_at, finding_for, finding_of
 from course.scoring.judging.explaining import Again, Explainer
@@ -46,6 +47,7 @@ from course.scoring.verdict import CheckResult, Places, Problem, Status, Verdict
 Scope = Literal["public", "full"]
 T = TypeVar("T")
 
+_LESS_TIME = 4
 _PRINTED = 4000  # characters of what a submission prints in one check, or while it is loaded
 _STATUS = {
     "error": Status.ERROR,
@@ -145,7 +147,10 @@ class GradingSession:
         """
         with pinned_to(self._processor):
             verdict = self._grade(submission, only)
-        return msgspec.structs.replace(verdict, warnings=(*verdict.warnings, *submission.notes))
+        told = [*submission.notes]
+        if self._terms.home:
+            told += versions.notes(submission.files[self.exercise.module], self._places(submission))
+        return msgspec.structs.replace(verdict, warnings=(*verdict.warnings, *told))
 
     def _grade(self, submission: Submission, only: Collection[str]) -> Verdict:
         self.printed = ""
@@ -172,16 +177,21 @@ class GradingSession:
         if self._terms.home and len(self.exercise.task) > 1:
             results = to_do(results, untouched(self.exercise, submission))
         verdict = self._graded(results)
+        if not self._terms.home:
+            left_out += [
+                f"`{task}` ran out of time in one check; each further check of it had a quarter of that."
+                for task in sorted(self._hung)
+                if sum(result.task == task for result in results) > 1
+            ]
         return msgspec.structs.replace(verdict, warnings=(*verdict.warnings, *left_out))
 
     def _nothing_loaded(self, remote: RemoteSubmission, submission: Submission) -> Problem:
         """Why none of the functions is there."""
-        if not remote.faults:
+        fault = next((one for one in remote.faults if one.stage in {"syntax", "import"}), None)
+        if fault is None:
             return no_functions(self.exercise)
-        fault = remote.faults[0]
-        return load_problem(
-            LoadRefusedError(fault.stage, fault.failure, fault.text), self._places(submission)
-        )
+        refused = LoadRefusedError(fault.stage, fault.failure, fault.text, fault.code)
+        return load_problem(refused, self._places(submission))
 
     def using(self, submission: Submission, use: Callable[[RemoteSubmission], T]) -> T:
         """The result of ``use`` on a submission, loaded as for a check; one deadline applies to all of it.
@@ -250,7 +260,7 @@ class GradingSession:
     def _run_one(self, check: Check, remote: RemoteSubmission, places: Places) -> CheckResult:
         self.running = check.title
         hung = check.task in self._hung
-        remote.begin_check(check.task, self.exercise.patience(check.id, hung) if self._terms.home else None)
+        remote.begin_check(check.task, self._patience(check, hung))
         start = perf_counter()
         outcome = self._checks.run(check, remote)
         self.asked[check.id], self.took[check.id] = frozenset(remote.asked), remote.used
@@ -282,6 +292,15 @@ class GradingSession:
             return result(check, Status.GRADER_ERROR, message=message, duration_ms=duration_ms)
         finding = unjudged(remote.returned, proven=bool(proven))
         return found(check, Status.FAIL, finding, duration_ms, traceback=OURS + where, stdout=printed)
+
+    def _patience(self, check: Check, hung: bool) -> float | None:
+        """Seconds of CPU time for a check; less where another of its function ran out of time before.
+
+        A function that never answers would hold a busy grader for minutes of wall time.
+        """
+        if self._terms.home:
+            return self.exercise.patience(check.id, hung)
+        return self._terms.timeout / _LESS_TIME if hung else None
 
     def _keep_curve(self, check: Check, failed: CheckFailed, remote: RemoteSubmission) -> None:
         if not self._terms.home:

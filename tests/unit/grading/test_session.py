@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,6 +22,7 @@ from course.scoring.judging.submission import Submission, Terms
 from course.scoring.remote import RemoteSubmission
 from course.scoring.values import plain
 from course.scoring.verdict import CheckResult, Status, Verdict, finite, for_student
+from tests.contracts.boundary.levels import require_level
 
 
 def grade(session: GradingSession, source: bytes | str) -> Verdict:
@@ -36,6 +38,23 @@ def test_a_function_that_never_answers_leaves_the_other_tasks_their_time(
     verdict = grade(session, solution + b"\ndef double(x):\n    while True:\n        pass\n")
     assert {str(check.status) for check in results(verdict, "double")} <= {"timeout", "skipped"}
     assert {str(check.status) for check in results(verdict, "doublings")} == {"pass"}
+
+
+def test_once_a_function_ran_out_of_time_its_further_checks_have_a_quarter(
+    catalog: Catalog, doubling: Exercise, solution: bytes
+) -> None:
+    source = solution + b"\ndef double(x):\n    while True:\n        pass\n"
+    with GradingSession(doubling, catalog, scope="full", terms=Terms(timeout=1.0)) as session:
+        verdict = grade(session, source)
+        late = [session.took[check.id] for check in results(verdict, "double") if check.status == "timeout"]
+    assert len(late) >= 2
+    assert late[0] >= 0.9
+    assert max(late[1:]) < 0.5
+    assert verdict.warnings == (
+        "`double` ran out of time in one check; each further check of it had a quarter of that.",
+    )
+    with GradingSession(doubling, catalog, terms=Terms(timeout=1.0)) as session:
+        assert grade(session, solution).warnings == ()
 
 
 @pytest.mark.skipif(not hasattr(os, "sched_getaffinity"), reason="processes are not kept on processors here")
@@ -143,7 +162,7 @@ def test_what_cannot_be_loaded_is_ungradable_with_a_reason(
     [
         (b"open('data.csv')", "A check runs apart from your files"),
         (b"input()", "Nobody types while a check runs."),
-        (b"raise KeyboardInterrupt", "try `python doubling.py`"),
+        (b"raise KeyboardInterrupt", "Make that line work when the file is loaded"),
     ],
 )
 def test_a_file_that_does_not_load_is_told_what_is_different_in_a_check(
@@ -153,6 +172,98 @@ def test_a_file_that_does_not_load_is_told_what_is_different_in_a_check(
     assert error is not None
     assert (error.code, ": ." in error.message) == ("import_error", False)
     assert advice in error.help
+
+
+#: What is above the functions of a file that is right -> what its student is told of it.
+LEFT_OUT = {
+    "exit()": "line 1: left out. It would end the program, and a check goes on.",
+    "import sys; sys.exit(0)": "line 1: left out. It would end the program, and a check goes on.",
+    "import unittest; unittest.main()": "line 1: left out. It would end the program, and a check goes on.",
+    "import tkinter; tkinter.Tk()": "There is no screen where a check runs",
+    "import threading; threading.Thread(target=print).start()": "one process with one thread",
+    "from multiprocessing import Pool; Pool(2)": "no other process can start",
+    "import subprocess; subprocess.run(['ls'])": "No other program",
+    "import asyncio; asyncio.run(asyncio.sleep(0))": "There is no network",
+    "import getpass; getpass.getpass()": "Nobody types while a check runs.",
+    "import getpass; getpass.getuser()": "Nobody is logged in where a check runs.",
+    "import locale; locale.setlocale(locale.LC_ALL, 'de_DE.UTF-8')": "The languages of your computer",
+    "from __main__ import double": "`__main__` is your file only when you run it yourself",
+    "import winsound": "Only Python on Windows has that module.",
+    "import absent; len(absent.table)": "It uses a package that is not there.",
+    "root = 1 / 0\nroot.title('x')": "line 2: left out, since it needs what was left out on line 1",
+    "import numpy as np; np.trapz([1.0, 2.0])": "has no `np.trapz`. Use `np.trapezoid`.",
+    "import math; math.nothing": "which this is checked with, has no `math.nothing`.",
+    "!pip install numpy": "line 1: left out, since it is not Python: !pip install numpy",
+    "%matplotlib inline": "line 1: left out, since it is not Python: %matplotlib inline",
+    "%%writefile doubling.py": "line 1: left out, since it is not Python: %%writefile doubling.py",
+    "files = !ls": "line 1: left out, since it is not Python: files = !ls",
+    "get_ipython().run_line_magic('matplotlib', 'inline')": "line 1: left out, since it is not Python: get",
+    "from helpers import *": "If helpers.py is a file of yours: it is not handed in and not graded.",
+    "import helpers": "If helpers.py is a file of yours: it is not handed in and not graded.",
+    "from .helpers import half": "If helpers.py is a file of yours: it is not handed in and not graded.",
+}
+
+
+@pytest.mark.parametrize("line", LEFT_OUT)
+def test_a_line_that_works_at_home_alone_costs_nothing_and_is_told_with_its_reason(
+    session: GradingSession, solution: bytes, line: str
+) -> None:
+    require_level("L3")
+    verdict = grade(session, line.encode() + b"\n" + solution)
+    assert verdict.score == verdict.max_score
+    assert any(LEFT_OUT[line] in note for note in verdict.warnings), verdict.warnings
+
+
+def test_a_plot_and_its_package_are_worth_no_word(session: GradingSession, solution: bytes) -> None:
+    verdict = grade(session, solution + b"\nimport matplotlib.pyplot as plt\nplt.plot([1]); plt.show()\n")
+    assert (verdict.score, verdict.warnings) == (verdict.max_score, ())
+
+
+def test_a_timed_cell_of_an_exported_notebook_is_its_code(session: GradingSession, solution: bytes) -> None:
+    source = f"get_ipython().run_cell_magic('time', '', {solution.decode()!r})\n"
+    verdict = grade(session, source)
+    assert (verdict.score, verdict.warnings) == (verdict.max_score, ())
+
+
+@pytest.mark.parametrize(
+    ("package", "name", "advice"),
+    [
+        ("helpers", "half", "If helpers.py is a file of yours: it is not handed in and not graded."),
+        ("pylab", "asarray", "`asarray` is NumPy's: write `from numpy import asarray`."),
+        ("pylab", "plotting", "Import each name from the module that has it."),
+    ],
+)
+def test_a_name_that_a_star_import_would_bring_leads_to_its_line(
+    session: GradingSession, package: str, name: str, advice: str
+) -> None:
+    verdict = grade(session, f"from {package} import *\ndef double(x):\n    return {name}(x)\n")
+    found = next(check for check in verdict.checks if check.diagnosis == "RAISED")
+    assert (
+        found.help
+        == f"The name may come from the import on line 1 of your file, which was left out. {advice}"
+        + (" Copy what you use of it into the file of the exercise." if package == "helpers" else "")
+    )
+
+
+@pytest.mark.parametrize(
+    ("line", "version"),
+    [
+        ("type V = float", "3.12"),
+        ("def first[T](x: T) -> T: return x", "3.12"),
+        ("print(f'{d['a']}')", "3.12"),
+        ("def g():\n    try: pass\n    except ValueError, TypeError: pass", "3.14"),
+    ],
+)
+def test_what_a_newer_python_reads_is_told_with_both_versions(
+    session: GradingSession, solution: bytes, line: str, version: str
+) -> None:
+    if sys.version_info >= tuple(map(int, version.split("."))):
+        pytest.skip("this Python reads it")
+    verdict = grade(session, solution + b"\n" + line.encode() + b"\n")
+    here = f"{sys.version_info.major}.{sys.version_info.minor}"
+    assert verdict.score == verdict.max_score
+    told = f"Python {version} reads that, but it is checked with Python {here}"
+    assert any(told in note for note in verdict.warnings), verdict.warnings
 
 
 def test_a_file_that_is_no_text_is_told_so_and_not_of_a_line(session: GradingSession) -> None:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import json
+import platform
 import zipfile
 
+import numpy as np
 import pytest
 
 
@@ -23,6 +25,7 @@ def test_submit_writes_one_zip_with_checksums(course, workspace, write):
         assert archive.read("doubling/doubling.py") == source
         manifest = json.loads(archive.read("submission.json"))
     assert manifest["format_version"] == 1
+    assert manifest["written_with"] == {"python": platform.python_version(), "numpy": np.__version__}
     assert manifest["course"]["id"] == "mini"
     assert manifest["files"] == {"doubling/doubling.py": hashlib.sha256(source).hexdigest()}
     assert manifest["quiz"] == []

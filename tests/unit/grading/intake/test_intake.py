@@ -10,6 +10,7 @@ import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from course.catalog.load import Catalog
@@ -18,6 +19,7 @@ from course.errors import NotFoundError
 from course.grading.intake.downloads import Place, Student, class_list
 from course.grading.intake.students import Entry, read_student
 from course.handed_in.limits import MAX_FILE, MAX_FILES
+from course.scoring.verdict import Problem, not_graded
 from tests.unit.grading.made import read_class
 
 SOURCE = b"def double(x):\n    return 2 * x\n"
@@ -222,6 +224,45 @@ def test_hostile_archives_are_refused(
 ) -> None:
     make(tmp_path / "mine.zip")
     assert reason(tmp_path, doubling) == "refused_archive"
+
+
+def test_the_versions_at_home_are_told_where_they_mattered_and_nowhere_else(
+    tmp_path: Path, doubling: Exercise
+) -> None:
+    with zipfile.ZipFile(tmp_path / "mine.zip", "w") as target:
+        target.writestr("doubling/doubling.py", SOURCE)
+        files = {"doubling/doubling.py": hashlib.sha256(SOURCE).hexdigest()}
+        written = {"python": "3.13.1", "numpy": "2.9.0"}
+        target.writestr(
+            "submission.json", json.dumps({"format_version": 1, "files": files, "written_with": written})
+        )
+    found = entry(tmp_path, doubling)
+    assert found.written == "Python 3.13.1 and NumPy 2.9.0"
+    fine = not_graded("doubling", 10, "ungradable", Problem("x", "x", "x"))
+    assert found.told(fine).warnings == ()
+    note = "line 3: left out. Python 3.12 reads that, but it is checked with Python 3.11."
+    told = found.told(msgspec.structs.replace(fine, warnings=(note,))).warnings
+    assert told == (note, "It was written with Python 3.13.1 and NumPy 2.9.0.")
+
+
+@pytest.mark.parametrize(
+    "written", ["x", {"python": 3}, {"python": "3; \x1b[31m"}, {"python": "3" * 99}, None]
+)
+def test_versions_that_are_none_are_not_repeated(tmp_path: Path, doubling: Exercise, written: object) -> None:
+    with zipfile.ZipFile(tmp_path / "mine.zip", "w") as target:
+        target.writestr("doubling/doubling.py", SOURCE)
+        files = {"doubling/doubling.py": hashlib.sha256(SOURCE).hexdigest()}
+        target.writestr(
+            "submission.json", json.dumps({"format_version": 1, "files": files, "written_with": written})
+        )
+    assert entry(tmp_path, doubling).written == ""
+
+
+def test_a_notebook_says_which_python_it_ran_in(tmp_path: Path, doubling: Exercise) -> None:
+    made = json.loads(notebook(SOURCE.decode()))
+    made["metadata"]["language_info"] = {"name": "python", "version": "3.13.1"}
+    (tmp_path / "doubling.ipynb").write_text(json.dumps(made))
+    assert entry(tmp_path, doubling).written == "Python 3.13.1"
 
 
 def test_a_changed_archive_fails_its_checksum(tmp_path: Path, doubling: Exercise) -> None:

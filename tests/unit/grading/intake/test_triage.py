@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import gzip
 import io
 import json
 import os
 import sys
+import tarfile
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -144,6 +146,132 @@ def test_what_is_in_doubt_is_listed_with_the_one_match_there_is(
     assert entry.found is not None
     proposed = [one.name for one in entry.found.candidates if one.proposed]
     assert proposed == ([match] if match else [])
+
+
+def in_tar(mode: str, **members: bytes) -> bytes:
+    buffer = io.BytesIO()
+    with tarfile.open(fileobj=buffer, mode=mode) as archive:  # type: ignore[call-overload]
+        for name, content in members.items():
+            info = tarfile.TarInfo(name)
+            info.size = len(content)
+            archive.addfile(info, io.BytesIO(content))
+    return buffer.getvalue()
+
+
+#: What lies there -> the name that is proposed and can be assigned, and what is said of it.
+ODDLY: dict[str, tuple[dict[str, bytes], str, str]] = {
+    "hidden suffix": ({"doubling.py.txt": SOURCE}, "doubling.py.txt", "a text"),
+    "text": ({"doubling.txt": SOURCE}, "doubling.txt", "a text"),
+    "no suffix": ({"doubling": SOURCE}, "doubling", "a text"),
+    "without a console": ({"doubling.pyw": SOURCE}, "doubling.pyw", "a text"),
+    "a copy": ({"doubling.py.bak": SOURCE}, "doubling.py.bak", "a text"),
+    "UTF-16": ({"doubling.py.txt": SOURCE.decode().encode("utf-16")}, "doubling.py.txt", "a text"),
+    "tar.gz": (
+        {"all.tar.gz": in_tar("w:gz", **{"hw/doubling.py": SOURCE})}, "all.tar.gz/hw/doubling.py", ""
+    ),
+    "tar": ({"all.tar": in_tar("w", **{"x.py": SOURCE, "._x.py": b""})}, "all.tar/x.py", ""),
+    "gz": ({"doubling.py.gz": gzip.compress(SOURCE)}, "doubling.py.gz/doubling.py", ""),
+    "notebook as text": ({"doubling.ipynb.txt": NOTEBOOK}, "doubling.ipynb.txt", "a notebook"),
+    "notebook as JSON": ({"doubling.json": NOTEBOOK}, "doubling.json", "a notebook"),
+    "one function": ({"hw.py": b"def doublings(x, n):\n    return x\n"}, "hw.py", ""),
+    "7z": ({"doubling.7z": b"7z\xbc\xaf\x27\x1c rest"}, "", "a 7z archive, which nothing here opens"),
+    "rar": ({"work.rar": b"Rar!\x1a\x07\x00"}, "", "a rar archive, which nothing here opens"),
+    "damaged": ({"all.tar.gz": b"\x1f\x8b and no more"}, "", "it cannot be read (it is damaged)"),
+    "PDF": ({"doubling.pdf": b"%PDF-1.7"}, "", "a PDF document"),
+    "Word": ({"doubling.docx": zipped(**{"word/document.xml": b""})}, "", "a document of an office program"),
+    "web page": ({"doubling.html": b"<!DOCTYPE html>"}, "", "a web page"),
+    "empty": ({"doubling.txt": b""}, "", "an empty file"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("how", ODDLY)
+def test_whatever_lies_there_is_named_with_what_it_is_and_assigned_by_its_name(
+    tmp_path: Path, catalog: Catalog, doubling: Exercise, how: str
+) -> None:
+    files, match, kind = ODDLY[how]
+    lay(tmp_path / "class", **files)
+    entry = read(tmp_path / "class", doubling)
+    assert entry.problem is not None
+    assert entry.found is not None
+    (one,) = entry.found.candidates
+    assert (one.name if one.proposed else "", one.kind) == (match, kind)
+    assert one.name in entry.problem.message
+    assert kind in entry.problem.message
+    graded(tmp_path, catalog)
+    (lying,) = files
+    with open_results(tmp_path / "out", writing=True) as results:
+        if not match:
+            with pytest.raises((UngradableError, NotFoundError)):
+                assign(results, catalog, [named(results, "ada", lying, None)], "hers", grade=right)
+            return
+        wanted = named(results, "ada", lying, None)
+        assert wanted.name == match
+        assign(results, catalog, [wanted], "hers", grade=right)
+        (stored,) = results.book.history("ada", "doubling")[-1:]
+        content = (results.book.submission(stored.key.submission_sha256) or {})["doubling.py"]
+    assert b"def doubl" in content
+
+
+def test_a_notebook_or_a_zip_that_is_called_py_is_read_as_what_it_is(
+    tmp_path: Path, doubling: Exercise
+) -> None:
+    for content, kind in ((NOTEBOOK, "a notebook"), (zipped(**{"doubling.py": SOURCE}), "a zip archive")):
+        lay(tmp_path, **{"doubling.py": content})
+        entry = read(tmp_path, doubling)
+        assert entry.submission is not None
+        assert entry.submission.files["doubling.py"].strip() == SOURCE.strip()
+        assert f"doubling.py is {kind}, and was read as one." in entry.notes
+    lay(tmp_path, **{"doubling.py": b"%PDF-1.7"})
+    problem = read(tmp_path, doubling).problem
+    assert problem is not None
+    assert problem.message == "doubling.py is a PDF document, whatever its name says."
+
+
+@pytest.mark.parametrize(
+    "unwanted",
+    [
+        ".venv/lib/site-packages/m{}.py",
+        "node_modules/m{}.js",
+        ".git/objects/{}",
+        "__MACOSX/._{}",
+        "build/m{}.py",
+    ],
+)
+def test_what_tools_leave_in_a_zip_does_not_count(tmp_path: Path, doubling: Exercise, unwanted: str) -> None:
+    left = {f"hw/{unwanted.format(number)}": b"x = 1\n" for number in range(600)}
+    lay(tmp_path, **{"hw.zip": zipped(**{"hw/doubling.py": SOURCE, **left})})
+    entry = read(tmp_path, doubling)
+    assert entry.submission is not None, entry.problem
+
+
+def test_an_environment_of_any_name_does_not_count(tmp_path: Path, doubling: Exercise) -> None:
+    left = {"mine/pyvenv.cfg": b"home"} | {f"mine/Lib/m{n}.py": SOURCE + b"#%d" % n for n in range(600)}
+    lay(tmp_path, **{"hw.zip": zipped(**{"doubling.py": SOURCE, **left})})
+    lay(tmp_path, "bob", **{"doubling.py": SOURCE, **left})
+    ada, bob = read_class(tmp_path, [doubling], required=True)
+    assert ada.submission is not None, ada.problem
+    assert (bob.submission is not None, bob.notes) == (True, ())
+
+
+def test_a_folder_that_was_renamed_is_taken_and_said(tmp_path: Path, doubling: Exercise) -> None:
+    for folder in ("doubling-2", "Doubling (1)"):
+        lay(tmp_path, folder, **{f"{folder}/doubling.py": SOURCE})
+        lay(
+            tmp_path, f"{folder}z", **{"all.zip": zipped(**{f"{folder}/doubling.py": SOURCE, "x/y.txt": b""})}
+        )
+    entries = list(read_class(tmp_path, [doubling], required=True))
+    assert all(entry.submission is not None for entry in entries)
+    notes = [note for entry in entries for note in entry.notes]
+    assert "The folder doubling-2 was taken for doubling." in notes
+
+
+def test_a_student_whose_only_file_is_an_archive_that_nobody_opens_has_not_handed_in_nothing(
+    tmp_path: Path, doubling: Exercise
+) -> None:
+    lay(tmp_path, **{"homework.rar": b"Rar!\x1a\x07\x00"})
+    problem = read(tmp_path, doubling, required=False).problem
+    assert problem is not None
+    assert "homework.rar (a rar archive, which nothing here opens)" in problem.message
 
 
 def test_a_second_version_is_never_passed_over_in_silence(tmp_path: Path, doubling: Exercise) -> None:

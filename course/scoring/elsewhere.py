@@ -1,0 +1,176 @@
+"""What a file finds where its student wrote it, and not where it is checked.
+
+A check runs apart from the student's files, screen, keyboard and network, in one process with one thread; of
+all packages it has those that the exercise allows. A line that needs more raises there, and Python's words
+for that explain nothing to somebody on whose machine it works.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+
+import numpy as np
+
+from course.isolation.failures import StudentFailure
+
+#: The Python that runs checks here, as people call it.
+PYTHON = f"Python {sys.version_info.major}.{sys.version_info.minor}"
+NUMPY = f"NumPy {'.'.join(np.__version__.split('.')[:2])}"
+
+_PACKAGE = re.compile(r"importing '([^']{1,100})'")
+_RELATIVE = re.compile(r"^\s*from\s+\.+(\w*)")
+#: Packages that are certainly no file of the student's.
+_KNOWN = frozenset(
+    {
+        "IPython", "PIL", "cv2", "ipywidgets", "jax", "manim", "matplotlib", "mpl_toolkits", "mujoco",
+        "networkx", "numba", "pandas", "plotly", "pygame", "pylab", "pymunk", "requests", "scipy", "seaborn",
+        "skimage", "sklearn", "sympy", "tensorflow", "torch", "tqdm", "vpython",
+    }
+)  # fmt: skip
+
+_TYPES = "Nobody types while a check runs. Ask in a file of your own that imports this one."
+_FILES = (
+    "A check runs apart from your files and from the network. Read data in a file of your own that imports "
+    "this one."
+)
+#: What Python says -> what that means here; both are looked for, the line of code too if it is not empty.
+_LACKS: tuple[tuple[str, str, str], ...] = (
+    (
+        r"TclError|no display|could not find terminal|named '_?(tkinter|turtle|curses)'|DISPLAY",
+        "",
+        "There is no screen where a check runs, so no window can open. Draw in a file of your own that "
+        "imports this one.",
+    ),
+    (r"can't start new thread", "", "A check runs in one process with one thread: no other can start."),
+    (r"cannot join thread before it is started", "", "It waits for a thread, and no thread can start."),
+    (
+        r"URLError|gaierror|PermissionError|socket|ConnectionError",
+        r"socket|connect|url|http|asyncio",
+        "There is no network where a check runs, and nothing that needs a socket, such as asyncio's loops.",
+    ),
+    (
+        r"PermissionError|FileNotFoundError|BlockingIOError|OSError",
+        r"\b(Pool|Process|ProcessPoolExecutor|multiprocessing|subprocess|Popen|system|fork|kill|run|check_\w+)\b",
+        "No other program and no other process can start where a check runs.",
+    ),
+    (r"^EOFError|getpass", "", _TYPES),
+    (r"unsupported locale", "", "The languages of your computer are not there where a check runs."),
+    (r"getpwuid|getlogin|ioctl", "", "Nobody is logged in where a check runs."),
+    (
+        r"from '__main__'|'__main__' has no",
+        "",
+        "`__main__` is your file only when you run it yourself; here it is loaded by a check.",
+    ),
+    (r"name '(exit|quit)'|^SystemExit", "", "It would end the program, and a check goes on."),
+    (r"'StandIn'", "", "It uses a package that is not there."),
+    (r"named '(winsound|msvcrt|winreg|_winapi)'", "", "Only Python on Windows has that module."),
+    (r"OSError|unable to open database file", "", _FILES),
+)
+
+
+def lacking(failure: StudentFailure, code: str = "", *, shown: bool = True) -> str:
+    """A sentence on what is not there where a check runs; "" if the failure has another cause.
+
+    Args:
+        code: the line that failed.
+        shown: the failure's words may be repeated.
+    """
+    if failure.type == "ImportNotDeclaredError" or "relative import" in failure.message:
+        return absent(failure, code, shown=shown)
+    said = f"{failure.type}: {failure.message} {' '.join(failure.bases)}"
+    for raised, line, sentence in _LACKS:
+        if re.search(raised, said) and (not line or re.search(line, code)):
+            return sentence
+    return gone(failure, shown=shown)
+
+
+def numpys(name: str) -> str:
+    """How to get one of NumPy's names, as a sentence; "" if it is none of its own."""
+    mine = name in dir(np) and not name.startswith("_")
+    return f"`{name}` is NumPy's: write `from numpy import {name}`." if mine else ""
+
+
+def absent(failure: StudentFailure, code: str = "", *, shown: bool = True) -> str:
+    """What to do where a module is not there that may be a file of the student's; "" where it is none."""
+    found = (_PACKAGE.search(failure.message) if shown else None) or _RELATIVE.search(code)
+    name = found[1].partition(".")[0] if found else ""
+    if name in _KNOWN:
+        return ""
+    what = f"{name}.py" if name.isidentifier() else "it"
+    return (
+        f"If {what} is a file of yours: it is not handed in and not graded. Copy what you use of it into the "
+        "file of the exercise."
+    )
+
+
+_ATTRIBUTE = re.compile(
+    r"module '([\w.]+)' has no attribute '(\w+)'|cannot import name '(\w+)' from '([\w.]+)'"
+    r"|`(np)\.(\w+)` was removed"
+)
+#: Names that one NumPy has and another has not -> what all have.
+_INSTEAD = {
+    "trapz": "`np.trapezoid`",
+    "trapezoid": "`np.trapz`",
+    "in1d": "`np.isin`",
+    "product": "`np.prod`",
+    "cumproduct": "`np.cumprod`",
+    "cumulative_sum": "`np.cumsum`",
+    "cumulative_prod": "`np.cumprod`",
+    "sometrue": "`np.any`",
+    "alltrue": "`np.all`",
+    "float_": "`np.float64`",
+    "matvec": "`@`",
+    "vecmat": "`@`",
+    "vecdot": "`np.einsum`",
+}
+
+
+def instead(module: str, name: str) -> str:
+    """What to write for a name that not every version has, as a sentence; "" where nothing is known."""
+    return f" Use {_INSTEAD[name]}." if module == "numpy" and name in _INSTEAD else ""
+
+
+def gone(failure: StudentFailure, *, shown: bool = True) -> str:
+    """A sentence on a name that this Python, or its NumPy, has not; "" if it is about none.
+
+    Args:
+        shown: the failure's words may be repeated; else only names of the table above are.
+    """
+    found = _ATTRIBUTE.search(failure.message)
+    if found is None:
+        return ""
+    name, module = found[2] or found[3] or found[6], found[1] or found[4] or "numpy"
+    better = instead(module, name)
+    if not (shown or better):
+        return ""
+    if module.partition(".")[0] == "numpy":
+        return f"{NUMPY}, which this is checked with, has no `{'np' + module[5:]}.{name}`.{better}"
+    if module.partition(".")[0] in sys.stdlib_module_names - {"__main__"}:
+        return f"{PYTHON}, which this is checked with, has no `{module}.{name}`."
+    return ""
+
+
+#: How newer Python looks in the line that an older one cannot read -> the version that has it.
+_NEWER: tuple[tuple[str, str, tuple[int, int]], ...] = (
+    ("", r"^\s*type\s+\w+(\[.*\])?\s*=", (3, 12)),
+    ("", r"^\s*(async\s+)?(def|class)\s+\w+\s*\[", (3, 12)),
+    (r"^f-string: ", "", (3, 12)),
+    ("", r"\b[fF][rR]?(\"\"\"|'''|['\"]).*\{", (3, 12)),
+    ("multiple exception types must be parenthesized", "", (3, 14)),
+    ("", r"\b[tT]['\"]", (3, 14)),
+    (r"except\*|expected ':'", r"^\s*except\s*\*", (3, 11)),
+)
+
+
+def newer(failure: StudentFailure, code: str = "") -> str:
+    """That a newer Python reads the line, which this one cannot; "" where nothing speaks for it.
+
+    Args:
+        code: the line.
+    """
+    for said, look, version in _NEWER:
+        if version > sys.version_info and re.search(said, failure.message) and re.search(look, code):
+            since = ".".join(map(str, version))
+            return f"Python {since} reads that, but it is checked with {PYTHON}: write it the older way."
+    return ""

@@ -283,23 +283,28 @@ def _grade(
     on_progress: Progress | None,
     grade: GradeSources,
 ) -> tuple[int, str]:
-    """Grade what was planned; how many submissions got a verdict, and at which protection level."""
+    """Grade what was planned; how many submissions got a score, and at which protection level."""
     work: list[tuple[Prover, Proof]] = []
     for candidate in candidates:
         entries = solutions_folder(catalog, candidate.exercise) / "mutants.toml"
-        prover = Prover(candidate.exercise, candidate.checks, entries, findings)
+        prover = Prover(candidate.exercise, candidate.checks, entries, Findings(findings.root))
         work += [(prover, proof) for proof in candidate.proofs]
+    provers = tuple(dict.fromkeys(prover for prover, _ in work))
     if on_progress:
         on_progress(0, len(work), "")
-    done, isolation = 0, ""
+    done, graded, isolation = 0, 0, ""
     for index, verdict in grade([(prover.exercise, proof.source) for prover, proof in work]):
         done += 1
         prover, proof = work[index]
         prover.judge(proof, verdict)
+        graded += verdict.state == "graded"
         isolation = verdict.isolation or isolation
         if on_progress:
             on_progress(done, len(work), f"{prover.exercise.id}: {proof.role} {proof.path.name}")
-    if done == len(work):  # a field that no check has had may be one of a program that was left out
-        for prover in dict.fromkeys(prover for prover, _ in work):
+        if all(prover.hopeless for prover in provers):
+            break
+    for prover in provers:
+        if done == len(work):  # a field that no check has had may be one of a program that was left out
             prover.judge_hints(catalog.hints_document(prover.exercise))
-    return done, isolation
+        findings.problems += prover.problems
+    return graded, isolation

@@ -18,14 +18,16 @@ from course.authoring.exercises.files import public_numbers
 from course.authoring.exercises.grading import accepted_files, compose, mutant_files, solution_path
 from course.authoring.exercises.mutants import judge, mutant_path
 from course.authoring.exercises.source import DECIMAL, CheckSource, parse, signatures
-from course.authoring.report import Findings
+from course.authoring.report import AuditProblem, Findings
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise, Hints, Mutant, fields_of
 from course.catalog.reading import Document, read_text
 from course.errors import ContentError
 from course.progress.history import numbers_of
 from course.progress.workspace import write_atomically
+from course.scoring.failures import ON_THE_MODEL, OURS
 from course.scoring.graders import LEFT_OUT
+from course.scoring.judging.outcomes import NOT_JUDGED
 from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility
 
 _INTEGER = re.compile(r"(?<![\w.])-?\d+(?![\w.]*\w)")
@@ -163,9 +165,18 @@ class Prover:
         self._checks = {check.id: check for check in checks}
         self._mutants_toml = mutants_toml
         self._findings = findings
-        self._broken = False  # its checks cannot be imported: nothing more can be said of them
+        #: A check raised or cannot be imported: what grading says of the programs follows from that.
+        self.broken = False
+        #: It does so on the model solution: no program can be judged.
+        self.hopeless = False
+        self._breaks: set[tuple[str, Path, int | None]] = set()
         self._public = public_numbers(exercise)
         self._fields: dict[str, set[str]] = {task.id: set() for task in exercise.task}
+
+    @property
+    def problems(self) -> list[AuditProblem]:
+        """What was found; of checks that broke only that they did, since the rest follows from it."""
+        return [one for one in self._findings.problems if not self.broken or one.code == "grader"]
 
     def judge(self, proof: Proof, verdict: Verdict) -> None:
         """Report what is wrong with the verdict on one proof."""
@@ -192,7 +203,7 @@ class Prover:
 
     def judge_hints(self, hints: Document[Hints]) -> None:
         """Report fields that hints name and that no failed check has had. Call it after the last proof."""
-        for index, task in enumerate(() if self._broken else hints.value.task):
+        for index, task in enumerate(() if self.broken else hints.value.task):
             for number, sentences in task.yours.items():
                 named = frozenset().union(*map(fields_of, sentences))
                 for field in sorted(named - self._fields.get(task.id, set())):
@@ -205,22 +216,43 @@ class Prover:
                     )
 
     def _is_our_fault(self, proof: Proof, verdict: Verdict) -> bool:
-        """Report checks that broke instead of checking, each once."""
-        if verdict.error is not None and verdict.error.code == "check_file":
-            self._broken = True
-            self._findings.add(*_fault_of_file(verdict.error, self._findings.root))
+        """Report checks that broke instead of checking, each once, with the line that raised."""
+        error = verdict.error
+        if error is not None and error.code == "check_file":
+            self.broken = self.hopeless = True
+            self._findings.add(*_fault_of_file(error, self._findings.root))
             return True
-        broken = [check for check in verdict.checks if check.status is Status.GRADER_ERROR]
-        for check in broken:
-            self._broken = True
-            fix = "Correct the check; whatever a student returns must be a finding."
-            problem, fix = _told(f"check {check.id} breaks: {check.message}", fix, self._findings.root)
-            self._findings.add(*self._place(check.id, self.exercise.checks_path), "grader", problem, fix)
-        if not broken and verdict.state == "grader_error" and verdict.error is not None:
-            words = f"the checks break on {proof.path.name}: {verdict.error.message}"
-            fix = verdict.error.help or "Correct the checks."
-            self._findings.add(self.exercise.checks_path, None, "grader", words, fix)
-        return verdict.state == "grader_error"
+        told = False
+        for check in verdict.checks:
+            if check.status is Status.GRADER_ERROR:
+                told = self.hopeless = True
+                self._break(check.id, f"check {check.id} breaks", check.message.removeprefix(ON_THE_MODEL))
+            elif (check.traceback or "").startswith(OURS):
+                told = True
+                what = "" if check.diagnosis == NOT_JUDGED else "the diagnosis of "
+                what += f"check {check.id} breaks on {proof.path.name}"
+                self._break(check.id, what, (check.traceback or "").removeprefix(OURS))
+        if not told and verdict.state == "grader_error":
+            self.broken = True
+            why, fix = (error.message, error.help) if error else (verdict.state, "")
+            words = f"the checks break on {proof.path.name}: {why}"
+            self._findings.add(self.exercise.checks_path, None, "grader", words, fix or "Correct the checks.")
+        return told or verdict.state == "grader_error"
+
+    def _break(self, check: str, what: str, said: str) -> None:
+        """Report a check, or its diagnosis, that raised: once, however many programs it raised on."""
+        self.broken = True
+        path, line = self._place(check, self.exercise.checks_path)
+        raised = _RAISED.search(said)
+        if raised is not None and (self._findings.root / raised["file"]).is_file():
+            path, line = self._findings.root / raised["file"], int(raised["line"])
+            said = said[: raised.start()]
+        if (check, path, line) in self._breaks:
+            return
+        self._breaks.add((check, path, line))
+        fix = "Whatever a student's function returns must be a finding: look at a value before computing with it."
+        problem, fix = _told(f"{what}: {said.rstrip('.')}.", fix, self._findings.root)
+        self._findings.add(path, line, "grader", problem, fix)
 
     def _judge_stub(self, proof: Proof, verdict: Verdict) -> None:
         for check in verdict.checks:
@@ -291,6 +323,8 @@ class Prover:
 
 
 _CHECK_FILE = re.compile(r"(?P<file>.+?)(?::(?P<line>\d+))?: (?P<problem>.*)", re.DOTALL)
+#: The end of what is said of an exception: the course's own file and line that it comes from.
+_RAISED = re.compile(r" \((?P<file>[^()]+), line (?P<line>\d+)\)\.?$")
 _NOT_THERE = re.compile(r"FileNotFoundError: (?P<file>\S+) is not there")
 
 

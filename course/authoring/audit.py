@@ -12,6 +12,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
+from course.authoring.coverage import IsCommand, audit_coverage
 from course.authoring.exercises.diagnosis import audit_diagnoses
 from course.authoring.exercises.files import audit_files, blanks_in, find_blanks
 from course.authoring.exercises.grading import (
@@ -23,7 +24,14 @@ from course.authoring.exercises.grading import (
 )
 from course.authoring.exercises.proofs import Proof, Prover, audit_page, plan
 from course.authoring.exercises.source import CheckSource, audit_style
-from course.authoring.lessons.lint import LinkChecker, audit_lesson, audit_syllabus
+from course.authoring.lessons.lint import (
+    LinkChecker,
+    Refused,
+    audit_figures,
+    audit_lesson,
+    audit_objective,
+    audit_syllabus,
+)
 from course.authoring.report import AuditReport, Findings, Progress
 from course.catalog.load import Catalog
 from course.catalog.markdown import read_task
@@ -74,6 +82,7 @@ def audit_quiz(catalog: Catalog, findings: Findings, only: str | None = None) ->
     chosen = [document for document in documents if only in (None, document.value.id)]
     for document in chosen:
         _audit_question(catalog, document, findings)
+        audit_objective(catalog, "quiz", document.value.id, findings)
     return tuple(document.value.id for document in chosen)
 
 
@@ -129,6 +138,8 @@ def audit(
     without: Collection[str] = (),
     on_progress: Progress | None = None,
     grade: GradeSources = grade_sources,
+    refused: Refused | None = None,
+    is_command: IsCommand | None = None,
 ) -> AuditReport:
     """Check the course, or one lesson or exercise of it.
 
@@ -139,6 +150,9 @@ def audit(
         on_progress: called at the start and after each submission with the number graded and the total.
         grade: gives the verdicts on submissions. It may leave some out: they are not counted, and fields
             that hints name are not looked for.
+        refused: tries the commands of lessons; None to leave that out.
+        is_command: whether ``course`` followed by these words is a command, for docs/coverage.md; None to
+            leave that page out.
 
     Raises:
         MissingCapabilityError: this installation has no solutions or no hidden graders.
@@ -154,6 +168,8 @@ def audit(
         )
         if only is None:
             audit_syllabus(catalog, findings)
+            if is_command is not None:
+                audit_coverage(catalog, is_command, findings)
     except ContentError as error:
         findings.add_error(error)
         return AuditReport(findings.sorted(), seconds=time.monotonic() - started)
@@ -161,7 +177,8 @@ def audit(
     for lesson_id in lessons:
         path = catalog.content.lessons / f"{lesson_id}.md"
         if path.is_file() and not blanks_in(path, findings):
-            audit_lesson(catalog, lesson_id, findings, links)
+            audit_lesson(catalog, lesson_id, findings, links, refused)
+    audit_figures(catalog, None if only is None else lessons, findings)
     questions = audit_quiz(catalog, findings, only) if only is None or only in _questions(catalog) else ()
     scenes = _check_scenes(only, findings)
     whole: list[Exercise] = []
@@ -252,6 +269,8 @@ def _read(catalog: Catalog, exercise_id: str, findings: Findings, whole: list[Ex
             _check_readmes(catalog, exercise, own)
             checks = audit_files(catalog, exercise, own)
             audit_diagnoses(catalog, exercise, own)
+            if not exercise.is_warm_up:
+                audit_objective(catalog, "exercises", exercise.id, own)
             whole.append(exercise)
             proofs = plan(catalog, exercise, own)
             # Checks that lack a marker would only fail again, all at once and less clearly; and a diagnosis

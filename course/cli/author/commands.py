@@ -29,6 +29,7 @@ from course.cli.author.replies import (
     CoverageRow,
     MutantRow,
 )
+from course.cli.author.trying import refused
 from course.cli.frame import here
 from course.cli.frame.completion import exercise_ids, lesson_ids
 from course.cli.frame.console import Console, current, meter
@@ -328,7 +329,7 @@ def check(
 
     console, catalog = current(), load_catalog()
     with meter(console) as on_progress:
-        report = audit(catalog, name, on_progress=on_progress)
+        report = audit(catalog, name, on_progress=on_progress, refused=refused, is_command=is_command)
     _show_report(console, catalog, report)
     _emit_report(console, catalog, report)
     return 0 if report.ok else 1

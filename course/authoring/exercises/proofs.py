@@ -21,9 +21,9 @@ from course.authoring.exercises.source import DECIMAL, CheckSource, parse, signa
 from course.authoring.report import AuditProblem, Findings
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise, Hints, Mutant, fields_of
-from course.catalog.reading import Document, read_text
+from course.catalog.reading import Document, read_document, read_text
 from course.errors import ContentError
-from course.progress.history import numbers_of
+from course.progress.history import NO_MISTAKE, numbers_of
 from course.progress.workspace import write_atomically
 from course.scoring.failures import ON_THE_MODEL, OURS
 from course.scoring.graders import LEFT_OUT
@@ -129,6 +129,16 @@ def _plan_mutants(
     for path in mutant_files(catalog, exercise):
         if path.name not in listed:
             findings.add(path, None, "mutants", "mutants.toml does not list this file.", "Add a [[mutant]].")
+    codes = [mutant.diagnosis for mutant in mutants]
+    for index, code in enumerate(codes if exercise.is_warm_up else ()):
+        if code in codes[:index]:
+            findings.add(
+                document.path,
+                document.lines.line(("mutant", index, "diagnosis")),
+                "mutants",
+                f"another mutant has the diagnosis {code}, too.",
+                "A warm-up tells each of its mistakes apart: give it a code of its own.",
+            )
     for task in exercise.task:
         if task.id not in {mutant.task for mutant in mutants}:
             findings.add(
@@ -250,7 +260,7 @@ class Prover:
         if (check, path, line) in self._breaks:
             return
         self._breaks.add((check, path, line))
-        fix = "Whatever a student's function returns must be a finding: look at a value before computing with it."
+        fix = "Look at a value before computing with it: whatever a student's function returns is a finding."
         problem, fix = _told(f"{what}: {said.rstrip('.')}.", fix, self._findings.root)
         self._findings.add(path, line, "grader", problem, fix)
 
@@ -263,6 +273,7 @@ class Prover:
                     f"the untouched stub passes check {check.id} of task {check.task}.",
                     "Let the check fail on code that does nothing.",
                 )
+        self._judge_handout(proof, verdict)
         for task in self.exercise.task:
             if not any(c.task == task.id and c.status is not Status.PASS for c in verdict.checks):
                 self._findings.add(
@@ -272,6 +283,28 @@ class Prover:
                     f"no check of task {task.id} fails on the stub.",
                     "Give the task a check that does.",
                 )
+
+    def _judge_handout(self, proof: Proof, verdict: Verdict) -> None:
+        """What public checks find in the stub is unwritten, or declared as its fault."""
+        for index, task in enumerate(self.exercise.task):
+            told = {
+                check.diagnosis
+                for check in verdict.checks
+                if check.task == task.id and check.visibility is Visibility.PUBLIC and check.diagnosis
+            }
+            for code in sorted(told - {task.fault, *NO_MISTAKE}):
+                self._findings.add(
+                    proof.path,
+                    self._line_of(proof.path, task.id),
+                    "stub",
+                    f"the untouched stub is told {code}, and `course progress` counts that as the student's.",
+                    f'Raise NotImplementedError in {task.id}, or give its task `fault = "{code}"`.',
+                )
+            if task.fault and task.fault not in told:
+                path = proof.path.with_name("exercise.toml")
+                line = read_document(path, Exercise).lines.line(("task", index, "fault"))
+                problem = f"no public check tells the untouched stub {task.fault}."
+                self._findings.add(path, line, "stub", problem, "Correct the code, or take the line out.")
 
     def _judge_correct(self, proof: Proof, verdict: Verdict) -> None:
         """Full marks, and the checks that ran are the ones the files declare."""

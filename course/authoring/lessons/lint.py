@@ -1,7 +1,7 @@
 """The rules for lessons beyond the format: what a lesson must have, must not have and must refer to.
 
-The audit asks ``rules_broken`` for every lesson; each finding names a line and the fix. Whether code cells print
-what is recorded is a different question, answered by running them: ``course.authoring.lessons.cells``.
+The audit asks ``rules_broken`` for every lesson; each finding names a line and the fix. Whether code cells
+print what is recorded is a different question, answered by running them: ``course.authoring.lessons.cells``.
 """
 
 from __future__ import annotations
@@ -31,6 +31,8 @@ from course.ids import LessonId
 
 #: Code, output and drawings are never wrapped; this is what 60 columns leave beside a margin of two.
 MAX_COLUMNS = 58
+#: Of each lesson.
+LEAST_WARM_UPS = 2
 #: Whole numbers up to here are words ("four methods, 12 of them"), not measurements.
 _SMALL = 12
 #: "In 2005": a date has a source, not a computation.
@@ -473,6 +475,10 @@ def audit_lesson(
         blocks = read_blocks(path)
         links.check_lesson(path, blocks)
         whole = bool(catalog.syllabus.objective)
+        if whole and len(catalog.warm_ups(lesson_id)) < LEAST_WARM_UPS and lesson_id in catalog.lesson_ids():
+            problem = f"a lesson has at least {LEAST_WARM_UPS} warm-ups, and {lesson_id} has fewer."
+            fix = f"Write one: course author new warmup ID --lesson {lesson_id}"
+            findings.add(path, None, "lesson", problem, fix)
         for one in rules_broken(blocks, figures=figure_ids(), whole=whole):
             findings.add(path, one.line or None, "lesson", f"{one.problem}.", one.fix)
         if refused is not None:

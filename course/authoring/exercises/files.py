@@ -7,11 +7,14 @@ Blanks left by ``course author new``, hints, README, stub against solution, and 
 from __future__ import annotations
 
 import ast
+import hashlib
 import math
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+
+import msgspec
 
 from course.authoring.exercises.grading import (
     accepted_files,
@@ -33,7 +36,7 @@ from course.authoring.exercises.source import (
 )
 from course.authoring.report import Findings
 from course.catalog.load import Catalog
-from course.catalog.models import QUICK, Exercise
+from course.catalog.models import QUICK, Exercise, Measured, Times
 from course.catalog.reading import read_document, read_text
 from course.errors import ContentError
 from course.progress.workspace import write_atomically
@@ -254,29 +257,48 @@ def write_points(catalog: Catalog, exercise: Exercise) -> Path | None:
             # It was left out: the last line above the first task.
             last = next(i for i in range(lines.line(("task",)) - 2, 0, -1) if text[i].strip())
             text.insert(last + 1, line)
-    if not stale:
+    slow = [at for at, line in enumerate(text) if re.match(r"slow\s*=", line)]
+    for at in slow:  # measured, and kept in ``times.json``
+        del text[at]
+    if not stale and not slow:
         return None
     write_atomically(path, "\n".join(text).encode())
     return path
 
 
 # ---
-# How long the slow public checks of an exercise take, measured and written into ``exercise.toml``.
+# How long the slow public checks of an exercise take, measured and written into ``times.json``.
 #
-# It determines how long ``course check`` waits for a function that may hang; see ``Exercise.patience``.
+# It determines how long ``course check`` waits for a function that may hang; see ``Exercise.patience``. Times
+# differ from run to run, so an exercise is measured again only when a file that decides about them changes.
 
 
 #: A number is replaced once a check takes longer, or less than this share of it: times vary by two.
 _LEAST = 0.4
 
 
-def audit_slow(exercise: Exercise, checks: tuple[CheckSource, ...], findings: Findings) -> None:
+def audit_slow(
+    catalog: Catalog, exercise: Exercise, checks: tuple[CheckSource, ...], findings: Findings
+) -> None:
     """Report slow checks that do not exist."""
     known = {check.id for check in checks if not check.hidden}
+    path = exercise.checks_path.with_name("exercise.toml")
+    written = read_document(path, Exercise)
+    file, line = (path, written.lines.line(("slow",))) if written.value.slow else (catalog.times_path, None)
     for check in sorted(exercise.slow.keys() - known):
-        path = exercise.checks_path.with_name("exercise.toml")
         message, fix = f"there is no public check {check}.", f"Run `course author build {exercise.id}`."
-        findings.add(path, None, "slow", message, fix)
+        findings.add(file, line, "slow", message, fix)
+
+
+def _decides(catalog: Catalog, exercise: Exercise) -> str:
+    """A digest of the files on which the times of public checks depend."""
+    solution = solution_path(catalog, exercise)
+    files = {*exercise.readme_path.parent.rglob("*.py"), *solution.parent.glob("*.py")}
+    files |= {*accepted_files(catalog, exercise)}
+    made_from = hashlib.sha256()
+    for path in sorted(files - {exercise.stub_path}):
+        made_from.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return made_from.hexdigest()[:16]
 
 
 def measured(catalog: Catalog, exercise: Exercise) -> dict[str, float]:
@@ -298,19 +320,21 @@ def due(written: dict[str, float], most: dict[str, float]) -> dict[str, float]:
     return dict(sorted({**slow, **kept}.items()))
 
 
-def write_slow(catalog: Catalog, exercise: Exercise) -> Path | None:
-    """Measure, and write the new value; None if it is there already."""
-    slow = due(exercise.slow, measured(catalog, exercise))
-    if slow == exercise.slow:
+def write_times(catalog: Catalog, exercises: Iterable[Exercise]) -> Path | None:
+    """Measure the exercises whose files changed, and write their times; None if none did."""
+    known = dict(catalog.times.exercises)
+    for exercise in exercises:
+        now, before = _decides(catalog, exercise), known.get(exercise.id)
+        if before is None or before.made_from != now:
+            slow = due(exercise.slow, measured(catalog, exercise))
+            known[exercise.id] = Measured(made_from=now, slow=slow)
+    there = {*catalog.exercise_ids(), *catalog.warm_up_ids()}
+    kept = {name: known[name] for name in sorted(there & known.keys())}
+    if kept == catalog.times.exercises:
         return None
-    path = exercise.checks_path.with_name("exercise.toml")
-    text = re.sub(r"^slow = .*\n", "", read_text(path), flags=re.MULTILINE)
-    if slow:
-        line = ", ".join(f"{check} = {seconds:g}" for check, seconds in slow.items())
-        above, task, below = text.partition("\n[[task]]")
-        text = f"{above.rstrip()}\nslow = {{ {line} }}\n{task}{below}"
-    write_atomically(path, text.encode())
-    return path
+    data = msgspec.json.format(msgspec.json.encode(Times(exercises=kept)), indent=1)
+    write_atomically(catalog.times_path, data + b"\n")
+    return catalog.times_path
 
 
 # ---
@@ -366,7 +390,7 @@ def audit_files(catalog: Catalog, exercise: Exercise, findings: Findings) -> tup
     # Checks without a marker cannot be added up, and are reported.
     if not findings.of("check"):
         audit_points(exercise, checks, findings)
-        audit_slow(exercise, checks, findings)
+        audit_slow(catalog, exercise, checks, findings)
     return checks
 
 

@@ -432,14 +432,12 @@ def kill_table(catalog: Catalog) -> str:
 def audit_page(catalog: Catalog, findings: Findings) -> None:
     """Report a page that is out of date."""
     page = _page(catalog)
-    if page.is_file() and page.read_text(encoding="utf-8") != kill_table(catalog):
-        findings.add(
-            page,
-            None,
-            "stale",
-            "it is not of the exercises, variants and mutants there are now.",
-            "Run `course author build`.",
-        )
+    if not page.is_file() or (text := page.read_text(encoding="utf-8")) == kill_table(catalog):
+        return
+    exercises = catalog.exercises()
+    stale = next((one for one in exercises if _section(catalog, one) not in text), exercises[0])
+    problem = f"it is not of the exercises, variants and mutants there are now, those of {stale.id} above all."
+    findings.add(page, None, "stale", problem, f"Run `course author build {stale.id}`.")
 
 
 def write_page(catalog: Catalog) -> Path | None:

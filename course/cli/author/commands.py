@@ -404,15 +404,15 @@ def build(
 ) -> int:
     """Generate the files that follow from an exercise's sources.
 
-    The points and counts in `exercise.toml`, which come from the checks' markers, and the time that its slow
-    public checks take, which decides when a loop counts as hung; `hypotheses.json`, the answers of every
-    known wrong program to the exercise's questions, as fingerprints, so that a diagnosis works at home, where
-    there are no solutions; and docs/graders.md. `course author check` refuses files that are out of date.
-    With --confusion each wrong program is graded, at home and as in a grading run, and its diagnoses are kept
+    The points and counts in `exercise.toml`, which come from the checks' markers; `exercises/times.json`, how
+    long slow public checks take, which decides when a loop counts as hung; `hypotheses.json`, the answers of
+    every known wrong program to the exercise's questions, as fingerprints, so that a diagnosis works at home,
+    where there are no solutions; and docs/graders.md. `course author check` refuses files that are out of
+    date. With --confusion each wrong program is graded, at home and as in a grading run, and its diagnoses are kept
     beside the solution for docs/graders.md.
     """
     from course.authoring.exercises import diagnosis as desk
-    from course.authoring.exercises.files import write_points, write_slow
+    from course.authoring.exercises.files import write_points, write_times
     from course.authoring.exercises.proofs import write_page
     from course.cli.author.replies import AuthorBuild
     from course.scoring.explain.story import read_table
@@ -428,8 +428,8 @@ def build(
         except ContentError:
             _say_blanks(catalog, exercise)
             raise
-    read_table.cache_clear()  # it was just written, and what is slow is told with it
-    made += [write_slow(catalog, exercise) for exercise in chosen]
+    read_table.cache_clear()  # it was just written, and slow checks are measured with it
+    made.append(write_times(catalog, chosen))
     written = [shown(path, catalog) for path in made if path]
     if confusion:
         from course.authoring.exercises.diagnosis import confusion_of, write_confusion

@@ -41,7 +41,7 @@ from course.catalog.reading import Document
 from course.errors import ContentError, NotFoundError
 from course.ids import WARM_UPS
 from course.quizzing.desk import faults_in
-from course.sandbox.scene.loading import FOLDER, read_scene, scene_ids
+from course.sandbox.scene.loading import read_scene, scene_ids, scene_path
 
 # ---
 # The audit of the quiz: every question, every variant, every case its numbers can take.
@@ -239,7 +239,7 @@ def _check_scenes(only: str | None, findings: Findings) -> tuple[str, ...]:
     """The sandbox's scenes hold together, the formulas in their texts too; ids of those looked at."""
     names = tuple(name for name in scene_ids() if only in {None, name})
     for name in names:
-        path = FOLDER / f"{name}.toml"
+        path = scene_path(name)
         try:
             if not blanks_in(path, findings):
                 read_scene(path)

@@ -19,7 +19,7 @@ from typing import Any
 
 import msgspec
 
-from course.catalog.reading import Document, read_document
+from course.catalog.reading import Document, read_document, refuse_blanks
 from course.errors import UsageError
 from course.ids import QuestionId
 
@@ -238,6 +238,7 @@ def read_questions(folder: Path) -> tuple[Document[Question], ...]:
 
 
 def _read(path: Path) -> Document[Question]:
+    refuse_blanks(path)
     document = read_document(path, Question)
     question = document.value
     _check_id(document, question.id)

@@ -73,7 +73,8 @@ def needed(total: int) -> int:
 
 def mark_sentence(total: int) -> str:
     """The pass mark as it is shown: "You pass with 4 right answers out of 5"."""
-    return f"You pass with {needed(total)} right answers out of {total}"
+    least = needed(total)
+    return f"You pass with {least} right answer{'s' * (least != 1)} out of {total}"
 
 
 def mark(posed: Sequence[PosedQuestion], answers: Mapping[str, str]) -> Result:

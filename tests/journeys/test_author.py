@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from course.authoring.exercises.files import BLANK
+from course.catalog.reading import BLANK
 from tests.journeys.conftest import ROOT, Way
 from tests.unit.authoring.test_scaffold import fill as fill_tripling
 

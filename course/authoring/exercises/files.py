@@ -37,7 +37,7 @@ from course.authoring.exercises.source import (
 from course.authoring.report import Findings
 from course.catalog.load import Catalog
 from course.catalog.models import QUICK, Exercise, Measured, Times
-from course.catalog.reading import read_document, read_text
+from course.catalog.reading import BLANK, read_document, read_text
 from course.errors import ContentError
 from course.progress.workspace import write_atomically
 from course.reading.parts import read_script
@@ -340,9 +340,6 @@ def write_times(catalog: Catalog, exercises: Iterable[Exercise]) -> Path | None:
 # ---
 
 
-#: The mark that ``course author new`` leaves where an author has to write.
-BLANK = re.compile(r"<<FILL IN:\s*(?P<what>.*?)>>")
-
 #: Mildest first; the last may nearly be the solution.
 LEAST_HINTS = 3
 LEAST_HINTS_OF_WARM_UP = 2
@@ -373,7 +370,7 @@ def blanks_in(path: Path, findings: Findings) -> bool:
     for number, line in enumerate(read_text(path).split("\n"), start=1):
         for match in BLANK.finditer(line):
             found = True
-            what = match["what"].strip()
+            what = match["what"].strip() or "this"
             findings.add(
                 path, number, "blank", f"still to be filled in: {what}.", "Replace the whole marker."
             )

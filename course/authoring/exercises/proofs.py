@@ -436,7 +436,9 @@ def audit_page(catalog: Catalog, findings: Findings) -> None:
         return
     exercises = catalog.exercises()
     stale = next((one for one in exercises if _section(catalog, one) not in text), exercises[0])
-    problem = f"it is not of the exercises, variants and mutants there are now, those of {stale.id} above all."
+    problem = (
+        f"it is not of the exercises, variants and mutants there are now, those of {stale.id} above all."
+    )
     findings.add(page, None, "stale", problem, f"Run `course author build {stale.id}`.")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Annotated
@@ -17,6 +18,7 @@ from course.authoring.exercises.proofs import kill_table
 from course.authoring.packing import write_pack
 from course.authoring.report import AuditProblem, AuditReport
 from course.catalog.load import Catalog
+from course.catalog.locate import ENVIRONMENT_VARIABLE
 from course.catalog.models import CourseRef, Exercise
 from course.cli.author.pictures import pictures
 from course.cli.author.replies import (
@@ -33,7 +35,6 @@ from course.cli.author.trying import refused
 from course.cli.frame import here
 from course.cli.frame.completion import exercise_ids, lesson_ids
 from course.cli.frame.console import Console, current, meter
-from course.cli.frame.here import load_catalog
 from course.cli.frame.registry import COMMANDS
 from course.errors import ContentError, UsageError
 from course.progress.workspace import write_atomically
@@ -60,7 +61,7 @@ def coverage(
     table, page = document.value, None
     if write and not problems:
         page = written_to(catalog)
-        page.write_text(as_markdown(table), encoding="utf-8")
+        write_atomically(page, as_markdown(table).encode())
     _show_coverage(console, table, problems)
     if page:
         console.note(f"Wrote {shown(page, catalog)}.")
@@ -128,6 +129,25 @@ def is_command(words: tuple[str, ...]) -> bool:
     if words[1] not in group.commands:
         return False
     return all(word in (*SIMULATIONS, "--all") for word in words[2:])
+
+
+def load_catalog() -> Catalog:
+    """The course in use, which is the one whose checkout one stands in.
+
+    Raises:
+        UsageError: one stands in another checkout than that of this program, which would be written to.
+    """
+    catalog, folder = here.load_catalog(), Path.cwd()
+    for above in (folder, *folder.parents):
+        if (above / "course" / "authoring").is_dir() and (above / "exercises").is_dir():
+            if above.resolve() != catalog.content.root.resolve() and ENVIRONMENT_VARIABLE not in os.environ:
+                raise UsageError(
+                    f"This program belongs to {catalog.content.root}, and you are in another one, {above}.",
+                    help=f"In {above}, type `python -m course` instead of `course`: that is its own program.",
+                    code="other_checkout",
+                )
+            break
+    return catalog
 
 
 def shown(path: Path, catalog: Catalog) -> str:
@@ -408,8 +428,8 @@ def build(
     long slow public checks take, which decides when a loop counts as hung; `hypotheses.json`, the answers of
     every known wrong program to the exercise's questions, as fingerprints, so that a diagnosis works at home,
     where there are no solutions; and docs/graders.md. `course author check` refuses files that are out of
-    date. With --confusion each wrong program is graded, at home and as in a grading run, and its diagnoses are kept
-    beside the solution for docs/graders.md.
+    date. With --confusion each wrong program is graded, at home and as in a grading run, and its diagnoses
+    are kept beside the solution for docs/graders.md.
     """
     from course.authoring.exercises import diagnosis as desk
     from course.authoring.exercises.files import write_points, write_times

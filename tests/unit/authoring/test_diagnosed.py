@@ -1,4 +1,4 @@
-"""An exercise whose diagnoses are data, as its author builds it: every part that is optional may be missing."""
+"""An exercise whose diagnoses are data, as its author builds it: what is optional may be missing."""
 
 from __future__ import annotations
 
@@ -21,9 +21,13 @@ def halving(mini: Path) -> Path:
     """Its folder for students; it has words and questions, and no hypotheses.py."""
     forget()
     folder = mini / "exercises" / "halving"
-    tables = [f'[diagnosis.{code}]\nlooks_like = "It is {code}."\nadvice = "Mend it."' for code in codes(mini)]
+    tables = [
+        f'[diagnosis.{code}]\nlooks_like = "It is {code}."\nadvice = "Mend it."' for code in codes(mini)
+    ]
     (folder / "diagnoses.toml").write_text("format_version = 1\n\n" + "\n\n".join(tables) + "\n")
-    (folder / "questions.py").write_text('"""Q."""\n\nQUESTIONS = {"halve": [(7,), (-3,), (0.5,), (-8.0,)]}\n')
+    (folder / "questions.py").write_text(
+        '"""Q."""\n\nQUESTIONS = {"halve": [(7,), (-3,), (0.5,), (-8.0,)]}\n'
+    )
     return folder
 
 
@@ -62,7 +66,11 @@ def test_without_hypotheses_everything_is_built_and_right(
         ("def others():\n    yield\n", None, "has no attribute 'hypotheses'"),
         ('def hypotheses():\n    yield "halve"\n', None, "it raises ValueError"),
         ('def hypotheses():\n    yield "halve", ("NO_WORDS",), abs\n', None, "no words for NO_WORDS"),
-        ('ALSO = 3\n\n\ndef hypotheses():\n    yield "halve", ("INTEGER_DIVISION",), abs\n', None, "it raises"),
+        (
+            'ALSO = 3\n\n\ndef hypotheses():\n    yield "halve", ("INTEGER_DIVISION",), abs\n',
+            None,
+            "it raises",
+        ),
     ],
 )
 def test_hypotheses_that_cannot_be_used_are_named_and_nothing_is_left_half_made(

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from course.authoring.audit import audit
-from course.authoring.exercises.files import BLANK
 from course.authoring.report import AuditReport
 from course.authoring.scaffold import Function, new_exercise, new_lesson, new_question
 from course.catalog.load import Catalog
+from course.catalog.reading import BLANK
 from course.errors import MissingCapabilityError, UsageError
 
 SOLVED = {

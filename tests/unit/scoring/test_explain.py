@@ -24,8 +24,8 @@ from course.scoring.explain.story import (
     matching,
     read_table,
     read_words,
-    table_bytes,
     story_of,
+    table_bytes,
 )
 from course.scoring.judging.explaining import answer_numbers, tasks_asked
 

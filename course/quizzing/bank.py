@@ -43,7 +43,7 @@ _QUANTITY = re.compile(
     re.IGNORECASE,
 )
 #: Words beside a number that make no other answer of it.
-_FILLER = frozenset("about almost approximately around exactly just nearly roughly some".split())
+_FILLER = {"about", "almost", "approximately", "around", "exactly", "just", "nearly", "roughly", "some"}
 _WORDLESS = re.compile(r"[\s.,;:!?=()~≈]+")
 #: A number with its unit, and nothing more.
 _BARE = re.compile(r"# [^\s#]+")
@@ -276,7 +276,7 @@ def same_answer(one: str, other: str) -> bool:
     """True if two options say the same: the same words, and numbers that are equal or nearly so.
 
     "0.10 m" and "10 cm" are the same; so are 0.0980 and 0.0981, which a reader who rounds once more than the
-    author cannot tell apart, and "0.5 s" and "0.5 s, because ...": whoever means the second may pick the first.
+    author cannot tell apart, and "0.5 s" and "0.5 s, because ...": who means the second may pick the first.
     """
     (words, numbers), (others, theirs) = _read(one), _read(other)
     if words != others:

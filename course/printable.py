@@ -10,7 +10,7 @@ import os
 import re
 import shlex
 
-__all__ = ["command", "one_line", "printable", "steady", "unheeded"]
+__all__ = ["command", "counted", "one_line", "printable", "steady", "unheeded"]
 
 _UNUSUAL = re.compile(r"[^ -~]")
 _UNUSUAL_IN_LINES = re.compile(r"[^\n\t -~]")
@@ -23,6 +23,11 @@ _STEERING = re.compile(
 def command(*words: object) -> str:
     """A command of the course as a sentence names it, ready to be pasted."""
     return f"`{shlex.join(['course', *map(str, words)])}`"
+
+
+def counted(number: int, word: str) -> str:
+    """A number and its noun, in the plural where it needs one: 1 step, 2,000 steps."""
+    return f"{number:,} {word}{'' if number == 1 else 's'}"
 
 
 def one_line(text: str, limit: int | None = None) -> str:

@@ -40,6 +40,7 @@ from course.catalog.questions import Question, read_questions
 from course.catalog.reading import Document
 from course.errors import ContentError, NotFoundError
 from course.ids import WARM_UPS
+from course.printable import counted
 from course.quizzing.desk import faults_in
 from course.sandbox.scene.loading import read_scene, scene_ids, scene_path
 
@@ -95,7 +96,8 @@ def _audit_question(catalog: Catalog, document: Document[Question], findings: Fi
     if len(question.variant) < LEAST_VARIANTS:
         wrong(
             (),
-            f"question {question.id} has {len(question.variant)} variants, and needs {LEAST_VARIANTS}.",
+            f"question {question.id} has {counted(len(question.variant), 'variant')}, "
+            f"and needs {LEAST_VARIANTS}.",
             "Add variants: new numbers or a new situation for the same idea.",
         )
     if question.lesson:

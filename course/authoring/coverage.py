@@ -22,6 +22,7 @@ from course.catalog.markdown import read_blocks
 from course.catalog.reading import Document, read_document
 from course.errors import ContentError, NotFoundError
 from course.figures.registry import figure_ids
+from course.printable import counted
 
 #: Whether ``course`` followed by these words is a command.
 IsCommand: TypeAlias = "Callable[[tuple[str, ...]], bool]"
@@ -149,7 +150,8 @@ def check_coverage(
             document.path,
             document.lines.line(("source_lines",)),
             "coverage",
-            f"{len(left)} lines of the chapter belong to no part: {lines}{', …' if len(left) > 10 else ''}.",
+            f"{counted(len(left), 'line')} of the chapter belong{'s' * (len(left) == 1)} to no part: "
+            f"{lines}{', …' if len(left) > 10 else ''}.",
             "Add the parts they hold.",
         )
     return findings.sorted()

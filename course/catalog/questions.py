@@ -22,6 +22,7 @@ import msgspec
 from course.catalog.reading import Document, read_document, refuse_blanks
 from course.errors import UsageError
 from course.ids import QuestionId
+from course.printable import counted
 
 # ---
 # Arithmetic that a content file may contain: numbers, names, + - * / ** and a few functions.
@@ -276,7 +277,7 @@ def _check_variant(document: Document[Question], where: Where, variant: Variant)
     if len(variant.option) != OPTIONS:
         document.fail(
             where,
-            f"variant {variant.id} has {len(variant.option)} options.",
+            f"variant {variant.id} has {counted(len(variant.option), 'option')}.",
             fix=f"Give it {OPTIONS}: one that is right and {OPTIONS - 1} that are not.",
         )
     right = [index for index, option in enumerate(variant.option) if option.right]

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from course.errors import UsageError
+from course.printable import counted
 from course.quizzing.bank import MAX_SEED, Bank, Choice, PosedQuestion
 
 __all__ = [
@@ -73,8 +74,7 @@ def needed(total: int) -> int:
 
 def mark_sentence(total: int) -> str:
     """The pass mark as it is shown: "You pass with 4 right answers out of 5"."""
-    least = needed(total)
-    return f"You pass with {least} right answer{'s' * (least != 1)} out of {total}"
+    return f"You pass with {counted(needed(total), 'right answer')} out of {total}"
 
 
 def mark(posed: Sequence[PosedQuestion], answers: Mapping[str, str]) -> Result:

@@ -39,6 +39,7 @@ from course.catalog.load import Catalog
 from course.catalog.models import QUICK, Exercise, Measured, Times
 from course.catalog.reading import BLANK, read_document, read_text
 from course.errors import ContentError
+from course.printable import counted
 from course.progress.workspace import write_atomically
 from course.reading.parts import read_script
 from course.scoring.explain.story import WORDS, read_words
@@ -469,7 +470,7 @@ def _audit_hints(catalog: Catalog, exercise: Exercise, findings: Findings) -> No
                 exercise.hints_path,
                 document.lines.line(("task", index, "hints")) if index is not None else None,
                 "hints",
-                f"task {task.id} has {len(hints)} hints, and needs {least}.",
+                f"task {task.id} has {counted(len(hints), 'hint')}, and needs {least}.",
                 "Add hints, mildest first.",
             )
     words = exercise.readme_path.with_name(WORDS)

@@ -23,12 +23,13 @@ from course.catalog.load import Catalog
 from course.catalog.models import Exercise, Hints, Mutant, fields_of
 from course.catalog.reading import Document, read_document, read_text
 from course.errors import ContentError
+from course.printable import counted
 from course.progress.history import NO_MISTAKE, numbers_of
 from course.progress.workspace import write_atomically
 from course.scoring.failures import ON_THE_MODEL, OURS
 from course.scoring.graders import LEFT_OUT
 from course.scoring.judging.outcomes import NOT_JUDGED
-from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility
+from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility, in_points
 
 _INTEGER = re.compile(r"(?<![\w.])-?\d+(?![\w.]*\w)")
 #: Of an exercise of n functions: n + 1 unusual solutions that must pass, and this many wrong ones times n.
@@ -459,13 +460,13 @@ def _page(catalog: Catalog) -> Path:
 def _section(catalog: Catalog, exercise: Exercise) -> str:
     mutants = catalog.mutants(exercise)
     accepted = accepted_files(catalog, exercise)
-    tasks = f"{len(exercise.task)} task{'s' * (len(exercise.task) > 1)}"
     lines = [
         f"## {exercise.title} (`{exercise.id}`)",
         "",
-        f"{exercise.max_points:g} points in {tasks}, {exercise.hidden_points:g} of them "
-        f"on {exercise.hidden_checks} hidden checks. {len(accepted)} unusual solutions are accepted, "
-        f"{len(mutants)} wrong ones are caught.",
+        f"{in_points(exercise.max_points)} in {counted(len(exercise.task), 'task')}, "
+        f"{exercise.hidden_points:g} of them on {counted(exercise.hidden_checks, 'hidden check')}. "
+        f"{counted(len(accepted), 'unusual solution')} {'is' if len(accepted) == 1 else 'are'} accepted, "
+        f"{counted(len(mutants), 'wrong one')} {'is' if len(mutants) == 1 else 'are'} caught.",
         "",
         "| What its author believes | Task | Caught by | Diagnosis | File |",
         "|---|---|---|---|---|",

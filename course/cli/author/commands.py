@@ -37,6 +37,7 @@ from course.cli.frame.completion import exercise_ids, lesson_ids
 from course.cli.frame.console import Console, current, meter
 from course.cli.frame.registry import COMMANDS
 from course.errors import ContentError, UsageError
+from course.printable import counted
 from course.progress.workspace import write_atomically
 from course.sandbox.scene.loading import scene_ids
 from course.scoring.verdict import in_points
@@ -154,11 +155,6 @@ def shown(path: Path, catalog: Catalog) -> str:
     """A path relative to the checkout."""
     root = catalog.content.root
     return path.relative_to(root).as_posix() if path.is_relative_to(root) else str(path)
-
-
-def counted(number: int, word: str) -> str:
-    """A number and its noun, in the plural where it needs one."""
-    return f"{number} {word}" if number == 1 else f"{number} {word}s"
 
 
 # ---
@@ -478,7 +474,7 @@ def _say_blanks(catalog: Catalog, exercise: Exercise) -> None:
     if find_blanks(catalog, exercise.id, findings):
         first = findings.problems[0]
         raise UsageError(
-            f"{exercise.id} has {len(findings.problems)} blanks to fill in first, such as"
+            f"{exercise.id} has {counted(len(findings.problems), 'blank')} to fill in first, such as"
             f" {first.file}:{first.line}.",
             help=f"`course author check {exercise.id}` lists them.",
             code="unfinished_content",

@@ -9,7 +9,7 @@ from course.cli.frame.here import Here
 from course.errors import CourseError
 from course.progress.history import fingerprint
 from course.progress.quiz import quiz_history
-from course.scoring.verdict import Verdict, format_points
+from course.scoring.verdict import Verdict, format_points, in_points
 
 __all__ = [
     "after_report",
@@ -128,8 +128,8 @@ def _in_progress(here: Here) -> str:
         last, graded = history.last, history.last_graded
         if (last is None and exercise.id not in started) or (graded is not None and graded.all_pass):
             continue
-        points = graded and f"{format_points(graded.score)} of {format_points(graded.max_score)}"
-        state = f"in progress, {points} points" if points else "started, not checked yet"
+        points = graded and f"{format_points(graded.score)} of {in_points(graded.max_score)}"
+        state = f"in progress, {points}" if points else "started, not checked yet"
         go_on = f"{exercise.id}: {state}. To go on: course check {exercise.id}"
         begun.append((last.at.isoformat() if last else "", go_on))
     return max(begun, key=lambda one: one[0])[1] if begun else ""

@@ -29,6 +29,7 @@ from course.cli.work.verdict import (
     show_verdict,
 )
 from course.errors import CourseError, NotFoundError, UngradableError, UsageError
+from course.printable import counted
 from course.progress.history import check_data
 from course.scoring.verdict import Verdict
 
@@ -325,7 +326,9 @@ def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int
             results.append(ErrorReply(schema="course.check/1", exit_code=error.exit_code, error=body))
     worst = max(result.exit_code for result in results)
     complete = sum(result.ok for result in results)
-    console.line((f"{complete} of {len(results)} exercises pass every public check.", "bold"))
+    pass_ = "passes" if complete == 1 else "pass"
+    said = f"{complete} of {counted(len(results), 'exercise')} {pass_} every public check."
+    console.line((said, "bold"))
     for warning in dict.fromkeys(here.warnings):
         console.warn(warning)
     console.emit(CheckAll(ok=worst == 0, exit_code=worst, results=tuple(results)))

@@ -22,6 +22,7 @@ from course.cli.frame.pictures import Code
 from course.cli.reading.lesson import KEEP, FancyPrinter
 from course.cli.reading.screen.practice import Practice, Standing
 from course.cli.reading.screen.tasks import standing_lines
+from course.printable import counted
 from course.reading.parts import Cell, Question
 from course.reading.record import InProgress, Row
 
@@ -120,7 +121,7 @@ class ScreenPrinter(FancyPrinter):
         lesson = self._lesson
         shown: list[RenderableType] = [
             Text(lesson.title, style="bold"),
-            Text(f"about {lesson.minutes} minutes", style="dim"),
+            Text(f"about {counted(lesson.minutes, 'minute')}", style="dim"),
             Text(""),
             Text(lesson.summary),
             Text(""),

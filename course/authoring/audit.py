@@ -42,7 +42,7 @@ from course.errors import ContentError, NotFoundError
 from course.ids import WARM_UPS
 from course.printable import counted
 from course.quizzing.desk import faults_in
-from course.sandbox.scene.loading import read_scene, scene_ids, scene_path
+from course.sandbox.scene.loading import read_scene, scene_folders, scene_ids, scene_path
 
 # ---
 # The audit of the quiz: every question, every variant, every case its numbers can take.
@@ -240,6 +240,11 @@ def _questions(catalog: Catalog) -> list[str]:
 def _check_scenes(only: str | None, findings: Findings) -> tuple[str, ...]:
     """The sandbox's scenes hold together, the formulas in their texts too; ids of those looked at."""
     names = tuple(name for name in scene_ids() if only in {None, name})
+    for name in names:
+        *_, last = (folder / f"{name}.toml" for folder in scene_folders())
+        if last != scene_path(name) and last.is_file():
+            problem = f"the program has a scene {name}, which is played instead."
+            findings.add(last, None, "content", problem, "Rename the file, and its id.")
     for name in names:
         path = scene_path(name)
         try:

@@ -87,6 +87,8 @@ def check_lesson(document: Document[Lesson]) -> None:
         _check_words(document, ("objectives", index), objective)
     for key, ids in (("before", lesson.before), ("exercises", lesson.exercises)):
         for index, name in enumerate(ids):
+            if name in ids[:index]:
+                document.fail((key, index), f"{name} is listed twice.", fix="Remove one of the two.")
             _check_id(document, (key, index), name, LessonId if key == "before" else ExerciseId)
 
 
@@ -417,7 +419,12 @@ class Catalog:
     def warm_up_ids(self) -> tuple[str, ...]:
         """Sorted by name; lists a folder and opens no file."""
         if self._warm_up_ids is None:
-            self._warm_up_ids = _declared_in(self.content.exercises / WARM_UPS)
+            folder = self.content.exercises / WARM_UPS
+            self._warm_up_ids = _declared_in(folder)
+            twice = sorted({*self._warm_up_ids} & {*self.exercise_ids()})
+            if twice:
+                problem, fix = "an exercise has this id, too.", "Rename one of the folders."
+                raise ContentError(folder / twice[0], None, problem, help=fix)
         return self._warm_up_ids
 
     def exercises(self) -> tuple[Exercise, ...]:

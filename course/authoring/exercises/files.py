@@ -12,6 +12,7 @@ import math
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import msgspec
@@ -281,14 +282,16 @@ _LEAST = 0.4
 def audit_slow(
     catalog: Catalog, exercise: Exercise, checks: tuple[CheckSource, ...], findings: Findings
 ) -> None:
-    """Report slow checks that do not exist."""
-    known = {check.id for check in checks if not check.hidden}
+    """Report times of checks that do not exist, and those that stand among what an author writes."""
+    again = f"Run `course author build {exercise.id}`."
     path = exercise.checks_path.with_name("exercise.toml")
     written = read_document(path, Exercise)
-    file, line = (path, written.lines.line(("slow",))) if written.value.slow else (catalog.times_path, None)
+    if written.value.slow:
+        problem = f"what was measured is kept in {catalog.times_path.name}."
+        findings.add(path, written.lines.line(("slow",)), "slow", problem, again)
+    known = {check.id for check in checks if not check.hidden}
     for check in sorted(exercise.slow.keys() - known):
-        message, fix = f"there is no public check {check}.", f"Run `course author build {exercise.id}`."
-        findings.add(file, line, "slow", message, fix)
+        findings.add(catalog.times_path, None, "slow", f"there is no public check {check}.", again)
 
 
 def _decides(catalog: Catalog, exercise: Exercise) -> str:
@@ -417,16 +420,18 @@ def _audit_declaration(catalog: Catalog, exercise: Exercise, findings: Findings)
             f"lesson {exercise.lesson} does not name this exercise.",
             f'Add "{exercise.id}" to `exercises` in the head of {exercise.lesson}.md.',
         )
-    rivals = catalog.warm_up_ids() if exercise.is_warm_up else catalog.exercise_ids()
-    for other in rivals:
-        if other < exercise.id and _order_of(catalog, other) == _rank(exercise):
-            findings.add(
-                path,
-                lines.line(("order",)),
-                "exercise",
-                f"{exercise.kind} {other} has the order {exercise.order} too.",
-                "Give each exercise a place of its own.",
-            )
+    for other in map(partial(_readable, catalog), (*catalog.exercise_ids(), *catalog.warm_up_ids())):
+        if other is None or other.id >= exercise.id:
+            continue
+        for key, same, what in (
+            ("order", other.kind == exercise.kind and _rank(other) == _rank(exercise), "place"),
+            ("number", other.number == exercise.number != 0, "number"),
+            ("module", other.module == exercise.module, "file"),
+        ):
+            if same:
+                problem = f"{other.kind} {other.id} has the {key} {getattr(exercise, key)} too."
+                fix = f"Give each a {what} of its own."
+                findings.add(path, lines.line((key,)), "exercise", problem, fix)
 
 
 def _audit_section(
@@ -452,9 +457,9 @@ def _rank(exercise: Exercise) -> tuple[str, int]:
     return (exercise.lesson if exercise.is_warm_up else "", exercise.order)
 
 
-def _order_of(catalog: Catalog, exercise_id: str) -> tuple[str, int] | None:
+def _readable(catalog: Catalog, exercise_id: str) -> Exercise | None:
     try:
-        return _rank(catalog.exercise(exercise_id))
+        return catalog.exercise(exercise_id)
     except ContentError:
         return None  # reported where that exercise is audited
 

@@ -75,6 +75,7 @@ def rules_broken(
         *(_missing_parts(blocks) if whole else ()),
         *_unpredicted(blocks),
         *_given_away(blocks),
+        *_twice(blocks),
         *_unknown_figures(blocks, figures),
         *_unread_values(blocks),
         *_unproduced_numbers(blocks),
@@ -151,6 +152,17 @@ def _given_away(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
                 yield Finding(block.line, problem, "Ask without that number.")
         elif block.kind == "answer":
             answered |= quoted
+
+
+def _twice(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
+    """Headings that a link could mean either of."""
+    seen: dict[str, b.Heading] = {}
+    for block in b.walk_blocks(blocks):
+        if isinstance(block, b.Heading):
+            if (name := slug(block)) in seen:
+                problem = f"the heading on line {seen[name].line} has the anchor #{name}, too"
+                yield Finding(block.line, problem, "Give each heading words of its own.")
+            seen.setdefault(name, block)
 
 
 def _unknown_figures(blocks: tuple[b.Block, ...], figures: Collection[str]) -> Iterator[Finding]:
@@ -560,6 +572,8 @@ def audit_figures(catalog: Catalog, lessons: Collection[str] | None, findings: F
             shown |= {block.id for block in walk_blocks(blocks) if isinstance(block, Figure)}
     except ContentError:
         return  # reported where the lesson is read
+    if lessons is None:
+        _audit_registry(findings)
     for figure_id in figure_ids():
         if lessons is None or figure_id in shown:
             for fault in faults(figure_id, kept):
@@ -573,3 +587,16 @@ def audit_figures(catalog: Catalog, lessons: Collection[str] | None, findings: F
                 f"no lesson shows figure {figure_id}.",
                 f"Show it, ![...](figure:{figure_id}), or take it out.",
             )
+
+
+def _audit_registry(findings: Findings) -> None:
+    """No id of a figure is entered twice: Python takes the last one and says nothing."""
+    path = Path(registry.__file__)
+    for node in ast.walk(ast.parse(read_text(path))):
+        keys = (
+            [key for key in node.keys if isinstance(key, ast.Constant)] if isinstance(node, ast.Dict) else []
+        )
+        for index, key in enumerate(keys):
+            if key.value in [earlier.value for earlier in keys[:index]]:
+                problem = f"figure {key.value!r} is entered twice."
+                findings.add(path, key.lineno, "figure", problem, "Give each figure an id of its own.")

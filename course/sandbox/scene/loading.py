@@ -41,16 +41,16 @@ class Chosen(msgspec.Struct, frozen=True, kw_only=True):
 
 def scene_ids() -> tuple[str, ...]:
     """Ids of the course's scenes, sorted; lists a folder and opens no file."""
-    return tuple(sorted({path.stem for folder in _folders() for path in folder.glob("*.toml")}))
+    return tuple(sorted({path.stem for folder in scene_folders() for path in folder.glob("*.toml")}))
 
 
 def scene_path(name: str) -> Path:
     """The file of one of the course's scenes."""
-    paths = [folder / f"{name}.toml" for folder in _folders()]
+    paths = [folder / f"{name}.toml" for folder in scene_folders()]
     return next((path for path in paths if path.is_file()), paths[0])
 
 
-def _folders() -> tuple[Path, ...]:
+def scene_folders() -> tuple[Path, ...]:
     """The program's own scenes, and those that a course adds."""
     more = content().scenes
     return (FOLDER,) if more is None else (FOLDER, more)

@@ -29,6 +29,7 @@ from course.authoring.lessons.lint import (
     Refused,
     audit_figures,
     audit_lesson,
+    audit_listed,
     audit_objective,
     audit_syllabus,
 )
@@ -177,6 +178,7 @@ def audit(
         return AuditReport(findings.sorted(), seconds=time.monotonic() - started)
     links = LinkChecker(catalog, findings)
     for lesson_id in lessons:
+        audit_listed(catalog, lesson_id, findings)
         path = catalog.content.lessons / f"{lesson_id}.md"
         if path.is_file() and not blanks_in(path, findings):
             audit_lesson(catalog, lesson_id, findings, links, refused)

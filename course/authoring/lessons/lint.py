@@ -72,14 +72,13 @@ def rules_broken(
         whole: it is to have all that docs/lesson-format.md says every lesson has.
     """
     found = [
-        *(_missing_parts(blocks) if whole else ()),
+        *((*_missing_parts(blocks), *_unplaced_sources(blocks)) if whole else ()),
         *_unpredicted(blocks),
         *_given_away(blocks),
         *_twice(blocks),
         *_unknown_figures(blocks, figures),
         *_unread_values(blocks),
         *_unproduced_numbers(blocks),
-        *_unplaced_sources(blocks),
         *_too_wide(blocks),
     ]
     return sorted(found, key=lambda finding: finding.line)
@@ -466,20 +465,25 @@ def audit_objective(catalog: Catalog, kind: str, name: str, findings: Findings) 
         )
 
 
+def audit_listed(catalog: Catalog, lesson_id: str, findings: Findings) -> None:
+    """A lesson has a place in the syllabus."""
+    if lesson_id in catalog.lesson_ids():
+        audit_objective(catalog, "lessons", lesson_id, findings)
+        return
+    path = catalog.content.lessons / f"{lesson_id}.md"
+    fix = f'Add "{lesson_id}" to `lessons` in {catalog.content.syllabus.name}.'
+    findings.add(path, None, "syllabus", "the syllabus does not list this lesson.", fix)
+
+
 def audit_lesson(
     catalog: Catalog, lesson_id: str, findings: Findings, links: LinkChecker, refused: Refused | None = None
 ) -> None:
-    """One lesson: its place in the syllabus, its head, its text, its links and its commands.
+    """One lesson: its head, its text, its links and its commands.
 
     Args:
         refused: gives those of some commands that fail, by their place, and what each says.
     """
     path = catalog.content.lessons / f"{lesson_id}.md"
-    if lesson_id in catalog.lesson_ids():
-        audit_objective(catalog, "lessons", lesson_id, findings)
-    else:
-        problem, fix = "the syllabus does not list this lesson.", f'Add "{lesson_id}" to `lessons` in'
-        findings.add(path, None, "syllabus", problem, f"{fix} {catalog.content.syllabus.name}.")
     try:
         LessonId(lesson_id)
         lesson = catalog.read_lesson(lesson_id)

@@ -6,6 +6,7 @@ problems at once, so that an author can work through a list.
 
 from __future__ import annotations
 
+import contextlib
 import re
 import time
 from collections.abc import Collection
@@ -38,12 +39,20 @@ from course.catalog.load import Catalog
 from course.catalog.markdown import read_task
 from course.catalog.models import Exercise
 from course.catalog.questions import Question, read_questions
-from course.catalog.reading import Document
+from course.catalog.reading import Document, LineMap, read_text
 from course.errors import ContentError, NotFoundError
 from course.ids import WARM_UPS
 from course.printable import counted
 from course.quizzing.desk import faults_in
-from course.sandbox.scene.loading import read_scene, scene_folders, scene_ids, scene_path
+from course.sandbox.runs.running import run
+from course.sandbox.scene.loading import (
+    read_scene,
+    scene_folders,
+    scene_ids,
+    scene_path,
+    unchanged,
+)
+from course.sandbox.scene.model import Scene
 
 # ---
 # The audit of the quiz: every question, every variant, every case its numbers can take.
@@ -251,10 +260,34 @@ def _check_scenes(only: str | None, findings: Findings) -> tuple[str, ...]:
         path = scene_path(name)
         try:
             if not blanks_in(path, findings):
-                read_scene(path)
+                _check_scene(path, read_scene(path), findings)
         except ContentError as error:
             findings.add_error(error)
     return names
+
+
+def _check_scene(path: Path, scene: Scene, findings: Findings) -> None:
+    """It has a place of its own, asks for a number, and its run gives the one of its theory."""
+    lines = LineMap(read_text(path))
+    for name in scene_ids():
+        with contextlib.suppress(ContentError):  # reported where that scene is checked
+            other = read_scene(scene_path(name))
+            if other.id < scene.id and other.order == scene.order:
+                problem, fix = (
+                    f"scene {other.id} has the order {scene.order} too.",
+                    "Give each one of its own.",
+                )
+                findings.add(path, lines.line(("order",)), "scene", problem, fix)
+    where = lines.line(("prediction",))
+    if scene.prediction is None:
+        problem = "it asks for no number before the run."
+        findings.add(path, where, "scene", problem, "Add [prediction]: docs/sandbox.md describes it.")
+        return
+    found = run(unchanged(scene)).comparison
+    if found is not None and not found.agree:
+        problem = f"theory gives {found.theory:g} {found.unit}, and the run {found.simulation:g}."
+        fix = "Correct the formula or the probe, or let `agrees` say how far apart they may be, and why."
+        findings.add(path, where, "scene", problem, fix)
 
 
 def _check_page(catalog: Catalog, findings: Findings) -> None:

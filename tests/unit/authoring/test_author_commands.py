@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -79,6 +80,25 @@ def test_a_new_scene_lies_in_its_course_and_is_checked_and_played_there(
     assert "scenes/falling.toml:3: this line and 6 more below are still to be written." in said
     assert "FILL IN" not in said
     assert run(["author", "new", "scene", "falling"]) == run(["author", "new", "scene", "head-on"]) == 2
+
+
+def test_a_scene_whose_run_gives_another_number_than_its_theory_is_named(
+    mini: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (mini / "scenes").mkdir()
+    text = (FOLDER / "head-on.toml").read_text("utf-8").replace('id = "head-on"', 'id = "head-off"')
+    wrong = re.sub(r"^theory = .*$", 'theory = "17"', text, flags=re.MULTILINE)
+    (mini / "scenes" / "head-off.toml").write_text(wrong, "utf-8")
+    _, body = answer(capsys, "author", "check", "head-on")
+    (taken,) = body["problems"]
+    assert (taken["file"], taken["message"].split(" has ")[0]) == (
+        str(FOLDER / "head-on.toml"),
+        "scene head-off",
+    )
+    _, body = answer(capsys, "author", "check", "head-off")
+    (problem,) = body["problems"]
+    assert wrong.split("\n")[problem["line"] - 1] == "[prediction]"
+    assert problem["message"] == "theory gives 17 m/s, and the run 2."
 
 
 def test_a_scene_called_as_one_of_the_programs_own_is_named(

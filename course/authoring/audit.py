@@ -93,7 +93,6 @@ def audit_quiz(catalog: Catalog, findings: Findings, only: str | None = None) ->
     chosen = [document for document in documents if only in (None, document.value.id)]
     for document in chosen:
         _audit_question(catalog, document, findings)
-        audit_objective(catalog, "quiz", document.value.id, findings)
     return tuple(document.value.id for document in chosen)
 
 
@@ -193,6 +192,8 @@ def audit(
             audit_lesson(catalog, lesson_id, findings, links, refused)
     audit_figures(catalog, None if only is None else lessons, findings)
     questions = audit_quiz(catalog, findings, only) if only is None or only in _questions(catalog) else ()
+    for question in questions:
+        audit_objective(catalog, "quiz", question, findings)
     scenes = _check_scenes(only, findings)
     whole: list[Exercise] = []
     read = [_read(catalog, exercise_id, findings, whole) for exercise_id in exercises]

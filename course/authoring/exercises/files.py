@@ -420,6 +420,7 @@ def _audit_declaration(catalog: Catalog, exercise: Exercise, findings: Findings)
             f"lesson {exercise.lesson} does not name this exercise.",
             f'Add "{exercise.id}" to `exercises` in the head of {exercise.lesson}.md.',
         )
+    _audit_order(catalog, exercise, path, lines.line(("order",)), findings)
     for other in map(partial(_readable, catalog), (*catalog.exercise_ids(), *catalog.warm_up_ids())):
         if other is None or other.id >= exercise.id:
             continue
@@ -455,6 +456,19 @@ def _audit_section(
 def _rank(exercise: Exercise) -> tuple[str, int]:
     """Its place in lists: exercises are counted through, warm-ups by lesson."""
     return (exercise.lesson if exercise.is_warm_up else "", exercise.order)
+
+
+def _audit_order(catalog: Catalog, exercise: Exercise, path: Path, line: int, findings: Findings) -> None:
+    """Exercises are in the order in which the lessons lead to them."""
+    lessons = catalog.lesson_ids()
+    if exercise.is_warm_up or exercise.lesson not in lessons:
+        return
+    place = lessons.index(exercise.lesson)
+    for other in map(partial(_readable, catalog), catalog.exercise_ids()):
+        if other is not None and other.order < exercise.order and other.lesson in lessons[place + 1 :]:
+            problem = f"exercise {other.id} has a lower order, {other.order}, and its lesson comes later."
+            fix = f"Let the orders follow the lessons: {exercise.id} before {other.id}."
+            findings.add(path, line, "exercise", problem, fix)
 
 
 def _readable(catalog: Catalog, exercise_id: str) -> Exercise | None:

@@ -469,6 +469,7 @@ def _audit_order(catalog: Catalog, exercise: Exercise, path: Path, line: int, fi
             problem = f"exercise {other.id} has a lower order, {other.order}, and its lesson comes later."
             fix = f"Let the orders follow the lessons: {exercise.id} before {other.id}."
             findings.add(path, line, "exercise", problem, fix)
+            return
 
 
 def _readable(catalog: Catalog, exercise_id: str) -> Exercise | None:

@@ -23,6 +23,11 @@ def command(*words: object) -> str:
     return f"`{shlex.join(['course', *map(str, words)])}`"
 
 
+def counted(number: int, word: str) -> str:
+    """A number and its noun, in the plural where it needs one: 1 step, 2,000 steps."""
+    return f"{number:,} {word}{'' if number == 1 else 's'}"
+
+
 def one_line(text: str, limit: int | None = None) -> str:
     """At most ``limit`` characters on one line, those that are not printable spelled out."""
     if text.isprintable():

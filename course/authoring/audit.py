@@ -6,11 +6,13 @@ problems at once, so that an author can work through a list.
 
 from __future__ import annotations
 
+import contextlib
 import time
 from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
+from course.authoring.coverage import IsCommand, audit_coverage
 from course.authoring.exercises.diagnosis import audit_diagnoses
 from course.authoring.exercises.files import audit_files, blanks_in, find_blanks
 from course.authoring.exercises.grading import (
@@ -22,17 +24,34 @@ from course.authoring.exercises.grading import (
 )
 from course.authoring.exercises.proofs import Proof, Prover, audit_page, plan
 from course.authoring.exercises.source import CheckSource, audit_style
-from course.authoring.lessons.lint import LinkChecker, audit_lesson, audit_syllabus
+from course.authoring.lessons.lint import (
+    LinkChecker,
+    Refused,
+    audit_figures,
+    audit_lesson,
+    audit_listed,
+    audit_objective,
+    audit_syllabus,
+)
 from course.authoring.report import AuditReport, Findings, Progress
 from course.catalog.load import Catalog
 from course.catalog.markdown import YEAR, read_task
 from course.catalog.models import Exercise
 from course.catalog.questions import Question, read_questions
-from course.catalog.reading import Document
+from course.catalog.reading import Document, LineMap, read_text
 from course.errors import ContentError, NotFoundError
 from course.ids import WARM_UPS
+from course.printable import counted
 from course.quizzing.desk import faults_in
-from course.sandbox.scene.loading import FOLDER, read_scene, scene_ids
+from course.sandbox.runs.running import run
+from course.sandbox.scene.loading import (
+    read_scene,
+    scene_folders,
+    scene_ids,
+    scene_path,
+    unchanged,
+)
+from course.sandbox.scene.model import Scene
 
 # ---
 # The audit of the quiz: every question, every variant, every case its numbers can take.
@@ -83,7 +102,8 @@ def _audit_question(catalog: Catalog, document: Document[Question], findings: Fi
     if len(question.variant) < LEAST_VARIANTS:
         wrong(
             (),
-            f"question {question.id} has {len(question.variant)} variants, and needs {LEAST_VARIANTS}.",
+            f"question {question.id} has {counted(len(question.variant), 'variant')}, "
+            f"and needs {LEAST_VARIANTS}.",
             "Add variants: new numbers or a new situation for the same idea.",
         )
     if question.lesson:
@@ -123,6 +143,8 @@ def audit(
     without: Collection[str] = (),
     on_progress: Progress | None = None,
     grade: GradeSources = grade_sources,
+    refused: Refused | None = None,
+    is_command: IsCommand | None = None,
 ) -> AuditReport:
     """Check the course, or one lesson or exercise of it.
 
@@ -133,6 +155,9 @@ def audit(
         on_progress: called at the start and after each submission with the number graded and the total.
         grade: gives the verdicts on submissions. It may leave some out: they are not counted, and fields
             that hints name are not looked for.
+        refused: tries the commands of lessons; None to leave that out.
+        is_command: whether ``course`` followed by these words is a command, for docs/coverage.md; None to
+            leave that page out.
 
     Raises:
         MissingCapabilityError: this installation has no solutions or no hidden graders.
@@ -148,15 +173,21 @@ def audit(
         )
         if only is None:
             audit_syllabus(catalog, findings)
+            if is_command is not None:
+                audit_coverage(catalog, is_command, findings)
     except ContentError as error:
         findings.add_error(error)
         return AuditReport(findings.sorted(), seconds=time.monotonic() - started)
     links = LinkChecker(catalog, findings)
     for lesson_id in lessons:
+        audit_listed(catalog, lesson_id, findings)
         path = catalog.content.lessons / f"{lesson_id}.md"
         if path.is_file() and not blanks_in(path, findings):
-            audit_lesson(catalog, lesson_id, findings, links)
+            audit_lesson(catalog, lesson_id, findings, links, refused)
+    audit_figures(catalog, None if only is None else lessons, findings)
     questions = audit_quiz(catalog, findings, only) if only is None or only in _questions(catalog) else ()
+    for question in questions:
+        audit_objective(catalog, "quiz", question, findings)
     scenes = _check_scenes(only, findings)
     whole: list[Exercise] = []
     read = [_read(catalog, exercise_id, findings, whole) for exercise_id in exercises]
@@ -216,13 +247,42 @@ def _check_scenes(only: str | None, findings: Findings) -> tuple[str, ...]:
     """The sandbox's scenes hold together, the formulas in their texts too; ids of those looked at."""
     names = tuple(name for name in scene_ids() if only in {None, name})
     for name in names:
-        path = FOLDER / f"{name}.toml"
+        *_, last = (folder / f"{name}.toml" for folder in scene_folders())
+        if last != scene_path(name) and last.is_file():
+            problem = f"the program has a scene {name}, which is played instead."
+            findings.add(last, None, "content", problem, "Rename the file, and its id.")
+    for name in names:
+        path = scene_path(name)
         try:
             if not blanks_in(path, findings):
-                read_scene(path)
+                _check_scene(path, read_scene(path), findings)
         except ContentError as error:
             findings.add_error(error)
     return names
+
+
+def _check_scene(path: Path, scene: Scene, findings: Findings) -> None:
+    """It has a place of its own, asks for a number, and its run gives the one of its theory."""
+    lines = LineMap(read_text(path))
+    for name in scene_ids():
+        with contextlib.suppress(ContentError):  # reported where that scene is checked
+            other = read_scene(scene_path(name))
+            if other.id < scene.id and other.order == scene.order:
+                problem, fix = (
+                    f"scene {other.id} has the order {scene.order} too.",
+                    "Give each one of its own.",
+                )
+                findings.add(path, lines.line(("order",)), "scene", problem, fix)
+    where = lines.line(("prediction",))
+    if scene.prediction is None:
+        problem = "it asks for no number before the run."
+        findings.add(path, where, "scene", problem, "Add [prediction]: docs/sandbox.md describes it.")
+        return
+    found = run(unchanged(scene)).comparison
+    if found is not None and not found.agree:
+        problem = f"theory gives {found.theory:g} {found.unit}, and the run {found.simulation:g}."
+        fix = "Correct the formula or the probe, or let `agrees` say how far apart they may be, and why."
+        findings.add(path, where, "scene", problem, fix)
 
 
 def _check_page(catalog: Catalog, findings: Findings) -> None:
@@ -246,6 +306,8 @@ def _read(catalog: Catalog, exercise_id: str, findings: Findings, whole: list[Ex
             _check_readmes(catalog, exercise, own)
             checks = audit_files(catalog, exercise, own)
             audit_diagnoses(catalog, exercise, own)
+            if not exercise.is_warm_up:
+                audit_objective(catalog, "exercises", exercise.id, own)
             whole.append(exercise)
             proofs = plan(catalog, exercise, own)
             # Checks that lack a marker would only fail again, all at once and less clearly; and a diagnosis
@@ -277,23 +339,28 @@ def _grade(
     on_progress: Progress | None,
     grade: GradeSources,
 ) -> tuple[int, str]:
-    """Grade what was planned; how many submissions got a verdict, and at which protection level."""
+    """Grade what was planned; how many submissions got a score, and at which protection level."""
     work: list[tuple[Prover, Proof]] = []
     for candidate in candidates:
         entries = solutions_folder(catalog, candidate.exercise) / "mutants.toml"
-        prover = Prover(candidate.exercise, candidate.checks, entries, findings)
+        prover = Prover(candidate.exercise, candidate.checks, entries, Findings(findings.root))
         work += [(prover, proof) for proof in candidate.proofs]
+    provers = tuple(dict.fromkeys(prover for prover, _ in work))
     if on_progress:
         on_progress(0, len(work), "")
-    done, isolation = 0, ""
+    done, graded, isolation = 0, 0, ""
     for index, verdict in grade([(prover.exercise, proof.source) for prover, proof in work]):
         done += 1
         prover, proof = work[index]
         prover.judge(proof, verdict)
+        graded += verdict.state == "graded"
         isolation = verdict.isolation or isolation
         if on_progress:
             on_progress(done, len(work), f"{prover.exercise.id}: {proof.role} {proof.path.name}")
-    if done == len(work):  # a field that no check has had may be one of a program that was left out
-        for prover in dict.fromkeys(prover for prover, _ in work):
+        if all(prover.hopeless for prover in provers):
+            break
+    for prover in provers:
+        if done == len(work):  # a field that no check has had may be one of a program that was left out
             prover.judge_hints(catalog.hints_document(prover.exercise))
-    return done, isolation
+        findings.problems += prover.problems
+    return graded, isolation

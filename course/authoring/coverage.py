@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, TypeAlias
 
 import msgspec
 
@@ -22,9 +22,10 @@ from course.catalog.markdown import read_blocks
 from course.catalog.reading import Document, read_document
 from course.errors import ContentError, NotFoundError
 from course.figures.registry import figure_ids
+from course.printable import counted
 
-if TYPE_CHECKING:
-    IsCommand = Callable[[tuple[str, ...]], bool]
+#: Whether ``course`` followed by these words is a command.
+IsCommand: TypeAlias = "Callable[[tuple[str, ...]], bool]"
 
 _LINES = re.compile(r"([1-9]\d*)(?:-([1-9]\d*))?")
 _KINDS = ("heading", "objective", "example", "exercise", "question")
@@ -123,6 +124,9 @@ def check_coverage(
             findings.add(document.path, line, "coverage", problem, f"The kinds are {', '.join(_KINDS)}.")
         for k, part in enumerate(section.parts):
             line = document.lines.line(("section", i, "parts", k))
+            if part.what in seen.values():
+                problem = f"{part.what}: another part is called so."
+                findings.add(document.path, line, "coverage", problem, "Give each part a name of its own.")
             for problem, fix in (*_wrong_with(part, seen), *places.missing(part)):
                 findings.add(document.path, line, "coverage", f"{part.what}: {problem}", fix)
             seen.update(dict.fromkeys(part.span, part.what))
@@ -133,10 +137,27 @@ def check_coverage(
             document.path,
             document.lines.line(("source_lines",)),
             "coverage",
-            f"{len(left)} lines of the chapter belong to no part: {lines}{', …' if len(left) > 10 else ''}.",
+            f"{counted(len(left), 'line')} of the chapter belong{'s' * (len(left) == 1)} to no part: "
+            f"{lines}{', …' if len(left) > 10 else ''}.",
             "Add the parts they hold.",
         )
     return findings.sorted()
+
+
+def audit_coverage(catalog: Catalog, is_command: IsCommand, findings: Findings) -> None:
+    """The table's faults, and a page that is out of date; nothing of a course without a table."""
+    try:
+        document = read_coverage(catalog)
+    except NotFoundError:
+        return
+    except ContentError as error:
+        findings.add_error(error)
+        return
+    faults, page = check_coverage(document, catalog, is_command), written_to(catalog)
+    findings.problems += faults
+    if not faults and (not page.is_file() or page.read_text("utf-8") != as_markdown(document.value)):
+        fix = "Run `course author coverage --write`."
+        findings.add(page, None, "stale", "it is not what docs/coverage.toml makes.", fix)
 
 
 def _wrong_with(part: Part, seen: dict[int, str]) -> Iterator[tuple[str, str]]:

@@ -13,6 +13,10 @@ from course.errors import ContentError
 Progress: TypeAlias = "Callable[[int, int, str], None]"
 
 
+#: Codes of what is out of date.
+_BUILT = frozenset({"points", "slow", "stale"})
+
+
 @dataclass(frozen=True, slots=True)
 class AuditProblem:
     """One thing that is wrong.
@@ -42,7 +46,7 @@ class AuditReport:
     """The outcome of an audit.
 
     Attributes:
-        problems: sorted by file and line; empty if there are none.
+        problems: as ``Findings.sorted`` has them; empty if there are none.
         lessons, exercises, questions, scenes: ids that were looked at.
         checks: number of checks, public and hidden.
         graded: number of submissions that were graded to find out.
@@ -94,4 +98,7 @@ class Findings:
         return any(problem.code in codes for problem in self.problems)
 
     def sorted(self) -> tuple[AuditProblem, ...]:
-        return tuple(sorted(self.problems, key=lambda p: (p.file, p.line or 0, p.code, p.message)))
+        """By file and line; what `course author build` mends comes last, since it follows from the rest."""
+        return tuple(
+            sorted(self.problems, key=lambda p: (p.code in _BUILT, p.file, p.line or 0, p.code, p.message))
+        )

@@ -239,6 +239,8 @@ def new_question(catalog: Catalog, question_id: str) -> tuple[Path, ...]:
 def new_scene(catalog: Catalog, scene_id: str) -> tuple[Path, ...]:
     """Write the file of a new sandbox scene, last in the list; it can run at once.
 
+    It lies with the program's own, or in ``scenes/`` of the course that ``COURSE_CONTENT`` names.
+
     Raises:
         UsageError: the id is no id, or the file exists.
         MissingCapabilityError: this is a student's installation.
@@ -246,9 +248,16 @@ def new_scene(catalog: Catalog, scene_id: str) -> tuple[Path, ...]:
     from course.sandbox.scene.loading import FOLDER, scene_ids
 
     instructors(catalog)
-    name = SceneId(scene_id)
+    name, root = SceneId(scene_id), catalog.content.root
+    folder = FOLDER if FOLDER.is_relative_to(root) else root / "scenes"
+    if name in scene_ids():
+        raise UsageError(
+            f"There is a scene {name} already, and nothing is overwritten.",
+            help="Choose another id.",
+            code="exists",
+        )
     words = {"id": name, "order": str(1 + len(scene_ids()))}
-    return _write({FOLDER / f"{name}.toml": ("scene.toml", words)})
+    return _write({folder / f"{name}.toml": ("scene.toml", words)})
 
 
 def _module(function: str) -> str:
@@ -280,8 +289,20 @@ def _write(files: Mapping[Path, tuple[str, Mapping[str, Any]]]) -> tuple[Path, .
         target: templates.get_template(f"{name}.tmpl").render(words)
         for target, (name, words) in files.items()
     }
-    for target, text in texts.items():
-        target.parent.mkdir(parents=True, exist_ok=True)
-        with target.open("x", encoding="utf-8", newline="\n") as file:
-            file.write(text)
+    written: list[Path] = []
+    try:
+        for target, text in texts.items():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            with target.open("x", encoding="utf-8", newline="\n") as file:
+                written.append(target)
+                file.write(text)
+    except BaseException as error:
+        for path in written:
+            path.unlink()
+        if isinstance(error, OSError):
+            raise UsageError(
+                f"{target} cannot be written: {error.strerror}.",
+                help="Nothing was written. Make room for it.",
+            ) from None
+        raise
     return tuple(files)

@@ -27,6 +27,7 @@ from course.catalog.models import (
     MutantList,
     Rubric,
     Syllabus,
+    Times,
     fields_of,
 )
 from course.catalog.reading import Document, read_document, read_text, split_front_matter
@@ -85,6 +86,8 @@ def check_lesson(document: Document[Lesson]) -> None:
         _check_words(document, ("objectives", index), objective)
     for key, ids in (("before", lesson.before), ("exercises", lesson.exercises)):
         for index, name in enumerate(ids):
+            if name in ids[:index]:
+                document.fail((key, index), f"{name} is listed twice.", fix="Remove one of the two.")
             _check_id(document, (key, index), name, LessonId if key == "before" else ExerciseId)
 
 
@@ -320,6 +323,7 @@ class Catalog:
         self._exercises: dict[str, Exercise] = {}
         self._hints: dict[str, Hints] = {}
         self._mutants: dict[str, tuple[Mutant, ...]] = {}
+        self._times: Times | None = None
 
     # -- the course ------------------------------------------------------------------------------
 
@@ -411,7 +415,12 @@ class Catalog:
     def warm_up_ids(self) -> tuple[str, ...]:
         """Sorted by name; lists a folder and opens no file."""
         if self._warm_up_ids is None:
-            self._warm_up_ids = _declared_in(self.content.exercises / WARM_UPS)
+            folder = self.content.exercises / WARM_UPS
+            self._warm_up_ids = _declared_in(folder)
+            twice = sorted({*self._warm_up_ids} & {*self.exercise_ids()})
+            if twice:
+                problem, fix = "an exercise has this id, too.", "Rename one of the folders."
+                raise ContentError(folder / twice[0], None, problem, help=fix)
         return self._warm_up_ids
 
     def exercises(self) -> tuple[Exercise, ...]:
@@ -464,7 +473,28 @@ class Catalog:
         folder = self.content.exercise_folder(exercise_id)
         document = read_document(folder / "exercise.toml", Exercise, reserved=("folder",))
         check_exercise(document)
-        return msgspec.structs.replace(document.value, folder=str(folder))
+        measured = self.times.exercises.get(exercise_id)
+        slow = measured.slow if measured else document.value.slow
+        return msgspec.structs.replace(document.value, folder=str(folder), slow=slow)
+
+    @property
+    def times_path(self) -> Path:
+        """What ``course author build`` measured, of all exercises."""
+        return self.content.exercises / "times.json"
+
+    @property
+    def times(self) -> Times:
+        """How long slow checks take."""
+        if self._times is None:
+            try:
+                self._times = msgspec.json.decode(self.times_path.read_bytes(), type=Times)
+            except FileNotFoundError:
+                self._times = Times()
+            except (OSError, msgspec.DecodeError) as error:
+                problem = f"what was measured cannot be read: {error}."
+                fix = "Delete the file, then run `course author build`."
+                raise ContentError(self.times_path, None, problem, help=fix) from None
+        return self._times
 
     def hints(self, exercise: Exercise) -> Hints:
         """The hints of an exercise."""

@@ -2,7 +2,7 @@
 
 The wheel is the student's: it has neither solutions nor hidden graders, and ``Content`` says so by holding
 None for them. ``COURSE_CONTENT=DIR`` selects another course altogether, laid out as
-``DIR/{exercises,lessons,quiz,solutions,graders}``.
+``DIR/{exercises,lessons,quiz,scenes,solutions,graders}``.
 """
 
 from __future__ import annotations
@@ -32,6 +32,7 @@ class Content:
     Attributes:
         root: the folder that paths in messages are best shown relative to.
         solutions, graders: None where this installation has none.
+        scenes: of a course that ``COURSE_CONTENT`` names; None where it adds none to the program's own.
         names: of the folders where the files were written, if this is a copy: (folder, name) each.
     """
 
@@ -41,6 +42,7 @@ class Content:
     quiz: Path
     solutions: Path | None = None
     graders: Path | None = None
+    scenes: Path | None = None
     names: tuple[tuple[str, str], ...] = ()
 
     def shown(self, path: Path) -> str:
@@ -128,6 +130,7 @@ def chosen(folder: Path) -> Content:
         quiz=folder / "quiz",
         solutions=_if_there(folder / "solutions"),
         graders=_if_there(folder / "graders"),
+        scenes=_if_there(folder / "scenes"),
         names=_names(folder / NAMES),
     )
 

@@ -171,9 +171,8 @@ class _Builder:
                 line, f"the picture {target} is not a figure", "Name a figure: ![what is seen](figure:id)."
             )
         if len(alt.split()) < 5:
-            raise self._wrong(
-                line, "the figure has no alternative text", "Say in [ ] what the picture shows."
-            )
+            problem = "the figure has no alternative text of five words or more"
+            raise self._wrong(line, problem, "Say in [ ] what the picture shows.")
         if not b.plain_text(caption).strip():
             raise self._wrong(
                 line, "the figure has no caption", "State the finding on the line after the picture."

@@ -69,7 +69,7 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         kind: "warm-up" for a small one that counts for nothing and has public checks only.
         minutes: how long a warm-up takes.
         slow: public checks that take more than ``QUICK`` of a right solution, and how long at most, in s of
-            CPU time; ``course author build`` measures it.
+            CPU time; from ``times.json``, which ``course author build`` writes.
         after: slug of the section of its lesson that a warm-up follows; "" for the end of the lesson.
         folder: where the files are; set by the loader.
     """
@@ -171,6 +171,20 @@ _FIELD = re.compile(r"\{([^{}]*)\}")
 def fields_of(sentence: str) -> frozenset[str]:
     """The fields that a hint's sentence about the student's numbers names."""
     return frozenset(_FIELD.findall(sentence))
+
+
+class Measured(msgspec.Struct, frozen=True):
+    """How long an exercise's slow checks take, see ``Exercise.slow``, and a digest of what was measured."""
+
+    made_from: str
+    slow: dict[str, float]
+
+
+class Times(msgspec.Struct, frozen=True):
+    """``times.json`` among the exercises: by exercise."""
+
+    format_version: int = 1
+    exercises: dict[str, Measured] = {}
 
 
 class TaskHints(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

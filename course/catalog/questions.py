@@ -19,9 +19,10 @@ from typing import Any
 
 import msgspec
 
-from course.catalog.reading import Document, read_document
+from course.catalog.reading import Document, read_document, refuse_blanks
 from course.errors import UsageError
 from course.ids import SLUG, QuestionId
+from course.printable import counted
 
 # ---
 # Arithmetic that a content file may contain: numbers, names, + - * / ** and a few functions.
@@ -234,6 +235,7 @@ def read_questions(folder: Path) -> tuple[Document[Question], ...]:
 
 
 def _read(path: Path) -> Document[Question]:
+    refuse_blanks(path)
     document = read_document(path, Question)
     question = document.value
     _check_id(document, question.id)
@@ -271,7 +273,7 @@ def _check_variant(document: Document[Question], where: Where, variant: Variant)
     if len(variant.option) != OPTIONS:
         document.fail(
             where,
-            f"variant {variant.id} has {len(variant.option)} options.",
+            f"variant {variant.id} has {counted(len(variant.option), 'option')}.",
             fix=f"Give it {OPTIONS}: one that is right and {OPTIONS - 1} that are not.",
         )
     right = [index for index, option in enumerate(variant.option) if option.right]

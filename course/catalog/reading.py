@@ -370,6 +370,22 @@ def _first_words(error: tomllib.TOMLDecodeError) -> str:
     return str(error).rsplit(" (at ", 1)[0]
 
 
+#: The mark that ``course author new`` leaves where an author has to write.
+BLANK = re.compile(r"<<FILL IN:?\s*(?P<what>.*?)>>")
+
+
+def refuse_blanks(path: Path) -> None:
+    """Refuse a file that its author has not finished.
+
+    Raises:
+        ContentError: it cannot be read, or has a blank.
+    """
+    for number, line in enumerate(read_text(path).split("\n"), start=1):
+        if match := BLANK.search(line):
+            problem = f"still to be filled in: {match['what'].strip() or 'this'}."
+            raise ContentError(path, number, problem, help="`course author check` lists what is left.")
+
+
 # ---
 # The head of a lesson file: TOML between two ``+++`` lines, the Markdown below it.
 

@@ -20,7 +20,7 @@ from course.catalog.models import Exercise
 from course.errors import UngradableError
 from course.handed_in.cells import CodeCell, code_cells
 from course.isolation.inside import statements
-from course.printable import one_line
+from course.printable import counted, one_line
 from course.scoring.judging.submission import Submission
 from course.scoring.verdict import Places
 
@@ -292,7 +292,7 @@ def _notes(
         for where, line, text in dropped[:MAX_NOTES]
     ]
     if len(dropped) > MAX_NOTES:
-        notes.append(f"{len(dropped) - MAX_NOTES:,} more lines were left out, since they are not Python.")
+        notes.append(f"{counted(len(dropped) - MAX_NOTES, 'more line')} left out: not Python.")
     unmarked = [names[cell.number] for cell in chosen if cell.tags.get("exercise") != exercise.id]
     if unmarked:
         notes.append(f"Taken for part of the solution by what they define: {_listed(unmarked)}.")

@@ -20,8 +20,10 @@ from course.errors import NotFoundError
 from course.handed_in.notebook import SETUP, SOLUTION
 from course.notebooks.cells import Cell, code, document, markdown, opening
 from course.notebooks.lowering import Lowering
+from course.printable import counted
 from course.reading.parts import with_tasks
 from course.scoring.judging.session import has_report
+from course.scoring.verdict import in_points
 
 if TYPE_CHECKING:
     Makers = dict[tuple[str, str], tuple[PurePosixPath, Callable[[], bytes]]]
@@ -301,7 +303,7 @@ def _sections(readme: str) -> list[str]:
 
 
 def _task_heading(task: Task) -> str:
-    return f"### {task.title}: `{task.id}` ({task.points:g} points)"
+    return f"### {task.title}: `{task.id}` ({in_points(task.points)})"
 
 
 # ---
@@ -314,7 +316,7 @@ def _task_heading(task: Task) -> str:
 _ASKED = """\
 ### Warm-up: {title}
 
-*About {minutes} minutes; it counts for nothing. The cell below is its file: change it and run it, and it is
+*About {minutes}; it counts for nothing. The cell below is its file: change it and run it, and it is
 checked at once.*
 
 {text}"""
@@ -323,7 +325,7 @@ checked at once.*
 def warm_up_cells(exercise: Exercise, task: b.Task, lowering: Lowering) -> list[Cell]:
     """Its text, and the stub to mend or to fill in."""
     text = "\n\n".join(lowering.block(block) for block in task.blocks)
-    asked = _ASKED.format(title=task.title, minutes=exercise.minutes, text=text)
+    asked = _ASKED.format(title=task.title, minutes=counted(exercise.minutes, "minute"), text=text)
     stub = exercise.stub_path.read_text(encoding="utf-8")
     return [
         markdown(asked, role="warm-up", exercise=exercise.id),
@@ -413,7 +415,7 @@ def _head(lesson: Lesson) -> str:
     objectives = "\n".join(f"- {objective}" for objective in lesson.objectives)
     return (
         f"# {lesson.title}\n\n{lesson.summary}\n\n"
-        f"About {lesson.minutes} minutes. Afterwards you can:\n\n{objectives}"
+        f"About {counted(lesson.minutes, 'minute')}. Afterwards you can:\n\n{objectives}"
     )
 
 

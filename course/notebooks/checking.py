@@ -26,9 +26,10 @@ from course.handed_in.limits import MAX_FILE, SOURCES
 from course.handed_in.notebook import SETUP, NotebookSource, notebook_source, source_of
 from course.notebooks.build import pieces
 from course.notebooks.show import ReportPage, image_of
+from course.printable import counted
 from course.progress.workspace import Recorder, not_recorded
 from course.scoring.judging.submission import Submission
-from course.scoring.verdict import CheckResult, Verdict, format_points, numbers_of
+from course.scoring.verdict import CheckResult, Verdict, format_points, in_points, numbers_of
 from course.strangers import read_bytes
 
 if TYPE_CHECKING:
@@ -97,12 +98,13 @@ class CheckTable:
         points = sum(check.points for check in self.checks)
         most = sum(check.max_points for check in self.checks)
         of = f" of {self._task}" if self._task else ""
-        score = f": {format_points(points)} of {format_points(most)} points" if self._scored else ""
+        score = f": {format_points(points)} of {in_points(most)}" if self._scored else ""
         if self.passed and len(self.checks) == 1:
             return f"The one public check{of} passes{score}."
         if self.passed:
             return f"All {len(self.checks)} public checks{of} pass{score}."
-        return f"{passing} of {len(self.checks)} public checks{of} pass{score}."
+        pass_ = "passes" if passing == 1 else "pass"
+        return f"{passing} of {counted(len(self.checks), 'public check')}{of} {pass_}{score}."
 
     def __repr__(self) -> str:
         lines = [*self._printed]

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from course.errors import UsageError
+from course.printable import counted
 from course.quizzing.bank import MAX_SEED, Bank, Choice, PosedQuestion
 
 #: The share of the questions that passes. A fraction: 0.7 as a float is a little less than 7/10.
@@ -62,7 +63,7 @@ def needed(total: int) -> int:
 
 def mark_sentence(total: int) -> str:
     """The pass mark as it is shown: "You pass with 4 right answers out of 5"."""
-    return f"You pass with {needed(total)} right answers out of {total}"
+    return f"You pass with {counted(needed(total), 'right answer')} out of {total}"
 
 
 def mark(posed: Sequence[PosedQuestion], answers: Mapping[str, str]) -> Result:

@@ -29,8 +29,22 @@ LETTERS = "abcd"
 #: Two numbers closer than this share of the larger one are too close to choose between.
 LEAST_GAP = 0.02
 
-_NUMBER = re.compile(r"\d[\d,]*(?:\.\d+)?")
-_WORDLESS = re.compile(r"[\s.;:!?]+")
+#: Units that are others times a factor, or the same in words.
+_UNITS = {
+    "km": (1e3, "m"), "cm": (1e-2, "m"), "mm": (1e-3, "m"), "metres?": (1.0, "m"), "meters?": (1.0, "m"),
+    "ms": (1e-3, "s"), "[µμ]s": (1e-6, "s"), "min": (60.0, "s"), "seconds?": (1.0, "s"),
+    "g": (1e-3, "kg"), "kJ": (1e3, "j"), "kN": (1e3, "n"), "%": (1.0, "%"), "per ?cent": (1.0, "%"),
+}  # fmt: skip
+_QUANTITY = re.compile(
+    r"(?P<sign>(?<![\w.])[-−])?(?P<number>\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?)"
+    rf"(?:\s*(?P<unit>{'|'.join(_UNITS)})(?![\w/²³^]))?",
+    re.IGNORECASE,
+)
+#: Words beside a number that make no other answer of it.
+_FILLER = {"about", "almost", "approximately", "around", "exactly", "just", "nearly", "roughly", "some"}
+_WORDLESS = re.compile(r"[\s.,;:!?=()~≈]+")
+#: A number with its unit, and nothing more.
+_BARE = re.compile(r"# [^\s#]+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -257,18 +271,28 @@ def _clashes(choices: Sequence[Choice]) -> Iterator[tuple[int, int]]:
 def same_answer(one: str, other: str) -> bool:
     """True if two options say the same: the same words, and numbers that are equal or nearly so.
 
-    "0.10 m" and "0.1 m" are the same; so are 0.0980 and 0.0981, which a reader who rounds once more than
-    the author cannot tell apart.
+    "0.10 m" and "10 cm" are the same; so are 0.0980 and 0.0981, which a reader who rounds once more than the
+    author cannot tell apart, and "0.5 s" and "0.5 s, because ...": who means the second may pick the first.
     """
-    if _skeleton(one) != _skeleton(other):
-        return False
-    pairs = zip(_values(one), _values(other), strict=True)
-    return all(abs(a - b) <= LEAST_GAP * max(abs(a), abs(b)) for a, b in pairs)
+    (words, numbers), (others, theirs) = _read(one), _read(other)
+    if words != others:
+        short, long = sorted((words, others), key=len)
+        if not (_BARE.fullmatch(short) and long.startswith(f"{short} ")):
+            return False
+    return all(abs(a - b) <= LEAST_GAP * max(abs(a), abs(b)) for a, b in zip(numbers, theirs, strict=False))
 
 
-def _skeleton(text: str) -> str:
-    return _WORDLESS.sub(" ", _NUMBER.sub("#", text.lower())).strip()
+def _read(text: str) -> tuple[str, list[float]]:
+    """A text's words, with ``#`` for each number, and the numbers, in units without a prefix."""
+    numbers: list[float] = []
 
+    def read(match: re.Match[str]) -> str:
+        scale, unit = next(
+            (to for name, to in _UNITS.items() if re.fullmatch(name, match["unit"] or "", re.IGNORECASE)),
+            (1.0, match["unit"] or ""),
+        )
+        numbers.append((-1 if match["sign"] else 1) * scale * float(match["number"].replace(",", "")))
+        return f" # {unit} "
 
-def _values(text: str) -> list[float]:
-    return [float(match[0].replace(",", "")) for match in _NUMBER.finditer(text)]
+    words = _WORDLESS.split(_QUANTITY.sub(read, text).lower())
+    return " ".join(word for word in words if word and word not in _FILLER), numbers

@@ -19,6 +19,7 @@ from typing import assert_never
 from course.catalog import blocks as b
 from course.catalog.markdown import read_blocks, read_task
 from course.catalog.models import Exercise, Lesson
+from course.printable import counted
 
 
 @dataclass(frozen=True, slots=True)
@@ -218,7 +219,7 @@ def with_tasks(blocks: tuple[b.Block, ...], tasks: Sequence[Exercise]) -> tuple[
 def _task(exercise: Exercise) -> b.Task:
     """A warm-up in full. An exercise is longer than its lesson's pages: its README lies beside its file."""
     if exercise.is_warm_up:
-        what = f"warm-up, {exercise.minutes} minutes"
+        what = f"warm-up, {counted(exercise.minutes, 'minute')}"
         return b.Task(0, exercise.id, what, exercise.title, read_task(exercise.readme_path))
     asked = tuple((b.Paragraph(0, (b.Text(task.title),)),) for task in exercise.task)
     readme = f"{exercise.place}/{exercise.readme_path.name}"

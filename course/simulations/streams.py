@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from course.errors import UsageError
+from course.printable import counted
 
 if TYPE_CHECKING:
     Array = NDArray[np.float64]
@@ -185,7 +186,7 @@ def _array(value: Any, kind: str, name: str, dimensions: int) -> Array:
     array = np.array(value, dtype=float)
     if array.ndim != dimensions:
         raise UsageError(
-            f"{name} of the stream {kind!r} has {array.ndim} dimensions, not {dimensions}.",
+            f"{name} of the stream {kind!r} has {counted(array.ndim, 'dimension')}, not {dimensions}.",
             help="Give one row for each time.",
             code="stream_shape",
         )

@@ -7,11 +7,14 @@ import shutil
 import textwrap
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from course.authoring.exercises.diagnosis import build
 from course.catalog.load import Catalog
+from course.figures import contact, registry
+from course.figures.looks import faults
 from course.scoring import kit
 from course.scoring.checks.collected import words as known_words
 from course.scoring.judging.session import GradingSession, report_of
@@ -121,6 +124,19 @@ def test_a_wrong_program_that_is_known_by_its_answers_is_told_the_words_of_its_c
     for name in ("double_of_three", without):  # the second has no such function
         assert found[name].diagnosis == "SQUARES_INSTEAD"
         assert found[name].message.endswith(known_words("growth")("SQUARES_INSTEAD").looks_like)
+
+
+def test_the_figure_of_the_page_can_be_drawn_and_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (source,) = blocks("figure")
+    module: dict[str, Any] = {}
+    exec(source, module)
+    monkeypatch.setitem(registry.FIGURES, "contact-bounce", ("contact", "bounce"))
+    monkeypatch.setattr(contact, "bounce", module["bounce"], raising=False)
+    (fault,) = faults("contact-bounce", tmp_path)
+    assert "has no picture to be compared with" in fault.problem
+    assert "course author pictures contact-bounce" in TEXT
 
 
 def test_the_report_shows_both_sections(growth: Catalog) -> None:

@@ -83,7 +83,7 @@ def test_the_quiz_is_taken_without_posix(tmp_path):
     assert run(tmp_path, "init", COURSE_CONTENT="")[0] == 0
     code, out, err = run(tmp_path, "quiz", "take", "--questions", "--json", COURSE_CONTENT="")
     assert code == 0, err
-    assert len(json.loads(out)["questions"]) == 5
+    assert json.loads(out)["questions"]
 
 
 def test_a_fault_report_and_the_doctor_work_without_posix(workspace, tmp_path):

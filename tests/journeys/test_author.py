@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from course.authoring.exercises.files import BLANK
+from course.catalog.reading import BLANK
 from tests.journeys.conftest import ROOT, Way
 from tests.unit.authoring.test_scaffold import fill as fill_tripling
 
@@ -139,16 +139,19 @@ def test_a_new_warm_up_is_proved_and_its_words_reach_a_student(
     assert "this warm-up is done" in student("check", "first-third", cwd=work).stdout
 
 
-def sentences() -> Iterator[str]:
-    return (f"Sentence {number} of 2026" for number in count(1))
+def sentences(first: int = 1) -> Iterator[str]:
+    return (f"Sentence {number} of 2026" for number in count(first))
 
 
 def test_a_new_lesson_and_a_new_question_are_proved_read_and_answered(
     author: Way, mini: Path, tmp_path: Path
 ) -> None:
     author("author", "new", "lesson", "three-times")
-    lesson, words = mini / "lessons" / "three-times.md", sentences()
+    # Their numbers are years: any other number in a lesson is to come from code.
+    lesson, words = mini / "lessons" / "three-times.md", sentences(1901)
     fill(lesson, lambda _: next(words))
+    put(lesson, "](figure:three-times", " and of no other year](figure:three-times")
+    put(lesson, "figure:three-times", "figure:integrators-order")
     put(lesson, "before = []\n", 'before = ["half-as-much"]\n')
     put(mini / "lessons" / "syllabus.toml", '"half-as-much"]', '"half-as-much", "three-times"]')
     author("author", "new", "question", "thrice")
@@ -161,7 +164,7 @@ def test_a_new_lesson_and_a_new_question_are_proved_read_and_answered(
 
     shown = author("lesson", "three-times").stdout
     written = re.findall(r"^(?!#).*(Sentence \d+ of 2026)", lesson.read_text("utf-8"), re.MULTILINE)
-    assert len(written) == 13
+    assert len(written) == 17
     assert [sentence for sentence in written if sentence not in shown] == []
 
     author("init", "work")

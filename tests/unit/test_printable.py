@@ -6,7 +6,7 @@ import unicodedata
 
 import pytest
 
-from course.printable import one_line, printable, steady
+from course.printable import counted, one_line, printable, steady
 
 #: Line ends of every kind, marks that turn text, hidden characters, escapes, and half of a character.
 _HOSTILE = (
@@ -44,3 +44,10 @@ def test_honest_text_stays_as_it_is() -> None:
     for text in ("naïve 数 Ω → 😀", "mass = 1.5 kg", ""):
         assert one_line(text) == printable(text) == steady(text) == text
     assert printable("a\n\tb") == steady("a\n\tb") == "a\n\tb"
+
+
+@pytest.mark.parametrize(
+    ("number", "said"), [(0, "0 steps"), (1, "1 step"), (2, "2 steps"), (2000, "2,000 steps")]
+)
+def test_a_number_has_its_noun_in_the_plural_unless_it_is_one(number: int, said: str) -> None:
+    assert counted(number, "step") == said

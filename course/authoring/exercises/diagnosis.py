@@ -7,6 +7,7 @@ The table is kept with the solution, and the page about the graders shows it.
 from __future__ import annotations
 
 import ast
+import contextlib
 import hashlib
 import itertools
 import json
@@ -35,9 +36,11 @@ from course.authoring.exercises.mutants import mutant_path
 from course.authoring.exercises.source import parse
 from course.authoring.report import Findings, Progress
 from course.catalog.load import Catalog
+from course.catalog.locate import content
 from course.catalog.models import Exercise
 from course.catalog.reading import read_text
-from course.errors import ContentError
+from course.errors import ContentError, CourseError
+from course.progress.workspace import write_atomically
 from course.scoring import kit
 from course.scoring.checks.collected import companion_path, words
 from course.scoring.explain.fingerprint import numbers_of
@@ -50,8 +53,9 @@ from course.scoring.explain.story import (
     matching,
     read_table,
     read_words,
-    write_table,
+    table_bytes,
 )
+from course.scoring.failures import place_of, reason_of
 from course.scoring.judging.explaining import answer_numbers, answers, tasks_asked
 from course.scoring.judging.session import GradingSession, Scope
 from course.scoring.judging.submission import Submission, Terms
@@ -66,10 +70,11 @@ from course.scoring.verdict import Status
 # made from.
 
 
+HYPOTHESES = "hypotheses.py"
 #: Files of an exercise, and of its solution, that the table follows from.
 SOURCES = (
     ("questions.py", "checking/paths.py"),
-    ("hypotheses.py", "formulas.py", "motions.py", "draws.py", "mutants.toml"),
+    (HYPOTHESES, "formulas.py", "motions.py", "draws.py", "mutants.toml"),
 )
 #: How many programs with two mistakes are kept for a task: students hardly write more, and the wheel would
 #: grow.
@@ -77,7 +82,7 @@ _MOST_PAIRS = 260
 
 
 def build(catalog: Catalog, exercise: Exercise) -> Path | None:
-    """Write the table of an exercise; None if its diagnoses have no words or there are no questions.
+    """Write the table of an exercise; None if it is there already, has no words or there are no questions.
 
     Beside its mutants an exercise may have more wrong programs, in ``hypotheses.py``; a warm-up has none.
     """
@@ -85,8 +90,23 @@ def build(catalog: Catalog, exercise: Exercise) -> Path | None:
     if not all(path.is_file() for path in needed):
         return None
     path = exercise.readme_path.with_name(TABLE)
-    write_table(path, table_of(catalog, exercise))
+    data = table_bytes(table_of(catalog, exercise))
+    with contextlib.suppress(OSError, ValueError):
+        if _alike(json.loads(path.read_bytes()), json.loads(data)):
+            return None
+    write_atomically(path, data)
     return path
+
+
+def _alike(one: Any, other: Any) -> bool:
+    """Equal but for rounding, which differs from machine to machine."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        return one.keys() == other.keys() and all(_alike(one[key], other[key]) for key in one)
+    if isinstance(one, list) and isinstance(other, list):
+        return len(one) == len(other) and all(map(_alike, one, other))
+    if isinstance(one, float) and isinstance(other, float):
+        return math.isclose(one, other, rel_tol=1e-9, abs_tol=1e-12)
+    return bool(one == other)
 
 
 def digest(catalog: Catalog, exercise: Exercise) -> str:
@@ -104,7 +124,16 @@ def digest(catalog: Catalog, exercise: Exercise) -> str:
 
 
 def table_of(catalog: Catalog, exercise: Exercise) -> Table:
-    """Compute the table of an exercise."""
+    """Compute the table of an exercise.
+
+    Raises:
+        ContentError: a file of its author's raises, or names a function that is none of the exercise's.
+    """
+    with _blamed(companion_path(exercise.id, "questions")):
+        return _table_of(catalog, exercise)
+
+
+def _table_of(catalog: Catalog, exercise: Exercise) -> Table:
     questions = kit.companion(exercise.id, "questions")
     within: dict[str, float] = getattr(questions, "WITHIN", {})
     tasks = sorted(tasks_asked(questions))
@@ -186,17 +215,16 @@ def hypotheses_of(
     solution = solution_path(catalog, exercise)
     told = words(exercise.id).entries
     for mutant in (mutant for mutant in catalog.mutants(exercise) if mutant.diagnosis in told):
-        module = _executed(compose(solution, mutant_path(catalog, exercise, mutant)))
-        yield mutant.task, (mutant.diagnosis,), module[mutant.task]
-    reference: ModuleType | None = None
-    if (solutions_folder(catalog, exercise) / "hypotheses.py").is_file():
-        reference = kit.reference(exercise.id, "hypotheses")
-    if reference is not None:
-        path, tasks = (
-            solutions_folder(catalog, exercise) / "hypotheses.py",
-            {task.id for task in exercise.task},
-        )
-        for task, codes, function in reference.hypotheses():
+        file = mutant_path(catalog, exercise, mutant)
+        with _blamed(file):
+            function = _executed(compose(solution, file))[mutant.task]
+        yield mutant.task, (mutant.diagnosis,), function
+    path, more = solutions_folder(catalog, exercise) / HYPOTHESES, _hypotheses(exercise)
+    if more is not None:
+        tasks = {task.id for task in exercise.task}
+        with _blamed(path):
+            programs = [(task, codes, function) for task, codes, function in more.hypotheses()]
+        for task, codes, function in programs:
             if task not in tasks:
                 raise ContentError(
                     path, None, f"{task!r} is no function of the exercise.", help="Correct it."
@@ -205,6 +233,31 @@ def hypotheses_of(
                 if code not in told:
                     raise ContentError(path, None, f"{WORDS} has no words for {code}.", help="Write them.")
             yield task, codes, function
+
+
+def _hypotheses(exercise: Exercise) -> ModuleType | None:
+    """``hypotheses.py`` of an exercise; None if it has none."""
+    folder = content().solution_folder(exercise.id)
+    if folder is None or not (folder / HYPOTHESES).is_file():
+        return None
+    with _blamed(folder / HYPOTHESES):
+        return kit.reference(exercise.id, "hypotheses")
+
+
+@contextlib.contextmanager
+def _blamed(path: Path) -> Iterator[None]:
+    """What an author's code raises, as a fault of its own file and line, or else of ``path``."""
+    try:
+        yield
+    except CourseError:
+        raise
+    except Exception as error:
+        place = place_of(error)
+        file, line = (content().root / place[0], place[1]) if place else (path, None)
+        if isinstance(error, SyntaxError) and error.filename:
+            file, line = Path(error.filename), error.lineno
+        problem = f"it raises {reason_of(error)}."
+        raise ContentError(file, line, problem, help="Correct that line, or what it needs.") from error
 
 
 def _right(catalog: Catalog, exercise: Exercise, task: str) -> Iterator[Callable[..., Any]]:
@@ -348,7 +401,7 @@ def code_of(catalog: Catalog, exercise: Exercise, *patterns: str) -> bytes:
     ]
     solution = solution_path(catalog, exercise)
     others = sorted(solution.parent.glob("*.py"))
-    paths += [path for path in others if path not in (solution, solution.with_name("hypotheses.py"))]
+    paths += [path for path in others if path not in (solution, solution.with_name(HYPOTHESES))]
     return b"".join(path.name.encode() + b"\0" + path.read_bytes() + b"\0" for path in paths)
 
 
@@ -418,7 +471,7 @@ def fate_of(exercise: Exercise) -> Callable[[Reported], str]:
     ``ALSO`` in ``hypotheses.py`` has, by code, what else is true of a program with that mistake.
     """
     own, names = words(exercise.id), _names(exercise)
-    also: dict[str, tuple[str, ...]] = getattr(kit.reference(exercise.id, "hypotheses"), "ALSO", {})
+    also: dict[str, tuple[str, ...]] = getattr(_hypotheses(exercise), "ALSO", {})
 
     def fate(row: Reported) -> str:
         if row.said == "survives":
@@ -449,8 +502,12 @@ def _names(exercise: Exercise) -> set[tuple[str, str, str]]:
 def write_confusion(catalog: Catalog, exercise: Exercise, table: Confusion) -> Path:
     """Write the table beside the solution, one row a line."""
     path = solutions_folder(catalog, exercise) / CONFUSION
+    fate = fate_of(exercise)
+    with _blamed(path.with_name(HYPOTHESES)):  # what the page and the audit will ask of each row
+        for row in (row for rows in table.rows.values() for row in rows):
+            fate(row)
     text = msgspec.json.encode(table).decode().replace("],[", "],\n[")
-    path.write_text(text + "\n", encoding="utf-8")
+    write_atomically(path, f"{text}\n".encode())
     return path
 
 
@@ -472,7 +529,7 @@ def audit_diagnoses(catalog: Catalog, exercise: Exercise, findings: Findings) ->
     words_path = exercise.readme_path.with_name(WORDS)
     table_path = exercise.readme_path.with_name(TABLE)
     if not words_path.is_file():
-        if (solutions_folder(catalog, exercise) / "hypotheses.py").is_file():
+        if (solutions_folder(catalog, exercise) / HYPOTHESES).is_file():
             findings.add(words_path, None, "words", "there are hypotheses and no words.", "Write it.")
         return
     words = read_words(words_path)
@@ -488,10 +545,14 @@ def audit_diagnoses(catalog: Catalog, exercise: Exercise, findings: Findings) ->
     # A warm-up's wrong programs are its mutants, each of which is graded.
     again = f"Run `course author build {exercise.id}{'' if exercise.is_warm_up else ' --confusion'}`."
     if not table_path.is_file():
+        for _ in hypotheses_of(catalog, exercise):
+            pass
         findings.add(table_path, None, "words", "it is missing.", again)
         return
     table = read_table(table_path)
     if table.made_from != digest(catalog, exercise):
+        for _ in hypotheses_of(catalog, exercise):
+            pass  # what building would refuse comes before the advice to build
         findings.add(
             table_path,
             None,

@@ -7,11 +7,15 @@ Blanks left by ``course author new``, hints, README, stub against solution, and 
 from __future__ import annotations
 
 import ast
+import hashlib
 import math
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
+
+import msgspec
 
 from course.authoring.exercises.grading import (
     accepted_files,
@@ -33,9 +37,10 @@ from course.authoring.exercises.source import (
 )
 from course.authoring.report import Findings
 from course.catalog.load import Catalog
-from course.catalog.models import QUICK, Exercise
-from course.catalog.reading import read_document, read_text
+from course.catalog.models import QUICK, Exercise, Measured, Times
+from course.catalog.reading import BLANK, read_document, read_text
 from course.errors import ContentError
+from course.printable import counted
 from course.progress.workspace import write_atomically
 from course.reading.parts import read_script
 from course.scoring.explain.story import WORDS, read_words
@@ -255,29 +260,50 @@ def write_points(catalog: Catalog, exercise: Exercise) -> Path | None:
             # It was left out: the last line above the first task.
             last = next(i for i in range(lines.line(("task",)) - 2, 0, -1) if text[i].strip())
             text.insert(last + 1, line)
-    if not stale:
+    slow = [at for at, line in enumerate(text) if re.match(r"slow\s*=", line)]
+    for at in slow:  # measured, and kept in ``times.json``
+        del text[at]
+    if not stale and not slow:
         return None
     write_atomically(path, "\n".join(text).encode())
     return path
 
 
 # ---
-# How long the slow public checks of an exercise take, measured and written into ``exercise.toml``.
+# How long the slow public checks of an exercise take, measured and written into ``times.json``.
 #
-# It determines how long ``course check`` waits for a function that may hang; see ``Exercise.patience``.
+# It determines how long ``course check`` waits for a function that may hang; see ``Exercise.patience``. Times
+# differ from run to run, so an exercise is measured again only when a file that decides about them changes.
 
 
 #: A number is replaced once a check takes longer, or less than this share of it: times vary by two.
 _LEAST = 0.4
 
 
-def audit_slow(exercise: Exercise, checks: tuple[CheckSource, ...], findings: Findings) -> None:
-    """Report slow checks that do not exist."""
+def audit_slow(
+    catalog: Catalog, exercise: Exercise, checks: tuple[CheckSource, ...], findings: Findings
+) -> None:
+    """Report times of checks that do not exist, and those that stand among what an author writes."""
+    again = f"Run `course author build {exercise.id}`."
+    path = exercise.checks_path.with_name("exercise.toml")
+    written = read_document(path, Exercise)
+    if written.value.slow:
+        problem = f"what was measured is kept in {catalog.times_path.name}."
+        findings.add(path, written.lines.line(("slow",)), "slow", problem, again)
     known = {check.id for check in checks if not check.hidden}
     for check in sorted(exercise.slow.keys() - known):
-        path = exercise.checks_path.with_name("exercise.toml")
-        message, fix = f"there is no public check {check}.", f"Run `course author build {exercise.id}`."
-        findings.add(path, None, "slow", message, fix)
+        findings.add(catalog.times_path, None, "slow", f"there is no public check {check}.", again)
+
+
+def _decides(catalog: Catalog, exercise: Exercise) -> str:
+    """A digest of the files on which the times of public checks depend."""
+    solution = solution_path(catalog, exercise)
+    files = {*exercise.readme_path.parent.rglob("*.py"), *solution.parent.glob("*.py")}
+    files |= {*accepted_files(catalog, exercise)}
+    made_from = hashlib.sha256()
+    for path in sorted(files - {exercise.stub_path}):
+        made_from.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return made_from.hexdigest()[:16]
 
 
 def measured(catalog: Catalog, exercise: Exercise) -> dict[str, float]:
@@ -299,23 +325,22 @@ def due(written: dict[str, float], most: dict[str, float]) -> dict[str, float]:
     return dict(sorted({**slow, **kept}.items()))
 
 
-def write_slow(catalog: Catalog, exercise: Exercise) -> Path | None:
-    """Measure, and write the new value; None if it is there already."""
-    slow = due(exercise.slow, measured(catalog, exercise))
-    if slow == exercise.slow:
+def write_times(catalog: Catalog, exercises: Iterable[Exercise]) -> Path | None:
+    """Measure the exercises whose files changed, and write their times; None if none did."""
+    known = dict(catalog.times.exercises)
+    for exercise in exercises:
+        now, before = _decides(catalog, exercise), known.get(exercise.id)
+        if before is None or before.made_from != now:
+            slow = due(exercise.slow, measured(catalog, exercise))
+            known[exercise.id] = Measured(made_from=now, slow=slow)
+    there = {*catalog.exercise_ids(), *catalog.warm_up_ids()}
+    kept = {name: known[name] for name in sorted(there & known.keys())}
+    if kept == catalog.times.exercises:
         return None
-    path = exercise.checks_path.with_name("exercise.toml")
-    text = re.sub(r"^slow = .*\n", "", read_text(path), flags=re.MULTILINE)
-    if slow:
-        line = ", ".join(f"{check} = {seconds:g}" for check, seconds in slow.items())
-        above, task, below = text.partition("\n[[task]]")
-        text = f"{above.rstrip()}\nslow = {{ {line} }}\n{task}{below}"
-    write_atomically(path, text.encode())
-    return path
+    data = msgspec.json.format(msgspec.json.encode(Times(exercises=kept)), indent=1)
+    write_atomically(catalog.times_path, data + b"\n")
+    return catalog.times_path
 
-
-#: The mark that ``course author new`` leaves where an author has to write.
-BLANK = re.compile(r"<<FILL IN:\s*(?P<what>.*?)>>")
 
 #: Mildest first; the last may nearly be the solution.
 LEAST_HINTS = 3
@@ -347,7 +372,7 @@ def blanks_in(path: Path, findings: Findings) -> bool:
     for number, line in enumerate(read_text(path).split("\n"), start=1):
         for match in BLANK.finditer(line):
             found = True
-            what = match["what"].strip()
+            what = match["what"].strip() or "this"
             findings.add(
                 path, number, "blank", f"still to be filled in: {what}.", "Replace the whole marker."
             )
@@ -364,7 +389,7 @@ def audit_files(catalog: Catalog, exercise: Exercise, findings: Findings) -> tup
     # Checks without a marker cannot be added up, and are reported.
     if not findings.of("check"):
         audit_points(exercise, checks, findings)
-        audit_slow(exercise, checks, findings)
+        audit_slow(catalog, exercise, checks, findings)
     return checks
 
 
@@ -393,16 +418,19 @@ def _audit_declaration(catalog: Catalog, exercise: Exercise, findings: Findings)
             f"lesson {exercise.lesson} does not name this exercise.",
             f'Add "{exercise.id}" to `exercises` in the head of {exercise.lesson}.md.',
         )
-    rivals = catalog.warm_up_ids() if exercise.is_warm_up else catalog.exercise_ids()
-    for other in rivals:
-        if other < exercise.id and _order_of(catalog, other) == _rank(exercise):
-            findings.add(
-                path,
-                lines.line(("order",)),
-                "exercise",
-                f"{exercise.kind} {other} has the order {exercise.order} too.",
-                "Give each exercise a place of its own.",
-            )
+    _audit_order(catalog, exercise, path, lines.line(("order",)), findings)
+    for other in map(partial(_readable, catalog), (*catalog.exercise_ids(), *catalog.warm_up_ids())):
+        if other is None or other.id >= exercise.id:
+            continue
+        for key, same, what in (
+            ("order", other.kind == exercise.kind and _rank(other) == _rank(exercise), "place"),
+            ("number", other.number == exercise.number != 0, "number"),
+            ("module", other.module == exercise.module, "file"),
+        ):
+            if same:
+                problem = f"{other.kind} {other.id} has the {key} {getattr(exercise, key)} too."
+                fix = f"Give each a {what} of its own."
+                findings.add(path, lines.line((key,)), "exercise", problem, fix)
 
 
 def _audit_section(
@@ -428,9 +456,23 @@ def _rank(exercise: Exercise) -> tuple[str, int]:
     return (exercise.lesson if exercise.is_warm_up else "", exercise.order)
 
 
-def _order_of(catalog: Catalog, exercise_id: str) -> tuple[str, int] | None:
+def _audit_order(catalog: Catalog, exercise: Exercise, path: Path, line: int, findings: Findings) -> None:
+    """Exercises are in the order in which the lessons lead to them."""
+    lessons = catalog.lesson_ids()
+    if exercise.is_warm_up or exercise.lesson not in lessons:
+        return
+    place = lessons.index(exercise.lesson)
+    for other in map(partial(_readable, catalog), catalog.exercise_ids()):
+        if other is not None and other.order < exercise.order and other.lesson in lessons[place + 1 :]:
+            problem = f"exercise {other.id} has a lower order, {other.order}, and its lesson comes later."
+            fix = f"Let the orders follow the lessons: {exercise.id} before {other.id}."
+            findings.add(path, line, "exercise", problem, fix)
+            return
+
+
+def _readable(catalog: Catalog, exercise_id: str) -> Exercise | None:
     try:
-        return _rank(catalog.exercise(exercise_id))
+        return catalog.exercise(exercise_id)
     except ContentError:
         return None  # reported where that exercise is audited
 
@@ -446,7 +488,7 @@ def _audit_hints(catalog: Catalog, exercise: Exercise, findings: Findings) -> No
                 exercise.hints_path,
                 document.lines.line(("task", index, "hints")) if index is not None else None,
                 "hints",
-                f"task {task.id} has {len(hints)} hints, and needs {least}.",
+                f"task {task.id} has {counted(len(hints), 'hint')}, and needs {least}.",
                 "Add hints, mildest first.",
             )
     words = exercise.readme_path.with_name(WORDS)

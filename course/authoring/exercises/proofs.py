@@ -18,15 +18,19 @@ from course.authoring.exercises.files import public_numbers
 from course.authoring.exercises.grading import accepted_files, compose, mutant_files, solution_path
 from course.authoring.exercises.mutants import judge, mutant_path
 from course.authoring.exercises.source import DECIMAL, CheckSource, parse, signatures
-from course.authoring.report import Findings
+from course.authoring.report import AuditProblem, Findings
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise, Hints, Mutant, fields_of
-from course.catalog.reading import Document, read_text
+from course.catalog.reading import Document, read_document, read_text
 from course.errors import ContentError
 from course.handed_in.attempts import numbers_of
+from course.printable import counted
+from course.progress.history import NO_MISTAKE
 from course.progress.workspace import write_atomically
+from course.scoring.failures import ON_THE_MODEL, OURS
 from course.scoring.graders import LEFT_OUT
-from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility
+from course.scoring.judging.outcomes import NOT_JUDGED
+from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility, in_points
 
 _INTEGER = re.compile(r"(?<![\w.])-?\d+(?![\w.]*\w)")
 #: Of an exercise of n functions: n + 1 unusual solutions that must pass, and this many wrong ones times n.
@@ -127,6 +131,16 @@ def _plan_mutants(
     for path in mutant_files(catalog, exercise):
         if path.name not in listed:
             findings.add(path, None, "mutants", "mutants.toml does not list this file.", "Add a [[mutant]].")
+    codes = [mutant.diagnosis for mutant in mutants]
+    for index, code in enumerate(codes if exercise.is_warm_up else ()):
+        if code in codes[:index]:
+            findings.add(
+                document.path,
+                document.lines.line(("mutant", index, "diagnosis")),
+                "mutants",
+                f"another mutant has the diagnosis {code}, too.",
+                "A warm-up tells each of its mistakes apart: give it a code of its own.",
+            )
     for task in exercise.task:
         if task.id not in {mutant.task for mutant in mutants}:
             findings.add(
@@ -163,9 +177,18 @@ class Prover:
         self._checks = {check.id: check for check in checks}
         self._mutants_toml = mutants_toml
         self._findings = findings
-        self._broken = False  # its checks cannot be imported: nothing more can be said of them
+        #: A check raised or cannot be imported: what grading says of the programs follows from that.
+        self.broken = False
+        #: It does so on the model solution: no program can be judged.
+        self.hopeless = False
+        self._breaks: set[tuple[str, Path, int | None]] = set()
         self._public = public_numbers(exercise)
         self._fields: dict[str, set[str]] = {task.id: set() for task in exercise.task}
+
+    @property
+    def problems(self) -> list[AuditProblem]:
+        """What was found; of checks that broke only that they did, since the rest follows from it."""
+        return [one for one in self._findings.problems if not self.broken or one.code == "grader"]
 
     def judge(self, proof: Proof, verdict: Verdict) -> None:
         """Report what is wrong with the verdict on one proof."""
@@ -192,7 +215,7 @@ class Prover:
 
     def judge_hints(self, hints: Document[Hints]) -> None:
         """Report fields that hints name and that no failed check has had. Call it after the last proof."""
-        for index, task in enumerate(() if self._broken else hints.value.task):
+        for index, task in enumerate(() if self.broken else hints.value.task):
             for number, sentences in task.yours.items():
                 named = frozenset().union(*map(fields_of, sentences))
                 for field in sorted(named - self._fields.get(task.id, set())):
@@ -205,22 +228,43 @@ class Prover:
                     )
 
     def _is_our_fault(self, proof: Proof, verdict: Verdict) -> bool:
-        """Report checks that broke instead of checking, each once."""
-        if verdict.error is not None and verdict.error.code == "check_file":
-            self._broken = True
-            self._findings.add(*_fault_of_file(verdict.error, self._findings.root))
+        """Report checks that broke instead of checking, each once, with the line that raised."""
+        error = verdict.error
+        if error is not None and error.code == "check_file":
+            self.broken = self.hopeless = True
+            self._findings.add(*_fault_of_file(error, self._findings.root))
             return True
-        broken = [check for check in verdict.checks if check.status is Status.GRADER_ERROR]
-        for check in broken:
-            self._broken = True
-            fix = "Correct the check; whatever a student returns must be a finding."
-            problem, fix = _told(f"check {check.id} breaks: {check.message}", fix, self._findings.root)
-            self._findings.add(*self._place(check.id, self.exercise.checks_path), "grader", problem, fix)
-        if not broken and verdict.state == "grader_error" and verdict.error is not None:
-            words = f"the checks break on {proof.path.name}: {verdict.error.message}"
-            fix = verdict.error.help or "Correct the checks."
-            self._findings.add(self.exercise.checks_path, None, "grader", words, fix)
-        return verdict.state == "grader_error"
+        told = False
+        for check in verdict.checks:
+            if check.status is Status.GRADER_ERROR:
+                told = self.hopeless = True
+                self._break(check.id, f"check {check.id} breaks", check.message.removeprefix(ON_THE_MODEL))
+            elif (check.traceback or "").startswith(OURS):
+                told = True
+                what = "" if check.diagnosis == NOT_JUDGED else "the diagnosis of "
+                what += f"check {check.id} breaks on {proof.path.name}"
+                self._break(check.id, what, (check.traceback or "").removeprefix(OURS))
+        if not told and verdict.state == "grader_error":
+            self.broken = True
+            why, fix = (error.message, error.help) if error else (verdict.state, "")
+            words = f"the checks break on {proof.path.name}: {why}"
+            self._findings.add(self.exercise.checks_path, None, "grader", words, fix or "Correct the checks.")
+        return told or verdict.state == "grader_error"
+
+    def _break(self, check: str, what: str, said: str) -> None:
+        """Report a check, or its diagnosis, that raised: once, however many programs it raised on."""
+        self.broken = True
+        path, line = self._place(check, self.exercise.checks_path)
+        raised = _RAISED.search(said)
+        if raised is not None and (self._findings.root / raised["file"]).is_file():
+            path, line = self._findings.root / raised["file"], int(raised["line"])
+            said = said[: raised.start()]
+        if (check, path, line) in self._breaks:
+            return
+        self._breaks.add((check, path, line))
+        fix = "Look at a value before computing with it: whatever a student's function returns is a finding."
+        problem, fix = _told(f"{what}: {said.rstrip('.')}.", fix, self._findings.root)
+        self._findings.add(path, line, "grader", problem, fix)
 
     def _judge_stub(self, proof: Proof, verdict: Verdict) -> None:
         for check in verdict.checks:
@@ -231,6 +275,7 @@ class Prover:
                     f"the untouched stub passes check {check.id} of task {check.task}.",
                     "Let the check fail on code that does nothing.",
                 )
+        self._judge_handout(proof, verdict)
         for task in self.exercise.task:
             if not any(c.task == task.id and c.status is not Status.PASS for c in verdict.checks):
                 self._findings.add(
@@ -240,6 +285,28 @@ class Prover:
                     f"no check of task {task.id} fails on the stub.",
                     "Give the task a check that does.",
                 )
+
+    def _judge_handout(self, proof: Proof, verdict: Verdict) -> None:
+        """What public checks find in the stub is unwritten, or declared as its fault."""
+        for index, task in enumerate(self.exercise.task):
+            told = {
+                check.diagnosis
+                for check in verdict.checks
+                if check.task == task.id and check.visibility is Visibility.PUBLIC and check.diagnosis
+            }
+            for code in sorted(told - {task.fault, *NO_MISTAKE}):
+                self._findings.add(
+                    proof.path,
+                    self._line_of(proof.path, task.id),
+                    "stub",
+                    f"the untouched stub is told {code}, and `course progress` counts that as the student's.",
+                    f'Raise NotImplementedError in {task.id}, or give its task `fault = "{code}"`.',
+                )
+            if task.fault and task.fault not in told:
+                path = proof.path.with_name("exercise.toml")
+                line = read_document(path, Exercise).lines.line(("task", index, "fault"))
+                problem = f"no public check tells the untouched stub {task.fault}."
+                self._findings.add(path, line, "stub", problem, "Correct the code, or take the line out.")
 
     def _judge_correct(self, proof: Proof, verdict: Verdict) -> None:
         """Full marks, and the checks that ran are the ones the files declare."""
@@ -291,6 +358,8 @@ class Prover:
 
 
 _CHECK_FILE = re.compile(r"(?P<file>.+?)(?::(?P<line>\d+))?: (?P<problem>.*)", re.DOTALL)
+#: The end of what is said of an exception: the course's own file and line that it comes from.
+_RAISED = re.compile(r" \((?P<file>[^()]+), line (?P<line>\d+)\)\.?$")
 _NOT_THERE = re.compile(r"FileNotFoundError: (?P<file>\S+) is not there")
 
 
@@ -365,14 +434,14 @@ def kill_table(catalog: Catalog) -> str:
 def audit_page(catalog: Catalog, findings: Findings) -> None:
     """Report a page that is out of date."""
     page = _page(catalog)
-    if page.is_file() and page.read_text(encoding="utf-8") != kill_table(catalog):
-        findings.add(
-            page,
-            None,
-            "stale",
-            "it is not of the exercises, variants and mutants there are now.",
-            "Run `course author build`.",
-        )
+    if not page.is_file() or (text := page.read_text(encoding="utf-8")) == kill_table(catalog):
+        return
+    exercises = catalog.exercises()
+    stale = next((one for one in exercises if _section(catalog, one) not in text), exercises[0])
+    problem = (
+        f"it is not of the exercises, variants and mutants there are now, those of {stale.id} above all."
+    )
+    findings.add(page, None, "stale", problem, f"Run `course author build {stale.id}`.")
 
 
 def write_page(catalog: Catalog) -> Path | None:
@@ -392,13 +461,13 @@ def _page(catalog: Catalog) -> Path:
 def _section(catalog: Catalog, exercise: Exercise) -> str:
     mutants = catalog.mutants(exercise)
     accepted = accepted_files(catalog, exercise)
-    tasks = f"{len(exercise.task)} task{'s' * (len(exercise.task) > 1)}"
     lines = [
         f"## {exercise.title} (`{exercise.id}`)",
         "",
-        f"{exercise.max_points:g} points in {tasks}, {exercise.hidden_points:g} of them "
-        f"on {exercise.hidden_checks} hidden checks. {len(accepted)} unusual solutions are accepted, "
-        f"{len(mutants)} wrong ones are caught.",
+        f"{in_points(exercise.max_points)} in {counted(len(exercise.task), 'task')}, "
+        f"{exercise.hidden_points:g} of them on {counted(exercise.hidden_checks, 'hidden check')}. "
+        f"{counted(len(accepted), 'unusual solution')} {'is' if len(accepted) == 1 else 'are'} accepted, "
+        f"{counted(len(mutants), 'wrong one')} {'is' if len(mutants) == 1 else 'are'} caught.",
         "",
         "| What its author believes | Task | Caught by | Diagnosis | File |",
         "|---|---|---|---|---|",

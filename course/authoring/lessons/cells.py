@@ -18,6 +18,7 @@ from typing import Any
 from course.catalog import blocks as b
 from course.catalog.markdown import read_blocks
 from course.errors import ContentError
+from course.progress.workspace import write_atomically
 
 _NUMBER = re.compile(r"(?P<sign>[-+−]?)(?P<digits>\d[\d,]*(?:\.(?P<decimals>\d+))?)(?P<exponent>e[-+]?\d+)?")
 
@@ -110,7 +111,7 @@ def update_outputs(path: Path) -> int:
         fresh = [] if run.printed is None else ["```output", *run.printed.split("\n"), "```"]
         lines[start:end] = fresh
     if changed:
-        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        write_atomically(path, ("\n".join(lines) + "\n").encode())
     return changed
 
 

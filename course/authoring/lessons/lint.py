@@ -1,17 +1,18 @@
 """The rules for lessons beyond the format: what a lesson must have, must not have and must refer to.
 
-The audit asks ``findings`` for every lesson; each finding names a line and the fix. Whether code cells print
-what is recorded is a different question, answered by running them: ``course.authoring.lessons.cells``.
+The audit asks ``rules_broken`` for every lesson; each finding names a line and the fix. Whether code cells
+print what is recorded is a different question, answered by running them: ``course.authoring.lessons.cells``.
 """
 
 from __future__ import annotations
 
 import ast
+import difflib
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import assert_never
+from typing import TypeAlias, assert_never
 from urllib.parse import unquote
 
 from course.authoring.lessons.cells import run_lesson
@@ -24,11 +25,14 @@ from course.catalog.models import Exercise, Lesson
 from course.catalog.questions import Question
 from course.catalog.reading import Document, LineMap, read_document, read_text, split_front_matter
 from course.errors import ContentError, UsageError
+from course.figures import registry
 from course.figures.registry import figure_ids
 from course.ids import LessonId
 
 #: Code, output and drawings are never wrapped; this is what 60 columns leave beside a margin of two.
 MAX_COLUMNS = 58
+#: Of each lesson.
+LEAST_WARM_UPS = 2
 #: Whole numbers up to here are words ("four methods, 12 of them"), not measurements.
 _SMALL = 12
 #: "In 2005": a date has a source, not a computation.
@@ -37,6 +41,9 @@ _NUMBER = re.compile(r"(?<![\w.])\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?(?![\w])")
 
 #: Left in the text by ``[3](=a + b)``, which has spaces and is therefore not a link in Markdown.
 _UNREAD_VALUE = re.compile(r"\]\(<?=")
+
+#: Those of some commands that fail, by their place, and what each says.
+Refused: TypeAlias = "Callable[[Sequence[str]], dict[int, str]]"
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,23 +61,22 @@ class Finding:
     fix: str
 
 
-def findings(
-    blocks: tuple[b.Block, ...],
-    *,
-    figures: Collection[str],
-    lessons: Collection[str],
-    exercises: Collection[str],
+def rules_broken(
+    blocks: tuple[b.Block, ...], *, figures: Collection[str], whole: bool = True
 ) -> list[Finding]:
     """Everything wrong with a lesson, in the order of its lines.
 
     Args:
         blocks: the lesson.
-        figures, lessons, exercises: the ids it may point at.
+        figures: the ids of those it may show.
+        whole: it is to have all that docs/lesson-format.md says every lesson has.
     """
     found = [
-        *_missing_parts(blocks),
+        *((*_missing_parts(blocks), *_unplaced_sources(blocks)) if whole else ()),
         *_unpredicted(blocks),
-        *_dead_pointers(blocks, figures, lessons, exercises),
+        *_given_away(blocks),
+        *_twice(blocks),
+        *_unknown_figures(blocks, figures),
         *_unread_values(blocks),
         *_unproduced_numbers(blocks),
         *_too_wide(blocks),
@@ -98,6 +104,9 @@ def _missing_parts(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
     for kind_of_block, (name, fix) in wanted.items():
         if not any(isinstance(block, kind_of_block) for block in every):
             yield Finding(0, f"the lesson has no {name}", fix)
+    quoted = any(isinstance(inline, b.Value) for _, inline in b.walk_inlines(blocks))
+    if not quoted and not any(_unread_values(blocks)):
+        yield Finding(0, "the lesson has no number that its code gives", "Quote one: [0.0890](=error).")
 
 
 def _unpredicted(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
@@ -129,23 +138,52 @@ def _unpredicted(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
         yield Finding(asked.line, "a prediction that is not answered", "Add > **Answer.** … after it.")
 
 
-def _dead_pointers(
-    blocks: tuple[b.Block, ...],
-    figures: Collection[str],
-    lessons: Collection[str],
-    exercises: Collection[str],
-) -> Iterator[Finding]:
+def _given_away(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
+    """Numbers of an answer in a later prediction: both may stand on one screen, the answer still closed."""
+    answered: set[str] = set()
+    for block in blocks:
+        if not isinstance(block, b.Prediction | b.Callout):
+            continue
+        quoted = {inline.text for _, inline in b.walk_inlines((block,)) if isinstance(inline, b.Value)}
+        if isinstance(block, b.Prediction):
+            for number in sorted(quoted & answered):
+                problem = f"the prediction quotes {number}, which an answer above it gives away"
+                yield Finding(block.line, problem, "Ask without that number.")
+        elif block.kind == "answer":
+            answered |= quoted
+
+
+def _twice(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
+    """Headings that a link could mean either of."""
+    seen: dict[str, b.Heading] = {}
+    for block in b.walk_blocks(blocks):
+        if isinstance(block, b.Heading):
+            if (name := slug(block)) in seen:
+                problem = f"the heading on line {seen[name].line} has the anchor #{name}, too"
+                yield Finding(block.line, problem, "Give each heading words of its own.")
+            seen.setdefault(name, block)
+
+
+def _unknown_figures(blocks: tuple[b.Block, ...], figures: Collection[str]) -> Iterator[Finding]:
     for block in b.walk_blocks(blocks):
         if isinstance(block, b.Figure) and block.id not in figures:
-            yield Finding(
-                block.line, f"there is no figure {block.id!r}", "Enter it in course/figures/registry.py."
-            )
-    ids = {"lesson": lessons, "exercise": exercises}
-    for _, inline in b.walk_inlines(blocks):
-        if isinstance(inline, b.Link):
-            kind, _, name = inline.target.partition("#")[0].partition(":")
-            if kind in ids and name not in ids[kind]:
-                yield Finding(inline.line, f"there is no {kind} {name!r}", f"Name a {kind} that exists.")
+            close = difflib.get_close_matches(block.id, figures, n=1)
+            fix = f"Did you mean {close[0]}? " if close else ""
+            fix += "A new one is entered in course/figures/registry.py: CONTRIBUTING.md, Add a figure."
+            yield Finding(block.line, f"there is no figure {block.id}", fix)
+
+
+def _unplaced_sources(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
+    """Sources without an address; what was measured for the course is found in the course."""
+    for block in blocks:
+        for item in block.items if isinstance(block, b.Sources) else ():
+            links = [inline.target for inline in item if isinstance(inline, b.Link)]
+            words = b.plain_text(item)
+            if "measured for this course" not in words and not any(
+                link.startswith("https://") for link in links
+            ):
+                fix = "Link it, https://..., or say that it was measured for this course."
+                yield Finding(block.line, f"the source {words[:40]!r} has no address", fix)
 
 
 def _unread_values(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
@@ -167,7 +205,11 @@ def _unproduced_numbers(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
     """
     given = {value for block in b.walk_blocks(blocks) for value in _constants(block)}
     for block, inline in b.walk_inlines(_without_code_spans(blocks)):
-        if isinstance(block, b.Sources) or not isinstance(inline, b.Text):
+        if (
+            isinstance(block, b.Sources)
+            or not isinstance(inline, b.Text)
+            or _UNREAD_VALUE.search(inline.text)
+        ):
             continue
         for match in _NUMBER.finditer(inline.text):
             number = float(match.group().replace(",", ""))
@@ -382,7 +424,7 @@ def _links(text: str) -> Iterator[tuple[int | None, str]]:
 
 
 def audit_syllabus(catalog: Catalog, findings: Findings) -> None:
-    """Every lesson file is listed and every listed lesson has a file."""
+    """Every listed lesson has a file, and objectives name what there is, once."""
     syllabus = catalog.content.syllabus
     listed = catalog.lesson_ids()
     lines = LineMap(read_text(syllabus))
@@ -395,19 +437,62 @@ def audit_syllabus(catalog: Catalog, findings: Findings) -> None:
                 f"lesson {lesson_id} has no file.",
                 f"Write {lesson_id}.md beside the syllabus, or remove the line.",
             )
-    for path in sorted(catalog.content.lessons.glob("*.md")):
-        if path.stem not in listed:
-            findings.add(
-                path,
-                None,
-                "syllabus",
-                "the syllabus does not list this lesson.",
-                f'Add "{path.stem}" to `lessons` in {syllabus.name}.',
-            )
+    known = {
+        "lessons": listed,
+        "exercises": catalog.exercise_ids(),
+        "quiz": sorted(path.stem for path in catalog.content.quiz.glob("*.toml")),
+    }
+    named: set[tuple[str, str]] = set()
+    for index, objective in enumerate(catalog.syllabus.objective):
+        for kind, ids in known.items():
+            for place, name in enumerate(getattr(objective, kind)):
+                line = lines.line(("objective", index, kind, place))
+                if name not in ids:
+                    fix = f"Known: {', '.join(ids)}."
+                    findings.add(syllabus, line, "syllabus", f"there is no {name} among the {kind}.", fix)
+                elif (kind, name) in named:
+                    problem = f"{name} belongs to an objective above already."
+                    findings.add(syllabus, line, "syllabus", problem, "Leave it in one of the two.")
+                named.add((kind, name))
 
 
-def audit_lesson(catalog: Catalog, lesson_id: str, findings: Findings, links: LinkChecker) -> None:
-    """One lesson: its head, its text and its links."""
+def audit_objective(catalog: Catalog, kind: str, name: str, findings: Findings) -> None:
+    """Something belongs to one of the course's objectives, if it has any: the overview goes by them.
+
+    Args:
+        kind: the key of an objective: "lessons", "exercises" or "quiz".
+    """
+    objectives = catalog.syllabus.objective
+    if objectives and not any(name in getattr(objective, kind) for objective in objectives):
+        syllabus = catalog.content.syllabus
+        what = {"lessons": "lesson", "exercises": "exercise", "quiz": "question"}[kind]
+        findings.add(
+            syllabus,
+            LineMap(read_text(syllabus)).line(("objective",)),
+            "syllabus",
+            f"{what} {name} belongs to no objective, so `course` does not show it.",
+            f'Add "{name}" to `{kind}` of an [[objective]].',
+        )
+
+
+def audit_listed(catalog: Catalog, lesson_id: str, findings: Findings) -> None:
+    """A lesson has a place in the syllabus."""
+    if lesson_id in catalog.lesson_ids():
+        audit_objective(catalog, "lessons", lesson_id, findings)
+        return
+    path = catalog.content.lessons / f"{lesson_id}.md"
+    fix = f'Add "{lesson_id}" to `lessons` in {catalog.content.syllabus.name}.'
+    findings.add(path, None, "syllabus", "the syllabus does not list this lesson.", fix)
+
+
+def audit_lesson(
+    catalog: Catalog, lesson_id: str, findings: Findings, links: LinkChecker, refused: Refused | None = None
+) -> None:
+    """One lesson: its head, its text, its links and its commands.
+
+    Args:
+        refused: gives those of some commands that fail, by their place, and what each says.
+    """
     path = catalog.content.lessons / f"{lesson_id}.md"
     try:
         LessonId(lesson_id)
@@ -415,7 +500,20 @@ def audit_lesson(catalog: Catalog, lesson_id: str, findings: Findings, links: Li
         _audit_head(catalog, path, lesson, findings)
         blocks = read_blocks(path)
         links.check_lesson(path, blocks)
-        _audit_figures(path, blocks, findings)
+        whole = bool(catalog.syllabus.objective)
+        if whole and len(catalog.warm_ups(lesson_id)) < LEAST_WARM_UPS and lesson_id in catalog.lesson_ids():
+            problem = f"a lesson has at least {LEAST_WARM_UPS} warm-ups, and {lesson_id} has fewer."
+            fix = f"Write one: course author new warmup ID --lesson {lesson_id}"
+            findings.add(path, None, "lesson", problem, fix)
+        for one in rules_broken(blocks, figures=figure_ids(), whole=whole):
+            findings.add(path, one.line or None, "lesson", f"{one.problem}.", one.fix)
+        if refused is not None:
+            lists = [block for block in walk_blocks(blocks) if isinstance(block, b.CommandList)]
+            commands = [(one.line + n, it.command) for one in lists for n, it in enumerate(one.commands, 1)]
+            for place, said in refused([command for _, command in commands]).items() if commands else ():
+                line, command = commands[place]
+                problem = f"`{command}` fails in a fresh workspace: {said}"
+                findings.add(path, line, "lesson", problem, "Give a command that works there.")
         _audit_numbers(path, findings)
     except UsageError as error:
         findings.add(path, None, "content", error.message, error.help)
@@ -447,18 +545,6 @@ def _audit_head(catalog: Catalog, path: Path, lesson: Lesson, findings: Findings
             )
 
 
-def _audit_figures(path: Path, blocks: tuple[Block, ...], findings: Findings) -> None:
-    for block in walk_blocks(blocks):
-        if isinstance(block, Figure) and block.id not in figure_ids():
-            findings.add(
-                path,
-                block.line,
-                "lesson",
-                f"there is no figure {block.id}.",
-                f"Known: {', '.join(figure_ids())}.",
-            )
-
-
 def _audit_numbers(path: Path, findings: Findings) -> None:
     """Recorded output and quoted numbers agree with the cells."""
     run = run_lesson(path)
@@ -480,3 +566,51 @@ def _audit_numbers(path: Path, findings: Findings) -> None:
                 f"the text says {quoted.value.text}, and {quoted.value.expression} gives {quoted.computed}.",
                 "Correct the text, or the code if the text is right.",
             )
+
+
+def audit_figures(catalog: Catalog, lessons: Collection[str] | None, findings: Findings) -> None:
+    """The figures of some lessons, where the pictures of the course's figures are kept: in a checkout.
+
+    Args:
+        lessons: None for all, and for the figures that no lesson shows.
+    """
+    from course.figures.looks import faults
+
+    kept = catalog.content.root / "tests" / "fixtures" / "golden"
+    if not kept.is_dir():
+        return
+    shown: set[str] = set()
+    try:
+        for lesson_id in catalog.lesson_ids() if lessons is None else lessons:
+            blocks = read_blocks(catalog.content.lessons / f"{lesson_id}.md")
+            shown |= {block.id for block in walk_blocks(blocks) if isinstance(block, Figure)}
+    except ContentError:
+        return  # reported where the lesson is read
+    if lessons is None:
+        _audit_registry(findings)
+    for figure_id in figure_ids():
+        if lessons is None or figure_id in shown:
+            for fault in faults(figure_id, kept):
+                findings.add(fault.file, fault.line, "figure", fault.problem, fault.fix)
+        # `course sim run --plot` shows those of the simulations.
+        if lessons is None and figure_id not in shown and not figure_id.startswith("sim-"):
+            findings.add(
+                Path(registry.__file__),
+                None,
+                "figure",
+                f"no lesson shows figure {figure_id}.",
+                f"Show it, ![...](figure:{figure_id}), or take it out.",
+            )
+
+
+def _audit_registry(findings: Findings) -> None:
+    """No id of a figure is entered twice: Python takes the last one and says nothing."""
+    path = Path(registry.__file__)
+    for node in ast.walk(ast.parse(read_text(path))):
+        keys = (
+            [key for key in node.keys if isinstance(key, ast.Constant)] if isinstance(node, ast.Dict) else []
+        )
+        for index, key in enumerate(keys):
+            if key.value in [earlier.value for earlier in keys[:index]]:
+                problem = f"figure {key.value!r} is entered twice."
+                findings.add(path, key.lineno, "figure", problem, "Give each figure an id of its own.")

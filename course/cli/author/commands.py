@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Annotated
@@ -16,6 +17,7 @@ from course.authoring.exercises.mutants import MutantOutcome, run_mutants
 from course.authoring.packing import write_pack
 from course.authoring.report import AuditProblem, AuditReport
 from course.catalog.load import Catalog
+from course.catalog.locate import ENVIRONMENT_VARIABLE
 from course.catalog.models import CourseRef, Exercise
 from course.cli.author.pictures import pictures
 from course.cli.author.replies import (
@@ -28,12 +30,15 @@ from course.cli.author.replies import (
     CoverageRow,
     MutantRow,
 )
+from course.cli.author.trying import refused
+from course.cli.frame import here
 from course.cli.frame.completion import exercise_ids, lesson_ids
 from course.cli.frame.console import Console, current, meter
-from course.cli.frame.here import load_catalog
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import filled
 from course.errors import ContentError, UsageError
+from course.printable import counted
+from course.progress.workspace import write_atomically
 from course.sandbox.scene.loading import scene_ids
 from course.scoring.verdict import in_points
 from course.simulations.registry import SIMULATIONS
@@ -57,7 +62,7 @@ def coverage(
     table, page = document.value, None
     if write and not problems:
         page = written_to(catalog)
-        page.write_text(as_markdown(table), encoding="utf-8")
+        write_atomically(page, as_markdown(table).encode())
     _show_coverage(console, table, problems)
     if page:
         console.note(f"Wrote {shown(page, catalog)}.")
@@ -120,15 +125,29 @@ def is_command(words: tuple[str, ...]) -> bool:
     return all(word in (*SIMULATIONS, "--all") for word in words[2:])
 
 
+def load_catalog() -> Catalog:
+    """The course in use, which is the one whose checkout one stands in.
+
+    Raises:
+        UsageError: one stands in another checkout than that of this program, which would be written to.
+    """
+    catalog, folder = here.load_catalog(), Path.cwd()
+    for above in (folder, *folder.parents):
+        if (above / "course" / "authoring").is_dir() and (above / "exercises").is_dir():
+            if above.resolve() != catalog.content.root.resolve() and ENVIRONMENT_VARIABLE not in os.environ:
+                raise UsageError(
+                    f"This program belongs to {catalog.content.root}, and you are in another one, {above}.",
+                    help=f"In {above}, type `python -m course` instead of `course`: that is its own program.",
+                    code="other_checkout",
+                )
+            break
+    return catalog
+
+
 def shown(path: Path, catalog: Catalog) -> str:
     """A path relative to the checkout."""
     root = catalog.content.root
     return path.relative_to(root).as_posix() if path.is_relative_to(root) else str(path)
-
-
-def counted(number: int, word: str) -> str:
-    """A number and its noun, in the plural where it needs one."""
-    return f"{number} {word}" if number == 1 else f"{number} {word}s"
 
 
 app = group(COMMANDS["author"].summary)
@@ -304,7 +323,7 @@ def check(
 
     console, catalog = current(), load_catalog()
     with meter(console) as on_progress:
-        report = audit(catalog, name, on_progress=on_progress)
+        report = audit(catalog, name, on_progress=on_progress, refused=refused, is_command=is_command)
     _show_report(console, catalog, report)
     _emit_report(console, catalog, report)
     return 0 if report.ok else 1
@@ -374,15 +393,15 @@ def build(
 ) -> int:
     """Generate the files that follow from an exercise's sources.
 
-    The points and counts in `exercise.toml`, which come from the checks' markers, and the time that its slow
-    public checks take, which decides when a loop counts as hung; `hypotheses.json`, the answers of every
-    known wrong program to the exercise's questions, as fingerprints, so that a diagnosis works at home, where
-    there are no solutions; and docs/graders.md. `course author check` refuses files that are out of date.
-    With --confusion each wrong program is graded, at home and as in a grading run, and its diagnoses are kept
-    beside the solution for docs/graders.md.
+    The points and counts in `exercise.toml`, which come from the checks' markers; `exercises/times.json`, how
+    long slow public checks take, which decides when a loop counts as hung; `hypotheses.json`, the answers of
+    every known wrong program to the exercise's questions, as fingerprints, so that a diagnosis works at home,
+    where there are no solutions; and docs/graders.md. `course author check` refuses files that are out of
+    date. With --confusion each wrong program is graded, at home and as in a grading run, and its diagnoses
+    are kept beside the solution for docs/graders.md.
     """
     from course.authoring.exercises import diagnosis as desk
-    from course.authoring.exercises.files import write_points, write_slow
+    from course.authoring.exercises.files import write_points, write_times
     from course.authoring.exercises.proofs import write_page
     from course.cli.author.replies import AuthorBuild
     from course.scoring.explain.story import read_table
@@ -398,8 +417,8 @@ def build(
         except ContentError:
             _say_blanks(catalog, exercise)
             raise
-    read_table.cache_clear()  # it was just written, and what is slow is told with it
-    made += [write_slow(catalog, exercise) for exercise in chosen]
+    read_table.cache_clear()  # it was just written, and slow checks are measured with it
+    made.append(write_times(catalog, chosen))
     written = [shown(path, catalog) for path in made if path]
     if confusion:
         from course.authoring.exercises.diagnosis import confusion_of, write_confusion
@@ -428,7 +447,7 @@ def _say_blanks(catalog: Catalog, exercise: Exercise) -> None:
     if find_blanks(catalog, exercise.id, findings):
         first = findings.problems[0]
         raise UsageError(
-            f"{exercise.id} has {len(findings.problems)} blanks to fill in first, such as"
+            f"{exercise.id} has {counted(len(findings.problems), 'blank')} to fill in first, such as"
             f" {first.file}:{first.line}.",
             help=f"`course author check {exercise.id}` lists them.",
             code="unfinished_content",

@@ -1,7 +1,7 @@
-"""``course author pictures``: the README's pictures, made from the program's real output.
+"""``course author pictures``: the README's pictures, from the program's real output, and how figures look.
 
-A file beside them has the digest of each picture's source. A test computes the digests again, which takes
-seconds, and names each picture that is out of date.
+A file beside the README's has the digest of each picture's source. A test computes the digests again, which
+takes seconds, and names each picture that is out of date.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import typer
 from course.cli.author.replies import AuthorPictures
 from course.cli.frame.console import current
 from course.cli.frame.here import load_catalog
-from course.errors import InternalError
+from course.errors import InternalError, UsageError
 from course.progress.workspace import write_atomically
 
 #: The digests, beside the pictures.
@@ -33,15 +33,24 @@ _EVERY, _DECIMALS = 0.25, 3
 
 
 def pictures(
+    figure: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[FIGURE]...", help="Keep how these figures of lessons look now, instead."),
+    ] = None,
     check: Annotated[
         bool, typer.Option("--check", help="Write nothing; exit code 1 if a picture is stale.")
     ] = False,
 ) -> int:
-    """Make the README's pictures.
+    """Make the README's pictures, or keep how figures look.
 
-    From the output of `course demo` and a run of the sandbox, into docs/pictures.
+    The README's are made from the output of `course demo` and a run of the sandbox, into docs/pictures. Of a
+    figure that is named, its picture without letters and its words are kept in tests/fixtures/golden, where
+    `course author check` compares it.
     """
-    console, folder = current(), load_catalog().content.root / "docs" / "pictures"
+    console, root = current(), load_catalog().content.root
+    if figure:
+        return _keep(figure, root / "tests" / "fixtures" / "golden")
+    folder = root / "docs" / "pictures"
     known = _known(folder)
     stale = []
     for name, (source, picture) in PICTURES.items():
@@ -62,6 +71,23 @@ def pictures(
     ok = not (check and stale)
     console.emit(AuthorPictures(ok=ok, exit_code=0 if ok else 1, stale=tuple(stale)))
     return 0 if ok else 1
+
+
+def _keep(figures: list[str], folder: Path) -> int:
+    from course.figures.looks import picture_and_words
+
+    if not folder.is_dir():
+        raise UsageError(
+            f"There is no {folder}.", help="Figures belong to a checkout of the course: run this there."
+        )
+    console = current()
+    kept = {name: picture_and_words(name) for name in figures}
+    for name, (picture, words) in kept.items():
+        write_atomically(folder / f"{name}.png", picture)  # under version control: no copy
+        write_atomically(folder / f"{name}.txt", words)
+        console.line(f"Wrote {folder / name}.png and .txt")
+    console.emit(AuthorPictures(ok=True, exit_code=0, stale=tuple(kept)))
+    return 0
 
 
 def _known(folder: Path) -> dict[str, str]:

@@ -50,7 +50,7 @@ from course.grading.results.merge import merged
 from course.grading.results.roster import Roster, read_roster
 from course.grading.running.rerun import Regraded
 from course.grading.similar import Similar, page
-from course.printable import one_line
+from course.printable import counted, one_line
 from course.scoring.verdict import format_points, in_points
 
 _SHOWN = 20
@@ -409,14 +409,18 @@ def _show_similar(console: Console, found: Similar) -> None:
         words = f"{group.exercise}, weakest pair {group.share:.0%}: {names}"
         console.item(f"group of {len(group.members)}", words)
     if found.groups[20:]:
-        console.line(f"and {len(found.groups) - 20} more groups", indent=2)
+        console.line(f"and {counted(len(found.groups) - 20, 'more group')}", indent=2)
     for pair in found.pairs[:20]:
         both = f"{pair.first.label} and {pair.second.label}"
-        console.item(f"{pair.share:.0%}", f"{both}, {pair.exercise}, {pair.lines} lines alike", width=5)
+        console.item(
+            f"{pair.share:.0%}", f"{both}, {pair.exercise}, {counted(pair.lines, 'line')} alike", width=5
+        )
     if len(found.pairs) > 20:
-        console.line(f"and {len(found.pairs) - 20} more pairs", indent=2)
-    console.line((f"{len(found.pairs)} pairs among {found.compared} submissions.", "bold"))
+        console.line(f"and {counted(len(found.pairs) - 20, 'more pair')}", indent=2)
+    console.line(
+        (f"{counted(len(found.pairs), 'pair')} among {counted(found.compared, 'submission')}.", "bold")
+    )
     if found.left_out:
-        console.note(f"{found.left_out} more pairs are alike and are not listed; raise --share.")
+        console.note(f"{counted(found.left_out, 'more pair')} not listed; raise --share.")
     if found.unreadable:
         console.note(f"{len(found.unreadable)} not compared: not Python, or over 200 kB.")

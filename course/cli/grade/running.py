@@ -416,9 +416,7 @@ def _show_result(
         at = found.override.at
         console.item("override", f"{found.override.reason} (set {at}; {checks_gave(found)})", width=10)
     if found.late is not None:
-        cost = (
-            f"{format_points(found.penalty)} points off {score_of(found)}" if found.penalty else "no penalty"
-        )
+        cost = f"{in_points(found.penalty)} off {score_of(found)}" if found.penalty else "no penalty"
         console.item("late", f"{in_days(found.late)}, {cost}", width=10)
     if result.number:
         level = f" at {verdict.isolation}" if verdict.isolation else ""

@@ -11,7 +11,7 @@ from course.errors import CourseError
 from course.handed_in.attempts import Attempt
 from course.progress.history import fingerprint
 from course.progress.standing import Standing
-from course.scoring.verdict import format_points
+from course.scoring.verdict import format_points, in_points
 
 
 def next_step(here: Here, made: Attempt) -> str:
@@ -113,8 +113,8 @@ def _in_progress(catalog: Catalog, standing: Standing) -> str:
         if not standing.is_begun(exercise.id) or standing.is_complete(exercise.id):
             continue
         last, graded = standing.history(exercise.id).last, standing.history(exercise.id).last_graded
-        points = graded and f"{format_points(graded.score)} of {format_points(graded.max_score)}"
-        state = f"in progress, {points} points" if points else "started, not checked yet"
+        points = graded and f"{format_points(graded.score)} of {in_points(graded.max_score)}"
+        state = f"in progress, {points}" if points else "started, not checked yet"
         go_on = f"{exercise.id}: {state}. To go on: course check {exercise.id}"
         begun.append((last.at.isoformat() if last else "", go_on))
     return max(begun, key=lambda one: one[0])[1] if begun else ""

@@ -22,6 +22,7 @@ from course.cli.frame.here import Here
 from course.cli.reading.lesson import Reader, paginate
 from course.cli.reading.screen.running import Bench, write_new
 from course.errors import CourseError
+from course.printable import counted
 from course.progress.store import Event
 from course.reading.cells import CellOutput
 from course.reading.parts import Cell, Question, read_script
@@ -112,7 +113,7 @@ class LineReader:
                 self._bench.prepare()  # so that the first run need not wait for its process
             return
         self._console.blank()
-        what = f"Warm-up, {task.minutes} minutes" if task.is_warm_up else "Exercise"
+        what = f"Warm-up, {counted(task.minutes, 'minute')}" if task.is_warm_up else "Exercise"
         self._say(f"{what}: {task.title} ({task.id})")
         self._say(task.summary)
 

@@ -31,6 +31,7 @@ from course.cli.work.changing import put
 from course.cli.work.checking import check as check_work
 from course.cli.work.replies import Start
 from course.errors import CourseError, NotFoundError, UsageError
+from course.printable import counted
 from course.progress.standing import Standing
 from course.reading.parts import Section, read_script
 
@@ -337,13 +338,14 @@ def _begin(console: Console, here: Here, chosen: Exercise) -> int:
             width=console.width,
             wraps=console.wraps,
         )
-        console.heading(chosen.title, f"{chosen.minutes} minutes")
+        console.heading(chosen.title, counted(chosen.minutes, "minute"))
         reader.show_task(chosen)
         console.blank()
     files = put(console, here, chosen)
     step = f"course check {chosen.id}"
     console.note(
-        f"Write in {chosen.place}/{chosen.module} with your own editor, about {chosen.minutes} minutes."
+        f"Write in {chosen.place}/{chosen.module} with your own editor, "
+        f"about {counted(chosen.minutes, 'minute')}."
     )
     if not console.led:
         console.note(f"Check it:          {step}")

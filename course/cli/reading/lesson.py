@@ -28,6 +28,7 @@ from course.catalog.models import Exercise, Lesson
 from course.cli.frame.pictures import Code, picture, protocol_of
 from course.errors import NotFoundError
 from course.figures.registry import build, save
+from course.printable import counted
 from course.reading.parts import Section, read_script
 
 # ---
@@ -111,7 +112,7 @@ class PlainPrinter:
         """Title, summary, objectives."""
         lesson = self._lesson
         self._say(f"Lesson: {lesson.title}")
-        self._say(f"Reading time: about {lesson.minutes} minutes")
+        self._say(f"Reading time: about {counted(lesson.minutes, 'minute')}")
         self._say(f"Summary: {lesson.summary}")
         for number, objective in enumerate(lesson.objectives, start=1):
             self._say(f"Objective {number}: {objective}")
@@ -188,7 +189,7 @@ class PlainPrinter:
 
     def _table(self, table: b.Table) -> None:
         names = [self._words(cell) for cell in table.header]
-        self._say(f"Table, {len(table.rows)} rows of {', '.join(names)}")
+        self._say(f"Table, {counted(len(table.rows), 'row')} of {', '.join(names)}")
         for number, row in enumerate(table.rows, start=1):
             self._say(f"Row {number}")
             for name, cell in zip(names, row, strict=True):
@@ -309,7 +310,7 @@ class FancyPrinter:
         """Each with the empty lines above it."""
         lesson = self._lesson
         yield Text(lesson.title, style="bold"), 0
-        yield Text(f"{before_minutes}about {lesson.minutes} minutes", style="dim"), 0
+        yield Text(f"{before_minutes}about {counted(lesson.minutes, 'minute')}", style="dim"), 0
         yield Text(lesson.summary), 1
         yield Text("After this lesson you can", style="bold"), 1
         yield self._bullets([Text(objective) for objective in lesson.objectives]), 0

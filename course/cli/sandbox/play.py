@@ -21,7 +21,15 @@ from course.errors import CourseError, MissingCapabilityError, UsageError
 from course.extras import require
 from course.sandbox.runs.recording import Film, Recording, ffmpeg
 from course.sandbox.runs.running import Run
-from course.sandbox.scene.loading import NO_GUESS, Chosen, Comparison, choose, guess_of, question
+from course.sandbox.scene.loading import (
+    NO_GUESS,
+    Chosen,
+    Comparison,
+    choose,
+    guess_of,
+    question,
+    unwritten,
+)
 from course.sandbox.world.accounts import Event, Receipt
 from course.sandbox.world.world import Snapshot, World
 
@@ -254,6 +262,9 @@ def play(console: Console, options: PlayOptions) -> int:
     _check(options)
     targets = _Targets.of(options)
     picked = chosen(options.scene, tuple(options.settings or ()))
+    if lines := unwritten(picked.path):
+        left = f"and {len(lines) - 1} more below are" if len(lines) > 1 else "is"
+        console.note(f"{picked.path}:{lines[0]}: this line {left} still to be written.")
     if options.web:
         require("web")
     seen = options.web or (not options.unseen and console.interactive and console.fancy)

@@ -30,6 +30,7 @@ from course.cli.work.verdict import (
 from course.errors import CourseError, UsageError
 from course.handed_in import attempts
 from course.handed_in.attempts import Attempt
+from course.printable import counted
 from course.scoring.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -241,7 +242,9 @@ def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int
             results.append(ErrorReply(schema="course.check/1", exit_code=error.exit_code, error=body))
     worst = max(result.exit_code for result in results)
     complete = sum(result.ok for result in results)
-    console.line((f"{complete} of {len(results)} exercises pass every public check.", "bold"))
+    pass_ = "passes" if complete == 1 else "pass"
+    said = f"{complete} of {counted(len(results), 'exercise')} {pass_} every public check."
+    console.line((said, "bold"))
     for warning in dict.fromkeys(here.warnings):
         console.warn(warning)
     console.emit(CheckAll(ok=worst == 0, exit_code=worst, results=tuple(results)))

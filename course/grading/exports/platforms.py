@@ -30,7 +30,7 @@ from course.grading.exports.selection import (
 )
 from course.grading.results.effective import Effective, Results
 from course.grading.results.roster import Column, Person, in_english, moodle_key, read_text
-from course.printable import one_line
+from course.printable import counted, one_line
 from course.scoring.verdict import CheckResult, Problem, Status, Visibility, finite, in_points
 
 _CANVAS = Needs(
@@ -241,7 +241,7 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
     written = selection.written
     written.paths.append(path)
     written.rows = filled
-    written.notes.append(f"{len(rows) - filled} rows of the worksheet are unchanged.")
+    written.notes.append(f"{counted(len(rows) - filled, 'row')} of the worksheet left unchanged.")
     if kept:
         written.kept = kept
         rows_have = "1 row has" if len(kept) == 1 else f"{len(kept)} rows have"
@@ -305,7 +305,7 @@ def _feedback(effective: Effective) -> str:
     """A result for its student, on one line; of a hidden check only that it failed."""
     verdict = effective.verdict
     problem = problem_for_student(verdict)
-    told = [f"{number(effective.score)} of {number(effective.max_score)} points."]
+    told = [f"{number(effective.score)} of {in_points(effective.max_score)}."]
     if effective.penalty:
         told.append(f"Lateness cost {in_points(effective.penalty)}.")
     if effective.override is not None:
@@ -314,7 +314,7 @@ def _feedback(effective: Effective) -> str:
         told += [problem.message, problem.help]
     elif verdict.checks:
         passed = sum(check.status.value == "pass" for check in verdict.checks)
-        told.append(f"{passed} of {len(verdict.checks)} checks pass.")
+        told.append(f"{passed} of {counted(len(verdict.checks), 'check')} pass{'es' * (passed == 1)}.")
     return for_moodle(safe_cell(" ".join(part for part in told if part)))
 
 

@@ -17,6 +17,7 @@ import msgspec
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.catalog.questions import read_questions
+from course.catalog.reading import refuse_blanks
 from course.errors import ContentError, UngradableError, UsageError
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import GradedExercise, Key, Result, SubmittedAt
@@ -420,12 +421,18 @@ def _bank(catalog: Catalog) -> Bank:
     try:
         return Bank(read_questions(catalog.content.quiz))
     except ContentError as error:
-        raise UsageError(
-            f"The quiz cannot be graded: {error.message}",
-            help="Finish it (`course author check` says what is left), or name what to grade without "
-            "the quiz with --exercise.",
-            code="unfinished_content",
-        ) from None
+        raise _unfinished("The quiz", error, catalog, "the quiz") from None
+
+
+def _unfinished(what: str, error: ContentError, catalog: Catalog, without: str) -> UsageError:
+    """A file of the course that nothing can be graded with, by the name that its author knows."""
+    where = catalog.content.shown(error.file) + (f":{error.line}" if error.line else "")
+    return UsageError(
+        f"{what} cannot be graded: {where}: {error.problem}",
+        help="Finish it (`course author check` says what is left), or name what to grade without "
+        f"{without} with --exercise.",
+        code="unfinished_content",
+    )
 
 
 def _as_json(record: object) -> bytes:
@@ -446,9 +453,22 @@ def graded_exercises(exercises: Sequence[Exercise], bank: Bank | None) -> list[G
 
 
 def _exercises(catalog: Catalog, wanted: tuple[str, ...]) -> tuple[Exercise, ...]:
-    if not wanted:
-        return catalog.exercises()
-    return tuple(catalog.exercise(name) for name in dict.fromkeys(wanted) if name != QUIZ)
+    """The exercises to grade.
+
+    Raises:
+        UsageError: one of them is unfinished, which is no student's fault; nothing was graded.
+    """
+    chosen = catalog.exercises() if not wanted else ()
+    chosen += tuple(catalog.exercise(name) for name in dict.fromkeys(wanted) if name != QUIZ)
+    for exercise in chosen:
+        hidden = catalog.content.instructors()[1] / exercise.place / "checks.py"
+        try:
+            for path in (exercise.checks_path.with_name("exercise.toml"), exercise.checks_path, hidden):
+                if path.is_file():
+                    refuse_blanks(path)
+        except ContentError as error:
+            raise _unfinished(f"Exercise {exercise.id}", error, catalog, "it") from None
+    return chosen
 
 
 def _members(folder: Path, options: RunOptions) -> ClassList:

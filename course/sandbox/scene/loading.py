@@ -10,13 +10,14 @@ from typing import Any
 
 import msgspec
 
-from course.catalog.reading import Document, read_document
+from course.catalog.locate import content
+from course.catalog.reading import BLANK, Document, read_document, read_text
 from course.errors import ContentError, NotFoundError, UsageError
 from course.sandbox.scene.expression import evaluate, fill, used
 from course.sandbox.scene.model import Prediction, Scene, layout
 from course.sandbox.scene.rules import SETTINGS, check_scene, checked, number
 
-#: The course's own scenes.
+#: The program's own scenes.
 FOLDER = Path(__file__).parents[1] / "scenes"
 
 
@@ -40,7 +41,19 @@ class Chosen(msgspec.Struct, frozen=True, kw_only=True):
 
 def scene_ids() -> tuple[str, ...]:
     """Ids of the course's scenes, sorted; lists a folder and opens no file."""
-    return tuple(sorted(path.stem for path in FOLDER.glob("*.toml")))
+    return tuple(sorted({path.stem for folder in scene_folders() for path in folder.glob("*.toml")}))
+
+
+def scene_path(name: str) -> Path:
+    """The file of one of the course's scenes."""
+    paths = [folder / f"{name}.toml" for folder in scene_folders()]
+    return next((path for path in paths if path.is_file()), paths[0])
+
+
+def scene_folders() -> tuple[Path, ...]:
+    """The program's own scenes, and those that a course adds."""
+    more = content().scenes
+    return (FOLDER,) if more is None else (FOLDER, more)
 
 
 def scenes() -> tuple[Scene, ...]:
@@ -49,7 +62,7 @@ def scenes() -> tuple[Scene, ...]:
     Raises:
         ContentError: one is wrong.
     """
-    found = (read_scene(FOLDER / f"{name}.toml") for name in scene_ids())
+    found = (read_scene(scene_path(name)) for name in scene_ids())
     return tuple(sorted(found, key=lambda scene: (scene.order, scene.id)))
 
 
@@ -82,7 +95,7 @@ def choose(name: str, settings: Mapping[str, object] | None = None) -> Chosen:
     if name.isdecimal() and 1 <= int(name) <= len(scene_ids()):
         name = scenes()[int(name) - 1].id
     own = name.endswith(".toml") or "/" in name
-    path = Path(name).expanduser() if own else FOLDER / f"{name}.toml"
+    path = Path(name).expanduser() if own else scene_path(name)
     if own:
         scene = _read_own(path)
     elif name in scene_ids():
@@ -130,7 +143,7 @@ def values_of(chosen: Chosen) -> dict[str, float]:
 def unchanged(scene: Scene) -> Chosen:
     """One of the course's scenes, unchanged."""
     ready, parameters, _ = _put_in(scene, {})
-    return Chosen(scene=ready, parameters=parameters, settings={}, path=FOLDER / f"{scene.id}.toml")
+    return Chosen(scene=ready, parameters=parameters, settings={}, path=scene_path(scene.id))
 
 
 def with_settings(chosen: Chosen, settings: Mapping[str, float]) -> Chosen:
@@ -148,8 +161,15 @@ def question(chosen: Chosen) -> str:
     return "" if asked is None else fill(asked.question, values_of(chosen))
 
 
+def unwritten(path: Path) -> tuple[int, ...]:
+    """The lines of a scene that its author still has to write; none where there is no file."""
+    lines = read_text(path).split("\n") if path.is_file() else ()
+    return tuple(number for number, line in enumerate(lines, start=1) if BLANK.search(line))
+
+
 def _read(path: Path) -> Document[Scene]:
-    document = read_document(path, Scene)
+    # A scene runs while its words are still to be written, and nobody is to read an author's marks.
+    document = read_document(path, Scene, text=BLANK.sub("(still to be written)", read_text(path)))
     check_scene(document)
     _check_formulas(document)
     return document

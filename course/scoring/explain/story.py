@@ -299,10 +299,10 @@ def read_table(path: Path) -> Table:
         ) from None
 
 
-def write_table(path: Path, table: Table) -> None:
-    """Write the table, one row a line."""
+def table_bytes(table: Table) -> bytes:
+    """The table as it is written, one row a line."""
     text = msgspec.json.format(msgspec.json.encode(table), indent=0).decode()
-    path.write_text(text.replace("\n", "").replace("]],[[", "]],\n[[") + "\n", encoding="utf-8")
+    return (text.replace("\n", "").replace("]],[[", "]],\n[[") + "\n").encode()
 
 
 def matching(table: Table, task: str, sums: Sequence[float]) -> tuple[Row, ...]:

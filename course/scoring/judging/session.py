@@ -27,7 +27,7 @@ from course.isolation.probe import open_sandbox
 from course.isolation.session import LoadRefusedError
 from course.scoring import versions
 from course.scoring.checks.collected import Check, CollectedChecks, companion, companion_path, not_importable
-from course.scoring.failures import OURS, CheckFailed, Report, broke_at, finding_for, finding_of
+from course.scoring.failures import ON_THE_MODEL, OURS, CheckFailed, Report, broke_at, finding_for, finding_of
 from course.scoring.judging.explaining import Again, Explainer
 from course.scoring.judging.outcomes import (
     found,
@@ -288,7 +288,7 @@ class GradingSession:
         where = broke_at(outcome)
         proven = self._passes_the_model(check)
         if proven is False:
-            message = f"The check itself failed, on the model solution too: {where}"
+            message = ON_THE_MODEL + where
             return result(check, Status.GRADER_ERROR, message=message, duration_ms=duration_ms)
         finding = unjudged(remote.returned, proven=bool(proven))
         return found(check, Status.FAIL, finding, duration_ms, traceback=OURS + where, stdout=printed)

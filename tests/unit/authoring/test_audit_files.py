@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import re
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
+import msgspec
 import pytest
 
 from course.authoring.audit import audit
 from course.authoring.exercises.proofs import write_page
 from course.authoring.report import AuditProblem, AuditReport
 from course.catalog.load import Catalog
-from course.errors import MissingCapabilityError, NotFoundError
+from course.errors import ContentError, MissingCapabilityError, NotFoundError
+from course.scoring.verdict import Verdict
 
 TOML = "exercises/doubling/exercise.toml"
 README = "exercises/doubling/README.md"
@@ -95,8 +98,26 @@ def test_the_miniature_course_is_right(run: Callable[..., AuditReport]) -> None:
         (TOML, "points = 4", "points = 7", "points = 7", "points", "come to 4, and 7 is"),
         (TOML, "hidden_checks = 2", "hidden_checks = 3", "_checks", "points", "come to 2, and 3 is"),
         (TOML, "hidden_points = 5", "hidden_points = 4", "_points", "points", "come to 5, and 4 is"),
-        (TOML, "order = 1", "order = 1\nslow = { no = 0.2 }", None, "slow", "no public check no"),
+        (TOML, "order = 1", "order = 1\nslow = { no = 0.2 }", "slow = {", "slow", "kept in times.json"),
         (TOML, "order = 1", "order = 2", None, "exercise", "order 2 too"),
+        (
+            LESSON,
+            '["halving"]',
+            '["halving", "halving"]',
+            "exercises = ",
+            "content",
+            "halving is listed twice",
+        ),
+        (
+            LESSON,
+            "Half of twice",
+            "## The way back\n\nHalf of twice",
+            None,
+            "lesson",
+            "has the anchor #the-way",
+        ),
+        (LESSON, "Half of twice", "[3](=1 + 1) of twice", "[3]", "lesson", "does not read as one"),
+        (LESSON, "Half of twice", "> **Predict.** Why?\n\nHalf", "Predict", "lesson", "is not answered"),
         (TOML, "order = 1", "order = one", "order", "content", "not valid TOML"),
         (HINTS, '    "Return x + x.",\n', "", "hints = [", "hints", "has 2 hints, and needs 3"),
         (
@@ -352,3 +373,95 @@ def test_a_student_cannot_audit(mini: Path, folder: str) -> None:
     with pytest.raises(MissingCapabilityError) as caught:
         audit(Catalog())
     assert caught.value.code == "needs_checkout"
+
+
+OBJECTIVE = """
+[[objective]]
+title = "count"
+lessons = ["twice-as-much", "half-as-much"]
+exercises = ["doubling"]
+"""
+
+
+def test_what_belongs_to_no_objective_is_named_where_it_would_be_added(
+    mini: Path, run: Callable[..., AuditReport]
+) -> None:
+    syllabus = mini / SYLLABUS
+    syllabus.write_text(syllabus.read_text() + OBJECTIVE)
+    (problem,) = run("halving").problems
+    assert problem.where == f"{SYLLABUS}:{line_of(syllabus, '[[objective]]')}"
+    assert "exercise halving belongs to no objective" in problem.message
+    syllabus.write_text(
+        syllabus.read_text().replace('["doubling"]', '["doubling", "halving", "halving", "no"]')
+    )
+    found = [p.message for p in run().problems if p.code == "syllabus"]
+    assert found == [
+        "halving belongs to an objective above already.",
+        "there is no no among the exercises.",
+    ]
+
+
+def test_a_course_with_objectives_has_whole_lessons(mini: Path, run: Callable[..., AuditReport]) -> None:
+    syllabus = mini / SYLLABUS
+    syllabus.write_text(syllabus.read_text() + OBJECTIVE)
+    said = [p.message for p in run("half-as-much").problems]
+    assert "the lesson has no prediction." in said
+    assert "a lesson has at least 2 warm-ups, and half-as-much has fewer." in said
+
+
+def test_a_command_of_a_lesson_that_fails_is_named(mini: Path) -> None:
+    lesson = mini / LESSON
+    lesson.write_text(lesson.read_text() + "\n```console\n$ course lessons\n$ course lesson no\n```\n")
+    tried: list[list[str]] = []
+
+    def refused(commands: Sequence[str]) -> dict[int, str]:
+        tried.append([*commands])
+        return {1: "There is no lesson called 'no'."}
+
+    (problem,) = audit(Catalog(), "half-as-much", refused=refused).problems
+    assert tried == [["course lessons", "course lesson no"]]
+    assert problem.where == f"{LESSON}:{line_of(lesson, 'course lesson no')}"
+    assert problem.message == "`course lesson no` fails in a fresh workspace: There is no lesson called 'no'."
+
+
+def test_two_exercises_that_share_a_number_or_a_file_are_named(
+    mini: Path, run: Callable[..., AuditReport]
+) -> None:
+    for name in ("doubling", "halving"):
+        path = mini / f"exercises/{name}/exercise.toml"
+        text = re.sub(r"^number = .*\n", "", path.read_text(), flags=re.MULTILINE)
+        path.write_text(text.replace("order = ", "number = 4\norder = "))
+    (problem,) = run("halving").problems
+    assert problem.message == "exercise doubling has the number 4 too."
+    (mini / "solutions/halving/halving.py").rename(mini / "solutions/halving/doubling.py")
+    (mini / "exercises/halving/halving.py").rename(mini / "exercises/halving/doubling.py")
+    edit(path, 'module = "halving.py"', 'module = "doubling.py"')
+    assert "exercise doubling has the module doubling.py too." in [p.message for p in run("halving").problems]
+
+
+def test_an_exercise_and_a_warm_up_of_one_id_are_refused_by_every_command(mini: Path) -> None:
+    shutil.copytree(mini / "exercises/doubling", mini / "exercises/warm-ups/doubling")
+    with pytest.raises(ContentError, match=r"warm-ups/doubling: an exercise has this id, too"):
+        Catalog().exercise("doubling")
+    assert [p.message for p in audit(Catalog()).problems] == ["an exercise has this id, too."]
+
+
+def test_what_a_handout_is_told_is_declared_and_what_is_declared_is_told(
+    mini: Path, oracle: Any, run: Callable[..., AuditReport]
+) -> None:
+    def told(verdict: Verdict) -> Verdict:
+        checks = tuple(
+            msgspec.structs.replace(check, diagnosis="DOUBLES" if check.id == "double_of_three" else None)
+            for check in verdict.checks
+        )
+        return msgspec.structs.replace(verdict, checks=checks)
+
+    oracle.changes["stub"] = told
+    (problem,) = [p for p in run("doubling").problems if p.code == "stub"]
+    assert problem.where == f"{STUB}:{line_of(mini / STUB, 'def double(')}"
+    assert "the untouched stub is told DOUBLES" in problem.message
+    edit(mini / TOML, 'id = "double"\n', 'id = "double"\nfault = "DOUBLES"\n')
+    assert run("doubling").problems == ()
+    edit(mini / TOML, '"DOUBLES"', '"TRIPLES"')
+    found = [p.message for p in run("doubling").problems]
+    assert "no public check tells the untouched stub TRIPLES." in found

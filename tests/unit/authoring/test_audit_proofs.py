@@ -118,10 +118,12 @@ failing = {"status": Status.FAIL, "points": 0.0}
         ),
         (
             "squares.py",
-            with_check("double_of_three", traceback=f"{OURS}KeyError: 3"),
-            f"{MUTANTS}:8",
-            "mutant",
-            "breaks the diagnosis of check double_of_three: KeyError: 3.",
+            with_check(
+                "double_of_three", traceback=f"{OURS}KeyError: 3 (graders/doubling/checks.py, line 4)"
+            ),
+            "graders/doubling/checks.py:4",
+            "grader",
+            "the diagnosis of check double_of_three breaks on squares.py: KeyError: 3.",
         ),
         (
             "squares.py",

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from course.authoring.exercises.proofs import kill_table
+from course.authoring.scaffold import new_exercise
 from course.catalog.load import Catalog
 from course.cli.frame.app import run
-from course.sandbox.scene.loading import FOLDER
+from course.sandbox.scene.loading import FOLDER, scene_ids
 
 
 def answer(capsys: pytest.CaptureFixture[str], *line: str) -> tuple[int, dict[str, Any]]:
@@ -22,7 +24,8 @@ def answer(capsys: pytest.CaptureFixture[str], *line: str) -> tuple[int, dict[st
 
 def test_a_right_course_exits_with_zero(mini: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["author", "check"]) == 0
-    counts = "2 lessons, 2 exercises, 0 quiz questions, 13 scenes, 6 checks, 22 submissions graded"
+    scenes = len(scene_ids())
+    counts = f"2 lessons, 2 exercises, 0 quiz questions, {scenes} scenes, 6 checks, 22 submissions graded"
     assert f"All is well: {counts}" in capsys.readouterr().out
 
 
@@ -63,6 +66,97 @@ def test_a_scene_whose_text_has_a_formula_without_a_value_is_reported(
     assert (code, body["scenes"], problem["file"]) == (1, ["head-on"], str(tmp_path / "head-on.toml"))
     assert text.split("\n")[problem["line"] - 1].startswith("question = ")
     assert "sped" in problem["message"]
+
+
+def test_a_new_scene_lies_in_its_course_and_is_checked_and_played_there(
+    mini: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, body = answer(capsys, "author", "new", "scene", "falling")
+    assert (code, body["files"]) == (0, ["scenes/falling.toml"])
+    assert not (FOLDER / "falling.toml").exists()
+    code, body = answer(capsys, "author", "check", "falling")
+    assert {(one["file"], one["code"]) for one in body["problems"]} == {("scenes/falling.toml", "blank")}
+    assert run(["sandbox", "play", "falling", "--headless"]) == 0
+    said = capsys.readouterr().out
+    assert "scenes/falling.toml:3: this line and 6 more below are still to be written." in said
+    assert "FILL IN" not in said
+    assert run(["author", "new", "scene", "falling"]) == run(["author", "new", "scene", "head-on"]) == 2
+
+
+def test_a_scene_whose_run_gives_another_number_than_its_theory_is_named(
+    mini: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (mini / "scenes").mkdir()
+    text = (FOLDER / "head-on.toml").read_text("utf-8").replace('id = "head-on"', 'id = "head-off"')
+    wrong = re.sub(r"^theory = .*$", 'theory = "17"', text, flags=re.MULTILINE)
+    (mini / "scenes" / "head-off.toml").write_text(wrong, "utf-8")
+    _, body = answer(capsys, "author", "check", "head-on")
+    (taken,) = body["problems"]
+    assert (taken["file"], taken["message"].split(" has ")[0]) == (
+        str(FOLDER / "head-on.toml"),
+        "scene head-off",
+    )
+    _, body = answer(capsys, "author", "check", "head-off")
+    (problem,) = body["problems"]
+    assert wrong.split("\n")[problem["line"] - 1] == "[prediction]"
+    assert problem["message"] == "theory gives 17 m/s, and the run 2."
+
+
+def test_a_scene_called_as_one_of_the_programs_own_is_named(
+    mini: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (mini / "scenes").mkdir()
+    (mini / "scenes" / "head-on.toml").write_bytes((FOLDER / "head-on.toml").read_bytes())
+    _, body = answer(capsys, "author", "check", "head-on")
+    assert [one["message"] for one in body["problems"]] == [
+        "the program has a scene head-on, which is played instead."
+    ]
+
+
+def test_in_another_checkout_than_the_programs_nothing_is_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv("COURSE_CONTENT", raising=False)
+    other = tmp_path / "copy"
+    for folder in ("course/authoring", "exercises/inside"):
+        (other / folder).mkdir(parents=True)
+    monkeypatch.chdir(other / "exercises" / "inside")
+    code, body = answer(capsys, "author", "new", "scene", "falling")
+    assert (code, body["error"]["code"]) == (2, "other_checkout")
+    assert f"In {other}, type `python -m course`" in body["error"]["help"]
+
+
+def test_nothing_is_left_of_content_that_could_not_be_written(
+    mini: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Interrupted half-way: what is there would be in the way of the next attempt."""
+    before = {path for path in mini.rglob("*") if path.is_file()}
+    opened, times = Path.open, iter(range(5))
+
+    def interrupted(path: Path, *args: Any, **more: Any) -> Any:
+        if "x" in args and next(times) == 4:
+            raise KeyboardInterrupt
+        return opened(path, *args, **more)
+
+    monkeypatch.setattr(Path, "open", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        new_exercise(Catalog(), "tripling")
+    assert {path for path in mini.rglob("*") if path.is_file()} == before
+
+
+def test_the_table_of_what_graders_catch_names_the_exercise_that_changed(
+    mini: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    page = mini / "docs" / "graders.md"
+    page.parent.mkdir()
+    page.write_text("")
+    assert run(["author", "build", "halving"]) == 0
+    capsys.readouterr()
+    entries = mini / "solutions" / "halving" / "mutants.toml"
+    entries.write_text(entries.read_text().replace("A result should be a whole number.", "Whole is right."))
+    _, body = answer(capsys, "author", "check", "halving")
+    (problem,) = body["problems"]
+    assert (problem["file"], problem["help"]) == ("docs/graders.md", "Run `course author build halving`.")
 
 
 def test_a_broken_syllabus_is_reported_and_not_a_crash(

@@ -10,6 +10,7 @@ import pytest
 from course.authoring.exercises import files
 from course.authoring.exercises.files import write_points
 from course.catalog.load import Catalog
+from course.errors import ContentError
 
 TOML = "exercises/doubling/exercise.toml"
 
@@ -60,16 +61,38 @@ def test_a_task_without_points_keeps_what_is_written(mini: Path) -> None:
     assert re.findall(r"^points = (.*)", built(mini), re.MULTILINE) == ["10", "6"]
 
 
-def test_checks_that_are_slow_are_written_above_the_tasks(
+def test_times_are_measured_once_and_again_when_a_check_changes(
     mini: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """They are noise: another run of the same files changes nothing, least of all of other exercises."""
+
+    def build(seconds: float) -> dict[str, dict[str, float]] | None:
+        monkeypatch.setattr(files, "measured", lambda *_: {"a": seconds, "b": 0.02})
+        catalog = Catalog()
+        if files.write_times(catalog, catalog.exercises()) is None:
+            return None
+        return {name: one.slow for name, one in Catalog().times.exercises.items()}
+
+    assert build(0.31) is None
+    checks = mini / "exercises" / "doubling" / "checks.py"
+    checks.write_text(checks.read_text() + "# changed\n")
+    assert build(0.31) == {"doubling": {"a": 0.4}, "halving": {}}
+    assert Catalog().exercise("doubling").slow == {"a": 0.4}
+    assert build(9.0) is None
+
+
+def test_a_time_in_exercise_toml_moves_where_it_is_kept(mini: Path) -> None:
     path = mini / TOML
-    before = path.read_text()
-    for times, line in (({"a": 0.31, "b": 0.02}, "slow = { a = 0.4 }\n"), ({"a": 0.02, "b": 0.02}, "")):
-        monkeypatch.setattr(files, "measured", lambda *_, times=times: times)
-        assert files.write_slow(Catalog(), Catalog().exercise("doubling")) == path
-        assert path.read_text() == before.replace("\n\n[[task]]", f"\n{line}\n[[task]]", 1)
-        assert files.write_slow(Catalog(), Catalog().exercise("doubling")) is None
+    right = path.read_text()
+    path.write_text(right.replace("order = 1", "order = 1\nslow = { double_of_three = 0.2 }"))
+    assert built(mini) == right
+
+
+def test_times_that_cannot_be_read_name_their_file_and_the_fix(mini: Path) -> None:
+    (mini / "exercises" / "times.json").write_text("{")
+    with pytest.raises(ContentError, match=r"times\.json: what was measured cannot be read") as caught:
+        Catalog().exercise("doubling")
+    assert "course author build" in caught.value.help
 
 
 def test_what_is_measured_is_the_cpu_time_of_right_solutions(mini: Path) -> None:

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from course.authoring.audit import audit
-from course.authoring.exercises.files import BLANK
 from course.authoring.report import AuditReport
 from course.authoring.scaffold import Function, new_exercise, new_lesson, new_question
 from course.catalog.load import Catalog
+from course.catalog.reading import BLANK
 from course.errors import MissingCapabilityError, UsageError
 
 SOLVED = {
@@ -185,7 +185,12 @@ def test_a_new_lesson_passes_once_it_is_filled_and_listed(
     (path,) = new_lesson(Catalog(), "three-times")
     problems = run().problems
     assert {p.code for p in problems} == {"blank", "syllabus"}
-    path.write_text(BLANK.sub("Three times, 2026.", path.read_text()))
+    path.write_text(BLANK.sub("Three times are said here, 2026.", path.read_text()))
+    (unknown,) = (p for p in run().problems if p.code == "lesson")
+    assert unknown.message == "there is no figure three-times."
+    assert "CONTRIBUTING.md" in unknown.fix
+    path.write_text(path.read_text().replace("figure:three-times", "figure:integrators-order"))
+    assert [p.message for p in run("three-times").problems] == ["the syllabus does not list this lesson."]
     syllabus = mini / "lessons" / "syllabus.toml"
     syllabus.write_text(syllabus.read_text().replace('"half-as-much"]', '"half-as-much", "three-times"]'))
     assert run().problems == ()

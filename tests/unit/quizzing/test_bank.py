@@ -108,6 +108,14 @@ def test_a_sound_quiz_has_no_faults(quiz: Path) -> None:
         ("0.0980 m", "0.0981 m"),
         ("0 m", "0.0 m"),
         ("3 of 10", "3.0 of 10.1"),
+        ("50 cm", "0.5 m"),
+        ("0.5 s", "500 ms"),
+        ("2 metres", "2 m"),
+        ("5 %", "5 per cent"),
+        ("About 0.5 s", "0.5 s"),
+        ("1e3 N", "1000 N"),
+        ("0.5 s", "0.5 s, because the two errors cancel"),
+        ("-0.5 m", "−0.50 m"),
     ],
 )
 def test_the_same_answer_in_another_form_is_the_same(one: str, other: str) -> None:
@@ -124,6 +132,11 @@ def test_the_same_answer_in_another_form_is_the_same(one: str, other: str) -> No
         ("3 of 10", "3 of 11"),
         ("0 m", "0.01 m"),
         ("one", "two"),
+        ("2", "2 sqrt(m/k)"),
+        ("2 m", "2 m/s"),
+        ("5 mm/s", "0.005 m"),
+        ("0.5 s too early", "0.5 s too late"),
+        ("0.5 m", "0.5 s"),
     ],
 )
 def test_different_answers_are_different(one: str, other: str) -> None:

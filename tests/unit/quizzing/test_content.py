@@ -1,4 +1,4 @@
-"""The course's own five questions, over a thousand seeds, and their numbers against the physics."""
+"""The course's own questions, over a thousand seeds, and their numbers against the physics."""
 
 from __future__ import annotations
 
@@ -42,20 +42,15 @@ def numbers(text: str) -> list[float]:
     return [float(found.replace(",", "")) for found in re.findall(r"\d[\d,]*(?:\.\d+)?", text)]
 
 
-def test_the_five_questions_are_those_of_the_course(bank: Bank) -> None:
-    assert bank.ids == (
-        "why-simulate",
-        "which-engine",
-        "sim-to-real-gap",
-        "digital-twin",
-        "numerical-integration",
-    )
+def test_the_questions_of_the_chapter_are_among_those_of_the_course(bank: Bank) -> None:
+    of_the_chapter = {"why-simulate", "which-engine", "sim-to-real-gap", "digital-twin"}
+    assert of_the_chapter | {"numerical-integration"} <= {*bank.ids}
 
 
-def test_the_audit_finds_nothing() -> None:
+def test_the_audit_finds_nothing(bank: Bank) -> None:
     catalog = Catalog()
     findings = Findings(catalog.content.root)
-    assert len(audit_quiz(catalog, findings)) == 5
+    assert audit_quiz(catalog, findings) == bank.ids
     assert findings.sorted() == ()
 
 
@@ -69,8 +64,8 @@ def test_no_two_options_are_equal_in_a_thousand_seeds(posed: list[tuple[PosedQue
 def test_the_key_is_never_ambiguous_in_a_thousand_seeds(posed: list[tuple[PosedQuestion, ...]]) -> None:
     for questions in posed:
         assert all(sum(choice.right for choice in question.choices) == 1 for question in questions)
-        assert mark(questions, {q.question: q.key.letter for q in questions}).score == 5
-        assert mark(questions, {q.question: q.key.id for q in questions}).score == 5
+        assert mark(questions, {q.question: q.key.letter for q in questions}).score == len(questions)
+        assert mark(questions, {q.question: q.key.id for q in questions}).score == len(questions)
 
 
 def test_every_variant_and_every_place_is_reached_in_a_thousand_seeds(

@@ -25,7 +25,7 @@ from course.scoring.explain.story import (
     read_table,
     read_words,
     story_of,
-    write_table,
+    table_bytes,
 )
 from course.scoring.judging.explaining import answer_numbers, tasks_asked
 
@@ -125,7 +125,8 @@ def test_of_an_answer_counts_what_its_reader_gives_and_what_it_cannot_read_is_an
 
 def test_of_the_programs_that_fit_those_with_fewest_mistakes_count(tmp_path: Path) -> None:
     rows = {"f": (Row(("A_B",), (1.0, 2.0)), Row(("A_B", "C_D"), (1.0, 2.0)), Row(("C_D",), (3.0, 2.0)))}
-    write_table(tmp_path / "t.json", Table(rows=rows, right={"f": ((0.0, 0.0),)}, made_from="x"))
+    table = Table(rows=rows, right={"f": ((0.0, 0.0),)}, made_from="x")
+    (tmp_path / "t.json").write_bytes(table_bytes(table))
     table = read_table(tmp_path / "t.json")
     assert [row.codes for row in matching(table, "f", (1.0, 2.0000005))] == [("A_B",)]
     assert matching(table, "f", (1.0, 2.00001)) == ()

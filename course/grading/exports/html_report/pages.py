@@ -470,7 +470,7 @@ class _Shown:
             return f"{passed}, set by the instructor"
         if item.verdict.state != "graded":
             return "could not be graded"
-        return f"{passed}, {number(item.penalty)} points off for lateness" if item.penalty else passed
+        return f"{passed}, {in_points(item.penalty)} off for lateness" if item.penalty else passed
 
 
 def student_page(results: Results, student: str, found: Sequence[Effective]) -> str:

@@ -330,6 +330,23 @@ def test_a_question_that_is_not_finished_stops_only_a_run_with_the_quiz(
     assert len(scores(tmp_path / "out")) == 1
 
 
+@pytest.mark.parametrize("file", ["exercises/doubling/exercise.toml", "graders/doubling/checks.py"])
+def test_an_exercise_that_is_not_finished_is_refused_before_anything_is_graded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, solution: bytes, file: str
+) -> None:
+    shutil.copytree(MINI, tmp_path / "course")
+    path = tmp_path / "course" / file
+    path.write_text(path.read_text("utf-8") + "# <<FILL IN: more>>\n", "utf-8")
+    line = path.read_text("utf-8").count("\n")
+    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
+    make_class(tmp_path / "class", solution, 1)
+    for only in (RunOptions(), RunOptions(exercises=("doubling",))):
+        with pytest.raises(UsageError) as caught:
+            grade_class(tmp_path / "class", tmp_path / "out", Catalog(), only, lambda *_: None)
+        assert f"{file}:{line}: still to be filled in: more." in caught.value.message
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_student_counts_as_done_when_graded_and_not_when_read(
     tmp_path: Path, catalog: Catalog, solution: bytes
 ) -> None:

@@ -10,17 +10,18 @@ from pathlib import Path
 from typing import Annotated
 
 import msgspec
-import typer
 
 from course.browser import invite
 from course.catalog.load import Catalog
 from course.catalog.models import CourseRef, Exercise
-from course.cli.frame.completion import choice_of, exercise_ids, notebook_ids
+from course.cli.frame.completion import Verbose, choice_of, exercise_ids, notebook_ids
 from course.cli.frame.console import (
     Console,
     current,
 )
 from course.cli.frame.here import Here, cwd, find_workspace, load_catalog, write
+from course.cli.frame.options import argument, option
+from course.cli.frame.registry import group_of
 from course.cli.frame.replies import Backup, Envelope
 from course.cli.work import checking
 from course.cli.work.replies import Check
@@ -199,27 +200,15 @@ def put(folder: Path, notebook: Generated, *, update: bool = True) -> NotebookFi
 # ---
 
 
-app = typer.Typer(
-    help="Get lessons and exercises as Jupyter notebooks.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
+app = group_of("Get lessons and exercises as Jupyter notebooks.")
 
 FORMATS = ("jupyter", "nbgrader")
 Ids = Annotated[
     list[str] | None,
-    typer.Argument(
-        metavar="[ID]...",
-        help="Lessons, exercises, quiz or sandbox; everything if left out.",
-        autocompletion=notebook_ids,
-    ),
+    argument("[ID]...", "Lessons, exercises, quiz or sandbox; everything if left out.", notebook_ids),
 ]
 Out = Annotated[
-    Path | None,
-    typer.Option(
-        "--out", metavar="DIR", help="Where; if left out, the workspace, and outside of one notebooks/."
-    ),
+    Path | None, option("--out DIR", "Where; if left out, the workspace, and outside of one notebooks/.")
 ]
 
 
@@ -228,16 +217,10 @@ def build(
     ids: Ids = None,
     out: Out = None,
     executed: Annotated[
-        bool, typer.Option("--executed", help="Run each one first, so that it opens with its outputs.")
+        bool, option("--executed", "Run each one first, so that it opens with its outputs.")
     ] = False,
     form: Annotated[
-        str,
-        typer.Option(
-            "--format",
-            metavar="FORMAT",
-            help="jupyter, or nbgrader for an nbgrader site.",
-            autocompletion=choice_of(*FORMATS),
-        ),
+        str, option("--format FORMAT", "jupyter, or nbgrader for an nbgrader site.", choice_of(*FORMATS))
     ] = "jupyter",
 ) -> int:
     """Write notebooks.
@@ -284,19 +267,12 @@ def update(ids: Ids = None, out: Out = None) -> int:
 
 @app.command(epilog="Example: course notebook check integrators/integrators.ipynb")
 def check(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="A notebook with an exercise's functions.")],
+    file: Annotated[Path, argument("FILE", "A notebook with an exercise's functions.")],
     exercise: Annotated[
         str | None,
-        typer.Option(
-            "--exercise",
-            metavar="EXERCISE",
-            help="Which exercise, if the notebook does not say it.",
-            autocompletion=exercise_ids,
-        ),
+        option("--exercise EXERCISE", "Which exercise, if the notebook does not say it.", exercise_ids),
     ] = None,
-    verbose: Annotated[
-        bool, typer.Option("--verbose", "-v", help="Show tracebacks and all that your code printed.")
-    ] = False,
+    verbose: Verbose = False,
 ) -> int:
     """Run the public checks on a notebook.
 
@@ -389,15 +365,9 @@ def _sentence(folder: Path, file: NotebookFile) -> str:
 def open_notebook(
     wanted: Annotated[
         str | None,
-        typer.Argument(
-            metavar="[ID]",
-            help="A lesson, an exercise, quiz or sandbox; all of them if left out.",
-            autocompletion=notebook_ids,
-        ),
+        argument("[ID]", "A lesson, an exercise, quiz or sandbox; all of them if left out.", notebook_ids),
     ] = None,
-    no_browser: Annotated[
-        bool, typer.Option("--no-browser", help="Only print the address; nothing is opened.")
-    ] = False,
+    no_browser: Annotated[bool, option("--no-browser", "Only print the address; nothing is opened.")] = False,
 ) -> int:
     """Open a notebook in JupyterLab.
 

@@ -10,11 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import msgspec
-import typer
 
 from course.cli.frame import here
 from course.cli.frame.completion import simulation_ids, simulation_settings
 from course.cli.frame.console import Console, current
+from course.cli.frame.options import argument, option
+from course.cli.frame.registry import group_of
 from course.cli.frame.replies import Envelope, WrittenFile
 from course.errors import UsageError
 from course.simulations.base import Result, Row, Simulation
@@ -138,12 +139,7 @@ class SimAll(Envelope, tag="course.sim-all/1", frozen=True, kw_only=True):
 # ---
 
 
-app = typer.Typer(
-    help="Run a simulation and compare with theory.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
+app = group_of("Run a simulation and compare with theory.")
 
 #: The common finding of the introductory simulations.
 CONCEPTS = (
@@ -166,10 +162,7 @@ INSIGHTS = (
 @app.command("list", epilog="Example: course sim list free-fall")
 def list_simulations(
     name: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="NAME", help="Only this one, with all its parameters.", autocompletion=simulation_ids
-        ),
+        str | None, argument("NAME", "Only this one, with all its parameters.", simulation_ids)
     ] = None,
 ) -> int:
     """List the simulations.
@@ -203,29 +196,15 @@ def _describe(console: Console, simulation: Simulation, *, whole: bool) -> None:
 
 @app.command(epilog="Example: course sim run free-fall --set height=20 --plot fall.png")
 def run(
-    name: Annotated[
-        str | None,
-        typer.Argument(metavar="NAME", help="See `course sim list`.", autocompletion=simulation_ids),
-    ] = None,
+    name: Annotated[str | None, argument("NAME", "See `course sim list`.", simulation_ids)] = None,
     everything: Annotated[
-        bool,
-        typer.Option("--all", help="Run the four of the introduction, in order, and say what they show."),
+        bool, option("--all", "Run the four of the introduction, in order, and say what they show.")
     ] = False,
     settings: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="Set a parameter; repeatable.",
-            autocompletion=simulation_settings,
-        ),
+        list[str] | None, option("--set KEY=VALUE", "Set a parameter; repeatable.", simulation_settings)
     ] = None,
-    plot: Annotated[
-        Path | None, typer.Option("--plot", metavar="FILE", help="Write the figure: .png, .svg or .pdf.")
-    ] = None,
-    csv: Annotated[
-        Path | None, typer.Option("--csv", metavar="FILE", help="Write every sample as a table.")
-    ] = None,
+    plot: Annotated[Path | None, option("--plot FILE", "Write the figure: .png, .svg or .pdf.")] = None,
+    csv: Annotated[Path | None, option("--csv FILE", "Write every sample as a table.")] = None,
 ) -> int:
     """Run a simulation, or the four of the introduction.
 

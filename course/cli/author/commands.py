@@ -33,7 +33,8 @@ from course.cli.frame import here
 from course.cli.frame.completion import exercise_ids, lesson_ids
 from course.cli.frame.console import Console, current, meter
 from course.cli.frame.here import load_catalog
-from course.cli.frame.registry import COMMANDS
+from course.cli.frame.options import argument, option
+from course.cli.frame.registry import COMMANDS, group_of
 from course.errors import ContentError, UsageError
 from course.progress.workspace import write_atomically
 from course.sandbox.scene.loading import scene_ids
@@ -45,7 +46,7 @@ from course.simulations.registry import SIMULATIONS
 
 
 def coverage(
-    write: Annotated[bool, typer.Option("--write", help="Write docs/coverage.md again.")] = False,
+    write: Annotated[bool, option("--write", "Write docs/coverage.md again.")] = False,
 ) -> int:
     """Show where the course covers each part of the chapter that it is based on.
 
@@ -143,20 +144,8 @@ def counted(number: int, word: str) -> str:
 # ---
 
 
-_HELP = {"help_option_names": ["-h", "--help"]}
-
-app = typer.Typer(
-    help="Write and check the course itself.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    context_settings=_HELP,
-)
-_new = typer.Typer(
-    help="Write the files of something new.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    context_settings=_HELP,
-)
+app = group_of("Write and check the course itself.")
+_new = group_of("Write the files of something new.")
 app.add_typer(_new, name="new", epilog="Example: course author new exercise pendulum-clock")
 
 
@@ -165,31 +154,24 @@ def _any_id(incomplete: str) -> list[str]:
     return [*lesson_ids(incomplete), *exercise_ids(incomplete), *scenes]
 
 
+_EachExercise = Annotated[str | None, argument("ID", "An exercise; all of them if left out.", exercise_ids)]
+_NewId = Annotated[str, argument("ID", "Lower-case words joined by hyphens.")]
 #: Options of new content with functions, given before its files are written.
 _Functions = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--function", metavar="'NAME(ARGUMENTS)'", help="A function for students to write; repeatable."
-    ),
+    list[str] | None, option("--function 'NAME(ARGUMENTS)'", "A function for students to write; repeatable.")
 ]
-_Title = Annotated[str, typer.Option("--title", metavar="WORDS", help="Its title, for readers.")]
-_Summary = Annotated[str, typer.Option("--summary", metavar="WORDS", help="One line for lists.")]
+_Title = Annotated[str, option("--title WORDS", "Its title, for readers.")]
+_Summary = Annotated[str, option("--summary WORDS", "One line for lists.")]
 
 
 @_new.command("exercise", epilog="Example: course author new exercise pendulum-clock")
 def new_exercise(
-    name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
+    name: _NewId,
     function: _Functions = None,
     title: _Title = "",
     summary: _Summary = "",
     lesson: Annotated[
-        str,
-        typer.Option(
-            "--lesson",
-            metavar="ID",
-            help="The lesson to read first; the last one if left out.",
-            autocompletion=lesson_ids,
-        ),
+        str, option("--lesson ID", "The lesson to read first; the last one if left out.", lesson_ids)
     ] = "",
 ) -> int:
     """Write an exercise with blanks to fill in.
@@ -203,11 +185,8 @@ def new_exercise(
 
 @_new.command("warmup", epilog="Example: course author new warmup swing --lesson engines")
 def new_warm_up(
-    name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
-    lesson: Annotated[
-        str,
-        typer.Option("--lesson", metavar="ID", help="The lesson it belongs to.", autocompletion=lesson_ids),
-    ],
+    name: _NewId,
+    lesson: Annotated[str, option("--lesson ID", "The lesson it belongs to.", lesson_ids)],
     function: _Functions = None,
     title: _Title = "",
     summary: _Summary = "",
@@ -253,9 +232,7 @@ def _ask_functions(console: Console) -> Iterator[scaffold.Function]:
 
 
 @_new.command("lesson", epilog="Example: course author new lesson contact-forces")
-def new_lesson(
-    name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
-) -> int:
+def new_lesson(name: _NewId) -> int:
     """Write a lesson with blanks to fill in.
 
     Nothing is overwritten. Put its id into syllabus.toml at the place where students should read it.
@@ -266,9 +243,7 @@ def new_lesson(
 
 
 @_new.command("question", epilog="Example: course author new question contact-forces")
-def new_question(
-    name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
-) -> int:
+def new_question(name: _NewId) -> int:
     """Write a quiz question with blanks to fill in.
 
     Nothing is overwritten. It has four variants, each with one right option and three wrong ones.
@@ -279,9 +254,7 @@ def new_question(
 
 
 @_new.command("scene", epilog="Example: course author new scene bouncing-ball")
-def new_scene(
-    name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
-) -> int:
+def new_scene(name: _NewId) -> int:
     """Write a sandbox scene that runs, with blanks to fill in.
 
     Nothing is overwritten. Play it with `course sandbox play ID`.
@@ -311,11 +284,7 @@ def _report_new(catalog: Catalog, kind: str, name: str, files: tuple[Path, ...])
 def check(
     name: Annotated[
         str | None,
-        typer.Argument(
-            metavar="ID",
-            help="A lesson, an exercise, a question or a scene; everything if left out.",
-            autocompletion=_any_id,
-        ),
+        argument("ID", "A lesson, an exercise, a question or a scene; everything if left out.", _any_id),
     ] = None,
 ) -> int:
     """Prove that the course is right.
@@ -390,15 +359,9 @@ def _emit_report(console: Console, catalog: Catalog, report: AuditReport) -> Non
 
 @app.command(epilog="Example: course author build collisions")
 def build(
-    name: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="ID", help="An exercise; all of them if left out.", autocompletion=exercise_ids
-        ),
-    ] = None,
+    name: _EachExercise = None,
     confusion: Annotated[
-        bool,
-        typer.Option("--confusion", help="Grade every wrong program too; takes minutes."),
+        bool, option("--confusion", "Grade every wrong program too; takes minutes.")
     ] = False,
 ) -> int:
     """Generate the files that follow from an exercise's sources.
@@ -466,15 +429,9 @@ def _say_blanks(catalog: Catalog, exercise: Exercise) -> None:
 
 @app.command(epilog="Example: course author mutants integrators")
 def mutants(
-    name: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="ID", help="An exercise; all of them if left out.", autocompletion=exercise_ids
-        ),
-    ] = None,
+    name: _EachExercise = None,
     table: Annotated[
-        Path | None,
-        typer.Option("--table", metavar="FILE", help="Write which check catches which mutant, as Markdown."),
+        Path | None, option("--table FILE", "Write which check catches which mutant, as Markdown.")
     ] = None,
 ) -> int:
     """Show the feedback for each wrong solution.
@@ -547,17 +504,9 @@ def _mutant_row(exercise: Exercise, outcome: MutantOutcome) -> MutantRow:
 
 @app.command(epilog="Example: course author pack --solutions integrators -o solutions.coursepack")
 def pack(
-    solutions: Annotated[
-        list[str],
-        typer.Option(
-            "--solutions", metavar="EXERCISE", help="Pack its solution.", autocompletion=exercise_ids
-        ),
-    ],
-    output: Annotated[Path, typer.Option("-o", "--output", metavar="FILE", help="What to write.")],
-    more: Annotated[
-        list[str] | None,
-        typer.Argument(metavar="[EXERCISE]...", help="More exercises.", autocompletion=exercise_ids),
-    ] = None,
+    solutions: Annotated[list[str], option("--solutions EXERCISE", "Pack its solution.", exercise_ids)],
+    output: Annotated[Path, option("-o --output FILE", "What to write.")],
+    more: Annotated[list[str] | None, argument("[EXERCISE]...", "More exercises.", exercise_ids)] = None,
 ) -> int:
     """Write the file that hands out solutions after the deadline.
 

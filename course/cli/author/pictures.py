@@ -16,11 +16,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from course.cli.author.replies import AuthorPictures
 from course.cli.frame.console import current
 from course.cli.frame.here import load_catalog
+from course.cli.frame.options import option
 from course.errors import InternalError
 from course.progress.workspace import write_atomically
 
@@ -35,9 +34,7 @@ _EVERY, _DECIMALS = 0.25, 3
 
 
 def pictures(
-    check: Annotated[
-        bool, typer.Option("--check", help="Write nothing; exit code 1 if a picture is stale.")
-    ] = False,
+    check: Annotated[bool, option("--check", "Write nothing; exit code 1 if a picture is stale.")] = False,
 ) -> int:
     """Make the README's pictures.
 

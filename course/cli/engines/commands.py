@@ -10,12 +10,13 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import msgspec
-import typer
 
 from course.cli.frame import here
 from course.cli.frame.completion import engine_ids, scenario_ids
 from course.cli.frame.console import Console, current, meter
 from course.cli.frame.here import inserted
+from course.cli.frame.options import option
+from course.cli.frame.registry import group_of
 from course.cli.frame.replies import Envelope, WrittenFile
 from course.engines.registry import ENGINES
 from course.engines.results import Comparison, EngineState
@@ -202,12 +203,7 @@ def figures(comparison: Comparison, path: Path) -> list[tuple[Path, bytes]]:
 # ---
 
 
-app = typer.Typer(
-    help="Compare real physics engines on this machine.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
+app = group_of("Compare real physics engines on this machine.")
 
 #: The longest and the shortest step that make sense in the scenarios, s.
 _LONGEST, _SHORTEST = 0.02, 1e-4
@@ -245,30 +241,19 @@ def list_engines() -> int:
 @app.command(epilog="Example: course engines compare --engine mujoco --engine ode --scenario bounce --quick")
 def compare(
     engine: Annotated[
-        list[str] | None,
-        typer.Option("--engine", metavar="E", help="Only this one; repeatable.", autocompletion=engine_ids),
+        list[str] | None, option("--engine E", "Only this one; repeatable.", engine_ids)
     ] = None,
     scenario: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--scenario", metavar="S", help="Only this one; repeatable.", autocompletion=scenario_ids
-        ),
+        list[str] | None, option("--scenario S", "Only this one; repeatable.", scenario_ids)
     ] = None,
-    dt: Annotated[
-        list[str] | None,
-        typer.Option("--dt", metavar="STEP", help="Step in s, as 0.005 or 1/240; repeatable."),
-    ] = None,
+    dt: Annotated[list[str] | None, option("--dt STEP", "Step in s, as 0.005 or 1/240; repeatable.")] = None,
     repeat: Annotated[
-        int, typer.Option("--repeat", min=1, max=100, help="Repeat each measurement; show the spread.")
+        int, option("--repeat", "Repeat each measurement; show the spread.", min=1, max=100)
     ] = 1,
-    quick: Annotated[bool, typer.Option("--quick", help="Fewer starts, steps and repetitions.")] = False,
-    fresh: Annotated[bool, typer.Option("--fresh", help="Measure again; use no stored results.")] = False,
-    plot: Annotated[
-        Path | None, typer.Option("--plot", metavar="FILE", help="Write the figures: .png, .svg or .pdf.")
-    ] = None,
-    csv: Annotated[
-        Path | None, typer.Option("--csv", metavar="FILE", help="Write every number as a table.")
-    ] = None,
+    quick: Annotated[bool, option("--quick", "Fewer starts, steps and repetitions.")] = False,
+    fresh: Annotated[bool, option("--fresh", "Measure again; use no stored results.")] = False,
+    plot: Annotated[Path | None, option("--plot FILE", "Write the figures: .png, .svg or .pdf.")] = None,
+    csv: Annotated[Path | None, option("--csv FILE", "Write every number as a table.")] = None,
 ) -> int:
     """Run the same scenarios through every installed engine.
 

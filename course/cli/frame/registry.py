@@ -17,6 +17,8 @@ __all__ = ["COMMANDS", "GLOBAL_OPTIONS", "HOME", "Entry", "LazyGroup", "build", 
 
 GLOBAL_OPTIONS = "Every command also takes --json, --plain, --quiet (-q) and -C DIR."
 
+_HELP_OPTIONS = {"help_option_names": ["-h", "--help"]}
+
 LEARN = "Learn"
 WORK = "Work on an exercise"
 KEEP = "Keep and hand in"
@@ -186,7 +188,23 @@ def build(group: type[TyperGroup], *, fancy: bool) -> typer.Typer:
         invoke_without_command=True,
         rich_markup_mode="rich" if fancy else None,
         pretty_exceptions_enable=False,
-        context_settings={"help_option_names": ["-h", "--help"]},
+        context_settings=_HELP_OPTIONS,
+    )
+
+
+def group_of(help: str, group: type[TyperGroup] | None = None) -> typer.Typer:  # noqa: A002 - typer's name
+    """A group of commands that shows its help where none of them is named.
+
+    Args:
+        group: one that does something else then.
+    """
+    return typer.Typer(
+        cls=group,
+        help=help,
+        no_args_is_help=group is None,
+        invoke_without_command=group is not None,
+        pretty_exceptions_enable=False,
+        context_settings=_HELP_OPTIONS,
     )
 
 
@@ -206,7 +224,7 @@ def _load(name: str, entry: Entry, mode: Any) -> Any:
         add_completion=False,
         rich_markup_mode=mode,
         pretty_exceptions_enable=False,
-        context_settings={"help_option_names": ["-h", "--help"]},
+        context_settings=_HELP_OPTIONS,
     )
     app.command(name, epilog=f"Example: {entry.example}\n\n{GLOBAL_OPTIONS}")(target)
     return typer.main.get_command(app)

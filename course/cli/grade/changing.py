@@ -7,11 +7,10 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from course.cli.frame.completion import exercise_ids, student_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
+from course.cli.frame.options import argument, option
 from course.cli.grade.options import (
     Against,
     Exercises,
@@ -56,20 +55,15 @@ _SHOWN = 20
 
 def rerun(
     out: Out,
-    dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Show what would change; change nothing.")
-    ] = False,
-    everything: Annotated[
-        bool, typer.Option("--all", help="Also regrade results that the same graders gave.")
-    ] = False,
+    dry_run: Annotated[bool, option("--dry-run", "Show what would change; change nothing.")] = False,
+    everything: Annotated[bool, option("--all", "Also regrade results that the same graders gave.")] = False,
     jobs: Jobs = 1,
     timeout: Annotated[
-        float | None,
-        typer.Option("--timeout", metavar="S", min=0.1, max=60.0, help="As in the run if left out."),
+        float | None, option("--timeout S", "As in the run if left out.", min=0.1, max=60.0)
     ] = None,
     isolation: Isolation = "auto",
     against: Against = "",
-    reason: Annotated[str, typer.Option("--reason", metavar="TEXT", help="Kept with the regrading.")] = "",
+    reason: Annotated[str, option("--reason TEXT", "Kept with the regrading.")] = "",
 ) -> int:
     """Grade again, with the present graders or earlier ones.
 
@@ -128,17 +122,12 @@ def _show_rerun(console: Console, done: Regraded, *, dry_run: bool) -> None:
 
 def override(
     out: Out,
-    student: Annotated[str, typer.Argument(metavar="STUDENT", autocompletion=student_ids)],
-    exercise: Annotated[str, typer.Argument(metavar="EXERCISE", autocompletion=exercise_ids)],
-    score: Annotated[
-        float | None, typer.Option("--score", metavar="X", help="The points that count.")
-    ] = None,
-    reason: Annotated[
-        str,
-        typer.Option("--reason", metavar="TEXT", help="Shown with the score, to the student too."),
-    ] = "",
-    lift: Annotated[bool, typer.Option("--lift", help="Remove the override again.")] = False,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Show what would count; keep nothing.")] = False,
+    student: Annotated[str, argument("STUDENT", complete=student_ids)],
+    exercise: Annotated[str, argument("EXERCISE", complete=exercise_ids)],
+    score: Annotated[float | None, option("--score X", "The points that count.")] = None,
+    reason: Annotated[str, option("--reason TEXT", "Shown with the score, to the student too.")] = "",
+    lift: Annotated[bool, option("--lift", "Remove the override again.")] = False,
+    dry_run: Annotated[bool, option("--dry-run", "Show what would count; keep nothing.")] = False,
 ) -> int:
     """Set a score by hand, with a reason.
 
@@ -178,32 +167,18 @@ def override(
 def late(
     out: Out,
     policy: Annotated[
-        Path | None, typer.Option("--policy", metavar="FILE", help="Late policy (TOML) to apply from now on.")
+        Path | None, option("--policy FILE", "Late policy (TOML) to apply from now on.")
     ] = None,
     times: Annotated[
-        Path | None,
-        typer.Option(
-            "--times", metavar="FILE", help="CSV: student, exercise, submitted_at; or Moodle's worksheet."
-        ),
+        Path | None, option("--times FILE", "CSV: student, exercise, submitted_at; or Moodle's worksheet.")
     ] = None,
     exercise: Annotated[
-        str | None,
-        typer.Option(
-            "--exercise",
-            metavar="ID",
-            help="The exercise of Moodle's worksheet.",
-            autocompletion=exercise_ids,
-        ),
+        str | None, option("--exercise ID", "The exercise of Moodle's worksheet.", exercise_ids)
     ] = None,
-    roster: Annotated[
-        Path | None,
-        typer.Option("--roster", metavar="FILE", help="Class list, for its extension_days."),
-    ] = None,
-    clear: Annotated[bool, typer.Option("--clear", help="Remove the late policy.")] = False,
+    roster: Annotated[Path | None, option("--roster FILE", "Class list, for its extension_days.")] = None,
+    clear: Annotated[bool, option("--clear", "Remove the late policy.")] = False,
     reason: Reason = "",
-    dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Show whose score would change; change nothing.")
-    ] = False,
+    dry_run: Annotated[bool, option("--dry-run", "Show whose score would change; change nothing.")] = False,
 ) -> int:
     """Set the late policy, and show who is late.
 
@@ -368,10 +343,7 @@ def similar(
     # The right solutions in solutions/*/accepted share 0.39 at most with the model solution, by weight; a
     # copy whose names were changed shares 1.
     share: Share = 0.6,
-    output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", metavar="FILE", help="Page; OUT/similar.html if left out."),
-    ] = None,
+    output: Annotated[Path | None, option("-o --output FILE", "Page; OUT/similar.html if left out.")] = None,
 ) -> int:
     """Find submissions that are alike.
 

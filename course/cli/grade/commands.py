@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import typer
-
+from course.cli.frame.registry import group_of
 from course.cli.grade.changing import late, override, rerun, similar
 from course.cli.grade.export import export
 from course.cli.grade.running import explain, run
@@ -11,12 +10,7 @@ from course.cli.grade.settling import assign, log, salvage
 
 __all__ = ["app"]
 
-app = typer.Typer(
-    help="Grade a class.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
+app = group_of("Grade a class.")
 
 
 @app.callback()

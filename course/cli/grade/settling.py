@@ -6,11 +6,10 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from course.cli.frame.completion import exercise_ids, student_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
+from course.cli.frame.options import argument, option
 from course.cli.grade.options import Isolation, Jobs, Out, in_words, levels
 from course.cli.grade.replies import AssignedOne, UnsettledOne
 from course.errors import UsageError
@@ -30,24 +29,16 @@ _SHOWN = 200
 
 def assign(
     out: Out,
-    student: Annotated[str | None, typer.Argument(metavar="STUDENT", autocompletion=student_ids)] = None,
+    student: Annotated[str | None, argument("STUDENT", complete=student_ids)] = None,
     file: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="FILE", help="A name from the list, or a path; a path into a zip has a slash."
-        ),
+        str | None, argument("FILE", "A name from the list, or a path; a path into a zip has a slash.")
     ] = None,
     exercise: Annotated[
-        str | None,
-        typer.Option(
-            "--exercise", metavar="ID", help="Needed if it is not clear.", autocompletion=exercise_ids
-        ),
+        str | None, option("--exercise ID", "Needed if it is not clear.", exercise_ids)
     ] = None,
-    accept_names: Annotated[
-        bool, typer.Option("--accept-names", help="Accept every proposed match.")
-    ] = False,
-    reason: Annotated[str, typer.Option("--reason", metavar="TEXT", help="Kept with each result.")] = "",
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Grade and show, but store nothing.")] = False,
+    accept_names: Annotated[bool, option("--accept-names", "Accept every proposed match.")] = False,
+    reason: Annotated[str, option("--reason TEXT", "Kept with each result.")] = "",
+    dry_run: Annotated[bool, option("--dry-run", "Grade and show, but store nothing.")] = False,
     jobs: Jobs = 1,
     isolation: Isolation = "auto",
 ) -> int:
@@ -167,8 +158,8 @@ def _show_unsettled(console: Console, left: list[Unsettled], out: Path) -> None:
 
 def log(
     out: Out,
-    student: Annotated[str | None, typer.Argument(metavar="STUDENT", autocompletion=student_ids)] = None,
-    exercise: Annotated[str | None, typer.Argument(metavar="EXERCISE", autocompletion=exercise_ids)] = None,
+    student: Annotated[str | None, argument("STUDENT", complete=student_ids)] = None,
+    exercise: Annotated[str | None, argument("EXERCISE", complete=exercise_ids)] = None,
 ) -> int:
     """List every run and every change of a grade: who, when, why, and what it was before."""
     from course.cli.grade.replies import GradeLog
@@ -202,10 +193,8 @@ def log(
 
 def salvage(
     out: Out,
-    to: Annotated[Path, typer.Option("--to", metavar="NEW", help="Folder for the intact rows; must be new.")],
-    dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Report what can be recovered; write nothing.")
-    ] = False,
+    to: Annotated[Path, option("--to NEW", "Folder for the intact rows; must be new.")],
+    dry_run: Annotated[bool, option("--dry-run", "Report what can be recovered; write nothing.")] = False,
 ) -> int:
     """Recover the intact parts of a damaged gradebook and its backups.
 

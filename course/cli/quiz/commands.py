@@ -7,9 +7,9 @@ from datetime import date, datetime
 from pathlib import Path
 from typing import Annotated, NoReturn
 
-import typer
-
 from course.cli.frame.console import Console, current
+from course.cli.frame.options import option
+from course.cli.frame.registry import group_of
 from course.cli.frame.replies import NextStep
 from course.cli.quiz import screen
 from course.cli.quiz.screen import (
@@ -35,24 +35,16 @@ __all__ = ["app", "history", "review", "take"]
 
 INTERRUPTED = 130
 
-_HELP = {"help_option_names": ["-h", "--help"]}
-
-app = typer.Typer(
-    help="Answer the quiz, and review what was missed.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    context_settings=_HELP,
-)
+app = group_of("Answer the quiz, and review what was missed.")
 
 AnswersOption = Annotated[
-    Path | None,
-    typer.Option(metavar="FILE", help="Answers from a TOML or JSON file; nothing is asked."),
+    Path | None, option("--answers FILE", "Answers from a TOML or JSON file; nothing is asked.")
 ]
 SeedOption = Annotated[
-    int | None, typer.Option(metavar="N", help="Chooses variants, numbers and order; random if left out.")
+    int | None, option("--seed N", "Chooses variants, numbers and order; random if left out.")
 ]
 QuestionsOption = Annotated[
-    bool, typer.Option("--questions", help="Print the questions and a file to fill in; nothing is asked.")
+    bool, option("--questions", "Print the questions and a file to fill in; nothing is asked.")
 ]
 
 
@@ -146,9 +138,9 @@ def _take_file(console: Console, desk: Desk, path: Path, seed: int | None) -> in
     attempt = open_one if open_one is not None and agrees(desk.bank, open_one, seed, answers) else None
     resumed = attempt is not None and bool(attempt.answers)
     attempt = attempt or start(desk, seed)
-    for name, option in answers.items():
+    for name, picked in answers.items():
         if name not in attempt.answers:
-            answer(desk, attempt, name, option)
+            answer(desk, attempt, name, picked)
     return _finish(console, desk, attempt, posed, resumed=resumed)
 
 
@@ -295,7 +287,7 @@ def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence
 @app.command(epilog="Example: course quiz history --json")
 def history(
     whole: Annotated[
-        bool, typer.Option("--all", help="Explain every option of your last finished attempt, too.")
+        bool, option("--all", "Explain every option of your last finished attempt, too.")
     ] = False,
 ) -> int:
     """Show every attempt, with dates and scores, and what is under review."""

@@ -7,17 +7,13 @@ import io
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from course.browser import keep_closed
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise, Lesson
-from course.cli.frame.completion import (
-    LessonName,
-    WarmUpName,
-)
+from course.cli.frame.completion import LessonName, WarmUpName
 from course.cli.frame.console import MAX_WIDTH, Console, current
 from course.cli.frame.here import Here, find_workspace, load_catalog
+from course.cli.frame.options import option
 from course.cli.frame.replies import Envelope, NextStep
 from course.cli.home.advice import next_in_course
 from course.cli.home.overview import warm_up_state, warm_up_states
@@ -90,18 +86,16 @@ def lessons() -> int:
 def lesson(
     name: LessonName = None,
     page: Annotated[
-        bool,
-        typer.Option("--page", help="A section at a time, by typed lines; with --plain for a screen reader."),
+        bool, option("--page", "A section at a time, by typed lines; with --plain for a screen reader.")
     ] = False,
     figures: Annotated[
-        Path | None, typer.Option("--figures", metavar="DIR", help="Write the figures as PNG files into DIR.")
+        Path | None, option("--figures DIR", "Write the figures as PNG files into DIR.")
     ] = None,
     code: Annotated[
-        int | None,
-        typer.Option("--code", metavar="N", min=1, help="Print the code of cell N and nothing else."),
+        int | None, option("--code N", "Print the code of cell N and nothing else.", min=1)
     ] = None,
     no_browser: Annotated[
-        bool, typer.Option("--no-browser", help="Open no page and no picture; say where each is.")
+        bool, option("--no-browser", "Open no page and no picture; say where each is.")
     ] = False,
 ) -> int:
     """Read a lesson.
@@ -283,7 +277,7 @@ _PLAIN_MARKS = {"done": "done", "started": "begun", "new": "to do"}
 
 def warmup(
     name: WarmUpName = None,
-    check: Annotated[bool, typer.Option("--check", help="Check it, as `course check` does.")] = False,
+    check: Annotated[bool, option("--check", "Check it, as `course check` does.")] = False,
 ) -> int:
     """Do a lesson's small tasks.
 

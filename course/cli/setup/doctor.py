@@ -18,13 +18,12 @@ from pathlib import Path
 from typing import Annotated
 from urllib.parse import quote
 
-import typer
-
 from course import __version__
 from course.catalog.load import Catalog
 from course.cli.frame import here
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, find_workspace, load_catalog
+from course.cli.frame.options import option
 from course.cli.setup.replies import Bug, Doctor, Fix, Package
 from course.errors import CourseError, MissingCapabilityError
 from course.extras import requirements
@@ -40,7 +39,7 @@ _LEVELS = {
 
 def doctor(
     repair: Annotated[
-        bool, typer.Option("--repair", help="Set a damaged progress record aside and start a new one.")
+        bool, option("--repair", "Set a damaged progress record aside and start a new one.")
     ] = False,
 ) -> int:
     """Say what works on this machine.
@@ -237,10 +236,7 @@ _TYPED = re.compile(r"^command: .*$", re.MULTILINE)
 
 def bug(
     out: Annotated[
-        Path | None,
-        typer.Option(
-            "--output", "-o", metavar="FILE", help="File to write; course-bug.txt here if left out."
-        ),
+        Path | None, option("--output -o FILE", "File to write; course-bug.txt here if left out.")
     ] = None,
 ) -> int:
     """Write what a fault report needs into a file.

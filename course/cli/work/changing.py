@@ -10,12 +10,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from course.catalog.models import Exercise
 from course.cli.frame.completion import ExerciseName, OneExercise
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
+from course.cli.frame.options import option
 from course.cli.frame.replies import Backup, FileReply, NextStep
 from course.cli.work.checking import report_source_file
 from course.cli.work.chosen import asked_for, chosen_work
@@ -61,7 +60,7 @@ def diff(exercise: ExerciseName = None) -> int:
 
 def reset(
     exercise: OneExercise,
-    yes: Annotated[bool, typer.Option("--yes", "-y", help="Do not ask.")] = False,
+    yes: Annotated[bool, option("--yes -y", "Do not ask.")] = False,
 ) -> int:
     """Go back to the stub; a copy is kept.
 
@@ -105,7 +104,7 @@ def reset(
 
 
 def update(
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only print what would be done.")] = False,
+    dry_run: Annotated[bool, option("--dry-run", "Only print what would be done.")] = False,
 ) -> int:
     """Bring newer course content in.
 

@@ -7,12 +7,11 @@ import shlex
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from course.cli.frame import here
 from course.cli.frame.completion import ExerciseName
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd
+from course.cli.frame.options import option
 from course.cli.frame.replies import WrittenFile
 from course.cli.home.advice import after_report
 from course.cli.work.checking import report_source_file
@@ -28,14 +27,10 @@ __all__ = ["report"]
 def report(
     exercise: ExerciseName = None,
     out: Annotated[
-        Path | None,
-        typer.Option(
-            "--out", "-o", metavar="DIR", help="Where figures go; default: report/ beside your file."
-        ),
+        Path | None, option("--out -o DIR", "Where figures go; default: report/ beside your file.")
     ] = None,
     bag: Annotated[
-        Path | None,
-        typer.Option("--bag", metavar="DIR", help="Write the sensor streams as a ROS 2 bag (extra ros)."),
+        Path | None, option("--bag DIR", "Write the sensor streams as a ROS 2 bag (extra ros).")
     ] = None,
 ) -> int:
     """Show what your code does, with figures.

@@ -117,7 +117,7 @@ def check_file(console: Console, file: Path, exercise_id: str | None, *, verbose
         console.warn(warning)
     course = catalog.ref
     reply = checking.reply_to(course, verdict, f"course notebook check {file}")
-    console.emit(NotebookCheck(ok=reply.ok, exit_code=reply.exit_code, file=str(path), result=reply))
+    console.emit(NotebookCheck(exit_code=reply.exit_code, file=str(path), result=reply))
     return reply.exit_code
 
 
@@ -332,13 +332,7 @@ def _write(console: Console, catalog: Catalog, folder: Path, notebooks: Iterable
         new = "new or changed" if changed else "not changed"
     console.line((f"{count} in {folder}, {new}.", "bold"))
     console.note(f"Open them with: jupyter lab {folder}")
-    console.emit(
-        Notebook(
-            course=catalog.ref,
-            folder=str(folder),
-            files=tuple(files),
-        )
-    )
+    console.emit(Notebook(course=catalog.ref, folder=str(folder), files=tuple(files)))
     return 0
 
 

@@ -16,7 +16,7 @@ from course.cli.frame.completion import simulation_ids, simulation_settings
 from course.cli.frame.console import Console, current
 from course.cli.frame.options import argument, option
 from course.cli.frame.registry import group_of
-from course.cli.frame.replies import Envelope, WrittenFile
+from course.cli.frame.replies import Envelope, WrittenFile, filled
 from course.errors import UsageError
 from course.simulations.base import Result, Row, Simulation
 from course.simulations.registry import CHAPTER, SIMULATIONS, get
@@ -341,45 +341,22 @@ def _with_unit(text: str, unit: str) -> str:
 
 
 def _entry(simulation: Simulation) -> SimEntry:
-    return SimEntry(
-        id=simulation.id,
-        title=simulation.title,
-        question=simulation.question,
-        teaches=simulation.teaches,
-        parameters=tuple(
-            SimParameter(
-                name=p.name,
-                unit=p.unit,
-                default=p.default,
-                meaning=p.meaning,
-                low=None if p.choices else p.low,
-                high=None if p.choices else p.high,
-                above=p.above,
-                choices=p.choices,
-            )
-            for p in simulation.parameters
-        ),
+    parameters = tuple(
+        # Words have no ends.
+        filled(SimParameter, one, **({"low": None, "high": None} if one.choices else {}))
+        for one in simulation.parameters
     )
+    return filled(SimEntry, simulation, parameters=parameters)
 
 
 def _reply(simulation: Simulation, result: Result, plot: WrittenFile | None, csv: WrittenFile | None) -> Sim:
-    return Sim(
+    return filled(
+        Sim,
+        simulation,
+        result,
         simulation=simulation.id,
-        title=simulation.title,
-        question=simulation.question,
         settings={p.name: SimSetting(result.settings[p.name], p.unit) for p in simulation.parameters},
-        results=tuple(
-            SimRow(
-                quantity=row.quantity,
-                simulated=float(row.simulated),
-                theory=row.theory,
-                error=row.error,
-                unit=row.unit,
-                source=row.source,
-            )
-            for row in result.rows
-        ),
-        finding=result.finding,
+        results=tuple(filled(SimRow, row, simulated=float(row.simulated)) for row in result.rows),
         plot=plot,
         csv=csv,
     )

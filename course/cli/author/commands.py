@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Annotated
 
@@ -35,6 +35,7 @@ from course.cli.frame.console import Console, current, meter
 from course.cli.frame.here import load_catalog
 from course.cli.frame.options import argument, option
 from course.cli.frame.registry import COMMANDS, group_of
+from course.cli.frame.replies import filled
 from course.errors import ContentError, UsageError
 from course.progress.workspace import write_atomically
 from course.sandbox.scene.loading import scene_ids
@@ -86,27 +87,24 @@ def _emit_coverage(
     console: Console, table: Coverage, problems: tuple[AuditProblem, ...], written: str | None
 ) -> None:
     parts = [
-        CoverageRow(
-            section=section.title,
-            lines=part.lines,
-            kind=section.kind,
-            what=part.what,
-            word=part.word,
-            where=part.where,
-        )
+        filled(CoverageRow, part, section=section.title, kind=section.kind)
         for section in table.section
         for part in section.parts
     ]
     console.emit(
-        AuthorCoverage(
-            ok=not problems,
+        filled(
+            AuthorCoverage,
+            table,
             exit_code=1 if problems else 0,
-            source_lines=table.source_lines,
             parts=tuple(parts),
             written=written,
-            problems=tuple(AuthorProblem(p.file, p.line, p.code, p.message, p.fix) for p in problems),
+            problems=_replies(problems),
         )
     )
+
+
+def _replies(problems: Iterable[AuditProblem]) -> tuple[AuthorProblem, ...]:
+    return tuple(filled(AuthorProblem, one, help=one.fix) for one in problems)
 
 
 def is_command(words: tuple[str, ...]) -> bool:
@@ -340,19 +338,13 @@ def _emit_report(console: Console, catalog: Catalog, report: AuditReport) -> Non
     except ContentError:
         course = CourseRef(id="", version="")  # the syllabus itself is what is wrong, and is reported below
     console.emit(
-        AuthorCheck(
-            ok=report.ok,
+        filled(
+            AuthorCheck,
+            report,
             exit_code=0 if report.ok else 1,
             course=course,
-            lessons=report.lessons,
-            exercises=report.exercises,
-            questions=report.questions,
-            scenes=report.scenes,
-            checks=report.checks,
-            graded=report.graded,
-            isolation=report.isolation,
             seconds=round(report.seconds, 3),
-            problems=tuple(AuthorProblem(p.file, p.line, p.code, p.message, p.fix) for p in report.problems),
+            problems=_replies(report.problems),
         )
     )
 
@@ -459,7 +451,7 @@ def mutants(
     )
     if table is not None and ok:
         _write_table(console, catalog, table)
-    console.emit(AuthorMutants(ok=ok, exit_code=0 if ok else 1, mutants=tuple(rows)))
+    console.emit(AuthorMutants(exit_code=0 if ok else 1, mutants=tuple(rows)))
     return 0 if ok else 1
 
 
@@ -487,19 +479,8 @@ def _show_mutants(console: Console, exercise: Exercise, outcomes: tuple[MutantOu
 
 
 def _mutant_row(exercise: Exercise, outcome: MutantOutcome) -> MutantRow:
-    return MutantRow(
-        exercise=exercise.id,
-        file=outcome.mutant.file,
-        task=outcome.mutant.task,
-        misconception=outcome.mutant.misconception,
-        check=outcome.mutant.check,
-        diagnosis=outcome.diagnosis,
-        caught_by=outcome.caught_by,
-        lost=outcome.lost,
-        message=outcome.message,
-        help=outcome.help,
-        faults=tuple(fault.message for fault in outcome.faults),
-    )
+    faults = tuple(fault.message for fault in outcome.faults)
+    return filled(MutantRow, outcome, outcome.mutant, exercise=exercise.id, faults=faults)
 
 
 @app.command(epilog="Example: course author pack --solutions integrators -o solutions.coursepack")
@@ -522,14 +503,7 @@ def pack(
     for exercise_id, names in packed.items():
         console.item(exercise_id, ", ".join(names))
     console.note("A student puts it to use with `course solution`, after passing the exercise.")
-    console.emit(
-        AuthorPack(
-            course=catalog.ref,
-            output=str(output),
-            sha256=digest,
-            solutions=packed,
-        )
-    )
+    console.emit(AuthorPack(course=catalog.ref, output=str(output), sha256=digest, solutions=packed))
     return 0
 
 

@@ -23,8 +23,6 @@ from course.cli.frame.options import option
 from course.errors import InternalError
 from course.progress.workspace import write_atomically
 
-__all__ = ["PICTURES", "pictures"]
-
 #: The digests, beside the pictures.
 _MADE_FROM = "made-from.json"
 _COLUMNS = 84
@@ -59,7 +57,7 @@ def pictures(
         write_atomically(folder / _MADE_FROM, f"{json.dumps(known, indent=2)}\n".encode())
         console.line(f"Wrote {path}")
     ok = not (check and stale)
-    console.emit(AuthorPictures(ok=ok, exit_code=0 if ok else 1, stale=tuple(stale)))
+    console.emit(AuthorPictures(exit_code=0 if ok else 1, stale=tuple(stale)))
     return 0 if ok else 1
 
 

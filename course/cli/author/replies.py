@@ -7,19 +7,6 @@ import msgspec
 from course.catalog.models import CourseRef
 from course.cli.frame.replies import Envelope
 
-__all__ = [
-    "AuthorBuild",
-    "AuthorCheck",
-    "AuthorCoverage",
-    "AuthorMutants",
-    "AuthorNew",
-    "AuthorPack",
-    "AuthorPictures",
-    "AuthorProblem",
-    "CoverageRow",
-    "MutantRow",
-]
-
 
 class AuthorProblem(msgspec.Struct, frozen=True):
     """One thing that is wrong; ``code`` is a stable name of the broken rule."""

@@ -17,7 +17,7 @@ from course.cli.frame.console import Console, current, meter
 from course.cli.frame.here import inserted
 from course.cli.frame.options import option
 from course.cli.frame.registry import group_of
-from course.cli.frame.replies import Envelope, WrittenFile
+from course.cli.frame.replies import Envelope, WrittenFile, filled
 from course.engines.registry import ENGINES
 from course.engines.results import Comparison, EngineState
 from course.errors import MissingCapabilityError, UsageError
@@ -147,27 +147,12 @@ def rows(comparison: Comparison) -> tuple[EngineRow, ...]:
     for row in comparison.rows:
         scenario = SCENARIOS[row.scenario]
         made.append(
-            EngineRow(
-                engine=row.engine,
-                scenario=row.scenario,
-                setting=row.setting,
-                dt=row.dt,
-                status=row.status,
-                value=row.value,
-                truth=scenario.truth,
+            filled(
+                EngineRow,
+                row,
+                scenario,
                 error=None if row.value is None else scenario.error(row.value),
-                unit=scenario.unit,
                 best=id(row) in best,
-                message=row.message,
-                origin=row.origin,
-                measured=row.measured,
-                version=row.version,
-                options=row.options,
-                why=row.why,
-                samples=row.samples,
-                repeats=row.repeats,
-                spread=row.spread,
-                details=row.details,
             )
         )
     return tuple(made)
@@ -234,7 +219,7 @@ def list_engines() -> int:
     for scenario in SCENARIOS.values():
         console.item(scenario.id, f"{scenario.title}. {scenario.question}", width=15)
     console.note(("Next: course engines compare --quick", "bold"))
-    console.emit(EngineList(engines=tuple(map(_engine, states)), scenarios=_scenarios(SCENARIOS)))
+    console.emit(EngineList(engines=_engines(states), scenarios=_scenarios(SCENARIOS)))
     return 0
 
 
@@ -320,36 +305,14 @@ def _step(text: str) -> float:
     return step
 
 
-def _engine(state: EngineState) -> Engine:
-    return Engine(
-        id=state.id,
-        name=state.name,
-        package=state.package,
-        version=state.version,
-        extra=state.extra,
-        licence=state.licence,
-        about=state.about,
-        usable=state.usable,
-        missing=state.missing,
-        command=state.command,
-    )
+def _engines(states: Iterable[EngineState]) -> tuple[Engine, ...]:
+    return tuple(filled(Engine, state) for state in states)
 
 
 def _scenarios(ids: Iterable[str]) -> tuple[EngineScenario, ...]:
     from course.engines.scenarios import SCENARIOS
 
-    return tuple(
-        EngineScenario(
-            id=one.id,
-            title=one.title,
-            question=one.question,
-            quantity=one.quantity,
-            unit=one.unit,
-            truth=one.truth,
-            source=one.source,
-        )
-        for one in (SCENARIOS[name] for name in ids)
-    )
+    return tuple(filled(EngineScenario, SCENARIOS[name]) for name in ids)
 
 
 def _reply(
@@ -359,24 +322,13 @@ def _reply(
     plots: tuple[WrittenFile, ...],
     csv: WrittenFile | None,
 ) -> Engines:
-    here, shipped = comparison.machine, comparison.reference
-    reference = None
-    if shipped is not None:
-        there = shipped.machine
-        reference = EngineMachine(
-            cpu=there.cpu,
-            system=there.system,
-            cores=there.cores,
-            python=there.python,
-            measured=shipped.measured,
-        )
+    shipped = comparison.reference
     return Engines(
-        ok=code == 0,
         exit_code=code,
-        machine=EngineMachine(cpu=here.cpu, system=here.system, cores=here.cores, python=here.python),
-        reference=reference,
+        machine=filled(EngineMachine, comparison.machine),
+        reference=filled(EngineMachine, shipped, shipped.machine) if shipped else None,
         quick=comparison.quick,
-        engines=tuple(map(_engine, comparison.engines)),
+        engines=_engines(comparison.engines),
         scenarios=_scenarios(dict.fromkeys(row.scenario for row in comparison.rows)),
         rows=rows(comparison),
         findings=tuple(said),

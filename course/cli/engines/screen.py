@@ -10,8 +10,6 @@ from course.engines.registry import ENGINES
 from course.engines.results import DEFAULT, TUNED, Comparison, Row, Setting
 from course.engines.scenarios import BOXES, SCENARIOS, Scenario
 
-__all__ = ["best_rows", "number", "show"]
-
 _STATUS = {
     "not_installed": "not installed",
     "unavailable": "cannot start",

@@ -13,8 +13,6 @@ from typing import Any, cast
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-__all__ = ["COMMANDS", "GLOBAL_OPTIONS", "HOME", "Entry", "LazyGroup", "build", "find"]
-
 GLOBAL_OPTIONS = "Every command also takes --json, --plain, --quiet (-q) and -C DIR."
 
 _HELP_OPTIONS = {"help_option_names": ["-h", "--help"]}

@@ -7,25 +7,11 @@ version; renaming, removing or changing the meaning of one makes a new version.
 from __future__ import annotations
 
 import math
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 import msgspec
 
-__all__ = [
-    "Backup",
-    "Bare",
-    "Envelope",
-    "ErrorBody",
-    "ErrorReply",
-    "FileReply",
-    "Help",
-    "NextStep",
-    "Schema",
-    "Schemas",
-    "Version",
-    "WrittenFile",
-    "encode",
-]
+_Kind = TypeVar("_Kind", bound=msgspec.Struct)
 
 
 class NextStep(msgspec.Struct, frozen=True):
@@ -53,6 +39,10 @@ class Envelope(msgspec.Struct, frozen=True, kw_only=True, tag_field="schema"):
 
     ok: bool = True
     exit_code: int = 0
+
+    def __post_init__(self) -> None:
+        """``ok`` is "the exit code is 0" in every reply."""
+        msgspec.structs.force_setattr(self, "ok", self.exit_code == 0)
 
 
 class ErrorReply(msgspec.Struct, frozen=True, kw_only=True):
@@ -113,6 +103,22 @@ class WrittenFile(msgspec.Struct, frozen=True):
 
     path: str
     backup: Backup | None = None
+
+
+def filled(kind: type[_Kind], /, *sources: object, **given: Any) -> _Kind:
+    """A reply from the objects that it describes.
+
+    Args:
+        sources: a field is what the first of them has under the field's name, just as it is.
+        given: the fields that are called otherwise there, or are not there.
+    """
+    found = dict(given)
+    for name in kind.__struct_fields__:
+        for source in sources if name not in given else ():
+            if hasattr(source, name):
+                found[name] = getattr(source, name)
+                break
+    return kind(**found)
 
 
 def encode(body: msgspec.Struct) -> bytes:

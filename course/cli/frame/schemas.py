@@ -14,8 +14,6 @@ from course.cli.frame.registry import COMMANDS
 from course.cli.frame.replies import Bare, Envelope, ErrorReply, Schema, Schemas
 from course.errors import NotFoundError
 
-__all__ = ["NO_COMMAND", "reply_types", "schema", "schema_names", "schema_of", "schema_of_line"]
-
 #: The reply to a line without a known command: an error.
 NO_COMMAND = "course.error/1"
 

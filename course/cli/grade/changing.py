@@ -11,6 +11,7 @@ from course.cli.frame.completion import exercise_ids, student_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
 from course.cli.frame.options import argument, option
+from course.cli.frame.replies import filled
 from course.cli.grade.options import (
     Against,
     Exercises,
@@ -48,8 +49,6 @@ from course.grading.similar import Similar, page
 from course.printable import one_line
 from course.scoring.verdict import format_points, in_points
 
-__all__ = ["late", "override", "rerun", "similar"]
-
 _SHOWN = 20
 
 
@@ -85,19 +84,7 @@ def rerun(
         done = regrade(results, catalog, options, grade=partial(grade_all, graders=jobs))
     code = 70 if done.faults else 0
     if console.json:
-        console.emit(
-            GradeRerun(
-                ok=not code,
-                exit_code=code,
-                dry_run=dry_run,
-                regraded=done.regraded,
-                up_to_date=done.up_to_date,
-                kept=done.kept,
-                grader_error=done.faults,
-                changes=done.changes,
-                graders=done.graders,
-            )
-        )
+        console.emit(filled(GradeRerun, done, exit_code=code, dry_run=dry_run, grader_error=done.faults))
     else:
         _show_rerun(console, done, dry_run=dry_run)
     return code
@@ -302,15 +289,7 @@ def _everybody(results: Results) -> set[str]:
 def _late_one(item: Effective) -> LateOne:
     from course.cli.grade.replies import LateOne
 
-    return LateOne(
-        student=item.student,
-        exercise=item.exercise,
-        late=item.late,
-        penalty=item.penalty,
-        submitted_at=utc(item.submitted_at) or None,
-        witness=item.witness,
-        flagged_late=item.flagged_late,
-    )
+    return filled(LateOne, item, submitted_at=utc(item.submitted_at) or None)
 
 
 def _show_late(
@@ -362,22 +341,13 @@ def similar(
     write_bytes(target, page(found).encode("utf-8"))
     if console.json:
         pairs = tuple(
-            SimilarPair(
-                exercise=pair.exercise, first=pair.first.label, second=pair.second.label,
-                share=round(pair.share, 4), lines=pair.lines,
+            filled(
+                SimilarPair, one, first=one.first.label, second=one.second.label, share=round(one.share, 4)
             )
-            for pair in found.pairs
-        )  # fmt: skip
-        groups = tuple(
-            SimilarGroup(exercise=one.exercise, members=one.members, share=round(one.share, 4))
-            for one in found.groups
+            for one in found.pairs
         )
-        console.emit(
-            GradeSimilar(
-                compared=found.compared, pairs=pairs, groups=groups, unreadable=tuple(found.unreadable),
-                page=str(target),
-            )
-        )  # fmt: skip
+        groups = tuple(filled(SimilarGroup, one, share=round(one.share, 4)) for one in found.groups)
+        console.emit(filled(GradeSimilar, found, pairs=pairs, groups=groups, page=str(target)))
         return 0
     _show_similar(console, found)
     console.note(f"Side by side: {target}")

@@ -8,8 +8,6 @@ from course.cli.grade.export import export
 from course.cli.grade.running import explain, run
 from course.cli.grade.settling import assign, log, salvage
 
-__all__ = ["app"]
-
 app = group_of("Grade a class.")
 
 

@@ -8,6 +8,7 @@ from typing import Annotated
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, load_catalog
 from course.cli.frame.options import argument, option
+from course.cli.frame.replies import filled
 from course.cli.grade.options import Exercises, Missing, moved_scores, one_of, show_roster
 from course.errors import CourseError, UsageError
 from course.grading.container.packing import write_autograder
@@ -20,8 +21,6 @@ from course.grading.results.merge import Merged, merged
 from course.grading.results.roster import Roster, read_roster
 from course.printable import command, one_line
 from course.scoring.verdict import LARGEST_SEED
-
-__all__ = ["export"]
 
 _SHOWN = 20
 
@@ -174,19 +173,8 @@ def _show(console: Console, name: str, written: Written, out: Path | None, found
     if console.json:
         from course.cli.grade.replies import GradeExport
 
-        console.emit(
-            GradeExport(
-                format=name,
-                paths=tuple(map(str, written.paths)),
-                rows=written.rows,
-                unmatched=tuple(written.unmatched),
-                without_grade=tuple(written.without_grade),
-                kept=tuple(written.kept),
-                notes=tuple(written.notes),
-                moved=tuple(found.moved),
-                dropped=tuple(found.dropped),
-            )
-        )
+        paths = tuple(map(str, written.paths))
+        console.emit(filled(GradeExport, written, found, format=name, paths=paths))
         return
     if STDOUT in written.paths:  # what else there is to say must not get into the file
         for text in (

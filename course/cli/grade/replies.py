@@ -10,23 +10,6 @@ from course.grading.results.effective import ScoreChange
 from course.grading.running.rerun import Change
 from course.grading.running.run import Ungraded
 
-__all__ = [
-    "AssignedOne",
-    "FoundFile",
-    "GradeAssign",
-    "GradeExport",
-    "GradeLate",
-    "GradeLog",
-    "GradeRerun",
-    "GradeSalvage",
-    "GradeSimilar",
-    "GradeSummary",
-    "LateOne",
-    "SimilarGroup",
-    "SimilarPair",
-    "UnsettledOne",
-]
-
 
 class GradeSummary(Envelope, tag="course.grade-summary/1", frozen=True, kw_only=True):
     """The last line of ``grade run``: counts over the whole gradebook."""

@@ -15,6 +15,7 @@ from course.cli.frame.completion import exercise_ids, student_ids, submitted_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
 from course.cli.frame.options import argument, option
+from course.cli.frame.replies import filled
 from course.cli.grade.options import (
     Jobs,
     Layout,
@@ -42,8 +43,6 @@ from course.scoring.verdict import LARGEST_SEED, format_points, in_points
 
 if TYPE_CHECKING:
     from course.grading.running.run import GradeAll, RunOptions, Summary, Ungraded
-
-__all__ = ["checks_gave", "explain", "run", "score_of"]
 
 _MOST_TROUBLED = 20
 INTERRUPTED = 130
@@ -280,30 +279,18 @@ def _show_summary(
         from course.cli.grade.replies import GradeSummary
 
         console.emit_line(
-            GradeSummary(
-                ok=summary.exit_code == 0,
-                exit_code=summary.exit_code,
+            filled(
+                GradeSummary,
+                summary,
                 graded=summary.states["graded"],
                 ungradable=summary.states["ungradable"],
                 grader_error=summary.states["grader_error"],
-                passed=summary.passed,
-                not_submitted=summary.not_submitted,
-                missing=tuple(summary.missing),
-                strangers=tuple(summary.strangers),
                 already_graded=summary.already,
                 isolation=dict(summary.levels),
-                seed=summary.seed,
                 elapsed_s=round(summary.elapsed_s, 3),
                 out=str(out),
-                troubled=tuple(summary.troubled),
-                unrecognised=tuple(summary.unrecognised),
                 unjudged=tuple(_unjudged(summary)),
-                graders=summary.graders,
-                edited=tuple(summary.edited),
                 would_change=changes,
-                unsettled=summary.unsettled,
-                moved=tuple(summary.moved),
-                dropped=tuple(summary.dropped),
             )
         )
         return

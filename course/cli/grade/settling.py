@@ -10,6 +10,7 @@ from course.cli.frame.completion import exercise_ids, student_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
 from course.cli.frame.options import argument, option
+from course.cli.frame.replies import filled
 from course.cli.grade.options import Isolation, Jobs, Out, in_words, levels
 from course.cli.grade.replies import AssignedOne, UnsettledOne
 from course.errors import UsageError
@@ -21,8 +22,6 @@ from course.grading.results.effective import Results
 from course.grading.running.assign import Assigned, Unsettled
 from course.printable import command, one_line
 from course.scoring.verdict import format_points
-
-__all__ = ["assign", "log", "salvage"]
 
 _SHOWN = 200
 
@@ -89,9 +88,9 @@ def _assigned_one(item: Assigned) -> AssignedOne:
     from course.cli.grade.replies import AssignedOne
 
     one, before = item.assignment, item.before
-    return AssignedOne(
-        student=one.student,
-        exercise=one.exercise,
+    return filled(
+        AssignedOne,
+        one,
         file=one.name,
         score_before=before.score if before else None,
         score_after=item.after.score,
@@ -103,16 +102,8 @@ def _assigned_one(item: Assigned) -> AssignedOne:
 def _unsettled_one(item: Unsettled) -> UnsettledOne:
     from course.cli.grade.replies import FoundFile, UnsettledOne
 
-    files = tuple(
-        FoundFile(file=one.name, defines=one.defines, proposed=one.proposed) for one in item.found.candidates
-    )
-    return UnsettledOne(
-        student=item.student,
-        exercise=item.exercise,
-        reason=item.found.reason,
-        message=item.message,
-        files=files,
-    )
+    files = tuple(filled(FoundFile, one, file=one.name) for one in item.found.candidates)
+    return filled(UnsettledOne, item, reason=item.found.reason, files=files)
 
 
 def _show_assigned(console: Console, done: list[Assigned], *, dry_run: bool) -> None:
@@ -229,12 +220,7 @@ def salvage(
             folder.rmdir()
     code = 6 if told.lost else 0
     if console.json:
-        console.emit(
-            GradeSalvage(
-                ok=not code, exit_code=code, dry_run=dry_run, rows=dict(told.rows),
-                from_backup=dict(told.from_backup), lost=tuple(told.lost), out=str(to),
-            )
-        )  # fmt: skip
+        console.emit(filled(GradeSalvage, told, exit_code=code, dry_run=dry_run, out=str(to)))
         return code
     _show_salvaged(console, told, to, dry_run=dry_run)
     return code

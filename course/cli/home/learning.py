@@ -11,6 +11,7 @@ from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.cli.frame.console import Console
 from course.cli.frame.here import Here
+from course.cli.frame.replies import filled
 from course.cli.home.replies import (
     ExerciseState,
     MistakeState,
@@ -223,16 +224,7 @@ def _in_words(counts: PredictionsOf) -> str:
 
 
 def _counts(of: str, said: Sequence[RecordedPrediction]) -> PredictionsOf:
-    counted = tally(said)
-    return PredictionsOf(
-        of=of,
-        said=counted.said,
-        right=counted.right,
-        nearly=counted.nearly,
-        wrong=counted.wrong,
-        unjudged=counted.unjudged,
-        skipped=counted.skipped,
-    )
+    return filled(PredictionsOf, tally(said), of=of)
 
 
 def _looks_like(exercise: Exercise, code: str) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from course.catalog.models import Exercise, Lesson
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, find_workspace, load_catalog
-from course.cli.frame.replies import NextStep
+from course.cli.frame.replies import NextStep, filled
 from course.cli.home.advice import exercise_ahead, next_in_course
 from course.cli.home.learning import Learning, day, objective_states, show_learning, show_objectives
 from course.cli.home.replies import (
@@ -121,12 +121,9 @@ def warm_up_state(warm_up: Exercise, events: Sequence[Event] = (), started: bool
     """
     history = history_of(events)
     done = next((run for run in history.runs if run.all_pass and not run.only), None)
-    return WarmUpState(
-        id=warm_up.id,
-        title=warm_up.title,
-        summary=warm_up.summary,
-        lesson=warm_up.lesson,
-        minutes=warm_up.minutes,
+    return filled(
+        WarmUpState,
+        warm_up,
         state="done" if done else "started" if started or history.runs else "new",
         checks_run=len(history.runs),
         hints_shown=len(history.hints),
@@ -142,11 +139,9 @@ def exercise_state(here: Here, exercise: Exercise) -> ExerciseState:
     """How far the student is with one exercise; raises what reading the record raises."""
     history = here.history(exercise)
     graded, best, first_pass, last = history.last_graded, history.best, history.first_pass, history.last
-    return ExerciseState(
-        id=exercise.id,
-        title=exercise.title,
-        summary=exercise.summary,
-        lesson=exercise.lesson,
+    return filled(
+        ExerciseState,
+        exercise,
         number=exercise.number or None,
         state=_state(here, exercise, history),
         score=graded.score if graded else None,
@@ -182,14 +177,7 @@ def lesson_states(here: Here) -> tuple[LessonState, ...]:
 
 def lesson_state(lesson: Lesson, read_at: str | None) -> LessonState:
     """One lesson for a list."""
-    return LessonState(
-        id=lesson.id,
-        title=lesson.title,
-        summary=lesson.summary,
-        minutes=lesson.minutes,
-        exercises=lesson.exercises,
-        read_at=read_at,
-    )
+    return filled(LessonState, lesson, read_at=read_at)
 
 
 def _state(here: Here, exercise: Exercise, history: History) -> str:
@@ -376,11 +364,4 @@ def exercises() -> int:
 
 def _unknown(exercise: Exercise) -> ExerciseState:
     """An exercise outside of a workspace."""
-    return ExerciseState(
-        id=exercise.id,
-        title=exercise.title,
-        summary=exercise.summary,
-        lesson=exercise.lesson,
-        number=exercise.number or None,
-        state="new",
-    )
+    return filled(ExerciseState, exercise, number=exercise.number or None, state="new")

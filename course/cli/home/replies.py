@@ -7,24 +7,6 @@ import msgspec
 from course.catalog.models import CourseRef
 from course.cli.frame.replies import Envelope, NextStep
 
-__all__ = [
-    "ExerciseState",
-    "Exercises",
-    "Go",
-    "LessonState",
-    "MistakeState",
-    "Next",
-    "ObjectiveState",
-    "PredictionState",
-    "PredictionsOf",
-    "PredictionsState",
-    "Progress",
-    "QuizState",
-    "Revisit",
-    "Status",
-    "WarmUpState",
-]
-
 
 class ExerciseState(msgspec.Struct, frozen=True, kw_only=True):
     """One exercise and how far the student is. Scores are public points of the last and the best check."""

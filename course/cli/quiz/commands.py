@@ -31,8 +31,6 @@ from course.quizzing.attempt import MarkedQuestion, check_seed, mark, mark_sente
 from course.quizzing.bank import PosedQuestion
 from course.quizzing.desk import Due, finished, fits
 
-__all__ = ["app", "history", "review", "take"]
-
 INTERRUPTED = 130
 
 app = group_of("Answer the quiz, and review what was missed.")
@@ -167,7 +165,6 @@ def _finish(
         console.warn(warning)
     console.emit(
         Quiz(
-            ok=result.passed,
             exit_code=0 if result.passed else 1,
             course=desk.here.course,
             seed=attempt.seed,
@@ -270,7 +267,6 @@ def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence
         console.warn(warning)
     console.emit(
         QuizReview(
-            ok=not missed,
             exit_code=1 if missed else 0,
             course=desk.here.course,
             seed=seed,

@@ -12,7 +12,7 @@ import msgspec
 from course.catalog.models import CourseRef
 from course.cli.frame.console import Console
 from course.cli.frame.here import Here
-from course.cli.frame.replies import Envelope, NextStep
+from course.cli.frame.replies import Envelope, NextStep, filled
 from course.cli.home.learning import day
 from course.errors import CourseError
 from course.progress.quiz import Attempt, QuizHistory, quiz_history
@@ -325,34 +325,30 @@ def _template(posed: Sequence[PosedQuestion], seed: int) -> str:
 
 
 def _asked(posed: PosedQuestion) -> QuizAsked:
-    places = tuple(QuizPlace(choice.letter, choice.id, choice.text) for choice in posed.choices)
+    places = tuple(filled(QuizPlace, choice) for choice in posed.choices)
     return QuizAsked(posed.question, posed.title, posed.prompt, places)
 
 
 def question_reply(marked: MarkedQuestion) -> QuizQuestion:
     """An answered question as a script reads it."""
     posed = marked.posed
-    return QuizQuestion(
+    options = tuple(
+        filled(
+            QuizOption,
+            choice,
+            chosen=choice is marked.chosen,
+            misconception=choice.misconception or None,
+            belief=choice.belief or None,
+        )
+        for choice in posed.choices
+    )
+    return filled(
+        QuizQuestion,
+        marked,
+        posed,
         id=posed.question,
-        title=posed.title,
-        variant=posed.variant,
-        prompt=posed.prompt,
         answer=marked.chosen.id,
-        right=marked.right,
-        options=tuple(
-            QuizOption(
-                letter=choice.letter,
-                id=choice.id,
-                text=choice.text,
-                right=choice.right,
-                chosen=choice is marked.chosen,
-                explanation=choice.explanation,
-                misconception=choice.misconception or None,
-                belief=choice.belief or None,
-            )
-            for choice in posed.choices
-        ),
-        source=posed.source,
+        options=options,
         lesson=posed.lesson or None,
         read=posed.read or None,
     )

@@ -14,7 +14,7 @@ from course.cli.frame.completion import LessonName, WarmUpName
 from course.cli.frame.console import MAX_WIDTH, Console, current
 from course.cli.frame.here import Here, find_workspace, load_catalog
 from course.cli.frame.options import option
-from course.cli.frame.replies import Envelope, NextStep
+from course.cli.frame.replies import Envelope, NextStep, filled
 from course.cli.home.advice import next_in_course
 from course.cli.home.overview import warm_up_state, warm_up_states
 from course.cli.home.replies import LessonState, WarmUpState
@@ -142,16 +142,8 @@ def lesson(
 
 
 def _reply(chosen: Lesson, text: str, figures: tuple[str, ...] = (), step: str = "") -> LessonReply:
-    return LessonReply(
-        id=chosen.id,
-        title=chosen.title,
-        minutes=chosen.minutes,
-        objectives=chosen.objectives,
-        exercises=chosen.exercises,
-        text=text,
-        figures=figures,
-        next=NextStep(step) if step else None,
-    )
+    following = NextStep(step) if step else None
+    return filled(LessonReply, chosen, text=text, figures=figures, next=following)
 
 
 def _next_unread(here: Here | None, catalog: Catalog) -> str:

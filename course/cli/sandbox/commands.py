@@ -16,6 +16,7 @@ from course.cli.frame.here import cwd
 from course.cli.frame.here import target as target_file
 from course.cli.frame.options import argument, option
 from course.cli.frame.registry import group_of
+from course.cli.frame.replies import filled
 from course.cli.sandbox import play as sandbox_files
 from course.cli.sandbox import play as sandbox_play
 from course.cli.sandbox.play import (
@@ -32,8 +33,6 @@ from course.sandbox.scene.loading import choose, question, scenes, unchanged
 from course.sandbox.scene.loading import scene_ids as known_scenes
 from course.sandbox.scene.model import Scene
 from course.sandbox.scene.rules import SETTINGS
-
-__all__ = ["app", "export", "list_scenes", "play", "replay"]
 
 
 class _Scenes(TyperGroup):
@@ -171,16 +170,13 @@ def replay(
     )
     code = 0 if difference.same else 1
     console.emit(
-        SandboxReplay(
-            ok=code == 0,
+        filled(
+            SandboxReplay,
+            difference,
             exit_code=code,
             scene=recorded.head.scene.id,
-            same=difference.same,
             steps=recorded.ticks,
-            checked=difference.checked,
-            good_until=difference.good_until,
             first_difference=difference.tick,
-            t=difference.t,
             versions=versions,
         )
     )
@@ -271,26 +267,16 @@ def _entry(scene: Scene) -> SandboxEntry:
         "left": wheels.left if wheels else None,
         "right": wheels.right if wheels else None,
     }
-    parameters = [
-        SandboxParameter(
-            name=p.name, unit=p.unit, meaning=p.meaning, low=p.low, high=p.high, default=p.default
-        )
-        for p in scene.parameter
-    ]
+    parameters = [filled(SandboxParameter, one) for one in scene.parameter]
     parameters += [
-        SandboxParameter(
-            name=s.name, unit=s.unit, meaning=s.meaning, low=s.low, high=s.high, default=own.get(s.name)
-        )
-        for s in SETTINGS.values()
-        if wheels or s.name not in {"left", "right"}
+        filled(SandboxParameter, one, default=own.get(one.name))
+        for one in SETTINGS.values()
+        if wheels or one.name not in {"left", "right"}
     ]
-    return SandboxEntry(
-        id=scene.id,
-        title=scene.title,
-        teaches=scene.teaches,
+    return filled(
+        SandboxEntry,
+        scene,
         question=question(unchanged(scene)),
         note=" ".join(scene.note.split()),
-        after=scene.after,
-        duration=scene.duration,
         parameters=tuple(parameters),
     )

@@ -16,7 +16,7 @@ import msgspec
 from course.cli.frame import here
 from course.cli.frame.console import Console
 from course.cli.frame.here import Here, cwd, target
-from course.cli.frame.replies import Backup, Envelope
+from course.cli.frame.replies import Backup, Envelope, filled
 from course.errors import CourseError, MissingCapabilityError, UsageError
 from course.extras import require
 from course.sandbox.runs.recording import Film, Recording, ffmpeg
@@ -489,21 +489,16 @@ def _emit(
     scene = chosen.scene
     settings = {"step": scene.step, "iterations": float(scene.iterations), "seed": float(scene.seed)}
     console.emit(
-        Sandbox(
+        filled(
+            Sandbox,
+            done,
             scene=scene.id,
             title=scene.title,
-            duration=done.duration,
-            steps=done.steps,
             settings={**settings, **chosen.parameters, **chosen.settings},
-            receipt=done.receipt,
             momentum=SandboxMomentum(before=done.momentum_before, after=done.momentum_after),
-            probes=done.probes,
             prediction=done.comparison,
-            events=done.events,
-            dropped=done.dropped,
             description=told,
             after=scene.after,
-            state_hash=done.state_hash,
             versions=versions(),
             files=files,
         )

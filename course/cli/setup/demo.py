@@ -31,8 +31,6 @@ from course.scoring.verdict import Verdict
 if TYPE_CHECKING:
     import numpy as np
 
-__all__ = ["MISTAKEN", "WORKED", "demo", "worked_example"]
-
 #: The worked example, a folder beside the lessons; not an exercise.
 WORKED = "worked/spring"
 #: The same module with one line wrong.

@@ -24,6 +24,7 @@ from course.cli.frame import here
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, find_workspace, load_catalog
 from course.cli.frame.options import option
+from course.cli.frame.replies import filled
 from course.cli.setup.replies import Bug, Doctor, Fix, Package
 from course.errors import CourseError, MissingCapabilityError
 from course.extras import requirements
@@ -80,7 +81,6 @@ def doctor(
     code = 0 if complete else MissingCapabilityError.exit_code
     console.emit(
         Doctor(
-            ok=complete,
             exit_code=code,
             course=catalog.ref,
             python=platform.python_version(),
@@ -112,13 +112,8 @@ def packages() -> Iterable[Package]:
             installed = importlib.metadata.version(one.name)
         except importlib.metadata.PackageNotFoundError:
             installed = None
-        yield Package(
-            name=one.name,
-            requirement=one.text,
-            installed=installed,
-            ok=installed is not None and _satisfies(installed, one.versions),
-            group=one.group,
-        )
+        ok = installed is not None and _satisfies(installed, one.versions)
+        yield filled(Package, one, requirement=one.text, installed=installed, ok=ok)
 
 
 def _satisfies(installed: str, wanted: str) -> bool:

@@ -8,8 +8,6 @@ from course.catalog.models import CourseRef
 from course.cli.frame.replies import Envelope, NextStep, WrittenFile
 from course.cli.work.replies import Check
 
-__all__ = ["Bug", "Demo", "Doctor", "Fix", "Init", "Package"]
-
 
 class Demo(Envelope, tag="course.demo/2", frozen=True, kw_only=True):
     """A worked example with a mistake, and without it.

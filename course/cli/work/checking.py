@@ -11,7 +11,7 @@ from course.cli.frame.completion import ExerciseName, Verbose, check_ids, choice
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.options import option
-from course.cli.frame.replies import ErrorBody, ErrorReply, NextStep
+from course.cli.frame.replies import ErrorBody, ErrorReply, NextStep, filled
 from course.cli.home.advice import next_step
 from course.cli.work.chosen import StudentWork, asked_for, chosen_work, worked_on
 from course.cli.work.replies import Check, CheckAll, CurveReply
@@ -216,18 +216,12 @@ def reply_to(
         printed: the file's output while it was loaded.
         curves: of its failed checks.
     """
-    return Check(
-        ok=verdict.all_pass,
+    return filled(
+        Check,
+        verdict,
         exit_code=0 if verdict.all_pass else FAILED,
         course=course,
-        exercise=verdict.exercise,
-        scope=verdict.scope,
-        score=verdict.score,
-        max_score=verdict.max_score,
-        passed=verdict.passed,
-        checks=verdict.checks,
         next=NextStep(step) if step else None,
-        warnings=verdict.warnings,
         printed=printed,
         curves=curves,
     )
@@ -318,7 +312,7 @@ def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int
     console.line((f"{complete} of {len(results)} exercises pass every public check.", "bold"))
     for warning in dict.fromkeys(here.warnings):
         console.warn(warning)
-    console.emit(CheckAll(ok=worst == 0, exit_code=worst, results=tuple(results)))
+    console.emit(CheckAll(exit_code=worst, results=tuple(results)))
     return worst
 
 

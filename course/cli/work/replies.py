@@ -10,28 +10,6 @@ from course.catalog.models import CourseRef
 from course.cli.frame.replies import Backup, Envelope, FileReply, NextStep, WrittenFile
 from course.scoring.verdict import CheckResult
 
-__all__ = [
-    "Change",
-    "Check",
-    "CheckAll",
-    "CheckOrError",
-    "CurveReply",
-    "Diff",
-    "Hint",
-    "Reflect",
-    "ReflectPoint",
-    "ReportReply",
-    "Reset",
-    "SectionReply",
-    "Solution",
-    "Start",
-    "Submit",
-    "SubmitFile",
-    "Update",
-    "Watch",
-    "WatchRun",
-]
-
 
 class CurveReply(msgspec.Struct, frozen=True):
     """Two curves that a failed check compared over time, the student's and the right one; at most 200 points.

@@ -12,7 +12,7 @@ from course.cli.frame.completion import ExerciseName
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd
 from course.cli.frame.options import option
-from course.cli.frame.replies import WrittenFile
+from course.cli.frame.replies import WrittenFile, filled
 from course.cli.home.advice import after_report
 from course.cli.work.checking import report_source_file
 from course.cli.work.chosen import asked_for, chosen_work
@@ -57,13 +57,7 @@ def report(
     for warning in here.warnings:
         console.warn(warning)
     console.emit(
-        ReportReply(
-            course=here.course,
-            exercise=chosen.id,
-            title=made.title,
-            sections=sections,
-            bag=written,
-        )
+        filled(ReportReply, made, course=here.course, exercise=chosen.id, sections=sections, bag=written)
     )
     return 0
 
@@ -100,14 +94,8 @@ def _shown(console: Console, section: Section, path: Path) -> SectionReply:
     figure = None
     if section.plot is not None:
         figure = _drawn(console, section.plot, path)
-    return SectionReply(
-        title=section.title,
-        text=section.text,
-        columns=section.columns,
-        rows=section.rows,
-        figure=figure,
-        description=section.plot.description if section.plot else "",
-    )
+    description = section.plot.description if section.plot else ""
+    return filled(SectionReply, section, figure=figure, description=description)
 
 
 def _drawn(console: Console, plot: Plot, path: Path) -> WrittenFile:

@@ -11,17 +11,17 @@ from pathlib import Path
 from typing import Annotated
 
 import msgspec
-import typer
 
 from course.browser import invite
 from course.catalog.load import Catalog
 from course.catalog.models import CourseRef, Exercise
-from course.cli.frame.completion import choice_of, exercise_ids, notebook_ids
+from course.cli.frame.completion import Verbose, choice_of, exercise_ids, notebook_ids
 from course.cli.frame.console import (
     Console,
     current,
 )
 from course.cli.frame.here import cwd, find_workspace, here_or_outside, load_catalog, write
+from course.cli.frame.options import argument, option
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Backup, Envelope
 from course.cli.work.checking import reply_to
@@ -114,7 +114,7 @@ def check_file(console: Console, file: Path, exercise_id: str | None, *, verbose
     for warning in here.warnings if here else ():
         console.warn(warning)
     reply = reply_to(catalog.ref, made.verdict, f"course notebook check {file}")
-    console.emit(NotebookCheck(ok=reply.ok, exit_code=reply.exit_code, file=str(path), result=reply))
+    console.emit(NotebookCheck(exit_code=reply.exit_code, file=str(path), result=reply))
     return reply.exit_code
 
 
@@ -194,17 +194,10 @@ app = group(COMMANDS["notebook"].summary)
 FORMATS = ("jupyter", "nbgrader")
 Ids = Annotated[
     list[str] | None,
-    typer.Argument(
-        metavar="[ID]...",
-        help="Lessons, exercises, quiz or sandbox; everything if left out.",
-        autocompletion=notebook_ids,
-    ),
+    argument("[ID]...", "Lessons, exercises, quiz or sandbox; everything if left out.", notebook_ids),
 ]
 Out = Annotated[
-    Path | None,
-    typer.Option(
-        "--out", metavar="DIR", help="Where; if left out, the workspace, and outside of one notebooks/."
-    ),
+    Path | None, option("--out DIR", "Where; if left out, the workspace, and outside of one notebooks/.")
 ]
 
 
@@ -213,16 +206,10 @@ def build(
     ids: Ids = None,
     out: Out = None,
     executed: Annotated[
-        bool, typer.Option("--executed", help="Run each one first, so that it opens with its outputs.")
+        bool, option("--executed", "Run each one first, so that it opens with its outputs.")
     ] = False,
     form: Annotated[
-        str,
-        typer.Option(
-            "--format",
-            metavar="FORMAT",
-            help="jupyter, or nbgrader for an nbgrader site.",
-            autocompletion=choice_of(*FORMATS),
-        ),
+        str, option("--format FORMAT", "jupyter, or nbgrader for an nbgrader site.", choice_of(*FORMATS))
     ] = "jupyter",
 ) -> int:
     """Write notebooks.
@@ -269,19 +256,12 @@ def update(ids: Ids = None, out: Out = None) -> int:
 
 @app.command(epilog="Example: course notebook check integrators/integrators.ipynb")
 def check(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="A notebook with an exercise's functions.")],
+    file: Annotated[Path, argument("FILE", "A notebook with an exercise's functions.")],
     exercise: Annotated[
         str | None,
-        typer.Option(
-            "--exercise",
-            metavar="EXERCISE",
-            help="Which exercise, if the notebook does not say it.",
-            autocompletion=exercise_ids,
-        ),
+        option("--exercise EXERCISE", "Which exercise, if the notebook does not say it.", exercise_ids),
     ] = None,
-    verbose: Annotated[
-        bool, typer.Option("--verbose", "-v", help="Show tracebacks and all that your code printed.")
-    ] = False,
+    verbose: Verbose = False,
 ) -> int:
     """Run the public checks on a notebook.
 
@@ -344,13 +324,7 @@ def _write(console: Console, catalog: Catalog, folder: Path, notebooks: Iterable
         console.note(f"Open them with: {shlex.join(['jupyter', 'lab', str(folder)])}")
     else:
         console.note("Open them in any program for Jupyter notebooks; `course open` needs JupyterLab.")
-    console.emit(
-        Notebook(
-            course=catalog.ref,
-            folder=str(folder),
-            files=tuple(files),
-        )
-    )
+    console.emit(Notebook(course=catalog.ref, folder=str(folder), files=tuple(files)))
     return 0
 
 
@@ -377,15 +351,9 @@ def _sentence(folder: Path, file: NotebookFile) -> str:
 def open_notebook(
     wanted: Annotated[
         str | None,
-        typer.Argument(
-            metavar="[ID]",
-            help="A lesson, an exercise, quiz or sandbox; all of them if left out.",
-            autocompletion=notebook_ids,
-        ),
+        argument("[ID]", "A lesson, an exercise, quiz or sandbox; all of them if left out.", notebook_ids),
     ] = None,
-    no_browser: Annotated[
-        bool, typer.Option("--no-browser", help="Only print the address; nothing is opened.")
-    ] = False,
+    no_browser: Annotated[bool, option("--no-browser", "Only print the address; nothing is opened.")] = False,
 ) -> int:
     """Open one notebook in JupyterLab.
 

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import msgspec
-import typer
 
 from course.cli.frame import here
 from course.cli.frame.completion import simulation_ids, simulation_settings
 from course.cli.frame.console import Console, current
+from course.cli.frame.options import argument, option
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Envelope, WrittenFile, filled
 from course.errors import UsageError
@@ -159,10 +159,7 @@ INSIGHTS = (
 @app.command("list", epilog="Example: course sim list free-fall")
 def list_simulations(
     name: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="NAME", help="Only this one, with all its parameters.", autocompletion=simulation_ids
-        ),
+        str | None, argument("NAME", "Only this one, with all its parameters.", simulation_ids)
     ] = None,
 ) -> int:
     """List the simulations.
@@ -196,29 +193,15 @@ def _describe(console: Console, simulation: Simulation, *, whole: bool) -> None:
 
 @app.command(epilog="Example: course sim run free-fall --set height=20 --plot fall.png")
 def run(
-    name: Annotated[
-        str | None,
-        typer.Argument(metavar="NAME", help="See `course sim list`.", autocompletion=simulation_ids),
-    ] = None,
+    name: Annotated[str | None, argument("NAME", "See `course sim list`.", simulation_ids)] = None,
     everything: Annotated[
-        bool,
-        typer.Option("--all", help="Run the four of the introduction, in order, and say what they show."),
+        bool, option("--all", "Run the four of the introduction, in order, and say what they show.")
     ] = False,
     settings: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="Set a parameter; repeatable.",
-            autocompletion=simulation_settings,
-        ),
+        list[str] | None, option("--set KEY=VALUE", "Set a parameter; repeatable.", simulation_settings)
     ] = None,
-    plot: Annotated[
-        Path | None, typer.Option("--plot", metavar="FILE", help="Write the figure: .png, .svg or .pdf.")
-    ] = None,
-    csv: Annotated[
-        Path | None, typer.Option("--csv", metavar="FILE", help="Write every sample as a table.")
-    ] = None,
+    plot: Annotated[Path | None, option("--plot FILE", "Write the figure: .png, .svg or .pdf.")] = None,
+    csv: Annotated[Path | None, option("--csv FILE", "Write every sample as a table.")] = None,
 ) -> int:
     """Run a simulation, or the four of the introduction.
 
@@ -355,24 +338,22 @@ def _with_unit(text: str, unit: str) -> str:
 
 
 def _entry(simulation: Simulation) -> SimEntry:
-    return filled(
-        SimEntry,
-        simulation,
-        parameters=tuple(
-            filled(SimParameter, p, low=None if p.choices else p.low, high=None if p.choices else p.high)
-            for p in simulation.parameters
-        ),
+    parameters = tuple(
+        # Words have no ends.
+        filled(SimParameter, one, **({"low": None, "high": None} if one.choices else {}))
+        for one in simulation.parameters
     )
+    return filled(SimEntry, simulation, parameters=parameters)
 
 
 def _reply(simulation: Simulation, result: Result, plot: WrittenFile | None, csv: WrittenFile | None) -> Sim:
-    return Sim(
+    return filled(
+        Sim,
+        simulation,
+        result,
         simulation=simulation.id,
-        title=simulation.title,
-        question=simulation.question,
         settings={p.name: SimSetting(result.settings[p.name], p.unit) for p in simulation.parameters},
         results=tuple(filled(SimRow, row, simulated=float(row.simulated)) for row in result.rows),
-        finding=result.finding,
         plot=plot,
         csv=csv,
     )

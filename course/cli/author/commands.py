@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Annotated
 
@@ -34,6 +34,7 @@ from course.cli.author.trying import refused
 from course.cli.frame import here
 from course.cli.frame.completion import exercise_ids, lesson_ids
 from course.cli.frame.console import Console, current, meter
+from course.cli.frame.options import argument, option
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import filled
 from course.errors import ContentError, UsageError
@@ -48,7 +49,7 @@ from course.simulations.registry import SIMULATIONS
 
 
 def coverage(
-    write: Annotated[bool, typer.Option("--write", help="Write docs/coverage.md again.")] = False,
+    write: Annotated[bool, option("--write", "Write docs/coverage.md again.")] = False,
 ) -> int:
     """Show where the course covers each part of the chapter that it is based on.
 
@@ -93,15 +94,19 @@ def _emit_coverage(
         for part in section.parts
     ]
     console.emit(
-        AuthorCoverage(
-            ok=not problems,
+        filled(
+            AuthorCoverage,
+            table,
             exit_code=1 if problems else 0,
-            source_lines=table.source_lines,
             parts=tuple(parts),
             written=written,
-            problems=tuple(AuthorProblem(p.file, p.line, p.code, p.message, p.fix) for p in problems),
+            problems=_replies(problems),
         )
     )
+
+
+def _replies(problems: Iterable[AuditProblem]) -> tuple[AuthorProblem, ...]:
+    return tuple(filled(AuthorProblem, one, help=one.fix) for one in problems)
 
 
 def is_command(words: tuple[str, ...]) -> bool:
@@ -160,31 +165,24 @@ def _any_id(incomplete: str) -> list[str]:
     return [*lesson_ids(incomplete), *exercise_ids(incomplete), *scenes]
 
 
+_EachExercise = Annotated[str | None, argument("ID", "An exercise; all of them if left out.", exercise_ids)]
+_NewId = Annotated[str, argument("ID", "Lower-case words joined by hyphens.")]
 #: Options of new content with functions, given before its files are written.
 _Functions = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--function", metavar="'NAME(ARGUMENTS)'", help="A function for students to write; repeatable."
-    ),
+    list[str] | None, option("--function 'NAME(ARGUMENTS)'", "A function for students to write; repeatable.")
 ]
-_Title = Annotated[str, typer.Option("--title", metavar="WORDS", help="Its title, for readers.")]
-_Summary = Annotated[str, typer.Option("--summary", metavar="WORDS", help="One line for lists.")]
+_Title = Annotated[str, option("--title WORDS", "Its title, for readers.")]
+_Summary = Annotated[str, option("--summary WORDS", "One line for lists.")]
 
 
 @_new.command("exercise", epilog="Example: course author new exercise pendulum-clock")
 def new_exercise(
-    name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
+    name: _NewId,
     function: _Functions = None,
     title: _Title = "",
     summary: _Summary = "",
     lesson: Annotated[
-        str,
-        typer.Option(
-            "--lesson",
-            metavar="ID",
-            help="The lesson to read first; the last one if left out.",
-            autocompletion=lesson_ids,
-        ),
+        str, option("--lesson ID", "The lesson to read first; the last one if left out.", lesson_ids)
     ] = "",
 ) -> int:
     """Write an exercise with blanks to fill in.
@@ -198,11 +196,8 @@ def new_exercise(
 
 @_new.command("warmup", epilog="Example: course author new warmup swing --lesson engines")
 def new_warm_up(
-    name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
-    lesson: Annotated[
-        str,
-        typer.Option("--lesson", metavar="ID", help="The lesson it belongs to.", autocompletion=lesson_ids),
-    ],
+    name: _NewId,
+    lesson: Annotated[str, option("--lesson ID", "The lesson it belongs to.", lesson_ids)],
     function: _Functions = None,
     title: _Title = "",
     summary: _Summary = "",
@@ -248,9 +243,7 @@ def _ask_functions(console: Console) -> Iterator[scaffold.Function]:
 
 
 @_new.command("lesson", epilog="Example: course author new lesson contact-forces")
-def new_lesson(
-    name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
-) -> int:
+def new_lesson(name: _NewId) -> int:
     """Write a lesson with blanks to fill in.
 
     Nothing is overwritten. Put its id into syllabus.toml at the place where students should read it.
@@ -261,9 +254,7 @@ def new_lesson(
 
 
 @_new.command("question", epilog="Example: course author new question contact-forces")
-def new_question(
-    name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
-) -> int:
+def new_question(name: _NewId) -> int:
     """Write a quiz question with blanks to fill in.
 
     Nothing is overwritten. It has four variants, each with one right option and three wrong ones.
@@ -274,9 +265,7 @@ def new_question(
 
 
 @_new.command("scene", epilog="Example: course author new scene bouncing-ball")
-def new_scene(
-    name: Annotated[str, typer.Argument(metavar="ID", help="Lower-case words joined by hyphens.")],
-) -> int:
+def new_scene(name: _NewId) -> int:
     """Write a sandbox scene that runs, with blanks to fill in.
 
     Nothing is overwritten. Play it with `course sandbox play ID`.
@@ -306,11 +295,7 @@ def _report_new(catalog: Catalog, kind: str, name: str, files: tuple[Path, ...])
 def check(
     name: Annotated[
         str | None,
-        typer.Argument(
-            metavar="ID",
-            help="A lesson, an exercise, a question or a scene; everything if left out.",
-            autocompletion=_any_id,
-        ),
+        argument("ID", "A lesson, an exercise, a question or a scene; everything if left out.", _any_id),
     ] = None,
 ) -> int:
     """Prove that the course is right.
@@ -369,26 +354,19 @@ def _emit_report(console: Console, catalog: Catalog, report: AuditReport) -> Non
         filled(
             AuthorCheck,
             report,
-            ok=report.ok,
             exit_code=0 if report.ok else 1,
             course=course,
             seconds=round(report.seconds, 3),
-            problems=tuple(AuthorProblem(p.file, p.line, p.code, p.message, p.fix) for p in report.problems),
+            problems=_replies(report.problems),
         )
     )
 
 
 @app.command(epilog="Example: course author build collisions")
 def build(
-    name: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="ID", help="An exercise; all of them if left out.", autocompletion=exercise_ids
-        ),
-    ] = None,
+    name: _EachExercise = None,
     confusion: Annotated[
-        bool,
-        typer.Option("--confusion", help="Grade every wrong program too; takes minutes."),
+        bool, option("--confusion", "Grade every wrong program too; takes minutes.")
     ] = False,
 ) -> int:
     """Generate the files that follow from an exercise's sources.
@@ -456,12 +434,7 @@ def _say_blanks(catalog: Catalog, exercise: Exercise) -> None:
 
 @app.command(epilog="Example: course author mutants integrators")
 def mutants(
-    name: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="ID", help="An exercise; all of them if left out.", autocompletion=exercise_ids
-        ),
-    ] = None,
+    name: _EachExercise = None,
 ) -> int:
     """Show the feedback for each wrong solution.
 
@@ -484,7 +457,7 @@ def mutants(
         f"{counted(len(rows), 'mutant')}: "
         + ("each is caught as it says." if ok else f"{wrong} not caught as they should be.")
     )
-    console.emit(AuthorMutants(ok=ok, exit_code=0 if ok else 1, mutants=tuple(rows)))
+    console.emit(AuthorMutants(exit_code=0 if ok else 1, mutants=tuple(rows)))
     return 0 if ok else 1
 
 
@@ -506,31 +479,15 @@ def _show_mutants(console: Console, exercise: Exercise, outcomes: tuple[MutantOu
 
 
 def _mutant_row(exercise: Exercise, outcome: MutantOutcome) -> MutantRow:
-    return filled(
-        MutantRow,
-        outcome,
-        exercise=exercise.id,
-        file=outcome.mutant.file,
-        task=outcome.mutant.task,
-        misconception=outcome.mutant.misconception,
-        check=outcome.mutant.check,
-        faults=tuple(fault.message for fault in outcome.faults),
-    )
+    faults = tuple(fault.message for fault in outcome.faults)
+    return filled(MutantRow, outcome, outcome.mutant, exercise=exercise.id, faults=faults)
 
 
 @app.command(epilog="Example: course author pack --solutions integrators -o solutions.coursepack")
 def pack(
-    solutions: Annotated[
-        list[str],
-        typer.Option(
-            "--solutions", metavar="EXERCISE", help="Pack its solution.", autocompletion=exercise_ids
-        ),
-    ],
-    output: Annotated[Path, typer.Option("-o", "--output", metavar="FILE", help="What to write.")],
-    more: Annotated[
-        list[str] | None,
-        typer.Argument(metavar="[EXERCISE]...", help="More exercises.", autocompletion=exercise_ids),
-    ] = None,
+    solutions: Annotated[list[str], option("--solutions EXERCISE", "Pack its solution.", exercise_ids)],
+    output: Annotated[Path, option("-o --output FILE", "What to write.")],
+    more: Annotated[list[str] | None, argument("[EXERCISE]...", "More exercises.", exercise_ids)] = None,
 ) -> int:
     """Write the file that hands out solutions after the deadline.
 
@@ -546,14 +503,7 @@ def pack(
     for exercise_id, names in packed.items():
         console.item(exercise_id, ", ".join(names))
     console.note("A student puts it to use with `course solution`, after passing the exercise.")
-    console.emit(
-        AuthorPack(
-            course=catalog.ref,
-            output=str(output),
-            sha256=digest,
-            solutions=packed,
-        )
-    )
+    console.emit(AuthorPack(course=catalog.ref, output=str(output), sha256=digest, solutions=packed))
     return 0
 
 

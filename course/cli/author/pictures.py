@@ -16,11 +16,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from course.cli.author.replies import AuthorPictures
 from course.cli.frame.console import current
 from course.cli.frame.here import load_catalog
+from course.cli.frame.options import argument, option
 from course.errors import InternalError, UsageError
 from course.progress.workspace import write_atomically
 
@@ -34,12 +33,9 @@ _EVERY, _DECIMALS = 0.25, 3
 
 def pictures(
     figure: Annotated[
-        list[str] | None,
-        typer.Argument(metavar="[FIGURE]...", help="Keep how these figures of lessons look now, instead."),
+        list[str] | None, argument("[FIGURE]...", "Keep how these figures of lessons look now, instead.")
     ] = None,
-    check: Annotated[
-        bool, typer.Option("--check", help="Write nothing; exit code 1 if a picture is stale.")
-    ] = False,
+    check: Annotated[bool, option("--check", "Write nothing; exit code 1 if a picture is stale.")] = False,
 ) -> int:
     """Make the README's pictures, or keep how figures look.
 
@@ -69,7 +65,7 @@ def pictures(
         write_atomically(folder / _MADE_FROM, f"{json.dumps(known, indent=2)}\n".encode())
         console.line(f"Wrote {path}")
     ok = not (check and stale)
-    console.emit(AuthorPictures(ok=ok, exit_code=0 if ok else 1, stale=tuple(stale)))
+    console.emit(AuthorPictures(exit_code=0 if ok else 1, stale=tuple(stale)))
     return 0 if ok else 1
 
 

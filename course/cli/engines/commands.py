@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import msgspec
-import typer
 
 from course.cli.frame import here
 from course.cli.frame.completion import engine_ids, scenario_ids
 from course.cli.frame.console import Console, current, meter
 from course.cli.frame.here import inserted
+from course.cli.frame.options import option
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Envelope, WrittenFile, filled
 from course.engines.registry import ENGINES
@@ -150,9 +150,8 @@ def rows(comparison: Comparison) -> tuple[EngineRow, ...]:
             filled(
                 EngineRow,
                 row,
-                truth=scenario.truth,
+                scenario,
                 error=None if row.value is None else scenario.error(row.value),
-                unit=scenario.unit,
                 best=id(row) in best,
             )
         )
@@ -217,37 +216,26 @@ def list_engines() -> int:
     for scenario in SCENARIOS.values():
         console.item(scenario.id, f"{scenario.title}. {scenario.question}", width=15)
     console.note(("Next: course engines compare --quick", "bold"))
-    console.emit(EngineList(engines=tuple(map(_engine, states)), scenarios=_scenarios(SCENARIOS)))
+    console.emit(EngineList(engines=_engines(states), scenarios=_scenarios(SCENARIOS)))
     return 0
 
 
 @app.command(epilog="Example: course engines compare --engine mujoco --engine ode --scenario bounce --quick")
 def compare(
     engine: Annotated[
-        list[str] | None,
-        typer.Option("--engine", metavar="E", help="Only this one; repeatable.", autocompletion=engine_ids),
+        list[str] | None, option("--engine E", "Only this one; repeatable.", engine_ids)
     ] = None,
     scenario: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--scenario", metavar="S", help="Only this one; repeatable.", autocompletion=scenario_ids
-        ),
+        list[str] | None, option("--scenario S", "Only this one; repeatable.", scenario_ids)
     ] = None,
-    dt: Annotated[
-        list[str] | None,
-        typer.Option("--dt", metavar="STEP", help="Step in s, as 0.005 or 1/240; repeatable."),
-    ] = None,
+    dt: Annotated[list[str] | None, option("--dt STEP", "Step in s, as 0.005 or 1/240; repeatable.")] = None,
     repeat: Annotated[
-        int, typer.Option("--repeat", min=1, max=100, help="Repeat each measurement; show the spread.")
+        int, option("--repeat", "Repeat each measurement; show the spread.", min=1, max=100)
     ] = 1,
-    quick: Annotated[bool, typer.Option("--quick", help="Fewer starts, steps and repetitions.")] = False,
-    fresh: Annotated[bool, typer.Option("--fresh", help="Measure again; use no stored results.")] = False,
-    plot: Annotated[
-        Path | None, typer.Option("--plot", metavar="FILE", help="Write the figures: .png, .svg or .pdf.")
-    ] = None,
-    csv: Annotated[
-        Path | None, typer.Option("--csv", metavar="FILE", help="Write every number as a table.")
-    ] = None,
+    quick: Annotated[bool, option("--quick", "Fewer starts, steps and repetitions.")] = False,
+    fresh: Annotated[bool, option("--fresh", "Measure again; use no stored results.")] = False,
+    plot: Annotated[Path | None, option("--plot FILE", "Write the figures: .png, .svg or .pdf.")] = None,
+    csv: Annotated[Path | None, option("--csv FILE", "Write every number as a table.")] = None,
 ) -> int:
     """Run the same scenarios through every installed engine.
 
@@ -314,14 +302,14 @@ def _step(text: str) -> float:
     return step
 
 
-def _engine(state: EngineState) -> Engine:
-    return filled(Engine, state)
+def _engines(states: Iterable[EngineState]) -> tuple[Engine, ...]:
+    return tuple(filled(Engine, state) for state in states)
 
 
 def _scenarios(ids: Iterable[str]) -> tuple[EngineScenario, ...]:
     from course.engines.scenarios import SCENARIOS
 
-    return tuple(filled(EngineScenario, one) for one in (SCENARIOS[name] for name in ids))
+    return tuple(filled(EngineScenario, SCENARIOS[name]) for name in ids)
 
 
 def _reply(
@@ -331,24 +319,13 @@ def _reply(
     plots: tuple[WrittenFile, ...],
     csv: WrittenFile | None,
 ) -> Engines:
-    here, shipped = comparison.machine, comparison.reference
-    reference = None
-    if shipped is not None:
-        there = shipped.machine
-        reference = EngineMachine(
-            cpu=there.cpu,
-            system=there.system,
-            cores=there.cores,
-            python=there.python,
-            measured=shipped.measured,
-        )
+    shipped = comparison.reference
     return Engines(
-        ok=code == 0,
         exit_code=code,
-        machine=EngineMachine(cpu=here.cpu, system=here.system, cores=here.cores, python=here.python),
-        reference=reference,
+        machine=filled(EngineMachine, comparison.machine),
+        reference=filled(EngineMachine, shipped, shipped.machine) if shipped else None,
         quick=comparison.quick,
-        engines=tuple(map(_engine, comparison.engines)),
+        engines=_engines(comparison.engines),
         scenarios=_scenarios(dict.fromkeys(row.scenario for row in comparison.rows)),
         rows=rows(comparison),
         findings=tuple(said),

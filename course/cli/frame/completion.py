@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import ast
+import importlib
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Annotated, Any
 
-import typer
+from course.cli.frame.options import argument, option
+from course.errors import CourseError
+from course.ids import WARM_UPS
 
 
 def choice_of(*values: str) -> Callable[[str], list[str]]:
@@ -21,61 +24,33 @@ def choice_of(*values: str) -> Callable[[str], list[str]]:
 
 def exercise_ids(incomplete: str) -> list[str]:
     """Exercises and warm-ups whose id begins with what was typed."""
-    from course.catalog.locate import content
-    from course.errors import CourseError
-
-    try:
-        folders = list(content().exercises.iterdir())
-    except (CourseError, OSError):
-        return []
-    names = (folder.name for folder in folders if (folder / "exercise.toml").is_file())
-    return _beginning(incomplete, (*names, *warm_up_ids("")))
+    found = _in_content("exercises", "*/exercise.toml")
+    return _beginning(incomplete, (*(file.parent.name for file in found), *warm_up_ids("")))
 
 
 def warm_up_ids(incomplete: str) -> list[str]:
     """Warm-ups whose id begins with what was typed."""
-    from course.catalog.locate import content
-    from course.errors import CourseError
-    from course.ids import WARM_UPS
-
-    try:
-        folders = list((content().exercises / WARM_UPS).iterdir())
-    except (CourseError, OSError):
-        return []
-    return _beginning(incomplete, (folder.name for folder in folders))
+    return _beginning(incomplete, (folder.name for folder in _in_content("exercises", f"{WARM_UPS}/*")))
 
 
 def lesson_ids(incomplete: str) -> list[str]:
     """Lessons whose id begins with what was typed."""
-    from course.catalog.locate import content
-    from course.errors import CourseError
-
-    try:
-        files = list(content().lessons.glob("*.md"))
-    except (CourseError, OSError):
-        return []
-    return _beginning(incomplete, (file.stem for file in files))
+    return _beginning(incomplete, (file.stem for file in _in_content("lessons", "*.md")))
 
 
-def simulation_ids(incomplete: str) -> list[str]:
-    """Simulations whose id begins with what was typed."""
-    from course.simulations.registry import SIMULATIONS
+def _key_of(module: str, table: str) -> Callable[[str], list[str]]:
+    """Completes a key of a table in a module, which is imported when something is completed."""
 
-    return _beginning(incomplete, SIMULATIONS)
+    def complete(incomplete: str) -> list[str]:
+        return _beginning(incomplete, getattr(importlib.import_module(module), table))
 
-
-def engine_ids(incomplete: str) -> list[str]:
-    """Physics engines whose id begins with what was typed."""
-    from course.engines.registry import ENGINES
-
-    return _beginning(incomplete, ENGINES)
+    return complete
 
 
-def scenario_ids(incomplete: str) -> list[str]:
-    """Scenarios of the engine comparison whose id begins with what was typed."""
-    from course.engines.scenarios import SCENARIOS
-
-    return _beginning(incomplete, SCENARIOS)
+simulation_ids = _key_of("course.simulations.registry", "SIMULATIONS")
+engine_ids = _key_of("course.engines.registry", "ENGINES")
+#: Of the engine comparison.
+scenario_ids = _key_of("course.engines.scenarios", "SCENARIOS")
 
 
 def scene_ids(incomplete: str) -> list[str]:
@@ -184,14 +159,17 @@ def _given(ctx: Any, name: str) -> str:
 
 def _of_exercises(ctx: Any, name: str) -> list[Path]:
     """A file of the exercise on the line, or of every exercise where none is named."""
-    from course.catalog.locate import content
-    from course.errors import CourseError
-    from course.ids import WARM_UPS
-
     wanted = _given(ctx, "exercise") or "*"
+    return _in_content("exercises", f"{wanted}/{name}", f"{WARM_UPS}/{wanted}/{name}")
+
+
+def _in_content(folder: str, *patterns: str) -> list[Path]:
+    """Files and folders of the course's content; none where it cannot be found."""
+    from course.catalog.locate import content
+
     try:
-        folder = content().exercises
-        return sorted((*folder.glob(f"{wanted}/{name}"), *folder.glob(f"{WARM_UPS}/{wanted}/{name}")))
+        root: Path = getattr(content(), folder)
+        return sorted(path for pattern in patterns for path in root.glob(pattern))
     except (CourseError, OSError, ValueError):
         return []
 
@@ -207,36 +185,30 @@ def grade_lists(incomplete: str) -> list[str]:
 
 
 # ---
-# Arguments that several commands share.
+# Arguments and options that several commands share.
 
 
 #: An exercise, or the one the folder is of, or the one last worked on; or the path of its file.
 ExerciseName = Annotated[
     str | None,
-    typer.Argument(
-        metavar="EXERCISE",
-        help="Its id, its number, or its file; the one last worked on if left out.",
-        autocompletion=exercise_ids,
+    argument(
+        "EXERCISE", "Its id, its number, or its file; the one last worked on if left out.", exercise_ids
     ),
 ]
 
 #: An exercise that must be named.
-OneExercise = Annotated[
-    str, typer.Argument(metavar="EXERCISE", help="Its id or its number.", autocompletion=exercise_ids)
-]
+OneExercise = Annotated[str, argument("EXERCISE", "Its id or its number.", exercise_ids)]
 
 #: A lesson, or the next unread one.
 LessonName = Annotated[
     str | None,
-    typer.Argument(
-        metavar="ID",
-        help="Its id or its number, and perhaps #SECTION; the next unread one if left out.",
-        autocompletion=lesson_ids,
+    argument(
+        "ID", "Its id or its number, and perhaps #SECTION; the next unread one if left out.", lesson_ids
     ),
 ]
 
 #: A warm-up, or all of them.
-WarmUpName = Annotated[
-    str | None,
-    typer.Argument(metavar="ID", help="Its id; a list of all if left out.", autocompletion=warm_up_ids),
-]
+WarmUpName = Annotated[str | None, argument("ID", "Its id; a list of all if left out.", warm_up_ids)]
+
+#: What a verdict hides.
+Verbose = Annotated[bool, option("--verbose -v", "Show tracebacks and all that your code printed.")]

@@ -1,4 +1,4 @@
-"""The global options, which may stand anywhere on the line.
+"""The global options, which may stand anywhere on the line, and how a command declares its own.
 
 Parsers of sub-commands know only their own options, so these are taken out of the arguments first. ``--``
 ends the search: what follows it is data.
@@ -8,6 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
+
+import typer
 
 from course.cli.frame.console import Settings
 
@@ -68,3 +71,23 @@ def _below(first: str | None, second: str) -> str:
     from pathlib import Path
 
     return second if first is None else str(Path(first) / second)
+
+
+# ---
+# How a command declares its arguments and options.
+
+
+def argument(value: str, help: str | None = None, complete: Any = None) -> Any:  # noqa: A002 - typer's name
+    """An argument: what its value is called, what it is, and what the shell offers."""
+    return typer.Argument(metavar=value, help=help, autocompletion=complete)
+
+
+def option(names: str, help: str | None = None, complete: Any = None, **limits: Any) -> Any:  # noqa: A002
+    """An option: its names and what its value is called, as in "-o --output FILE"; the rest as above.
+
+    Args:
+        limits: what else typer knows of a value, such as the least that it may be.
+    """
+    named = [word for word in names.split() if word.startswith("-")]
+    value = " ".join(names.split()[len(named) :]) or None
+    return typer.Option(*named, metavar=value, help=help, autocompletion=complete, **limits)

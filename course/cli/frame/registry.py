@@ -18,6 +18,8 @@ from course.errors import CourseError, UsageError
 
 GLOBAL_OPTIONS = "Every command also takes --json, --plain, --quiet (-q) and -C DIR."
 
+_HELP_OPTIONS = {"help_option_names": ["-h", "--help"]}
+
 LEARN = "Learn"
 PRACTISE = "Practise"
 PLAY = "Play"

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, TypeVar
 
 import msgspec
 
-Filled = TypeVar("Filled", bound=msgspec.Struct)
+_Kind = TypeVar("_Kind", bound=msgspec.Struct)
 
 
 class NextStep(msgspec.Struct, frozen=True):
@@ -39,6 +39,10 @@ class Envelope(msgspec.Struct, frozen=True, kw_only=True, tag_field="schema"):
 
     ok: bool = True
     exit_code: int = 0
+
+    def __post_init__(self) -> None:
+        """``ok`` is "the exit code is 0" in every reply."""
+        msgspec.structs.force_setattr(self, "ok", self.exit_code == 0)
 
 
 class ErrorReply(msgspec.Struct, frozen=True, kw_only=True):
@@ -101,10 +105,20 @@ class WrittenFile(msgspec.Struct, frozen=True):
     backup: Backup | None = None
 
 
-def filled(kind: type[Filled], source: object, /, **given: Any) -> Filled:
-    """A reply whose fields are those of another object of the same names, but for those that are given."""
-    own = {*kind.__struct_fields__} - {*Envelope.__struct_fields__, *given}
-    return kind(**{name: getattr(source, name) for name in own if hasattr(source, name)}, **given)
+def filled(kind: type[_Kind], /, *sources: object, **given: Any) -> _Kind:
+    """A reply from the objects that it describes.
+
+    Args:
+        sources: a field is what the first of them has under the field's name, just as it is.
+        given: the fields that are called otherwise there, or are not there.
+    """
+    found = dict(given)
+    for name in kind.__struct_fields__:
+        for source in sources if name not in given else ():
+            if hasattr(source, name):
+                found[name] = getattr(source, name)
+                break
+    return kind(**found)
 
 
 def encode(body: msgspec.Struct) -> bytes:

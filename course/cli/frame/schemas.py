@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import msgspec
-import typer
 
 from course.cli.frame.console import current
-from course.cli.frame.options import Line
+from course.cli.frame.options import Line, argument
 from course.cli.frame.registry import COMMANDS
 from course.cli.frame.replies import Bare, Envelope, ErrorReply, Schema, Schemas
 from course.errors import NotFoundError
@@ -30,10 +29,7 @@ def schema_names(incomplete: str) -> list[str]:
 
 def schema(
     name: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="NAME", help="Of a reply; the list of them if left out.", autocompletion=schema_names
-        ),
+        str | None, argument("NAME", "Of a reply; the list of them if left out.", schema_names)
     ] = None,
 ) -> int:
     """Print the JSON Schema of a reply.

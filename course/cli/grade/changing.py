@@ -8,11 +8,10 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from course.cli.frame.completion import exercise_ids, student_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
+from course.cli.frame.options import argument, option
 from course.cli.frame.replies import filled
 from course.cli.grade.options import (
     Against,
@@ -58,20 +57,15 @@ _SHOWN = 20
 
 def rerun(
     out: Out,
-    dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Show what would change; change nothing.")
-    ] = False,
-    everything: Annotated[
-        bool, typer.Option("--all", help="Also regrade results that the same graders gave.")
-    ] = False,
+    dry_run: Annotated[bool, option("--dry-run", "Show what would change; change nothing.")] = False,
+    everything: Annotated[bool, option("--all", "Also regrade results that the same graders gave.")] = False,
     jobs: Jobs = 1,
     timeout: Annotated[
-        float | None,
-        typer.Option("--timeout", metavar="S", min=0.1, max=60.0, help="As in the run if left out."),
+        float | None, option("--timeout S", "As in the run if left out.", min=0.1, max=60.0)
     ] = None,
     isolation: Isolation = "auto",
     against: Against = "",
-    reason: Annotated[str, typer.Option("--reason", metavar="TEXT", help="Kept with the regrading.")] = "",
+    reason: Annotated[str, option("--reason TEXT", "Kept with the regrading.")] = "",
     yes: Yes = False,
 ) -> int:
     """Grade again, with the present graders or earlier ones.
@@ -99,9 +93,7 @@ def rerun(
     done = agreed(console, grading, yes=yes)
     code = InternalError.exit_code if done.faults else 0
     if console.json:
-        console.emit(
-            filled(GradeRerun, done, ok=not code, exit_code=code, dry_run=dry_run, grader_error=done.faults)
-        )
+        console.emit(filled(GradeRerun, done, exit_code=code, dry_run=dry_run, grader_error=done.faults))
     else:
         _show_rerun(console, done, dry_run=dry_run)
     return code
@@ -126,17 +118,12 @@ def _show_rerun(console: Console, done: Regraded, *, dry_run: bool) -> None:
 
 def override(
     out: Out,
-    student: Annotated[str, typer.Argument(metavar="STUDENT", autocompletion=student_ids)],
-    exercise: Annotated[str, typer.Argument(metavar="EXERCISE", autocompletion=exercise_ids)],
-    score: Annotated[
-        float | None, typer.Option("--score", metavar="X", help="The points that count.")
-    ] = None,
-    reason: Annotated[
-        str,
-        typer.Option("--reason", metavar="TEXT", help="Shown with the score, to the student too."),
-    ] = "",
-    lift: Annotated[bool, typer.Option("--lift", help="Remove the override again.")] = False,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Show what would count; keep nothing.")] = False,
+    student: Annotated[str, argument("STUDENT", complete=student_ids)],
+    exercise: Annotated[str, argument("EXERCISE", complete=exercise_ids)],
+    score: Annotated[float | None, option("--score X", "The points that count.")] = None,
+    reason: Annotated[str, option("--reason TEXT", "Shown with the score, to the student too.")] = "",
+    lift: Annotated[bool, option("--lift", "Remove the override again.")] = False,
+    dry_run: Annotated[bool, option("--dry-run", "Show what would count; keep nothing.")] = False,
 ) -> int:
     """Set a score by hand, with a reason.
 
@@ -176,32 +163,18 @@ def override(
 def late(
     out: Out,
     policy: Annotated[
-        Path | None, typer.Option("--policy", metavar="FILE", help="Late policy (TOML) to apply from now on.")
+        Path | None, option("--policy FILE", "Late policy (TOML) to apply from now on.")
     ] = None,
     times: Annotated[
-        Path | None,
-        typer.Option(
-            "--times", metavar="FILE", help="CSV: student, exercise, submitted_at; or Moodle's worksheet."
-        ),
+        Path | None, option("--times FILE", "CSV: student, exercise, submitted_at; or Moodle's worksheet.")
     ] = None,
     exercise: Annotated[
-        str | None,
-        typer.Option(
-            "--exercise",
-            metavar="ID",
-            help="The exercise of Moodle's worksheet.",
-            autocompletion=exercise_ids,
-        ),
+        str | None, option("--exercise ID", "The exercise of Moodle's worksheet.", exercise_ids)
     ] = None,
-    roster: Annotated[
-        Path | None,
-        typer.Option("--roster", metavar="FILE", help="Class list, for its extension_days."),
-    ] = None,
-    clear: Annotated[bool, typer.Option("--clear", help="Remove the late policy.")] = False,
+    roster: Annotated[Path | None, option("--roster FILE", "Class list, for its extension_days.")] = None,
+    clear: Annotated[bool, option("--clear", "Remove the late policy.")] = False,
     reason: Reason = "",
-    dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Show whose score would change; change nothing.")
-    ] = False,
+    dry_run: Annotated[bool, option("--dry-run", "Show whose score would change; change nothing.")] = False,
 ) -> int:
     """Set the late policy, and show who is late.
 
@@ -358,10 +331,7 @@ def similar(
     # The right solutions in solutions/*/accepted share 0.39 at most with the model solution, by weight; a
     # copy whose names were changed shares 1.
     share: Share = 0.6,
-    output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", metavar="FILE", help="Page; OUT/similar.html if left out."),
-    ] = None,
+    output: Annotated[Path | None, option("-o --output FILE", "Page; OUT/similar.html if left out.")] = None,
 ) -> int:
     """Find submissions that are alike.
 
@@ -380,22 +350,13 @@ def similar(
     write_bytes(target, page(found).encode("utf-8"))
     if console.json:
         pairs = tuple(
-            SimilarPair(
-                exercise=pair.exercise, first=pair.first.label, second=pair.second.label,
-                share=round(pair.share, 4), lines=pair.lines,
+            filled(
+                SimilarPair, one, first=one.first.label, second=one.second.label, share=round(one.share, 4)
             )
-            for pair in found.pairs
-        )  # fmt: skip
-        groups = tuple(
-            SimilarGroup(exercise=one.exercise, members=one.members, share=round(one.share, 4))
-            for one in found.groups
+            for one in found.pairs
         )
-        console.emit(
-            GradeSimilar(
-                compared=found.compared, pairs=pairs, groups=groups, unreadable=tuple(found.unreadable),
-                page=str(target),
-            )
-        )  # fmt: skip
+        groups = tuple(filled(SimilarGroup, one, share=round(one.share, 4)) for one in found.groups)
+        console.emit(filled(GradeSimilar, found, pairs=pairs, groups=groups, page=str(target)))
         return 0
     _show_similar(console, found)
     console.note(f"Side by side: {target}")

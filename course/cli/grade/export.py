@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, load_catalog
+from course.cli.frame.options import argument, option
+from course.cli.frame.replies import filled
 from course.cli.grade.options import Exercises, Missing, moved_scores, one_of, show_roster
 from course.errors import CourseError, UsageError
 from course.grading.container.packing import write_autograder
@@ -26,49 +26,34 @@ _SHOWN = 20
 
 
 def export(
-    out: Annotated[
-        Path | None,
-        typer.Argument(metavar="OUT", help="Folder of a grading run; an autograder needs none."),
-    ] = None,
+    out: Annotated[Path | None, argument("OUT", "Folder of a grading run; an autograder needs none.")] = None,
     format: Annotated[  # noqa: A002 - the option's name
         str,
         one_of("--format", *FORMATS, AUTOGRADER),
     ] = "csv",
     output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--output", metavar="PATH", help="File to write; in OUT if left out. - is standard output."
-        ),
+        Path | None, option("-o --output PATH", "File to write; in OUT if left out. - is standard output.")
     ] = None,
     roster: Annotated[
-        Path | None,
-        typer.Option("--roster", metavar="FILE", help="Who is enrolled; merged into the stored roster."),
+        Path | None, option("--roster FILE", "Who is enrolled; merged into the stored roster.")
     ] = None,
     assignment: Annotated[
-        list[str] | None,
-        typer.Option("--assignment", metavar="EXERCISE=ID", help="The assignment on the platform."),
+        list[str] | None, option("--assignment EXERCISE=ID", "The assignment on the platform.")
     ] = None,
-    partial: Annotated[
-        bool, typer.Option("--partial", help="Leave out students who are not on the roster.")
-    ] = False,
+    partial: Annotated[bool, option("--partial", "Leave out students who are not on the roster.")] = False,
     missing: Missing = "blank",
     accept_zeros: Annotated[
-        bool, typer.Option("--accept-zeros", help="Write 0 for ungraded submissions without a decision.")
+        bool, option("--accept-zeros", "Write 0 for ungraded submissions without a decision.")
     ] = False,
     overwrite: Annotated[
-        bool,
-        typer.Option("--overwrite", help="Replace grades and feedback that are in Moodle's worksheet."),
+        bool, option("--overwrite", "Replace grades and feedback that are in Moodle's worksheet.")
     ] = False,
     exercise: Exercises = None,
     seed: Annotated[
-        int | None,
-        typer.Option("--seed", min=0, max=LARGEST_SEED, help="For an autograder, if no OUT is given."),
+        int | None, option("--seed", "For an autograder, if no OUT is given.", min=0, max=LARGEST_SEED)
     ] = None,
     timeout: Annotated[
-        float,
-        typer.Option(
-            "--timeout", metavar="S", min=0.1, max=60.0, help="CPU seconds per check, for an autograder."
-        ),
+        float, option("--timeout S", "CPU seconds per check, for an autograder.", min=0.1, max=60.0)
     ] = 10.0,
 ) -> int:
     """Write the grades in the format of another program.
@@ -188,19 +173,8 @@ def _show(console: Console, name: str, written: Written, out: Path | None, found
     if console.json:
         from course.cli.grade.replies import GradeExport
 
-        console.emit(
-            GradeExport(
-                format=name,
-                paths=tuple(map(str, written.paths)),
-                rows=written.rows,
-                unmatched=tuple(written.unmatched),
-                without_grade=tuple(written.without_grade),
-                kept=tuple(written.kept),
-                notes=tuple(written.notes),
-                moved=tuple(found.moved),
-                dropped=tuple(found.dropped),
-            )
-        )
+        paths = tuple(map(str, written.paths))
+        console.emit(filled(GradeExport, written, found, format=name, paths=paths))
         return
     if STDOUT in written.paths:  # what else there is to say must not get into the file
         for text in (

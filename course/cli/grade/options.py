@@ -12,6 +12,7 @@ import typer
 
 from course.cli.frame.completion import choice_of, exercise_ids, run_numbers
 from course.cli.frame.console import Console
+from course.cli.frame.options import argument, option
 from course.errors import UsageError
 from course.grading.intake.downloads import LAYOUTS
 from course.grading.results.effective import ScoreChange
@@ -52,20 +53,11 @@ def _share(text: str | float) -> float:
 
 
 Against = Annotated[
-    str,
-    typer.Option(
-        "--against",
-        metavar="RUN|SNAPSHOT",
-        help="Use the graders of that run; `log` lists them.",
-        autocompletion=run_numbers,
-    ),
+    str, option("--against RUN|SNAPSHOT", "Use the graders of that run; `log` lists them.", run_numbers)
 ]
-Exercises = Annotated[
-    list[str] | None,
-    typer.Option("--exercise", metavar="ID", help="These only.", autocompletion=exercise_ids),
-]
+Exercises = Annotated[list[str] | None, option("--exercise ID", "These only.", exercise_ids)]
 Isolation = Annotated[str, one_of("--isolation", *_LEVELS, help="As for `course grade run`.")]
-Jobs = Annotated[int, typer.Option("-j", min=1, max=256, help="Grader processes.")]
+Jobs = Annotated[int, option("-j", "Grader processes.", min=1, max=256)]
 Layout = Annotated[
     str,
     one_of(
@@ -75,13 +67,12 @@ Layout = Annotated[
     ),
 ]
 LocalCluster = Annotated[
-    int | None,
-    typer.Option("--local-cluster", metavar="N", min=1, max=256, help="On N Dask workers started here."),
+    int | None, option("--local-cluster N", "On N Dask workers started here.", min=1, max=256)
 ]
 Missing = Annotated[
     str, one_of("--missing", "blank", "zero", help="What an enrolled student who handed in nothing gets.")
 ]
-Out = Annotated[Path, typer.Argument(metavar="OUT", help="Folder of a grading run.")]
+Out = Annotated[Path, argument("OUT", "Folder of a grading run.")]
 Protection = Annotated[
     str,
     one_of(
@@ -90,26 +81,18 @@ Protection = Annotated[
         help="auto: the best level, L2 at least. strict: L3. process: L1, which does not protect your files.",
     ),
 ]
-Reason = Annotated[str, typer.Option("--reason", metavar="TEXT", help="Kept with the change.")]
+Reason = Annotated[str, option("--reason TEXT", "Kept with the change.")]
 RosterFile = Annotated[
     Path | None,
-    typer.Option(
-        "--roster",
-        metavar="FILE",
-        help="Who is enrolled: an export from Canvas, Moodle or Gradescope, or your own CSV.",
-    ),
+    option("--roster FILE", "Who is enrolled: an export from Canvas, Moodle or Gradescope, or your own CSV."),
 ]
 Scheduler = Annotated[
-    str | None,
-    typer.Option("--scheduler", metavar="ADDRESS", help="On the Dask cluster whose scheduler is there."),
+    str | None, option("--scheduler ADDRESS", "On the Dask cluster whose scheduler is there.")
 ]
 Share = Annotated[
     float,
-    typer.Option(
-        "--share",
-        metavar="SHARE",
-        parser=_share,
-        help="Show pairs with at least this much in common, such as 0.6 or 60%.",
+    option(
+        "--share SHARE", "Show pairs with at least this much in common, such as 0.6 or 60%.", parser=_share
     ),
 ]
 

@@ -9,19 +9,19 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
 from course import extras
 from course.catalog.load import Catalog
 from course.catalog.models import CourseRef
 from course.cli.frame.completion import exercise_ids, student_ids, submitted_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
+from course.cli.frame.options import argument, option
 from course.cli.frame.replies import filled
 from course.cli.grade.options import (
     Jobs,
     Layout,
     LocalCluster,
+    Out,
     Protection,
     RosterFile,
     Scheduler,
@@ -51,26 +51,17 @@ _MOST_TROUBLED = 20
 
 
 def run(
-    submissions: Annotated[Path, typer.Argument(metavar="SUBMISSIONS", help="One folder per student.")],
-    out: Annotated[Path, typer.Option("--out", metavar="OUT", help="Folder for the results; must be new.")],
-    exercise: Annotated[
-        list[str] | None,
-        typer.Option("--exercise", metavar="ID", help="Grade these only.", autocompletion=exercise_ids),
-    ] = None,
+    submissions: Annotated[Path, argument("SUBMISSIONS", "One folder per student.")],
+    out: Annotated[Path, option("--out OUT", "Folder for the results; must be new.")],
+    exercise: Annotated[list[str] | None, option("--exercise ID", "Grade these only.", exercise_ids)] = None,
     jobs: Jobs = 1,
-    timeout: Annotated[
-        float, typer.Option("--timeout", metavar="S", min=0.1, max=60.0, help="CPU seconds per check.")
-    ] = 10.0,
-    resume: Annotated[bool, typer.Option("--resume", help="Finish the run that is in OUT.")] = False,
-    only: Annotated[
-        list[str] | None, typer.Option("--only", metavar="STUDENT", autocompletion=submitted_ids)
-    ] = None,
+    timeout: Annotated[float, option("--timeout S", "CPU seconds per check.", min=0.1, max=60.0)] = 10.0,
+    resume: Annotated[bool, option("--resume", "Finish the run that is in OUT.")] = False,
+    only: Annotated[list[str] | None, option("--only STUDENT", complete=submitted_ids)] = None,
     isolation: Protection = "auto",
     seed: Annotated[
         int | None,
-        typer.Option(
-            "--seed", min=0, max=LARGEST_SEED, help="Draw the same hidden inputs as an earlier run."
-        ),
+        option("--seed", "Draw the same hidden inputs as an earlier run.", min=0, max=LARGEST_SEED),
     ] = None,
     layout: Layout = "auto",
     roster: RosterFile = None,
@@ -199,9 +190,9 @@ def _show_people(console: Console, summary: Summary) -> None:
 
 
 def explain(
-    out: Annotated[Path, typer.Argument(metavar="OUT", help="Folder of a grading run.")],
-    student: Annotated[str, typer.Argument(metavar="STUDENT", autocompletion=student_ids)],
-    exercise: Annotated[str, typer.Argument(metavar="EXERCISE", autocompletion=exercise_ids)],
+    out: Out,
+    student: Annotated[str, argument("STUDENT", complete=student_ids)],
+    exercise: Annotated[str, argument("EXERCISE", complete=exercise_ids)],
 ) -> int:
     """Show everything about one result, expected values included: for the instructor, not the student."""
     from course.grading.running.folder import open_results
@@ -299,24 +290,15 @@ def _show_summary(
             filled(
                 GradeSummary,
                 summary,
-                ok=summary.exit_code == 0,
-                exit_code=summary.exit_code,
                 graded=summary.states["graded"],
                 ungradable=summary.states["ungradable"],
                 grader_error=summary.states["grader_error"],
-                missing=tuple(summary.missing),
-                strangers=tuple(summary.strangers),
                 already_graded=summary.already,
                 isolation=dict(summary.levels),
                 elapsed_s=round(summary.elapsed_s, 3),
                 out=str(out),
-                troubled=tuple(summary.troubled),
-                unrecognised=tuple(summary.unrecognised),
                 unjudged=tuple(_unjudged(summary)),
-                edited=tuple(summary.edited),
                 would_change=changes,
-                moved=tuple(summary.moved),
-                dropped=tuple(summary.dropped),
             )
         )
         return

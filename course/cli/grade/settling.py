@@ -6,11 +6,10 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from course.cli.frame.completion import exercise_ids, student_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
+from course.cli.frame.options import argument, option
 from course.cli.frame.replies import filled
 from course.cli.grade.options import Isolation, Jobs, Out, Yes, agreed, in_words, levels
 from course.cli.grade.replies import AssignedOne, UnsettledOne
@@ -29,24 +28,16 @@ _SHOWN = 200
 
 def assign(
     out: Out,
-    student: Annotated[str | None, typer.Argument(metavar="STUDENT", autocompletion=student_ids)] = None,
+    student: Annotated[str | None, argument("STUDENT", complete=student_ids)] = None,
     file: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="FILE", help="A name from the list, or a path; a path into a zip has a slash."
-        ),
+        str | None, argument("FILE", "A name from the list, or a path; a path into a zip has a slash.")
     ] = None,
     exercise: Annotated[
-        str | None,
-        typer.Option(
-            "--exercise", metavar="ID", help="Needed if it is not clear.", autocompletion=exercise_ids
-        ),
+        str | None, option("--exercise ID", "Needed if it is not clear.", exercise_ids)
     ] = None,
-    accept_names: Annotated[
-        bool, typer.Option("--accept-names", help="Accept every proposed match.")
-    ] = False,
-    reason: Annotated[str, typer.Option("--reason", metavar="TEXT", help="Kept with each result.")] = "",
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Grade and show, but store nothing.")] = False,
+    accept_names: Annotated[bool, option("--accept-names", "Accept every proposed match.")] = False,
+    reason: Annotated[str, option("--reason TEXT", "Kept with each result.")] = "",
+    dry_run: Annotated[bool, option("--dry-run", "Grade and show, but store nothing.")] = False,
     jobs: Jobs = 1,
     isolation: Isolation = "auto",
     yes: Yes = False,
@@ -103,9 +94,9 @@ def _assigned_one(item: Assigned) -> AssignedOne:
     from course.cli.grade.replies import AssignedOne
 
     one, before = item.assignment, item.before
-    return AssignedOne(
-        student=one.student,
-        exercise=one.exercise,
+    return filled(
+        AssignedOne,
+        one,
         file=one.name,
         score_before=before.score if before else None,
         score_after=item.after.score,
@@ -117,10 +108,7 @@ def _assigned_one(item: Assigned) -> AssignedOne:
 def _unsettled_one(item: Unsettled) -> UnsettledOne:
     from course.cli.grade.replies import FoundFile, UnsettledOne
 
-    files = tuple(
-        FoundFile(file=one.name, defines=one.defines, proposed=one.proposed, kind=one.kind)
-        for one in item.found.candidates
-    )
+    files = tuple(filled(FoundFile, one, file=one.name) for one in item.found.candidates)
     return filled(UnsettledOne, item, reason=item.found.reason, files=files)
 
 
@@ -169,8 +157,8 @@ def _show_unsettled(console: Console, left: list[Unsettled], out: Path) -> None:
 
 def log(
     out: Out,
-    student: Annotated[str | None, typer.Argument(metavar="STUDENT", autocompletion=student_ids)] = None,
-    exercise: Annotated[str | None, typer.Argument(metavar="EXERCISE", autocompletion=exercise_ids)] = None,
+    student: Annotated[str | None, argument("STUDENT", complete=student_ids)] = None,
+    exercise: Annotated[str | None, argument("EXERCISE", complete=exercise_ids)] = None,
 ) -> int:
     """List every run and every change of a grade: who, when, why, and what it was before."""
     from course.cli.grade.replies import GradeLog
@@ -204,10 +192,8 @@ def log(
 
 def salvage(
     out: Out,
-    to: Annotated[Path, typer.Option("--to", metavar="NEW", help="Folder for the intact rows; must be new.")],
-    dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Report what can be recovered; write nothing.")
-    ] = False,
+    to: Annotated[Path, option("--to NEW", "Folder for the intact rows; must be new.")],
+    dry_run: Annotated[bool, option("--dry-run", "Report what can be recovered; write nothing.")] = False,
 ) -> int:
     """Recover the intact parts of a damaged gradebook and its backups.
 
@@ -242,12 +228,7 @@ def salvage(
             folder.rmdir()
     code = 6 if told.lost else 0
     if console.json:
-        console.emit(
-            GradeSalvage(
-                ok=not code, exit_code=code, dry_run=dry_run, rows=dict(told.rows),
-                from_backup=dict(told.from_backup), lost=tuple(told.lost), out=str(to),
-            )
-        )  # fmt: skip
+        console.emit(filled(GradeSalvage, told, exit_code=code, dry_run=dry_run, out=str(to)))
         return code
     _show_salvaged(console, told, to, dry_run=dry_run)
     return code

@@ -8,7 +8,7 @@ from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, here_or_outside
-from course.cli.frame.replies import NextStep
+from course.cli.frame.replies import NextStep, filled
 from course.cli.home.advice import exercise_ahead, next_in_course
 from course.cli.home.learning import Learning, day, objective_states, show_learning, show_objectives
 from course.cli.home.replies import (
@@ -108,12 +108,9 @@ def warm_up_states(catalog: Catalog, standing: Standing) -> tuple[WarmUpState, .
 
 def _warm_up_state(warm_up: Exercise, standing: Standing) -> WarmUpState:
     history = standing.history(warm_up.id)
-    return WarmUpState(
-        id=warm_up.id,
-        title=warm_up.title,
-        summary=warm_up.summary,
-        lesson=warm_up.lesson,
-        minutes=warm_up.minutes,
+    return filled(
+        WarmUpState,
+        warm_up,
         state="done" if history.done else "started" if standing.is_begun(warm_up.id) else "new",
         checks_run=len(history.runs),
         hints_shown=len(history.hints),
@@ -133,11 +130,9 @@ def exercise_states(catalog: Catalog, standing: Standing) -> tuple[ExerciseState
 def _exercise_state(exercise: Exercise, standing: Standing) -> ExerciseState:
     history = standing.history(exercise.id)
     graded, best, first_pass, last = history.last_graded, history.best, history.first_pass, history.last
-    return ExerciseState(
-        id=exercise.id,
-        title=exercise.title,
-        summary=exercise.summary,
-        lesson=exercise.lesson,
+    return filled(
+        ExerciseState,
+        exercise,
         number=exercise.number or None,
         state=_state(exercise.id in standing.started, history),
         score=graded.score if graded else None,

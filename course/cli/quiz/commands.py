@@ -7,9 +7,8 @@ from datetime import date, datetime
 from pathlib import Path
 from typing import Annotated, NoReturn
 
-import typer
-
 from course.cli.frame.console import Console, current
+from course.cli.frame.options import option
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import NextStep
 from course.cli.quiz import screen
@@ -35,14 +34,13 @@ from course.quizzing.desk import Due, finished, fits
 app = group(COMMANDS["quiz"].summary)
 
 AnswersOption = Annotated[
-    Path | None,
-    typer.Option(metavar="FILE", help="Answers from a TOML or JSON file; nothing is asked."),
+    Path | None, option("--answers FILE", "Answers from a TOML or JSON file; nothing is asked.")
 ]
 SeedOption = Annotated[
-    int | None, typer.Option(metavar="N", help="Chooses variants, numbers and order; random if left out.")
+    int | None, option("--seed N", "Chooses variants, numbers and order; random if left out.")
 ]
 QuestionsOption = Annotated[
-    bool, typer.Option("--questions", help="Print the questions and a file to fill in; nothing is asked.")
+    bool, option("--questions", "Print the questions and a file to fill in; nothing is asked.")
 ]
 
 
@@ -136,9 +134,9 @@ def _take_file(console: Console, desk: Desk, path: Path, seed: int | None) -> in
     attempt = open_one if open_one is not None and agrees(desk.bank, open_one, seed, answers) else None
     resumed = attempt is not None and bool(attempt.answers)
     attempt = attempt or start(desk, seed)
-    for name, option in answers.items():
+    for name, picked in answers.items():
         if name not in attempt.answers:
-            answer(desk, attempt, name, option)
+            answer(desk, attempt, name, picked)
     return _finish(console, desk, attempt, posed, resumed=resumed)
 
 
@@ -163,7 +161,6 @@ def _finish(
     console.next(step)
     return desk.here.answer(
         Quiz(
-            ok=result.passed,
             exit_code=0 if result.passed else 1,
             course=desk.here.course,
             seed=attempt.seed,
@@ -263,7 +260,6 @@ def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence
     console.next(step)
     return desk.here.answer(
         QuizReview(
-            ok=not missed,
             exit_code=1 if missed else 0,
             course=desk.here.course,
             seed=seed,
@@ -279,7 +275,7 @@ def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence
 @app.command(epilog="Example: course quiz history --json")
 def history(
     whole: Annotated[
-        bool, typer.Option("--all", help="Explain every option of your last finished attempt, too.")
+        bool, option("--all", "Explain every option of your last finished attempt, too.")
     ] = False,
 ) -> int:
     """Show every attempt, with dates and scores, and what is under review."""

@@ -319,29 +319,30 @@ def _template(posed: Sequence[PosedQuestion], seed: int) -> str:
 
 
 def _asked(posed: PosedQuestion) -> QuizAsked:
-    places = tuple(QuizPlace(choice.letter, choice.id, choice.text) for choice in posed.choices)
+    places = tuple(filled(QuizPlace, choice) for choice in posed.choices)
     return QuizAsked(posed.question, posed.title, posed.prompt, places)
 
 
 def question_reply(marked: MarkedQuestion) -> QuizQuestion:
     """An answered question as a script reads it."""
     posed = marked.posed
+    options = tuple(
+        filled(
+            QuizOption,
+            choice,
+            chosen=choice is marked.chosen,
+            misconception=choice.misconception or None,
+            belief=choice.belief or None,
+        )
+        for choice in posed.choices
+    )
     return filled(
         QuizQuestion,
+        marked,
         posed,
         id=posed.question,
         answer=marked.chosen.id,
-        right=marked.right,
-        options=tuple(
-            filled(
-                QuizOption,
-                choice,
-                chosen=choice is marked.chosen,
-                misconception=choice.misconception or None,
-                belief=choice.belief or None,
-            )
-            for choice in posed.choices
-        ),
+        options=options,
         lesson=posed.lesson or None,
         read=posed.read or None,
     )

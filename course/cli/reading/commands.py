@@ -10,17 +10,13 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from course.browser import keep_closed
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise, Lesson
-from course.cli.frame.completion import (
-    LessonName,
-    WarmUpName,
-)
+from course.cli.frame.completion import LessonName, WarmUpName
 from course.cli.frame.console import MAX_WIDTH, Console, current
 from course.cli.frame.here import Here, here_or_outside
+from course.cli.frame.options import option
 from course.cli.frame.replies import Envelope, NextStep, filled
 from course.cli.home.advice import next_in_course
 from course.cli.home.learning import day
@@ -87,18 +83,16 @@ def lessons() -> int:
 def lesson(
     name: LessonName = None,
     page: Annotated[
-        bool,
-        typer.Option("--page", help="A section at a time, by typed lines; with --plain for a screen reader."),
+        bool, option("--page", "A section at a time, by typed lines; with --plain for a screen reader.")
     ] = False,
     figures: Annotated[
-        Path | None, typer.Option("--figures", metavar="DIR", help="Write the figures as PNG files into DIR.")
+        Path | None, option("--figures DIR", "Write the figures as PNG files into DIR.")
     ] = None,
     code: Annotated[
-        int | None,
-        typer.Option("--code", metavar="N", min=1, help="Print the code of cell N and nothing else."),
+        int | None, option("--code N", "Print the code of cell N and nothing else.", min=1)
     ] = None,
     no_browser: Annotated[
-        bool, typer.Option("--no-browser", help="Open no page and no picture; say where each is.")
+        bool, option("--no-browser", "Open no page and no picture; say where each is.")
     ] = False,
 ) -> int:
     """Read one lesson.
@@ -142,7 +136,8 @@ def lesson(
 
 
 def _reply(chosen: Lesson, text: str, figures: tuple[str, ...] = (), step: str = "") -> LessonReply:
-    return filled(LessonReply, chosen, text=text, figures=figures, next=NextStep(step) if step else None)
+    following = NextStep(step) if step else None
+    return filled(LessonReply, chosen, text=text, figures=figures, next=following)
 
 
 def _next_unread(here: Here | None, catalog: Catalog) -> str:
@@ -264,7 +259,7 @@ _PLAIN_MARKS = {"done": "done", "started": "begun", "new": "to do"}
 
 def warmup(
     name: WarmUpName = None,
-    check: Annotated[bool, typer.Option("--check", help="Check it, as `course check` does.")] = False,
+    check: Annotated[bool, option("--check", "Check it, as `course check` does.")] = False,
 ) -> int:
     """Do a lesson's small tasks.
 

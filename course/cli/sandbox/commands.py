@@ -14,6 +14,7 @@ from course.cli.frame.completion import choice_of, scene_ids, scene_settings
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd
 from course.cli.frame.here import target as target_file
+from course.cli.frame.options import argument, option
 from course.cli.frame.registry import COMMANDS, OPTIONS
 from course.cli.frame.replies import filled
 from course.cli.sandbox import play as sandbox_files
@@ -65,12 +66,8 @@ app = typer.Typer(
     **OPTIONS,
 )
 
-_SCENE = typer.Argument(
-    metavar="SCENE", help="A scene, or a file of your own that ends in .toml.", autocompletion=scene_ids
-)
-_SET = typer.Option(
-    "--set", metavar="KEY=VALUE", help="Set a parameter; repeatable.", autocompletion=scene_settings
-)
+_SCENE = argument("SCENE", "A scene, or a file of your own that ends in .toml.", scene_ids)
+_SET = option("--set KEY=VALUE", "Set a parameter; repeatable.", scene_settings)
 
 
 @app.callback(epilog="Example: course sandbox play newtons-cradle")
@@ -116,40 +113,24 @@ def list_scenes(
 def play(
     scene: Annotated[str, _SCENE],
     settings: Annotated[list[str] | None, _SET] = None,
-    web: Annotated[bool, typer.Option("--web", help="In a browser, on this machine only.")] = False,
-    headless: Annotated[
-        bool, typer.Option("--headless", help="Show no picture; run as fast as possible.")
-    ] = False,
-    describe: Annotated[bool, typer.Option("--describe", help="Describe the run in sentences.")] = False,
-    guess: Annotated[
-        float | None, typer.Option("--guess", metavar="NUMBER", help="Your answer to the scene's question.")
-    ] = None,
+    web: Annotated[bool, option("--web", "In a browser, on this machine only.")] = False,
+    headless: Annotated[bool, option("--headless", "Show no picture; run as fast as possible.")] = False,
+    describe: Annotated[bool, option("--describe", "Describe the run in sentences.")] = False,
+    guess: Annotated[float | None, option("--guess NUMBER", "Your answer to the scene's question.")] = None,
     duration: Annotated[
-        float | None,
-        typer.Option("--duration", metavar="S", help="Simulated seconds; the scene's own if left out."),
+        float | None, option("--duration S", "Simulated seconds; the scene's own if left out.")
     ] = None,
     csv: Annotated[
-        Path | None,
-        typer.Option("--csv", metavar="FILE", help="Write positions and velocities over time, as a table."),
+        Path | None, option("--csv FILE", "Write positions and velocities over time, as a table.")
     ] = None,
-    every: Annotated[
-        float, typer.Option("--every", metavar="S", help="Seconds between the samples of --csv.")
-    ] = 0.05,
-    gif: Annotated[Path | None, typer.Option("--gif", metavar="FILE", help="Write a film.")] = None,
-    mp4: Annotated[
-        Path | None, typer.Option("--mp4", metavar="FILE", help="Write a film; needs ffmpeg.")
-    ] = None,
-    png: Annotated[Path | None, typer.Option("--png", metavar="FILE", help="Write one picture.")] = None,
-    at: Annotated[
-        float | None, typer.Option("--at", metavar="S", help="When the picture is taken; else at the end.")
-    ] = None,
-    record: Annotated[
-        Path | None, typer.Option("--record", metavar="FILE", help="Write a recording to replay.")
-    ] = None,
-    port: Annotated[int, typer.Option("--port", help="For --web; 0 takes a free one.")] = 0,
-    no_browser: Annotated[
-        bool, typer.Option("--no-browser", help="For --web: only print the address.")
-    ] = False,
+    every: Annotated[float, option("--every S", "Seconds between the samples of --csv.")] = 0.05,
+    gif: Annotated[Path | None, option("--gif FILE", "Write a film.")] = None,
+    mp4: Annotated[Path | None, option("--mp4 FILE", "Write a film; needs ffmpeg.")] = None,
+    png: Annotated[Path | None, option("--png FILE", "Write one picture.")] = None,
+    at: Annotated[float | None, option("--at S", "When the picture is taken; else at the end.")] = None,
+    record: Annotated[Path | None, option("--record FILE", "Write a recording to replay.")] = None,
+    port: Annotated[int, option("--port", "For --web; 0 takes a free one.")] = 0,
+    no_browser: Annotated[bool, option("--no-browser", "For --web: only print the address.")] = False,
 ) -> int:
     """Play a scene, or run it unseen.
 
@@ -161,7 +142,7 @@ def play(
 
 @app.command(epilog="Example: course sandbox replay run.jsonl")
 def replay(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="A recording.")],
+    file: Annotated[Path, argument("FILE", "A recording.")],
 ) -> int:
     """Run a recording again, and say where it first differs.
 
@@ -194,7 +175,6 @@ def replay(
         filled(
             SandboxReplay,
             difference,
-            ok=code == 0,
             exit_code=code,
             scene=recorded.head.scene.id,
             steps=recorded.ticks,
@@ -209,17 +189,10 @@ def replay(
 def export(
     scene: Annotated[str, _SCENE],
     format_: Annotated[
-        str,
-        typer.Option(
-            "--format",
-            metavar="sdf|mjcf",
-            help="sdf (Gazebo) or mjcf (MuJoCo).",
-            autocompletion=choice_of("sdf", "mjcf"),
-        ),
+        str, option("--format sdf|mjcf", "sdf (Gazebo) or mjcf (MuJoCo).", choice_of("sdf", "mjcf"))
     ],
     output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", metavar="FILE", help="File to write; the screen if left out."),
+        Path | None, option("--output -o FILE", "File to write; the screen if left out.")
     ] = None,
     settings: Annotated[list[str] | None, _SET] = None,
 ) -> int:
@@ -296,11 +269,11 @@ def _entry(scene: Scene) -> SandboxEntry:
         "left": wheels.left if wheels else None,
         "right": wheels.right if wheels else None,
     }
-    parameters = [filled(SandboxParameter, p) for p in scene.parameter]
+    parameters = [filled(SandboxParameter, one) for one in scene.parameter]
     parameters += [
-        filled(SandboxParameter, s, default=own.get(s.name))
-        for s in SETTINGS.values()
-        if wheels or s.name not in {"left", "right"}
+        filled(SandboxParameter, one, default=own.get(one.name))
+        for one in SETTINGS.values()
+        if wheels or one.name not in {"left", "right"}
     ]
     return filled(
         SandboxEntry,

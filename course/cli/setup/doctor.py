@@ -19,14 +19,14 @@ from pathlib import Path
 from typing import Annotated
 from urllib.parse import quote
 
-import typer
-
 from course import __version__
 from course.catalog.load import Catalog
 from course.cli.frame import here
 from course.cli.frame.app import INSTALLATION
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, find_workspace, load_catalog
+from course.cli.frame.options import option
+from course.cli.frame.replies import filled
 from course.cli.setup.replies import Bug, Doctor, Fix, Package
 from course.errors import CourseError, MissingCapabilityError
 from course.extras import requirements
@@ -42,7 +42,7 @@ _LEVELS = {
 
 def doctor(
     repair: Annotated[
-        bool, typer.Option("--repair", help="Set a damaged progress record aside and start a new one.")
+        bool, option("--repair", "Set a damaged progress record aside and start a new one.")
     ] = False,
 ) -> int:
     """Say what works on this machine.
@@ -83,7 +83,6 @@ def doctor(
     code = 0 if complete else MissingCapabilityError.exit_code
     console.emit(
         Doctor(
-            ok=complete,
             exit_code=code,
             course=catalog.ref,
             python=platform.python_version(),
@@ -115,13 +114,8 @@ def packages() -> Iterable[Package]:
             installed = importlib.metadata.version(one.name)
         except importlib.metadata.PackageNotFoundError:
             installed = None
-        yield Package(
-            name=one.name,
-            requirement=one.text,
-            installed=installed,
-            ok=installed is not None and _satisfies(installed, one.versions),
-            group=one.group,
-        )
+        ok = installed is not None and _satisfies(installed, one.versions)
+        yield filled(Package, one, requirement=one.text, installed=installed, ok=ok)
 
 
 def _satisfies(installed: str, wanted: str) -> bool:
@@ -239,10 +233,7 @@ _TYPED = re.compile(r"^command: .*$", re.MULTILINE)
 
 def bug(
     out: Annotated[
-        Path | None,
-        typer.Option(
-            "--output", "-o", metavar="FILE", help="File to write; course-bug.txt here if left out."
-        ),
+        Path | None, option("--output -o FILE", "File to write; course-bug.txt here if left out.")
     ] = None,
 ) -> int:
     """Write what a fault report needs into a file.

@@ -10,13 +10,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from course.catalog.load import Catalog
 from course.catalog.models import CourseRef
 from course.cli.frame import here
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, load_catalog
+from course.cli.frame.options import argument, option
 from course.cli.frame.replies import NextStep, WrittenFile
 from course.cli.setup.replies import Init
 from course.errors import CourseError, NotFoundError, UsageError
@@ -181,24 +180,20 @@ KINDS: dict[str, tuple[str, Callable[[str | None], str]]] = {
 
 
 def init(
-    folder: Annotated[
-        Path | None, typer.Argument(metavar="DIR", help="The folder; the current one if left out.")
-    ] = None,
+    folder: Annotated[Path | None, argument("DIR", "The folder; the current one if left out.")] = None,
     surroundings: Annotated[
         str | None,
-        typer.Option(
-            "--with",
-            metavar="WHAT",
-            help="Also write github, devcontainer, vscode: a workflow, a container, tasks; join by commas.",
-            autocompletion=complete_kinds,
+        option(
+            "--with WHAT",
+            "Also write github, devcontainer, vscode: a workflow, a container, tasks; join by commas.",
+            complete_kinds,
         ),
     ] = None,
     requirement: Annotated[
         str | None,
-        typer.Option(
-            "--requirement",
-            metavar="REQUIREMENT",
-            help="For --with: where pip gets the course from; the wheel in wheels/ if left out.",
+        option(
+            "--requirement REQUIREMENT",
+            "For --with: where pip gets the course from; the wheel in wheels/ if left out.",
         ),
     ] = None,
 ) -> int:

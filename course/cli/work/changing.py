@@ -10,12 +10,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from course.catalog.models import Exercise
 from course.cli.frame.completion import ExerciseName, OneExercise, exercise_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
+from course.cli.frame.options import argument, option
 from course.cli.frame.replies import Backup, FileReply, NextStep
 from course.cli.work.checking import report_source_file
 from course.cli.work.chosen import asked_for, chosen_work
@@ -58,7 +57,7 @@ def diff(exercise: ExerciseName = None) -> int:
 
 def reset(
     exercise: OneExercise,
-    yes: Annotated[bool, typer.Option("--yes", "-y", help="Do not ask.")] = False,
+    yes: Annotated[bool, option("--yes -y", "Do not ask.")] = False,
 ) -> int:
     """Go back to the stub; a copy is kept.
 
@@ -99,7 +98,7 @@ def reset(
 
 
 def update(
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only print what would be done.")] = False,
+    dry_run: Annotated[bool, option("--dry-run", "Only print what would be done.")] = False,
 ) -> int:
     """Bring newer course content in.
 
@@ -207,10 +206,7 @@ _LONG = 3
 
 
 def start(
-    exercise: Annotated[
-        str | None,
-        typer.Argument(metavar="EXERCISE", help="Its id or its number.", autocompletion=exercise_ids),
-    ] = None,
+    exercise: Annotated[str | None, argument("EXERCISE", "Its id or its number.", exercise_ids)] = None,
 ) -> int:
     """Put an exercise into the workspace.
 

@@ -5,16 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from course.catalog.models import CourseRef, Exercise
-from course.cli.frame.completion import (
-    ExerciseName,
-    check_ids,
-    choice_of,
-)
+from course.cli.frame.completion import ExerciseName, Verbose, check_ids, choice_of
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
+from course.cli.frame.options import option
 from course.cli.frame.replies import ErrorBody, ErrorReply, NextStep, filled
 from course.cli.home.advice import next_step
 from course.cli.work.chosen import StudentWork, asked_for, chosen_work, worked_on
@@ -93,20 +88,15 @@ FAILED = 1
 
 def check(
     exercise: ExerciseName = None,
-    everything: Annotated[bool, typer.Option("--all", help="Check every exercise you have started.")] = False,
-    only: Annotated[
-        str | None, typer.Option(metavar="CHECK", help="Run one check, by its id.", autocompletion=check_ids)
-    ] = None,
-    verbose: Annotated[
-        bool, typer.Option("--verbose", "-v", help="Show tracebacks and all that your code printed.")
-    ] = False,
+    everything: Annotated[bool, option("--all", "Check every exercise you have started.")] = False,
+    only: Annotated[str | None, option("--only CHECK", "Run one check, by its id.", check_ids)] = None,
+    verbose: Verbose = False,
     form: Annotated[
         str,
-        typer.Option(
-            "--format",
-            metavar="text|github|lines",
-            help="github: annotations for a workflow. lines: file:line: error: what, for an editor.",
-            autocompletion=choice_of(*FORMATS),
+        option(
+            "--format text|github|lines",
+            "github: annotations for a workflow. lines: file:line: error: what, for an editor.",
+            choice_of(*FORMATS),
         ),
     ] = "text",
 ) -> int:
@@ -155,7 +145,6 @@ def reply_to(
     return filled(
         Check,
         verdict,
-        ok=verdict.all_pass,
         exit_code=0 if verdict.all_pass else FAILED,
         course=course,
         next=NextStep(step) if step else None,
@@ -247,7 +236,7 @@ def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int
     console.line((said, "bold"))
     for warning in dict.fromkeys(here.warnings):
         console.warn(warning)
-    console.emit(CheckAll(ok=worst == 0, exit_code=worst, results=tuple(results)))
+    console.emit(CheckAll(exit_code=worst, results=tuple(results)))
     return worst
 
 

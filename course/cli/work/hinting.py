@@ -11,16 +11,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from course.catalog.models import Exercise, Rubric
-from course.cli.frame.completion import (
-    ExerciseName,
-    grade_lists,
-    task_ids,
-)
+from course.cli.frame.completion import ExerciseName, grade_lists, task_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd
+from course.cli.frame.options import option
 from course.cli.frame.replies import NextStep
 from course.cli.home.advice import after_warm_up
 from course.cli.work.chosen import asked_for, chosen_work
@@ -35,10 +30,7 @@ PACKS = "*.coursepack"
 def hint(
     exercise: ExerciseName = None,
     task: Annotated[
-        str | None,
-        typer.Option(
-            metavar="FUNCTION", help="About this function, not the first that fails.", autocompletion=task_ids
-        ),
+        str | None, option("--task FUNCTION", "About this function, not the first that fails.", task_ids)
     ] = None,
 ) -> int:
     """Show the next hint.
@@ -263,17 +255,9 @@ GRADES = ("yes", "partly", "no")
 
 def reflect(
     exercise: ExerciseName = None,
-    answer: Annotated[
-        Path | None, typer.Option("--answer", metavar="FILE", help="Your answer, as a text file.")
-    ] = None,
+    answer: Annotated[Path | None, option("--answer FILE", "Your answer, as a text file.")] = None,
     grades: Annotated[
-        str | None,
-        typer.Option(
-            "--grades",
-            metavar="yes,partly,no,…",
-            help="Your grade for each point.",
-            autocompletion=grade_lists,
-        ),
+        str | None, option("--grades yes,partly,no,…", "Your grade for each point.", grade_lists)
     ] = None,
 ) -> int:
     """Answer in prose, and grade your answer.

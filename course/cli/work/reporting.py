@@ -7,12 +7,11 @@ import shlex
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from course.cli.frame import here
 from course.cli.frame.completion import ExerciseName
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd
+from course.cli.frame.options import option
 from course.cli.frame.replies import WrittenFile, filled
 from course.cli.home.advice import after_report
 from course.cli.work.checking import report_source_file
@@ -26,14 +25,10 @@ from course.scoring.failures import Report, Section
 def report(
     exercise: ExerciseName = None,
     out: Annotated[
-        Path | None,
-        typer.Option(
-            "--out", "-o", metavar="DIR", help="Where figures go; default: report/ beside your file."
-        ),
+        Path | None, option("--out -o DIR", "Where figures go; default: report/ beside your file.")
     ] = None,
     bag: Annotated[
-        Path | None,
-        typer.Option("--bag", metavar="DIR", help="Write the sensor streams as a ROS 2 bag (extra ros)."),
+        Path | None, option("--bag DIR", "Write the sensor streams as a ROS 2 bag (extra ros).")
     ] = None,
 ) -> int:
     """Show what your code does, with figures.
@@ -58,13 +53,7 @@ def report(
     written = _write_bag(console, made, bag) if bag is not None else None
     console.next(after_report(here, chosen))
     return here.answer(
-        ReportReply(
-            course=here.course,
-            exercise=chosen.id,
-            title=made.title,
-            sections=sections,
-            bag=written,
-        )
+        filled(ReportReply, made, course=here.course, exercise=chosen.id, sections=sections, bag=written)
     )
 
 
@@ -100,9 +89,8 @@ def _shown(console: Console, section: Section, path: Path) -> SectionReply:
     figure = None
     if section.plot is not None:
         figure = _drawn(console, section.plot, path)
-    return filled(
-        SectionReply, section, figure=figure, description=section.plot.description if section.plot else ""
-    )
+    description = section.plot.description if section.plot else ""
+    return filled(SectionReply, section, figure=figure, description=description)
 
 
 def _drawn(console: Console, plot: Plot, path: Path) -> WrittenFile:

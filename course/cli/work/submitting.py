@@ -22,6 +22,7 @@ from course.catalog.pack import zip_entry
 from course.cli.frame.completion import exercise_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd
+from course.cli.frame.options import option
 from course.cli.frame.replies import FileReply
 from course.cli.work.chosen import StudentWork, as_handed_in, work_of
 from course.cli.work.replies import Submit, SubmitFile
@@ -45,11 +46,10 @@ def submit(
         ),
     ] = None,
     output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", metavar="FILE", help="File to write; in the workspace if left out."),
+        Path | None, option("-o --output FILE", "File to write; in the workspace if left out.")
     ] = None,
     warm_ups: Annotated[
-        bool, typer.Option("--warm-ups", help="The warm-ups you worked on go in, too; they do not count.")
+        bool, option("--warm-ups", "The warm-ups you worked on go in, too; they do not count.")
     ] = False,
 ) -> int:
     """Write the file to hand in.

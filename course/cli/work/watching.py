@@ -16,12 +16,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated
-
-import typer
 
 from course.catalog.models import Exercise
-from course.cli.frame.completion import ExerciseName
+from course.cli.frame.completion import ExerciseName, Verbose
 from course.cli.frame.console import PATIENCE, Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.replies import ErrorBody, ErrorReply
@@ -123,9 +120,7 @@ Signature = tuple[int, int, int] | None
 
 def watch(
     exercise: ExerciseName = None,
-    verbose: Annotated[
-        bool, typer.Option("--verbose", "-v", help="Show tracebacks and all that your code printed.")
-    ] = False,
+    verbose: Verbose = False,
 ) -> int:
     """Check again on every save.
 
@@ -275,7 +270,6 @@ class Watcher:
     def reply(self) -> Watch:
         """The answer that ``--json`` prints at the end."""
         return Watch(
-            ok=False,
             exit_code=INTERRUPTED,
             exercise=self.exercise.id,
             runs=tuple(self.runs),

@@ -19,7 +19,7 @@ import pytest
 
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
-from course.grading import kit
+from course.scoring import kit
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
 

@@ -13,7 +13,7 @@ import pytest
 
 from course.authoring.exercises.grading import LocalSubmission
 from course.catalog.load import Catalog
-from course.grading import kit
+from course.scoring import kit
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission
 

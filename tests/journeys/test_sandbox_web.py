@@ -442,6 +442,7 @@ def test_everything_has_a_name_and_can_be_read(sandbox, scheme: str) -> None:
     at = sandbox("restitution-row")
     # Without motion colours change at once, and are not measured half way.
     at.page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
+    at.page.wait_for_timeout(500)  # what was changing when it was asked for goes on to its end
     assert at.page.evaluate(_BASICS) == []
     at.page.get_by_label("Your guess").fill("1")
     at.page.keyboard.press("Enter")

@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 
 from course.sandbox.scene.loading import scene_ids
+from course.sandbox.views.web.session import FRAME_HEAD
 
 CHROMIUM = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
 
@@ -40,7 +41,7 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
-HEAD = 20
+HEAD = FRAME_HEAD
 _COLOURS = """() => {
   const canvas = document.querySelector('canvas.world');
   const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
@@ -367,7 +368,7 @@ def test_every_scene_is_drawn_dragged_set_and_reloaded(sandbox, scene: str, tmp_
     page.get_by_role("button", name="Just run").click()
     page.get_by_role("button", name="Pause").wait_for()
     at.catch(name)
-    assert at.names[int(at.frame[19])] == name
+    assert at.names[int(at.frame[HEAD - 1])] == name
     page.mouse.move(*at.pixel(x, up), steps=3)
     speed.focus()
     for _ in range(3):
@@ -441,6 +442,7 @@ def test_everything_has_a_name_and_can_be_read(sandbox, scheme: str) -> None:
     at = sandbox("restitution-row")
     # Without motion colours change at once, and are not measured half way.
     at.page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
+    at.page.wait_for_timeout(500)  # what was changing when it was asked for goes on to its end
     assert at.page.evaluate(_BASICS) == []
     at.page.get_by_label("Your guess").fill("1")
     at.page.keyboard.press("Enter")

@@ -99,8 +99,8 @@ def test_it_knows_none_of_the_four_steps():
         for name in node.names
     ]
     assert sorted(name for name in imported if name.startswith("course.")) == [
-        "course.scoring.kit",
         "course.physics.exact",
         "course.physics.invariants",
         "course.physics.systems",
+        "course.scoring.kit",
     ]

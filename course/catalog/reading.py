@@ -90,11 +90,6 @@ class LineMap:
         begins = bisect_left(range(end), True, begin, key=lambda at: self._has(inner, begin, at))
         return self._first + begins
 
-    def key_line(self, path: Keys | str, key: str) -> int:
-        """The line of ``key`` inside the table at ``path``; the table's own where it has no such key."""
-        steps = parse_path(path) if isinstance(path, str) else path
-        return self.line((*steps, key))
-
     @cached_property
     def _ends(self) -> list[str]:
         """What would end the statement at the end of each line; nothing where it ends there."""
@@ -322,7 +317,7 @@ def _unknown_key(
     known = [name for name in _keys_at(kind, steps) if steps or name not in hide]
     close = difflib.get_close_matches(key, known, n=1)
     fix = f"Did you mean `{close[0]}`?" if close else f"Known keys: {', '.join(known)}."
-    raise ContentError(path, lines.key_line(steps, key), f"unknown key `{key}`.", help=fix)
+    raise ContentError(path, lines.line((*steps, key)), f"unknown key `{key}`.", help=fix)
 
 
 def _keys_at(kind: type, steps: tuple[str | int, ...]) -> list[str]:

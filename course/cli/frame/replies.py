@@ -6,10 +6,11 @@ version; renaming, removing or changing the meaning of one makes a new version.
 
 from __future__ import annotations
 
-import math
 from typing import Any, ClassVar, TypeVar
 
 import msgspec
+
+from course.scoring.verdict import finite
 
 _Kind = TypeVar("_Kind", bound=msgspec.Struct)
 
@@ -123,14 +124,4 @@ def filled(kind: type[_Kind], /, *sources: object, **given: Any) -> _Kind:
 
 def encode(body: msgspec.Struct) -> bytes:
     """``body`` as one line of JSON in UTF-8; numbers that JSON has not are "nan", "inf" and "-inf"."""
-    return msgspec.json.encode(_finite(msgspec.to_builtins(body)))
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, float) and not math.isfinite(value):
-        return "nan" if math.isnan(value) else ("inf" if value > 0 else "-inf")
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
-    return value
+    return msgspec.json.encode(finite(msgspec.to_builtins(body)))

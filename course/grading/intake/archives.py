@@ -18,7 +18,6 @@ import stat
 import subprocess
 import sys
 import threading
-import warnings
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
@@ -43,6 +42,7 @@ from course.handed_in.limits import (
     MAX_UNPACKED,
 )
 from course.handed_in.notebook import notebook_source
+from course.isolation.inside import statements
 from course.printable import one_line
 from course.scoring.verdict import Problem
 
@@ -617,18 +617,9 @@ def _defined(name: str, content: bytes, functions: tuple[str, ...]) -> tuple[tup
     size = sum(map(len, pieces))
     if size > MAX_CODE:
         return (), 0  # nor could it be graded
-    found = [node for tree in map(_parsed, pieces) if tree for node in tree.body]
+    found = [node for tree in map(statements.tree, pieces) if tree for node in tree.body]
     names = {node.name for node in found if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)}
     return tuple(function for function in functions if function in names), size
-
-
-def _parsed(source: str | bytes) -> ast.Module | None:
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of a stranger's escapes
-            return ast.parse(source)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return None  # the last two: nesting that the parser does not follow
 
 
 if __name__ == "__main__":

@@ -303,7 +303,7 @@ def _statement_lines(text: str) -> Iterator[int]:
                 yield line
 
 
-def tree(text: str) -> ast.Module | None:
+def tree(text: str | bytes) -> ast.Module | None:
     """A text's syntax tree; None if it is no Python."""
     try:
         with warnings.catch_warnings():

@@ -39,6 +39,12 @@ class Chosen(msgspec.Struct, frozen=True, kw_only=True):
     own: bool = False
 
 
+def as_it_is(scene: Scene) -> Chosen:
+    """A scene with nothing changed."""
+    defaults = {parameter.name: parameter.default for parameter in scene.parameter}
+    return Chosen(scene=scene, parameters=defaults, settings={}, path=Path(f"{scene.id}.toml"))
+
+
 def scene_ids() -> tuple[str, ...]:
     """Ids of the course's scenes, sorted; lists a folder and opens no file."""
     return tuple(sorted({path.stem for folder in scene_folders() for path in folder.glob("*.toml")}))

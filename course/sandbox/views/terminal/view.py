@@ -5,10 +5,9 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
-from pathlib import Path
 
 from course.errors import MissingCapabilityError
-from course.sandbox.scene.loading import Chosen, Comparison
+from course.sandbox.scene.loading import Chosen, Comparison, as_it_is
 from course.sandbox.scene.model import Scene
 from course.sandbox.world.world import World
 
@@ -38,7 +37,7 @@ def play(
     _need_terminal()
     from course.sandbox.views.terminal.app import SandboxApp
 
-    SandboxApp(world, chosen or _as_it_is(scene), fps=fps, guess=guess, keep=keep).play()
+    SandboxApp(world, chosen or as_it_is(scene), fps=fps, guess=guess, keep=keep).play()
 
 
 def _need_terminal() -> None:
@@ -50,10 +49,3 @@ def _need_terminal() -> None:
         help="Use --describe for sentences, --headless for numbers, or --gif FILE for a film.",
         code="no_terminal",
     )
-
-
-def _as_it_is(scene: Scene) -> Chosen:
-    from course.sandbox.scene.loading import Chosen
-
-    defaults = {parameter.name: parameter.default for parameter in scene.parameter}
-    return Chosen(scene=scene, parameters=defaults, settings={}, path=Path(f"{scene.id}.toml"))

@@ -26,7 +26,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 from course.browser import invite
 from course.errors import UsageError
 from course.extras import require
-from course.sandbox.scene.loading import Chosen, Comparison
+from course.sandbox.scene.loading import Chosen, Comparison, as_it_is
 from course.sandbox.scene.model import Scene
 from course.sandbox.views.web.session import Page, Session
 from course.sandbox.world.world import World
@@ -71,7 +71,7 @@ def play(
 
     from course.sandbox.views.web.session import Session
 
-    session = Session(world, chosen or _as_it_is(scene), guess=guess, keep=keep)
+    session = Session(world, chosen or as_it_is(scene), guess=guess, keep=keep)
     failures: list[BaseException] = []
 
     def failed(error: BaseException) -> None:
@@ -139,13 +139,6 @@ def _listener(port: int) -> socket.socket:
             code="bad_port",
         ) from error
     return listener
-
-
-def _as_it_is(scene: Scene) -> Chosen:
-    from course.sandbox.scene.loading import Chosen
-
-    defaults = {parameter.name: parameter.default for parameter in scene.parameter}
-    return Chosen(scene=scene, parameters=defaults, settings={}, path=Path(f"{scene.id}.toml"))
 
 
 # ---

@@ -175,17 +175,20 @@ def _error_finding(failure: StudentFailure, *, shown: bool) -> Finding:
 
 def _apart(failure: StudentFailure, places: Places, *, shown: bool) -> str:
     """The advice where the function may well work for its student; "" for any other."""
-    return _at_a_terminal(failure) or _by_a_star(failure, places) or lacking(failure, shown=shown)
+    return (
+        _at_a_terminal(failure) or _by_a_star(failure, places, shown=shown) or lacking(failure, shown=shown)
+    )
 
 
-def _by_a_star(failure: StudentFailure, places: Places) -> str:
+def _by_a_star(failure: StudentFailure, places: Places, *, shown: bool) -> str:
     """The advice where a name is missing that a line left out may have brought; "" for any other."""
     why = failure.why
     if why is None or not why.line:
         return ""
     if why.type == "ImportNotDeclaredError":
         name = failure.message.partition("'")[2].partition("'")[0]
-        advice = absent(why) or numpys(name) or "Import each name from the module that has it."
+        known = numpys(name) if shown else ""  # the name may spell out a hidden input
+        advice = absent(why) or known or "Import each name from the module that has it."
         return f"The name may come from the import {places.phrase(why.line)}, which was left out. {advice}"
     return f"What was left out {places.phrase(why.line)} would have defined it. Make that line work first."
 

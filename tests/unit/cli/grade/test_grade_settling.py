@@ -29,7 +29,7 @@ def here(course, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(batch, "grade_all", lambda entries, terms, graders: right(entries, terms))
     shutil.copytree(MINI, tmp_path / "content")
     monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "content"))
-    for student, name in (("ada", "doubling.py"), ("bob", "hw.py"), ("cy", "notes.txt")):
+    for student, name in (("ada", "doubling.py"), ("bob", "hw.py"), ("cy", ".notes")):
         (tmp_path / "class" / student).mkdir(parents=True)
         (tmp_path / "class" / student / name).write_text(SOURCE)
     ran = course("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--json")
@@ -49,7 +49,7 @@ def test_what_is_unsettled_is_listed_previewed_and_settled(course, here: Path) -
         {
             "student": "bob", "exercise": "doubling", "reason": "no_file",
             "message": "There is no doubling.py for doubling. There is hw.py (defines double, doublings).",
-            "files": [{"file": "hw.py", "defines": ["double", "doublings"], "proposed": True}],
+            "files": [{"file": "hw.py", "defines": ["double", "doublings"], "proposed": True, "kind": ""}],
         },
         {
             "student": "cy", "exercise": "doubling", "reason": "no_file",

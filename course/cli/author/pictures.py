@@ -19,6 +19,7 @@ from typing import Annotated
 import typer
 
 from course.cli.author.replies import AuthorPictures
+from course.cli.frame.completion import figure_ids
 from course.cli.frame.console import current
 from course.cli.frame.here import load_catalog
 from course.errors import InternalError, UsageError
@@ -37,7 +38,11 @@ _EVERY, _DECIMALS = 0.25, 3
 def pictures(
     figure: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[FIGURE]...", help="Keep how these figures of lessons look now, instead."),
+        typer.Argument(
+            metavar="[FIGURE]...",
+            help="Keep how these figures of lessons look now, instead.",
+            autocompletion=figure_ids,
+        ),
     ] = None,
     check: Annotated[
         bool, typer.Option("--check", help="Write nothing; exit code 1 if a picture is stale.")

@@ -71,6 +71,13 @@ def engine_ids(incomplete: str) -> list[str]:
     return _beginning(incomplete, ENGINES)
 
 
+def figure_ids(incomplete: str) -> list[str]:
+    """Figures whose id begins with what was typed."""
+    from course.figures.registry import FIGURES
+
+    return _beginning(incomplete, FIGURES)
+
+
 def scenario_ids(incomplete: str) -> list[str]:
     """Scenarios of the engine comparison whose id begins with what was typed."""
     from course.engines.scenarios import SCENARIOS

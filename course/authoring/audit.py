@@ -50,6 +50,7 @@ from course.sandbox.scene.loading import (
     scene_ids,
     scene_path,
     unchanged,
+    unsaid,
 )
 from course.sandbox.scene.model import Scene
 
@@ -278,6 +279,9 @@ def _check_scene(path: Path, scene: Scene, findings: Findings) -> None:
         problem = "it asks for no number before the run."
         findings.add(path, where, "scene", problem, "Add [prediction]: docs/sandbox.md describes it.")
         return
+    for words in unsaid(scene):
+        problem = f"another {words} changes the answer, and neither `question` nor `why`."
+        findings.add(path, where, "scene", problem, "Write the number as a formula: {height} m.")
     found = run(unchanged(scene)).comparison
     if found is not None and not found.agree:
         problem = f"theory gives {found.theory:g} {found.unit}, and the run {found.simulation:g}."

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Annotated
 
 from course.cli.author.replies import AuthorPictures
+from course.cli.frame.completion import figure_ids
 from course.cli.frame.console import current
 from course.cli.frame.here import load_catalog
 from course.cli.frame.options import argument, option
@@ -33,7 +34,8 @@ _EVERY, _DECIMALS = 0.25, 3
 
 def pictures(
     figure: Annotated[
-        list[str] | None, argument("[FIGURE]...", "Keep how these figures of lessons look now, instead.")
+        list[str] | None,
+        argument("[FIGURE]...", "Keep how these figures of lessons look now, instead.", complete=figure_ids),
     ] = None,
     check: Annotated[bool, option("--check", "Write nothing; exit code 1 if a picture is stale.")] = False,
 ) -> int:

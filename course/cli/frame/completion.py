@@ -49,6 +49,7 @@ def _key_of(module: str, table: str) -> Callable[[str], list[str]]:
 
 simulation_ids = _key_of("course.simulations.registry", "SIMULATIONS")
 engine_ids = _key_of("course.engines.registry", "ENGINES")
+figure_ids = _key_of("course.figures.registry", "FIGURES")
 #: Of the engine comparison.
 scenario_ids = _key_of("course.engines.scenarios", "SCENARIOS")
 

@@ -152,6 +152,25 @@ def unchanged(scene: Scene) -> Chosen:
     return Chosen(scene=ready, parameters=parameters, settings={}, path=scene_path(scene.id))
 
 
+def unsaid(scene: Scene) -> Iterator[str]:
+    """Parameters and settings that change what theory gives, and no word of question and explanation."""
+    usual, asked = unchanged(scene), scene.prediction
+    if asked is None:
+        return
+    tried = {parameter.name: (parameter.default, parameter.high) for parameter in scene.parameter}
+    tried |= {
+        name: (setting.low, setting.high)
+        for name, setting in SETTINGS.items()
+        if name != "iterations" and (name in values_of(usual) or name not in {"left", "right"})
+    }
+    for name, (low, high) in tried.items():
+        ready, parameters, rest = _put_in(scene, {name: low + 0.37 * (high - low)})
+        other = Chosen(scene=ready, parameters=parameters, settings=rest, path=usual.path)
+        before, now = (compare(asked, 0.0, values_of(one), None) for one in (usual, other))
+        if now.theory != before.theory and (now.question, now.why) == (before.question, before.why):
+            yield name
+
+
 def with_settings(chosen: Chosen, settings: Mapping[str, float]) -> Chosen:
     """The same with the present settings of its world."""
     return msgspec.structs.replace(chosen, settings=dict(settings))

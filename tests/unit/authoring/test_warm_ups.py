@@ -93,7 +93,7 @@ def test_a_new_warm_up_passes_the_audit_once_its_blanks_are_filled(tripling: Pat
     ("file", "old", "new", "said"),
     [
         ("exercise.toml", "the-way-back", "nowhere", "has no section 'nowhere'"),
-        ("hints.toml", '"What is once more than twice?", ', "", "has 1 hints, and needs 2"),
+        ("hints.toml", '"What is once more than twice?", ', "", "has 1 hint, and needs 2"),
         ("README.md", "# Tripling", "Tripling", "the title is missing"),
         ("diagnoses.toml", "[diagnosis.CUBES]", "[diagnosis.FOURTH]", "no words for CUBES"),
     ],

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from course.errors import IntegrityError, MissingCapabilityError
+from course.printable import one_line
 from course.strangers import no_programs
 
 if TYPE_CHECKING:
@@ -160,7 +161,7 @@ class Store:
                 no_programs(database, _SCHEMA, millions=_MILLIONS)
                 self._prepare(database, create=create)
                 yield database
-        except sqlite3.Error as error:
+        except (sqlite3.Error, UnicodeDecodeError) as error:  # the second of names that are no text
             raise self._explained(error) from error
         except OSError as error:
             raise _not_writable(self.path, error.strerror or str(error)) from error
@@ -182,7 +183,7 @@ class Store:
                 database.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
             database.execute("COMMIT")
 
-    def _explained(self, error: sqlite3.Error) -> Exception:
+    def _explained(self, error: Exception) -> Exception:
         name = getattr(error, "sqlite_errorname", "") or ""
         if name.startswith(("SQLITE_BUSY", "SQLITE_LOCKED")):
             return MissingCapabilityError(
@@ -194,7 +195,7 @@ class Store:
             ("SQLITE_READONLY", "SQLITE_CANTOPEN", "SQLITE_PERM", "SQLITE_FULL", "SQLITE_IOERR")
         ):
             return _not_writable(self.path, str(error))
-        return _damaged(self.path, str(error))
+        return _damaged(self.path, one_line(str(error))[:200])
 
 
 def _version(database: sqlite3.Connection) -> int:
@@ -210,7 +211,7 @@ def _event(row: tuple[Any, ...]) -> Event:
     try:
         when = datetime.fromisoformat(at)
         values = json.loads(data)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, RecursionError) as error:
         raise _unreadable(number) from error
     if when.tzinfo is None or not isinstance(values, dict):
         raise _unreadable(number)
@@ -228,7 +229,10 @@ def _salvage(damaged: Path) -> list[tuple[str, str, str, str]]:
     import sqlite3
 
     rows: list[tuple[str, str, str, str]] = []
-    with contextlib.suppress(sqlite3.Error), contextlib.closing(sqlite3.connect(damaged)) as database:
+    with (
+        contextlib.suppress(sqlite3.Error, UnicodeDecodeError),
+        contextlib.closing(sqlite3.connect(damaged)) as database,
+    ):
         no_programs(database, _SCHEMA, millions=_MILLIONS)
         cursor = database.execute(f"{_SELECT} ORDER BY id")
         while (row := cursor.fetchone()) is not None:

@@ -9,12 +9,15 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+import msgspec
 
 from course.errors import IntegrityError, MissingCapabilityError
 from course.printable import one_line
@@ -206,14 +209,27 @@ def _now() -> str:
     return datetime.now(UTC).isoformat(timespec="milliseconds")
 
 
+class _Known(msgspec.Struct):
+    """Facts that are counted with, whatever the kind of the event, and what each of them is."""
+
+    checks: list[Any] = []
+    questions: list[Any] = []
+    right: bool | dict[str, Any] = False
+    index: int = 0
+    seed: int = 0
+    score: float | None = None
+
+
 def _event(row: tuple[Any, ...]) -> Event:
     number, at, kind, subject, data = row
     try:
         when = datetime.fromisoformat(at)
         values = json.loads(data)
-    except (TypeError, ValueError, RecursionError) as error:
+        known = msgspec.convert(values, _Known)
+    except (TypeError, ValueError, RecursionError, msgspec.ValidationError) as error:
         raise _unreadable(number) from error
-    if when.tzinfo is None or not isinstance(values, dict):
+    # Beyond these years no clock of a time zone is.
+    if when.tzinfo is None or not 1970 <= when.year < 9000 or not math.isfinite(known.score or 0.0):
         raise _unreadable(number)
     return Event(id=number, at=when, kind=str(kind), subject=str(subject), data=values)
 
@@ -233,6 +249,7 @@ def _salvage(damaged: Path) -> list[tuple[str, str, str, str]]:
         contextlib.suppress(sqlite3.Error, UnicodeDecodeError),
         contextlib.closing(sqlite3.connect(damaged)) as database,
     ):
+        database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _LONGEST)
         no_programs(database, _SCHEMA, millions=_MILLIONS)
         cursor = database.execute(f"{_SELECT} ORDER BY id")
         while (row := cursor.fetchone()) is not None:

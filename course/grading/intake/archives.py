@@ -14,6 +14,7 @@ import hashlib
 import json
 import os
 import stat
+import struct
 import subprocess
 import sys
 import threading
@@ -47,6 +48,7 @@ Members = dict[str, zipfile.ZipInfo]
 MAX_FILE = 1 << 20
 MAX_FILES = 20
 MAX_UNPACKED = 5 << 20
+MAX_LISTED = 1 << 20  # some ten thousand names: an environment of Python has them, and is passed over
 MAX_ARCHIVE = 6 << 20  # no archive of files within the limits is larger
 FORMAT_VERSION = 1
 
@@ -188,6 +190,8 @@ def _opened(path: Path, read: Callable[[zipfile.ZipFile, Members], T]) -> T:
             raise _refused(path, "it is not a regular file")
         if path.stat().st_size > MAX_ARCHIVE:
             raise _refused(path, "it is larger than 6 MB")
+        if _listed(path) > MAX_LISTED:
+            raise _refused(path, "it holds tens of thousands of files")
         with zipfile.ZipFile(path) as archive:
             return read(archive, _checked_members(path, archive.infolist()))
     except RefusedError:
@@ -196,6 +200,14 @@ def _opened(path: Path, read: Callable[[zipfile.ZipFile, Members], T]) -> T:
         raise _refused(path, f"it cannot be read ({error.strerror or error})") from None
     except Exception as error:  # noqa: BLE001 - zipfile and what unpacks for it raise all kinds at damage
         raise _refused(path, f"it cannot be read ({error or type(error).__name__})") from None
+
+
+def _listed(path: Path) -> int:
+    """Bytes of an archive's list of members, as it says itself: looked at before thousands are read."""
+    with path.open("rb") as handle:
+        handle.seek(max(path.stat().st_size - 22 - 0xFFFF, 0))
+        _, found, end = handle.read().rpartition(b"PK\5\6")
+    return struct.unpack_from("<I", end, 8)[0] if found and len(end) >= 12 else 0
 
 
 def _refused(path: Path, why: str) -> RefusedError:

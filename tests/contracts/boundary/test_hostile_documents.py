@@ -26,7 +26,8 @@ from tests.contracts.boundary.documents import SPECIAL, SYNTAXES, Made
 
 ROOT = Path(__file__).resolve().parents[3]
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
-MORE_S = 1.0
+#: CPU seconds beyond the right document; to salvage is to try every byte as a row.
+MORE_S = {"gradebook-salvaged": 5.0}
 MOST_KB = 200 << 10
 #: Exit codes with which a command may end over a document: it was taken (0, 1, 6), or it says what is wrong.
 TAKEN, REFUSED = {0, 1, 6}, {2, 3, 4, 5, 7}
@@ -419,4 +420,4 @@ def test_a_hostile_document_is_taken_or_refused_in_words(
         assert len(ended.said.splitlines()) < 20, shown
     assert not set(ended.said) & set("\x00\x1b\x07\u202e\ud800"), shown
     assert ended.most < max(MOST_KB, right(name).most * 1.3), shown
-    assert ended.cpu < right(name).cpu + MORE_S, shown
+    assert ended.cpu < right(name).cpu + MORE_S.get(name, 1.0), shown

@@ -15,10 +15,15 @@ the case, ``help`` what to do about it; neither needs the other to be understood
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 #: The exit code of a command that was stopped with Ctrl-C.
 INTERRUPTED = 130
+
+
+#: Longer than any name of a file.
+_ENDLESS_WORD = re.compile(r"([^\s/]{100})[^\s/]{200,}")
 
 
 class CourseError(Exception):
@@ -34,6 +39,8 @@ class CourseError(Exception):
     default_code = "internal"
 
     def __init__(self, message: str, *, help: str = "", code: str = "") -> None:  # noqa: A002
+        # What is quoted of a stranger's file may be as long as the file.
+        message, help = (_ENDLESS_WORD.sub(r"\1...", text) for text in (message, help))  # noqa: A001
         super().__init__(message)
         self.message = message
         self.help = help

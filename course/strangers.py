@@ -7,7 +7,6 @@ What is wrong is raised as the errors that readers of files know anyway (``OSErr
 from __future__ import annotations
 
 import errno
-import os
 import re
 import stat
 import tomllib
@@ -43,14 +42,17 @@ def read_bytes(path: Path, most: int = MOST) -> bytes:
         OSError: it cannot be read, is larger, or is a folder, a device or a pipe (which may never answer).
             ``strerror`` says which.
     """
-    handed_over = str(path).startswith(_HANDED_OVER)
-    flags = os.O_RDONLY | (0 if handed_over else getattr(os, "O_NONBLOCK", 0)) | getattr(os, "O_BINARY", 0)
-    with open(os.open(path, flags), "rb") as handle:  # noqa: PTH123 - of an open descriptor
-        mode = os.fstat(handle.fileno()).st_mode
-        if not (stat.S_ISREG(mode) or (handed_over and stat.S_ISFIFO(mode))):
-            raise OSError(errno.EINVAL, "it is a device or a pipe, and no file", str(path))
-        data = handle.read(most + 1)
-    if len(data) > most:
+    status = path.stat()
+    size = status.st_size
+    if stat.S_ISFIFO(status.st_mode) and str(path).startswith(_HANDED_OVER):
+        with path.open("rb") as handle:
+            data = handle.read(most + 1)
+        size = len(data)
+    elif stat.S_ISDIR(status.st_mode) or (stat.S_ISREG(status.st_mode) and size <= most):
+        data = path.read_bytes()
+    elif not stat.S_ISREG(status.st_mode):
+        raise OSError(errno.EINVAL, "it is a device or a pipe, and no file", str(path))
+    if size > most:
         raise OSError(errno.EFBIG, f"it is larger than {most >> 20} MB", str(path))
     return data
 

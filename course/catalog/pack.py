@@ -11,6 +11,7 @@ so nothing in it is believed before sizes, names and sums are checked, and nothi
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import io
 import re
@@ -138,6 +139,8 @@ def read_pack(path: Path) -> Pack:
     except (FileNotFoundError, NotADirectoryError):
         raise NotFoundError(f"There is no file {path}.", help="Check the name of the pack.") from None
     except OSError as error:
+        if error.errno == errno.EFBIG:
+            raise _damaged(path, "it is larger than any pack") from None
         raise NotFoundError(
             f"{path} cannot be read: {error.strerror}.", help="Name a file made by `course author pack`."
         ) from None

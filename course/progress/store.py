@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -16,7 +17,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import msgspec
+
 from course.errors import IntegrityError, MissingCapabilityError
+from course.printable import one_line
 from course.strangers import no_programs
 
 if TYPE_CHECKING:
@@ -191,7 +195,7 @@ class Store:
                 no_programs(database, _SCHEMA, millions=_MILLIONS)
                 self._prepare(database, create=create)
                 yield database
-        except sqlite3.Error as error:
+        except (sqlite3.Error, UnicodeDecodeError) as error:  # the second of names that are no text
             raise self._explained(error) from error
         except OSError as error:
             raise _not_writable(self.path, error.strerror or str(error)) from error
@@ -213,7 +217,7 @@ class Store:
                 database.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
             database.execute("COMMIT")
 
-    def _explained(self, error: sqlite3.Error) -> Exception:
+    def _explained(self, error: Exception) -> Exception:
         name = getattr(error, "sqlite_errorname", "") or ""
         if name.startswith(("SQLITE_BUSY", "SQLITE_LOCKED")):
             return MissingCapabilityError(
@@ -225,7 +229,7 @@ class Store:
             ("SQLITE_READONLY", "SQLITE_CANTOPEN", "SQLITE_PERM", "SQLITE_FULL", "SQLITE_IOERR")
         ):
             return _not_writable(self.path, str(error))
-        return _damaged(self.path, str(error))
+        return _damaged(self.path, one_line(str(error))[:200])
 
 
 def _version(database: sqlite3.Connection) -> int:
@@ -236,15 +240,28 @@ def _now() -> str:
     return datetime.now(UTC).isoformat(timespec="milliseconds")
 
 
+class _Known(msgspec.Struct):
+    """Facts that are counted with, whatever the kind of the event, and what each of them is."""
+
+    checks: list[Any] = []
+    questions: list[Any] = []
+    right: bool | dict[str, Any] = False
+    index: int = 0
+    seed: int = 0
+    score: float | None = None
+
+
 def _event(row: tuple[Any, ...]) -> Event:
     number, at, kind, subject, data = row
     try:
         when = datetime.fromisoformat(at)
         values = json.loads(data)
-    except (TypeError, ValueError) as error:
-        raise _UnreadableError(f"event {number} cannot be read") from error
-    if when.tzinfo is None or not isinstance(values, dict):
-        raise _UnreadableError(f"event {number} cannot be read")
+        known = msgspec.convert(values, _Known)
+    except (TypeError, ValueError, RecursionError, msgspec.ValidationError) as error:
+        raise _unreadable(number) from error
+    # Beyond these years no clock of a time zone is.
+    if when.tzinfo is None or not 1970 <= when.year < 9000 or not math.isfinite(known.score or 0.0):
+        raise _unreadable(number)
     return Event(id=number, at=when, kind=str(kind), subject=str(subject), data=values)
 
 
@@ -253,7 +270,11 @@ def _salvage(damaged: Path) -> list[tuple[str, str, str, str]]:
     import sqlite3
 
     rows: list[tuple[str, str, str, str]] = []
-    with contextlib.suppress(sqlite3.Error), contextlib.closing(sqlite3.connect(damaged)) as database:
+    with (
+        contextlib.suppress(sqlite3.Error, UnicodeDecodeError),
+        contextlib.closing(sqlite3.connect(damaged)) as database,
+    ):
+        database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _LONGEST)
         no_programs(database, _SCHEMA, millions=_MILLIONS)
         cursor = database.execute(f"{_SELECT} ORDER BY id")
         while (row := cursor.fetchone()) is not None:

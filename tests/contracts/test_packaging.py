@@ -9,15 +9,18 @@ from __future__ import annotations
 import json
 import os
 import platform
+import re
 import shutil
 import subprocess
 import sys
 import tarfile
+import tomllib
 import zipfile
 from pathlib import Path
 
 import numpy as np
 import pytest
+from packaging.requirements import Requirement
 
 ROOT = Path(__file__).parents[2]
 
@@ -294,3 +297,38 @@ def test_an_editable_installation_reads_the_checkout(source: Path, tmp_path: Pat
     assert said["checkout"] is True
     assert said["root"] == str(source)
     assert "integrators" in said["exercises"]
+
+
+def _pinned() -> dict[str, str]:
+    """What CI installs: names and versions; each line has one digest and no address."""
+    lines = [line for line in (ROOT / ".ci" / "pinned.txt").read_text("utf-8").splitlines() if line[0] != "#"]
+    found = [re.fullmatch(r"([a-z0-9-]+)==(\S+) --hash=sha256:[0-9a-f]{64}", line) for line in lines]
+    assert all(found), "a line is no name, version and digest"
+    return {match[1]: match[2] for match in found if match}
+
+
+def test_what_ci_installs_is_pinned_and_is_what_the_course_asks_for() -> None:
+    pinned = _pinned()
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    (extras,) = re.findall(r"-e '\.\[([a-z,]+)\]'", (ROOT / ".ci" / "run").read_text("utf-8"))
+    assert f"[{extras}]" in (ROOT / ".ci" / "pin").read_text("utf-8")
+    wanted = [
+        *project["dependencies"],
+        *tomllib.loads((ROOT / "pyproject.toml").read_text())["build-system"]["requires"],
+    ]
+    for extra in extras.split(","):
+        wanted += project["optional-dependencies"][extra]
+    here = {"python_version": "3.11", "sys_platform": "linux", "platform_machine": "x86_64"}
+    for requirement in map(Requirement, wanted):
+        if requirement.marker is None or requirement.marker.evaluate(here):
+            name = re.sub(r"[-_.]+", "-", requirement.name).lower()
+            assert pinned[name] in requirement.specifier, f"{requirement}: run .ci/pin again"
+
+
+def test_actions_are_fetched_by_commit() -> None:
+    used = [
+        line for path in (ROOT / ".github" / "workflows").glob("*.yml")
+        for line in path.read_text("utf-8").splitlines() if "uses:" in line
+    ]  # fmt: skip
+    assert used
+    assert [line for line in used if not re.search(r"@[0-9a-f]{40} # v[\d.]+$", line)] == []

@@ -140,7 +140,7 @@ def _in_gradebook(ctx: Any, query: str) -> list[Any]:
         with closing(sqlite3.connect(f"{path.as_uri()}?mode=ro", uri=True)) as book:
             no_programs(book, millions=5)
             return [value for (value,) in book.execute(query)]
-    except sqlite3.Error:
+    except (sqlite3.Error, UnicodeDecodeError):
         return []
 
 

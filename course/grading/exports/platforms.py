@@ -267,15 +267,21 @@ def _same(theirs: str, ours: str) -> bool:
 
 
 def _read(path: Path) -> tuple[list[str], list[list[str]]]:
+    rows: list[list[str]] = []
     try:
-        headings, *rows = csv.reader(io.StringIO(read_text(path), newline=""), strict=True)
-    except (csv.Error, ValueError) as error:
-        raise _wrong(path, str(error)) from None
-    missing = [name for name in (_KEY, _GRADE, _MODIFIED) if name not in in_english(headings)]
-    if missing:
-        raise _wrong(path, f"it has no column {missing[0]!r}, without which Moodle does not take it back")
-    if any(len(row) != len(headings) for row in rows):
-        raise _wrong(path, "a row has another number of cells than the headings")
+        reader = csv.reader(io.StringIO(read_text(path), newline=""), strict=True)
+        headings = next(reader, [])
+        missing = [name for name in (_KEY, _GRADE, _MODIFIED) if name not in in_english(headings)]
+        if missing:
+            why = f"it has no column {missing[0]!r}, without which Moodle does not take it back"
+            raise _wrong(path, why)
+        for row in reader:
+            if len(row) != len(headings):
+                why = "it has another number of cells than the headings"
+                raise _wrong(path, f"line {reader.line_num}: {why}")
+            rows.append(row)
+    except csv.Error as error:
+        raise _wrong(path, f"line {reader.line_num}: {error}") from None
     return headings, rows
 
 

@@ -155,7 +155,7 @@ class Gradebook:
             rows = self._db.execute(
                 "SELECT id, title, max_points, pass_share, position FROM exercises ORDER BY position, id"
             ).fetchall()
-        return tuple(_as(GradedExercise, row) for row in rows)
+            return tuple(_as(GradedExercise, row) for row in rows)
 
     # -- students -------------------------------------------------------------------------------------
 

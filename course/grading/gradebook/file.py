@@ -191,7 +191,7 @@ def explained(path: Path) -> Iterator[None]:
         yield
     except sqlite3.OperationalError as error:
         raise _operational(path, error) from None
-    except (sqlite3.DatabaseError, msgspec.MsgspecError, RecursionError) as error:
+    except (sqlite3.DatabaseError, msgspec.MsgspecError, RecursionError, UnicodeDecodeError) as error:
         raise IntegrityError(
             f"{path} is damaged: {one_line(str(error))[:_MOST_SAID]}.",
             help=_rescue(path),

@@ -15,6 +15,7 @@ import json
 import os
 import re
 import stat
+import struct
 import subprocess
 import sys
 import threading
@@ -55,6 +56,8 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 Members = dict[str, zipfile.ZipInfo]
 
+#: Bytes of a zip's list: some ten thousand names. An environment of Python has them, and is passed over.
+MAX_LISTED = 1 << 20
 
 _ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".whl", ".jar")
 
@@ -239,6 +242,8 @@ def _opened(path: Path, read: Callable[[zipfile.ZipFile, Members], T]) -> T:
             raise _refused(path, "it is not a regular file")
         if path.stat().st_size > MAX_ARCHIVE:
             raise _refused(path, f"it is larger than {MAX_ARCHIVE >> 20} MB")
+        if _listed(path) > MAX_LISTED:
+            raise _refused(path, "it holds tens of thousands of files")
         with zipfile.ZipFile(path) as archive:
             return read(archive, _checked_members(path, archive.infolist()))
     except RefusedError:
@@ -247,6 +252,14 @@ def _opened(path: Path, read: Callable[[zipfile.ZipFile, Members], T]) -> T:
         raise _refused(path, f"it cannot be read ({error.strerror or error})") from None
     except Exception as error:  # noqa: BLE001 - zipfile and what unpacks for it raise all kinds at damage
         raise _refused(path, f"it cannot be read ({error or type(error).__name__})") from None
+
+
+def _listed(path: Path) -> int:
+    """Bytes of an archive's list of members, as it says itself: looked at before thousands are read."""
+    with path.open("rb") as handle:
+        handle.seek(max(path.stat().st_size - 22 - 0xFFFF, 0))
+        _, found, end = handle.read().rpartition(b"PK\5\6")
+    return struct.unpack_from("<I", end, 8)[0] if found and len(end) >= 12 else 0
 
 
 def _refused(path: Path, why: str) -> RefusedError:

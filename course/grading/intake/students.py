@@ -356,7 +356,7 @@ def _utf8(source: bytes) -> bytes:
         source.decode(tokenize.detect_encoding(io.BytesIO(source).readline)[0])
         if b"\0" not in source:
             return source
-    with contextlib.suppress(UnicodeDecodeError):
+    with contextlib.suppress(UnicodeError):
         return decoded(source).encode("utf-8")
     return source
 

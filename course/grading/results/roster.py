@@ -299,7 +299,7 @@ def _kind(path: Path, headings: list[str]) -> tuple[Kind, dict[str, str]]:
     if {"First Name", "Last Name", "Email"} <= found or {"Name", "Email"} <= found:
         return _from_gradescope, _GRADESCOPE if "Name" in found else {**_GRADESCOPE, "name": "First Name"}
     if "student" not in found:
-        listed = ", ".join(headings)
+        listed = one_line(", ".join(headings))
         raise _wrong(
             path, f"its first row has no heading 'student', and {listed} are not those of a platform's file"
         )

@@ -168,7 +168,7 @@ def read(path: Path) -> Replay:
     for number, line in enumerate(lines, 1):
         try:
             decoded.append(decoder.decode(line))
-        except (msgspec.DecodeError, RecursionError) as error:
+        except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
             why = one_line(str(error))[:_MOST_SAID]
             if number == 1:
                 raise UsageError(f"{path} is not a recording: {why}.", code="bad_recording") from error

@@ -78,7 +78,7 @@ def notebook(chance: Chance) -> bytes:
     }
     if chance.random() < 0.1:
         made["worksheets"] = [{"cells": made.pop("cells")}]
-    return _damaged(
+    return damaged(
         chance, json.dumps(made, ensure_ascii=chance.random() < 0.5).encode("utf-8", "surrogatepass")
     )
 
@@ -99,7 +99,7 @@ def _cell(chance: Chance) -> Any:
     return cell if chance.random() > chance.wild / 10 else chance.choice(_ODD)
 
 
-def _damaged(chance: Chance, data: bytes) -> bytes:
+def damaged(chance: Chance, data: bytes) -> bytes:
     """As it is, or with bytes changed, doubled, left out or written over."""
     found = bytearray(data)
     if chance.random() >= 2 * chance.wild or not found:
@@ -142,7 +142,7 @@ def archive(chance: Chance) -> bytes:
                 warnings.simplefilter("ignore")  # two of one name are wanted
                 target.writestr(info, _content(chance), chance.choice(_METHODS))
         target.comment = chance.tame(b"", (b"PK\5\6" * 9, b"PK\1\2"))
-    return _damaged(chance, buffer.getvalue())
+    return damaged(chance, buffer.getvalue())
 
 
 def _content(chance: Chance) -> bytes:
@@ -158,7 +158,7 @@ def _content(chance: Chance) -> bytes:
                 "files": chance.tame({"doubling.py": "0" * 64}, _ODD),
                 "quiz": quiz,
             }
-            return _damaged(chance, json.dumps(made).encode())
+            return damaged(chance, json.dumps(made).encode())
         case _:
             return b"\0" * chance.tame(10, (0, 100_000, 2_000_000))
 
@@ -183,7 +183,7 @@ def _frame(chance: Chance) -> bytes:
             for _ in range(chance.choice((1, 3, 200)))
         )
     else:
-        body = _damaged(chance, bytes(Codec().encode(Kind.RESULT, _plain(chance, 4))[5:]))
+        body = damaged(chance, bytes(Codec().encode(Kind.RESULT, _plain(chance, 4))[5:]))
     kind = chance.tame(chance.choice((Kind.RESULT, Kind.RAISED, Kind.CALLBACK)), (*Kind, 0, 99, 255))
     right = chance.random() >= chance.wild
     length = len(body) + 1 if right else chance.choice((0, 1, 2**31, 2**32 - 1, chance.randrange(2**32)))
@@ -239,7 +239,7 @@ def scene(chance: Chance) -> tuple[str, bytes]:
                 lines.insert(at, chance.choice(other))
         if not lines:
             break
-    return path.stem, _damaged(chance, "\n".join(lines).encode())
+    return path.stem, damaged(chance, "\n".join(lines).encode())
 
 
 def _scaled(chance: Chance, value: str) -> str:

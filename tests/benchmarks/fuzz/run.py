@@ -13,6 +13,8 @@ is one.
     frames      what a worker sends, to the grader's end of a connection
     scenes      a scene's file, and twenty steps of the world in it
     returns     functions of every exercise with results spoilt in one or two ways, through the real graders
+    documents   late policies, markers, answers, class lists, times, worksheets, Gradescope's file, records
+                of a sandbox and of progress, packs of solutions, gradebooks, sources with a declared encoding
 """
 
 from __future__ import annotations
@@ -37,15 +39,26 @@ import msgspec  # noqa: E402
 
 from course.authoring.exercises.grading import solution_path  # noqa: E402
 from course.catalog.models import Exercise, Task  # noqa: E402
+from course.catalog.pack import pack_bytes, read_pack  # noqa: E402
 from course.errors import CourseError  # noqa: E402
+from course.grading.gradebook.book import Gradebook  # noqa: E402
+from course.grading.gradebook.records import Decision, SubmittedAt  # noqa: E402
 from course.grading.intake.archives import (  # noqa: E402
     Reader,
     RefusedError,
 )
+from course.grading.intake.downloads import class_list  # noqa: E402
 from course.grading.intake.students import submission_from  # noqa: E402
+from course.grading.results.late import read_policy, read_times  # noqa: E402
+from course.grading.results.roster import read_roster  # noqa: E402
+from course.grading.running.folder import open_results  # noqa: E402
 from course.isolation.deadline import Deadline  # noqa: E402
 from course.isolation.failures import StudentFailure  # noqa: E402
 from course.isolation.session import Connection, LoadRefusedError  # noqa: E402
+from course.progress.store import Store  # noqa: E402
+from course.progress.workspace import Workspace  # noqa: E402
+from course.quizzing.answers import read_answers  # noqa: E402
+from course.sandbox.runs import recording  # noqa: E402
 from course.sandbox.scene.loading import choose  # noqa: E402
 from course.sandbox.world.world import World  # noqa: E402
 from course.scoring.judging.session import GradingSession  # noqa: E402
@@ -188,7 +201,82 @@ def returns(chance: inputs.Chance, folder: Path) -> str:
     return statuses.get(check, "none")
 
 
-KINDS = {made.__name__: made for made in (notebooks, zips, frames, scenes, returns)}
+@cache
+def _right() -> dict[str, bytes]:
+    """A right document of each kind, by the file's name."""
+    with tempfile.TemporaryDirectory(prefix="fuzz-") as scratch:
+        record, book = Path(scratch) / "progress.sqlite", Path(scratch) / "gradebook.sqlite"
+        for number in range(40):
+            Store(record).append("check", "doubling", {"score": number, "of": 10, "words": "é" * number})
+        with Gradebook(book, create=True, writing=True) as made:
+            made.begin_run("run", {"snapshot": None, "folder": "class"})
+            made.set_meta(seed="1", roster='[{"student": "ada"}]', without_work='["bob"]')
+            made.add_times([SubmittedAt("ada", "doubling", "", "list", 1.0)])
+            made.note(Decision("", "", "override", "ada", "doubling", "why", "1", "2"))
+        heads = "Identifier,Full name,Grade,Last modified (submission),Last modified (grade)\n"
+        pack = {"doubling": {"doubling.py": b"def double(x):\n    return 2 * x\n"}}
+        return {
+            "late.toml": b'format_version = 1\npercent_per_day = 10\n[[deadline]]\nexercise = "*"\n'
+            b"due = 2026-12-01T23:59:00+01:00\n",
+            "course.toml": b'format_version = 1\n[course]\nid = "physics-sim"\nversion = "1.2.0"\n',
+            "answers.toml": b'seed = 42\n[answers]\nwhy-simulate = "b"\n',
+            "answers.json": b'{"seed": 42, "answers": {"why-simulate": "b"}}',
+            "class.csv": b"student,name,email,extension_days\nada,Ada,ada@uni.example,2\n",
+            "times.csv": b"student,exercise,submitted_at\nada,doubling,2026-12-01T12:00:00Z\n",
+            "sheet.csv": f"{heads}Participant 1,Ada,,-,-\n".encode(),
+            "submission_metadata.yml": b"submission_1: &a\n  :submitters:\n  - {:name: Ada, :sid: '1'}\n"
+            b"  :created_at: 2026-11-01 10:00:00 Z\nsubmission_2: *a\n",
+            "run.jsonl": b'{"kind": "head", "form": "course.sandbox-recording/1"}\n{"kind": "end"}\n',
+            "solutions.coursepack": pack_bytes("physics-sim", "1.2.0", pack),
+            "progress.sqlite": record.read_bytes(),
+            "gradebook.sqlite": book.read_bytes(),
+            "doubling.py": b"# coding: latin-1\ndef double(x):\n    return 2 * x\n",
+        }
+
+
+def _book(path: Path) -> object:
+    with open_results(path.parent) as results:
+        results.verify()
+        return list(results.all()), results.book.runs(), results.book.journal()
+
+
+_READERS: dict[str, Callable[[Path], object]] = {
+    "late.toml": read_policy,
+    "course.toml": lambda path: Workspace.read(path.parent),
+    "answers.toml": read_answers,
+    "answers.json": read_answers,
+    "class.csv": read_roster,
+    "times.csv": read_times,
+    "sheet.csv": read_times,
+    "submission_metadata.yml": lambda path: class_list(path.parent, "gradescope"),
+    "run.jsonl": recording.read,
+    "solutions.coursepack": read_pack,
+    "progress.sqlite": lambda path: (Store(path).repair(), Store(path).events()),
+    "gradebook.sqlite": _book,
+    "doubling.py": lambda path: submission_from(DOUBLING, path),
+}
+
+
+def documents(chance: inputs.Chance, folder: Path) -> str:
+    name, right = chance.choice(list(_right().items()))
+    content = right
+    for _ in range(chance.choice((1, 1, 2, 3))):
+        content = inputs.damaged(chance, content)
+    with tempfile.TemporaryDirectory(dir=folder) as own:
+        path = Path(own) / name
+        path.write_bytes(content)
+        (path.parent / "submission_1").mkdir()
+        try:
+            _READERS[name](path)
+        except (CourseError, RefusedError) as error:
+            said = error.message if isinstance(error, CourseError) else error.problem.message
+            if not said.replace("\n", "").isprintable():
+                raise FaultError(f"not printable: {said!r}") from None
+            return f"{name} {type(error).__name__}"
+    return f"{name} read"
+
+
+KINDS = {made.__name__: made for made in (notebooks, zips, frames, scenes, returns, documents)}
 
 
 def run(kind: str, seed: int, numbers: range, end: float = math.inf) -> tuple[Counter[str], dict[int, str]]:

@@ -71,11 +71,25 @@ def test_source_is_read_as_python_reads_it(load: Any, source: bytes) -> None:
         (b"x = 1\n\n  y = 2\n", 3),
         (b"x = '\xff'\n", None),
         (b"# coding: no-such-coding\nx = 1\n", None),
+        (b"# coding: rot13\nx = 1\n", None),
+        (b"# coding: hex_codec\nx = 1\n", None),
+        (b"# coding: zlib\nx = 1\n", None),
         (b"x = 1\0\n", None),
         (b"x = " + b"(" * 300 + b")" * 300, None),
         ("\ufeff\ufeffx = 1".encode(), None),
     ],
-    ids=["colon", "indent", "not UTF-8", "unknown coding", "NUL", "parentheses", "two marks"],
+    ids=[
+        "colon",
+        "indent",
+        "not UTF-8",
+        "unknown coding",
+        "rot13",
+        "hex",
+        "zlib",
+        "NUL",
+        "parentheses",
+        "two marks",
+    ],
 )
 def test_source_that_python_cannot_read_is_refused_as_syntax(
     load: Any, source: bytes, line: int | None

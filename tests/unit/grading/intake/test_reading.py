@@ -202,7 +202,7 @@ def test_what_is_said_of_an_archive_is_one_line_whatever_it_is_called(
     assert r"m\udce9.zip" in note
 
 
-@pytest.mark.parametrize("kind", ["notebooks", "zips", "frames", "scenes"])
+@pytest.mark.parametrize("kind", ["notebooks", "zips", "frames", "scenes", "documents"])
 def test_random_input_meets_words_and_no_fault(kind: str) -> None:
     """A glance: tests/benchmarks/fuzz/run.py runs for as long as it is told."""
     outcomes, faults = run(kind, seed=7, numbers=range(60))

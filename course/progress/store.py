@@ -258,10 +258,10 @@ def _event(row: tuple[Any, ...]) -> Event:
         values = json.loads(data)
         known = msgspec.convert(values, _Known)
     except (TypeError, ValueError, RecursionError, msgspec.ValidationError) as error:
-        raise _unreadable(number) from error
+        raise _UnreadableError(f"event {number} cannot be read") from error
     # Beyond these years no clock of a time zone is.
     if when.tzinfo is None or not 1970 <= when.year < 9000 or not math.isfinite(known.score or 0.0):
-        raise _unreadable(number)
+        raise _UnreadableError(f"event {number} cannot be read")
     return Event(id=number, at=when, kind=str(kind), subject=str(subject), data=values)
 
 

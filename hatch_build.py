@@ -124,6 +124,7 @@ def _of_the_package(folder: Path) -> Iterator[Path]:
 
 
 def _of_exercises(folder: Path) -> Iterator[Path]:
+    yield folder / "times.json"
     for head in [*folder.glob("*/exercise.toml"), *folder.glob("warm-ups/*/exercise.toml")]:
         yield head.parent / Path(tomllib.loads(head.read_text("utf-8"))["module"]).name
         for path in _below(head.parent):

@@ -99,6 +99,7 @@ def of_page(path: Path) -> list[Printed]:
 EVERY = [one for path in PAGES for one in of_page(path)]
 #: What a page makes is known to the commands after it.
 MADE = {name for one in EVERY if one.typed[1:3] == ["author", "new"] for name in one.typed[4:5]}
+MADE |= {name for one in EVERY if one.typed[1:3] == ["author", "pictures"] for name in one.typed[3:4]}
 
 
 def refused(one: Printed) -> str:

@@ -148,8 +148,8 @@ class _Bench:
         return self._checked[source]
 
     def _submission(self, source: str) -> Submission:
-        # What a terminal cannot decode it hands over as lone surrogates.
-        return Submission({self._session.exercise.module: source.encode(errors="replace")})
+        # What a terminal cannot decode it hands over as lone surrogates; a file with them is no text either.
+        return Submission({self._session.exercise.module: source.encode(errors="surrogatepass")})
 
 
 def _show_mistake(console: Console, example: Exercise, before: _Motion) -> None:

@@ -206,7 +206,7 @@ def _augmented(node: ast.AST) -> Iterator[str]:
 #: Cell magics whose body is Python of this notebook; the cells of all others are something else.
 PYTHON_MAGICS = frozenset({"time", "timeit", "capture", "prun", "memit", "mprun", "lprun"})
 #: Of a line without space around it: a million spaces in a row would be tried in every way to part them.
-_MAGIC = re.compile(r"[%!?]|[\w.,\s\[\]]+=\s*[%!]|.*\S\?{1,2}$")
+_MAGIC = re.compile(r"[%!?]|[\w.,\s\[\]]+=\s*[%!]|[\w.*]+\?{1,2}$")
 
 
 def without_magics(text: str) -> tuple[str, tuple[tuple[int, str], ...]]:

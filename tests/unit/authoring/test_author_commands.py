@@ -59,7 +59,6 @@ def test_a_scene_whose_text_has_a_formula_without_a_value_is_reported(
 ) -> None:
     text = (FOLDER / "head-on.toml").read_text("utf-8").replace("{speed}", "{sped}", 1)
     (tmp_path / "head-on.toml").write_text(text, "utf-8")
-    monkeypatch.setattr("course.authoring.audit.FOLDER", tmp_path)
     monkeypatch.setattr("course.sandbox.scene.loading.FOLDER", tmp_path)
     code, body = answer(capsys, "author", "check", "head-on")
     (problem,) = body["problems"]

@@ -279,5 +279,5 @@ def passing():
         "all_pass": True,
         "seconds": 0.1,
         "fingerprint": "x",
-        "checks": {},
+        "checks": [],
     }

@@ -174,7 +174,7 @@ def test_nothing_decides_a_score_but_what_the_version_of_the_graders_covers() ->
         capture_output=True, text=True, check=True,
     )  # fmt: skip
     covered = {"scoring", "isolation", "physics"}
-    # Reads the exercise's files, which are covered themselves; names and types; words for a figure; how a text
-    # is made harmless; and how a file is read.
+    # Reads the exercise's files, which are covered themselves; names and types; words for a figure; how a
+    # text is made harmless; and how a file is read.
     others = {"catalog", "errors", "ids", "figures", "printable", "strangers"}
     assert covered <= set(seen.stdout.split()) <= covered | others

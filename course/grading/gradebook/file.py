@@ -304,6 +304,7 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
     version = _checked_format(db, path)
     no_programs(db, millions=_MILLIONS)
     if version == 1:
+        _keep(db, path, version)
         db.executescript(f"BEGIN EXCLUSIVE; {_FROM_1} PRAGMA user_version = 3; COMMIT;")
     if writing:
         # The lock is the operating system's, so it ends with the process however that ends.
@@ -320,6 +321,7 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
             f"{path} is damaged: its content is not what the course wrote.", help=_rescue(path)
         )
     if version < FORMAT_VERSION and writing:
+        _keep(db, path, version)
         digests = _TO_4 if version < 4 else ""
         db.executescript(
             f"BEGIN EXCLUSIVE; {digests} {_SINCE_3} PRAGMA user_version = {FORMAT_VERSION}; COMMIT;"
@@ -332,6 +334,14 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
             if statement.split("EXISTS ")[1].split()[0] not in made:
                 db.execute(statement.replace("CREATE TABLE", "CREATE TEMP TABLE"))
     db.set_progress_handler(None, 0)  # what is in it has an end: it was all read for its digest
+
+
+def _keep(db: sqlite3.Connection, path: Path, version: int) -> None:
+    """A copy in the old format, which the version that wrote it reads."""
+    copy = path.with_name(f"{path.stem}.format-{version}{path.suffix}")
+    if not copy.exists():
+        with contextlib.closing(sqlite3.connect(copy)) as kept:
+            db.backup(kept)
 
 
 def _know_digests(db: sqlite3.Connection) -> None:

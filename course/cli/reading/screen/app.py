@@ -223,13 +223,13 @@ class ReaderApp(FullScreenApp):
         self.page.settle()
 
     def action_item(self, way: int) -> None:
-        """The next thing on this screen that keys act on; after the last, the first of the next screen."""
+        """The next thing on this screen that keys act on, links last; then the first of the next screen."""
         self.hush()
-        items, item = self.page.items(), self.page.item
+        items, item = sorted(self.page.items(), key=lambda one: one.inline), self.page.item
         at = items.index(item) + way if item in items else (0 if way > 0 else -1)
         if not items or at >= len(items) or (at < 0 and item in items):
             self.action_turn("next" if way > 0 else "previous")
-            items, at = self.page.items(), 0 if way > 0 else -1
+            items, at = sorted(self.page.items(), key=lambda one: one.inline), 0 if way > 0 else -1
         if items:
             self.page.item = items[at]
             self.page.say_round()

@@ -21,6 +21,7 @@ from course.reading.parts import Cell, Question
 from course.reading.record import InProgress, Judgement, Place
 
 _BUSY = "Something is being checked already."
+_BACK = "You followed a link.   Backspace back to where it was"
 
 Kind = TypeVar("Kind", bound=Item)
 
@@ -46,11 +47,13 @@ class LinkItem(Item):
         if kind == "lesson" or self.target.startswith("#"):
             page.leave_trail()
             page.open(name or page.progress.script.lesson.id, section=slug or self.target.partition("#")[2])
+            page.reader.say(_BACK)
         elif kind == "exercise":
             # Where a warm-up or an exercise is done: in the lesson that leads to it.
             lesson = page.catalog.exercise(name).lesson
             page.leave_trail()
             page.open(lesson, Place(page.in_progress(lesson).script.task(name)))
+            page.reader.say(_BACK)
         elif opened(self.target):
             page.reader.say(f"Opened {self.target}")
         else:  # no browser can show it here

@@ -333,10 +333,18 @@ class Page(Widget):
         """The next screen; at the end, what is next."""
         following = self.book.layout.next(self.top)
         if self.end() < len(self.book.layout) and following > self.top:
+            asked = self._asked()
             self.show(following)
+            if asked - self._asked():
+                self.reader.say("You passed an open prediction.   b back to it")
         elif tail := [item for item in self.items() if item.block == len(self.progress.script.blocks)]:
             self.item = tail[-1]
             self.reader.say("This is the end. Enter: go on")
+
+    def _asked(self) -> set[str]:
+        """The open predictions on this screen."""
+        found = (self.progress.asked_by(item.block) for item in self.items())
+        return {question.key for question in found if question is not None}
 
     def go(self, top: int, *, paged: bool = True) -> None:
         """Show the screen that begins with a row; ``paged`` leaves a block that would be cut for later."""
@@ -492,7 +500,7 @@ class Page(Widget):
         self._head = shortened(head, room)
         self._keys = shortened(self._told, room) if self._told else fitting(self._keys_of(self), room)
         self._position = self._where(book) if book.whole else ""
-        self._share = self.end() / max(1, len(book.layout))
+        self._share = self.end() / max(1, len(book.layout)) if book.whole else 0.0
         self.refresh()
 
     def _where(self, book: Book) -> str:

@@ -19,7 +19,7 @@ from course.cli.frame.pictures import half_blocks
 from course.cli.reading.screen import page as paging
 from course.cli.reading.screen.app import ReaderApp
 from course.cli.reading.screen.asking import Edit
-from course.cli.reading.screen.items import CellItem, FigureItem
+from course.cli.reading.screen.items import CellItem, FigureItem, keys_of
 from course.cli.reading.screen.page import fitting
 from course.progress.store import Store
 from course.reading.parts import Cell
@@ -179,6 +179,36 @@ def test_a_number_below_an_answer_judges_it_though_a_cell_is_at_hand(catalog, tm
         assert "3 wrong" not in screen(app)
 
     reading(catalog, journey, size=(80, 50), store=store)
+
+
+def test_space_past_an_open_prediction_says_so_and_b_leads_back(catalog):
+    async def journey(app, pilot):
+        await to_question(app, pilot)
+        while not app.message.startswith("You passed an open prediction."):
+            before = app.page.top
+            await pilot.press("space")
+            assert app.page.top > before, "to the end without a word"
+        await pilot.press("b")
+        assert "predict" in keys_of(app.page)
+
+    reading(catalog, journey)
+
+
+def test_the_bar_is_empty_until_the_whole_lesson_is_laid_out(catalog, monkeypatch):
+    shares = []
+    said = paging.Page.say_round
+
+    def noted(page):
+        said(page)
+        shares.append((page.book.whole, page._share))
+
+    monkeypatch.setattr(paging.Page, "say_round", noted)
+
+    async def journey(app, pilot):
+        assert {share for whole, share in shares if not whole} == {0.0}
+        assert 0.0 < app.page._share < 0.3
+
+    reading(catalog, journey)
 
 
 def test_a_skip_is_kept_too(catalog, tmp_path):
@@ -437,6 +467,21 @@ def test_links_search_contents_and_the_way_back(catalog):
         assert app.page.progress.script.lesson.id == link.target.partition(":")[2].partition("#")[0]
 
     reading(catalog, journey)
+
+
+def test_tab_comes_to_predictions_cells_and_tasks_before_the_links_beside_them(catalog):
+    async def journey(app, pilot):
+        while not (any(i.inline for i in app.page.items()) and any(not i.inline for i in app.page.items())):
+            await pilot.press("space")
+        app.page.item, blocks = None, sum(not item.inline for item in app.page.items())
+        came = []
+        for _ in app.page.items():
+            await pilot.press("tab")
+            came.append(app.page.item.inline)
+        assert came == sorted(came)
+        assert came.count(False) == blocks
+
+    reading(catalog, journey, size=(80, 40))
 
 
 def test_tab_reaches_everything_that_can_be_acted_on(catalog):

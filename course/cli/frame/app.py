@@ -69,7 +69,7 @@ def run(arguments: Sequence[str]) -> int:
         if code == INTERRUPTED and not console.emitted:
             raise KeyboardInterrupt
     except KeyboardInterrupt:
-        code = _say(console, line, INTERRUPTED, "interrupted", "Interrupted; finished work is kept.")
+        code = _say(console, line, INTERRUPTED, "interrupted", "Interrupted.")
     except CourseError as error:
         code = _say(console, line, error.exit_code, error.code, error.message, error.help)
     except Exception as error:  # noqa: BLE001 - the boundary: nothing passes it

@@ -102,9 +102,9 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
     scales = {name: points / most[name] for name, points in zip(selection.exercises, possible, strict=True)}
     for student, scores in _table(selection, scales).items():
         person = selection.people[student]
-        rows.append(
-            [person.name or student, person.canvas_id, person.sis_user_id, "", person.section, *scores]
-        )
+        login = person.login if person.canvas_id and is_safe(person.login) else ""  # as Canvas wrote it
+        ids = person.canvas_id, person.sis_user_id, login
+        rows.append([person.name or student, *ids, person.section, *scores])
     # Ruby's CSV reader, which Canvas uses, fails on a quote after a byte order mark.
     write_bytes(path, csv_bytes(headings, rows, mark=False))
     selection.written.paths.append(path)

@@ -73,7 +73,7 @@ def test_a_second_roster_takes_nothing_away(course, out: Path) -> None:
         name: [row[key] for key in kept] for name, row in before.items()
     }
     assert after["gus"]["section"] == "A"
-    line = '"Bob Byrne","102","S2","","A","10"'
+    line = '"Bob Byrne","102","S2","bob","A","10"'
     assert line in (out / "canvas.csv").read_text().splitlines()
 
 
@@ -214,7 +214,7 @@ def test_scores_are_on_the_scale_of_the_gradebook_that_canvas_gave(course, out: 
     head, possible, *rows = (out / "canvas.csv").read_text().splitlines()
     assert head.endswith('"Section","Doubling, first try (4711)"')
     assert possible.endswith('"5"')
-    assert '"Lovelace, Ada","101","S1","","A","5"' in rows
+    assert '"Lovelace, Ada","101","S1","ada","A","5"' in rows
     wrong = tuple(word.replace("4711", "9999") for word in TO_CANVAS)
     ran = course(*wrong, "canvas.csv", "-o", "wrong.csv")
     assert (ran.code, (out.parent / "wrong.csv").exists()) == (2, False)

@@ -13,8 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from course.catalog import blocks as b
-from course.catalog.mathtext import math_spoken, math_text
-from course.catalog.mathtree import MathError
+from course.catalog.mathtext import MathError, math_spoken, math_text
 from course.catalog.reading import split_front_matter
 from course.errors import ContentError
 

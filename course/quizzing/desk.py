@@ -13,8 +13,7 @@ from course.catalog.reading import Document
 from course.errors import ContentError
 from course.progress import quiz
 from course.progress.quiz import Attempt
-from course.quizzing.attempt import Result, mark
-from course.quizzing.bank import Bank, PosedQuestion, clashing, pose_case
+from course.quizzing.bank import Bank, PosedQuestion, Result, clashing, mark, pose_case
 
 if TYPE_CHECKING:
     Record = Callable[[str, str, dict[str, object]], None]

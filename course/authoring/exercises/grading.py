@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import ast
+import contextlib
+import os
+import tempfile
 import traceback
 import types
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -15,8 +18,9 @@ import numpy as np
 
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
+from course.catalog.pack import pack_bytes
 from course.catalog.reading import read_text
-from course.errors import ContentError
+from course.errors import ContentError, UsageError
 from course.grading.intake.students import Entry
 from course.grading.running.batch import Graders
 from course.grading.running.snapshot import Snapshot, frozen
@@ -458,3 +462,55 @@ def _arrays(value: Any) -> list[Any]:
 
 def _shares(value: Any, args: Any) -> bool:
     return any(np.may_share_memory(a, b) for a in _arrays(value) for b in _arrays(args))
+
+
+def write_pack(catalog: Catalog, exercise_ids: Sequence[str], output: Path) -> dict[str, tuple[str, ...]]:
+    """Write a pack with the model solution, and its prose if there is any, of each exercise.
+
+    Args:
+        exercise_ids: at least one; one that is named twice goes in once.
+        output: must not exist; it appears whole or not at all.
+
+    Returns:
+        The names of the files that went in, by exercise.
+
+    Raises:
+        NotFoundError: there is no such exercise.
+        UsageError: no exercise is named, or ``output`` cannot be written.
+        MissingCapabilityError: this installation has no solutions.
+    """
+    instructors(catalog)
+    if output.exists():
+        raise UsageError(
+            f"{output} exists, and nothing is overwritten.", help="Name another file with -o.", code="exists"
+        )
+    solutions = {exercise_id: _files(catalog, exercise_id) for exercise_id in exercise_ids}
+    data = pack_bytes(catalog.course_id, catalog.version, solutions)
+    _write_whole(output, data)
+    return {exercise_id: tuple(sorted(files)) for exercise_id, files in solutions.items()}
+
+
+def _files(catalog: Catalog, exercise_id: str) -> dict[str, bytes]:
+    exercise = catalog.exercise(exercise_id)
+    paths = [solution_path(catalog, exercise), solutions_folder(catalog, exercise) / "README.md"]
+    if not paths[0].is_file():
+        raise ContentError(paths[0], None, "the model solution is missing.", help="Write it first.")
+    return {path.name: path.read_bytes() for path in paths if path.is_file()}
+
+
+def _write_whole(output: Path, data: bytes) -> None:
+    """Write beside the target, then move into place: a half-written pack must never look like one."""
+    try:
+        handle, name = tempfile.mkstemp(dir=output.parent, prefix=f".{output.name}.")
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(data)
+            Path(name).chmod(0o644)
+            Path(name).replace(output)
+        finally:
+            with contextlib.suppress(OSError):
+                Path(name).unlink()
+    except OSError as error:
+        raise UsageError(
+            f"{output} cannot be written: {error.strerror}.", help="Name a file in a folder you can write to."
+        ) from None

@@ -12,9 +12,8 @@ import typer
 from course.authoring import scaffold
 from course.authoring.audit import audit
 from course.authoring.coverage import Coverage, as_markdown, check_coverage, read_coverage, written_to
-from course.authoring.exercises.grading import instructors
+from course.authoring.exercises.grading import instructors, write_pack
 from course.authoring.exercises.mutants import MutantOutcome, run_mutants
-from course.authoring.packing import write_pack
 from course.authoring.report import AuditProblem, AuditReport
 from course.catalog.load import Catalog
 from course.catalog.locate import ENVIRONMENT_VARIABLE

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from course.cli.frame.registry import COMMANDS, group
-from course.cli.grade.changing import late, override, rerun, similar
+from course.cli.grade.changing import assign, late, log, override, rerun, salvage, similar
 from course.cli.grade.export import export
 from course.cli.grade.running import explain, run
-from course.cli.grade.settling import assign, log, salvage
 
 app = group(COMMANDS["grade"].summary)
 

@@ -11,7 +11,7 @@ from course.cli.frame.options import argument, option
 from course.cli.frame.replies import filled
 from course.cli.grade.options import Exercises, Missing, moved_scores, one_of, show_roster
 from course.errors import CourseError, UsageError
-from course.grading.container.packing import write_autograder
+from course.grading.container import write_autograder
 from course.grading.exports.formats import AUTOGRADER, FORMATS
 from course.grading.exports.formats import export as write
 from course.grading.exports.grades import STDOUT, grade_line

@@ -12,7 +12,7 @@ import msgspec
 
 from course.errors import MissingCapabilityError, UsageError
 from course.grading.exports.grades import write_csv, write_jsonl
-from course.grading.exports.html_report.write import write_pages
+from course.grading.exports.html_report.pages import write_pages
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.file import explained
 from course.grading.gradebook.salvage import back_up

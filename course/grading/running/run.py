@@ -32,8 +32,7 @@ from course.grading.results.roster import Roster
 from course.grading.running.batch import Graded, grade_all
 from course.grading.running.folder import BOOK, begin, export_all, note_without_work, remember, taken_back
 from course.grading.running.snapshot import Snapshot, Unpacked, among_graders, fresh, frozen, kept
-from course.quizzing.attempt import needed
-from course.quizzing.bank import Bank
+from course.quizzing.bank import Bank, needed
 from course.scoring.failures import OURS
 from course.scoring.graders import grader_version
 from course.scoring.judging.submission import Terms

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from course.physics.body import Body
 from course.physics.contact.impulses import normal_speed
-from course.physics.interpolation import falling_root
+from course.physics.integrators import falling_root
 
 if TYPE_CHECKING:
     Array = NDArray[np.float64]

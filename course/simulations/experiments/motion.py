@@ -11,11 +11,9 @@ from numpy.typing import NDArray
 
 from course.physics.body import Body
 from course.physics.contact import Surface
-from course.physics.integrators import STEPPERS, State, trajectory
-from course.physics.interpolation import first_crossing, hermite
-from course.physics.recording import Recording
+from course.physics.integrators import STEPPERS, State, first_crossing, hermite, trajectory
 from course.physics.rotation import ROTATION_STEPPERS, Spin, angular_momentum, kinetic_energy
-from course.physics.simulator import Simulator, step_count
+from course.physics.simulator import Recording, Simulator, step_count
 from course.physics.state import RigidBodyState
 from course.physics.systems import FreeFall
 from course.simulations.base import (

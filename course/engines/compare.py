@@ -24,7 +24,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import msgspec
 
@@ -45,8 +45,7 @@ from course.engines.results import (
 from course.engines.scenarios import BOXES, DT, SCENARIOS
 from course.engines.scenarios import get as get_scenario
 
-if TYPE_CHECKING:
-    Progress = Callable[[int, int, str], None]
+Progress = Callable[[int, int, str], None]
 
 #: The steps that show how an error shrinks, s; the middle one is the step of everything else.
 LADDER = tuple(1.0 / rate for rate in (60, 120, 240, 480, 960))

@@ -11,7 +11,7 @@ import statistics
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,10 +21,9 @@ from course.errors import NotFoundError
 from course.physics import integrators as ode
 from course.physics.systems import Pendulum
 
-if TYPE_CHECKING:
-    Array = NDArray[np.float64]
-    Build = Callable[[Scene], World]
-    Measured = tuple[float, dict[str, Any]]
+Array = NDArray[np.float64]
+Build = Callable[[Scene], World]
+Measured = tuple[float, dict[str, Any]]
 
 
 # ---

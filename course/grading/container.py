@@ -19,7 +19,7 @@ import traceback
 import zipfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
@@ -31,17 +31,12 @@ from course.grading.exports.platforms import results_body
 from course.grading.exports.selection import Written
 from course.grading.gradebook.records import Key, Result
 from course.grading.intake.downloads import Place, Student
-from course.grading.intake.students import read_student
+from course.grading.intake.students import Entry, read_student
 from course.grading.results.effective import Effective
 from course.grading.running.batch import grade_all, without_grading
-from course.grading.running.snapshot import Snapshot, frozen
+from course.grading.running.snapshot import Snapshot, Unpacked, frozen
 from course.scoring.judging.submission import Terms
-from course.scoring.verdict import Problem
-
-if TYPE_CHECKING:
-    from course.grading.intake.students import Entry
-    from course.grading.running.snapshot import Unpacked
-    from course.scoring.verdict import Verdict
+from course.scoring.verdict import Problem, Verdict
 
 #: The graders, beside the configuration.
 SNAPSHOT = "graders.zip"

@@ -21,7 +21,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,10 +34,9 @@ from course.physics.integrators import State, Stepper, VelocityVerlet
 from course.physics.rotation import ByMomentum, ByQuaternion, Spin, Turning, kinetic_energy, turn, turn_back
 from course.physics.state import RigidBodyState
 
-if TYPE_CHECKING:
-    Array = NDArray[np.float64]
-    Flags = NDArray[np.bool_]
-    ForceLaw = Callable[[Any, Sequence[Body]], None]
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+ForceLaw = Callable[[Any, Sequence[Body]], None]
 
 
 @dataclass(frozen=True, eq=False)

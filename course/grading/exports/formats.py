@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
 from course.errors import UsageError
@@ -24,8 +23,7 @@ from course.grading.results.effective import Effective, Results
 from course.printable import one_line
 from course.scoring.verdict import CheckResult, Problem, Status
 
-if TYPE_CHECKING:
-    Writer = Callable[[Path, Results, ExportOptions], Written]
+Writer = Callable[[Path, Results, ExportOptions], Written]
 
 #: Needs no gradebook, and so is not one of the formats below.
 AUTOGRADER = "gradescope-autograder"

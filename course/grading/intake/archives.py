@@ -20,13 +20,15 @@ import subprocess
 import sys
 import threading
 import zipfile
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from types import SimpleNamespace
-from typing import IO, TYPE_CHECKING, Any, TypeVar
+from typing import IO, Any, TypeVar
 
 import msgspec
 
+from course.catalog.models import Exercise
 from course.errors import InternalError, UngradableError
 from course.grading.intake import kinds
 from course.grading.intake.downloads import is_folder_meant, is_meant
@@ -46,12 +48,6 @@ from course.handed_in.notebook import notebook_source
 from course.isolation.inside import statements
 from course.printable import one_line
 from course.scoring.verdict import Problem
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from course.catalog.models import Exercise
-
 
 T = TypeVar("T")
 Members = dict[str, zipfile.ZipInfo]

@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -37,8 +36,7 @@ from course.scoring.failures import OURS
 from course.scoring.graders import grader_version
 from course.scoring.judging.submission import Terms
 
-if TYPE_CHECKING:
-    GradeAll = Callable[[Iterable[Entry], Terms], Iterator[Graded]]
+GradeAll = Callable[[Iterable[Entry], Terms], Iterator[Graded]]
 
 
 # ---

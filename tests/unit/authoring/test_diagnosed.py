@@ -10,7 +10,7 @@ import pytest
 from course.authoring.audit import audit
 from course.catalog.load import Catalog
 from course.cli.frame.app import run
-from course.scoring.checks.collected import collected
+from course.scoring.checks import collected
 from course.scoring.explain.story import read_table, read_words
 
 CODES = ("INTEGER_DIVISION", "LOSES_SIGN")

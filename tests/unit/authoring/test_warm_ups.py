@@ -13,7 +13,7 @@ from course.authoring.scaffold import Function, new_warm_up
 from course.catalog.load import Catalog
 from course.cli.frame.app import run
 from course.errors import ContentError, UsageError
-from course.scoring.checks.collected import collected
+from course.scoring.checks import collected
 from course.scoring.explain.story import read_table, read_words
 
 WORDS = {

@@ -40,20 +40,12 @@ _SPOKEN_FENCES = {
 
 
 def math_text(tex: str) -> str:
-    """A formula as Unicode text; several lines, aligned, where the source has an ``aligned`` environment.
-
-    Raises:
-        MathError: it uses something that has no agreed text form.
-    """
+    """A formula as Unicode text; several lines, aligned, where the source has an ``aligned`` environment."""
     return dedent("\n".join(line.rstrip() for line in _text(read_math(tex)).split("\n")))
 
 
 def math_spoken(tex: str) -> str:
-    """A formula in words, unambiguous when heard; several lines where the source has ``aligned``.
-
-    Raises:
-        MathError: it uses something that has no agreed spoken form.
-    """
+    """A formula in words, unambiguous when heard; several lines where the source has ``aligned``."""
     lines = []
     for line in _spoken(read_math(tex)).splitlines():
         words = line.replace(" ,", ",").replace(" ;", ";").replace(" .", ".")
@@ -424,14 +416,7 @@ _TOKEN = re.compile(r"\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|\s+|.", re.DOTALL)
 
 
 def read_math(tex: str) -> Node:
-    """Read one formula.
-
-    Args:
-        tex: LaTeX without dollars and without comments.
-
-    Raises:
-        MathError: it uses something outside the tables, or its braces and fences do not match.
-    """
+    """Read one formula."""
     tokens = [token for token in _TOKEN.findall(tex.strip()) if not token.isspace()]
     if any(token in (r"\text", r"\mathrm", r"\operatorname") for token in tokens):
         tokens = _keep_spaces_in_words(tex.strip())

@@ -83,11 +83,7 @@ class TerminalFigure:
 
 
 def terminal_figure(figure_id: str, columns: int, rows: int) -> TerminalFigure:
-    """Draw a figure of a lesson for so many cells.
-
-    Raises:
-        NotFoundError: no figure has this id.
-    """
+    """Draw a figure of a lesson for so many cells."""
     return in_cells(lambda: build(figure_id), columns, rows)
 
 

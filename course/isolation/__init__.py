@@ -7,4 +7,6 @@ launch     its files, its command, the part of the file system that it sees, and
 session    calls to a worker; deadline has the time limit of each
 failures   what came back, read as untrusted data
 inside     what runs in the student's process
+
+What needs a level, a package or a program that is not here raises IsolationError, with the causes.
 """

@@ -124,11 +124,7 @@ class Spawner(Protocol):
     level: Level
 
     def spawn(self) -> Handle:
-        """A new worker, which may import what the spawner was made for and within its limits.
-
-        Raises:
-            IsolationError: it could not be started.
-        """
+        """A new worker, which may import what the spawner was made for and within its limits."""
 
     def tidy(self) -> None:
         """Delete what ended workers wrote; call it only while no submission's clock runs."""

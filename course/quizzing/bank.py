@@ -371,11 +371,7 @@ def mark(posed: Sequence[PosedQuestion], answers: Mapping[str, str]) -> Result:
 
 
 def check_seed(seed: int) -> int:
-    """``seed`` itself.
-
-    Raises:
-        UsageError: it is out of range.
-    """
+    """``seed`` itself."""
     if not 0 <= seed <= MAX_SEED:
         raise UsageError(
             f"{seed} is not a seed.", help=f"Use a whole number from 0 to {MAX_SEED}.", code="invalid_seed"

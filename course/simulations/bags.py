@@ -188,11 +188,7 @@ def streams_from(plain: Mapping[str, Mapping[str, Any]]) -> tuple[Stream, ...]:
 
 
 def _settle(stream: Stream, names: tuple[str, ...], dimensions: int = 1) -> None:
-    """Make the arrays of a stream float arrays that fit together, and its numbers floats.
-
-    Raises:
-        UsageError: they do not fit, or times are not finite, not ordered or before the start.
-    """
+    """Make the arrays of a stream float arrays that fit together, and its numbers floats."""
     kind = next(name for name, made in KINDS.items() if made is type(stream))
     t = _array(stream.t, kind, "t", 1)
     if not (np.all(np.isfinite(t)) and np.all(np.diff(t) >= 0) and np.all((t >= 0) & (t < _LATEST))):
@@ -428,11 +424,7 @@ def read_bag(path: Path) -> tuple[Stream, ...]:
 
 
 def _rosbag2() -> Any:
-    """The module that writes and reads bags.
-
-    Raises:
-        MissingCapabilityError: it is not installed.
-    """
+    """The module that writes and reads bags."""
     return extras.load("ros")
 
 

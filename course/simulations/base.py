@@ -202,11 +202,7 @@ def run(simulation: Simulation, pairs: Sequence[str] = ()) -> Result:
 
 
 def parse(simulation: Simulation, pairs: Sequence[str]) -> dict[str, Any]:
-    """Every parameter with its value, those in ``pairs`` read and checked.
-
-    Raises:
-        UsageError: see ``run``.
-    """
+    """Every parameter with its value, those in ``pairs`` read and checked."""
     settings: dict[str, Any] = simulation.defaults()
     seen: set[str] = set()
     for pair in pairs:

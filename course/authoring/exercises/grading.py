@@ -42,11 +42,7 @@ from course.scoring.verdict import Verdict
 
 
 def instructors(catalog: Catalog) -> tuple[Path, Path]:
-    """The folders of solutions and of hidden graders.
-
-    Raises:
-        MissingCapabilityError: this installation is a student's and has none.
-    """
+    """The folders of solutions and of hidden graders."""
     return catalog.content.instructors()
 
 
@@ -76,11 +72,7 @@ def mutant_files(catalog: Catalog, exercise: Exercise) -> tuple[Path, ...]:
 
 
 def compose(solution: Path, variant: Path) -> bytes:
-    """The model solution with a variant's definitions put after it.
-
-    Raises:
-        ContentError: a file is missing, or the two together are not Python.
-    """
+    """The model solution with a variant's definitions put after it."""
     model, own = read_text(solution), read_text(variant)
     if not own.lstrip().startswith(('"""', "#")):
         raise ContentError(
@@ -251,11 +243,7 @@ def _changed(source: str, model: str) -> frozenset[str]:
 
 
 def declared_checks(exercise: Exercise, catalog: Catalog) -> dict[str, Check]:
-    """The checks as pytest collects them, by id: markers whose values are computed have them here.
-
-    Raises:
-        ContentError: a file cannot be imported, or a check lacks its marks.
-    """
+    """The checks as pytest collects them, by id: markers whose values are computed have them here."""
     collected = CollectedChecks(check_files(exercise, catalog, "full"))
     try:
         return {check.id: check for check in collected.checks}

@@ -130,11 +130,7 @@ def is_command(words: tuple[str, ...]) -> bool:
 
 
 def load_catalog() -> Catalog:
-    """The course in use, which is the one whose checkout one stands in.
-
-    Raises:
-        UsageError: one stands in another checkout than that of this program, which would be written to.
-    """
+    """The course in use, which is the one whose checkout one stands in."""
     catalog, folder = here.load_catalog(), Path.cwd()
     for above in (folder, *folder.parents):
         if (above / "course" / "authoring").is_dir() and (above / "exercises").is_dir():

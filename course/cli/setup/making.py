@@ -58,11 +58,7 @@ _ENV = """\
 
 
 def usable(requirement: str | None) -> str | None:
-    """A requirement that pip, a shell and GitHub all read in the same way.
-
-    Raises:
-        UsageError: one of them would read it differently.
-    """
+    """A requirement that pip, a shell and GitHub all read in the same way."""
     if requirement is not None and (
         not requirement.isprintable() or requirement.startswith("-") or "${{" in requirement
     ):
@@ -79,9 +75,6 @@ def write_surroundings(root: Path, kinds: tuple[str, ...], requirement: str | No
 
     Args:
         requirement: where pip gets the course from; None for the wheel in ``wheels/``.
-
-    Raises:
-        UsageError: a file cannot be written.
     """
     written = []
     for kind in kinds:
@@ -98,11 +91,7 @@ def write_surroundings(root: Path, kinds: tuple[str, ...], requirement: str | No
 
 
 def chosen_kinds(text: str) -> tuple[str, ...]:
-    """The kinds in a list such as "github,vscode".
-
-    Raises:
-        UsageError: there is no such kind.
-    """
+    """The kinds in a list such as "github,vscode"."""
     kinds = tuple(dict.fromkeys(word.strip() for word in text.split(",") if word.strip()))
     unknown = [kind for kind in kinds if kind not in KINDS]
     if unknown or not kinds:

@@ -54,12 +54,7 @@ _IMPOSSIBLE = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff
 
 
 def write_junit(path: Path, results: Results, options: ExportOptions) -> Written:
-    """One file for the class.
-
-    Raises:
-        UsageError: no such exercise.
-        MissingCapabilityError: students are missing in the roster, or the file cannot be written.
-    """
+    """One file for the class."""
     selection = select(results, options)
     with replacing(path) as handle:
         handle.write(b'<?xml version="1.0" encoding="utf-8"?>\n')

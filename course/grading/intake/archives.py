@@ -59,7 +59,7 @@ _ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".whl"
 
 
 class RefusedError(Exception):
-    """One candidate cannot be read."""
+    """One candidate cannot be read: it must not be opened, is damaged, or is not there. All here raise it."""
 
     def __init__(self, code: str, message: str, advice: str) -> None:
         super().__init__(message)
@@ -67,11 +67,7 @@ class RefusedError(Exception):
 
 
 def manifest_of(path: Path) -> dict[str, Any]:
-    """The metadata that ``course submit`` put into an archive; empty for one made by hand.
-
-    Raises:
-        RefusedError: the archive must not be opened, or is damaged.
-    """
+    """The metadata that ``course submit`` put into an archive; empty for one made by hand."""
     return _opened(path, functools.partial(_manifest, path))
 
 
@@ -97,7 +93,7 @@ def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
     """A zip's module or notebook for an exercise; None if there is neither.
 
     Raises:
-        RefusedError: the archive must not be opened further, is damaged, or holds several.
+        RefusedError: also where it holds several.
     """
 
     def read(archive: zipfile.ZipFile, members: Members) -> ArchiveContent | None:
@@ -168,11 +164,7 @@ def _wanted_members(members: Members, exercise: Exercise) -> list[str]:
 
 
 def outline_of(path: Path, skip: tuple[str, ...]) -> list[tuple[str, bytes]]:
-    """Names and contents of the modules and notebooks in a zip, except those to skip.
-
-    Raises:
-        RefusedError: it must not be opened further, or is damaged.
-    """
+    """Names and contents of the modules and notebooks in a zip, except those to skip."""
 
     def read(archive: zipfile.ZipFile, members: Members) -> list[tuple[str, bytes]]:
         return [
@@ -187,11 +179,7 @@ def outline_of(path: Path, skip: tuple[str, ...]) -> list[tuple[str, bytes]]:
 
 
 def member_of(path: Path, name: str) -> bytes:
-    """The content of one member, by the name the archive has for it, or that name with plain slashes.
-
-    Raises:
-        RefusedError: there is none, or the archive must not be opened further.
-    """
+    """The content of one member, by the name the archive has for it, or that name with plain slashes."""
 
     def read(archive: zipfile.ZipFile, members: Members) -> bytes:
         for plain, info in members.items():
@@ -211,11 +199,7 @@ _TARS = frozenset({"a tar archive", "a gzip archive", "a bzip2 archive", "an xz 
 
 
 def _compressed(path: Path, kind: str) -> list[tuple[str, bytes]]:
-    """What may be code in an archive that is no zip, by name.
-
-    Raises:
-        RefusedError: it is damaged.
-    """
+    """What may be code in an archive that is no zip, by name."""
     try:
         return list(kinds.compressed(path, kind, MAX_FILE, MAX_UNPACKED))
     except OSError as error:
@@ -228,11 +212,7 @@ def _kind(path: Path) -> str:
 
 
 def _opened(path: Path, read: Callable[[zipfile.ZipFile, Members], T]) -> T:
-    """The result of ``read`` on an archive whose members are all harmless.
-
-    Raises:
-        RefusedError: the archive must not be opened further, or is damaged.
-    """
+    """The result of ``read`` on an archive whose members are all harmless."""
     try:
         if not stat.S_ISREG(path.lstat().st_mode):
             raise _refused(path, "it is not a regular file")
@@ -400,11 +380,7 @@ class Reader:
         self._process: subprocess.Popen[bytes] | None = None
 
     def notebook(self, content: bytes, exercise: Exercise, name: str) -> tuple[bytes, bytes]:
-        """The module that a notebook makes up, and the record of its cells.
-
-        Raises:
-            RefusedError: it cannot be graded.
-        """
+        """The module that a notebook makes up, and the record of its cells."""
         told = self._ask(_Request("notebook", one_line(name), content=content, **_wanted(exercise)))
         return told.content, told.record
 
@@ -427,29 +403,18 @@ class Reader:
         Args:
             skip: members of the archive to ignore.
             functions: the names to look for.
-
-        Raises:
-            RefusedError: it cannot be read.
         """
         where = os.fsencode(path.absolute())
         ask = _Request("outline", one_line(path.name), path=where, tasks=functions, skip=skip)
         return self._ask(ask).outlines
 
     def member(self, path: Path, name: str) -> bytes:
-        """The content of one file of an archive.
-
-        Raises:
-            RefusedError: there is none, or the archive must not be opened.
-        """
+        """The content of one file of an archive."""
         ask = _Request("member", one_line(path.name), path=os.fsencode(path.absolute()), skip=(name,))
         return self._ask(ask).content
 
     def quiz_in(self, path: Path) -> Any:
-        """The quiz attempts in an archive; a word if they have another form, None if it has none.
-
-        Raises:
-            RefusedError: it must not be opened, or is damaged.
-        """
+        """The quiz attempts in an archive; a word if they have another form, None if it has none."""
         told = self._ask(_Request("quiz", one_line(path.name), path=os.fsencode(path.absolute())))
         return json.loads(told.content)
 

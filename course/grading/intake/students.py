@@ -93,9 +93,6 @@ def read_student(student: Student, exercises: Sequence[Exercise], *, required: b
     Args:
         required: whether an exercise without a file is ungradable (it was asked for by name) or merely not
             submitted.
-
-    Raises:
-        InternalError: the reading process does not work at all.
     """
     try:
         return list(_entries(student, exercises, required=required))
@@ -242,11 +239,7 @@ class _FoundWork:
 
 
 def _find(place: Place, archives: list[Path], exercise: Exercise) -> _FoundWork | None:
-    """The one candidate for an exercise, None if there is none; copies of one file count as one.
-
-    Raises:
-        RefusedError: there are several, or the one cannot be read.
-    """
+    """The one candidate for an exercise, None if there is none; copies of one file count as one."""
     notebook = Path(exercise.module).with_suffix(".ipynb").name
     plain = place.find(exercise.module, exercise.place)
     notebooks = place.find(notebook, exercise.place)
@@ -334,9 +327,6 @@ def submission_from(exercise: Exercise, path: Path, member: str = "") -> Submiss
 
     Args:
         member: name in the archive at ``path``; empty for the file itself.
-
-    Raises:
-        RefusedError: it cannot be read, or graded.
     """
     content = reader.member(path, member) if member else _read_regular(path, path.name, MAX_NOTEBOOK)
     notebook = (member or path.name).casefold().endswith(".ipynb") or is_notebook(content)
@@ -364,11 +354,7 @@ def _utf8(source: bytes) -> bytes:
 
 
 def _submission(exercise: Exercise, name: str, content: bytes) -> Submission:
-    """A file as a submission; a notebook becomes the module that it makes up.
-
-    Raises:
-        RefusedError: it is empty, or a notebook that cannot be graded.
-    """
+    """A file as a submission; a notebook becomes the module that it makes up."""
     shown = name.rpartition("/")[2]
     if not content.strip():
         raise RefusedError("empty_file", f"{shown} is empty.", "Was it saved before it was handed in?")

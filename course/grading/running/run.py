@@ -410,11 +410,7 @@ class _Run:
 
 
 def _bank(catalog: Catalog) -> Bank:
-    """The questions of the quiz.
-
-    Raises:
-        UsageError: one of them is unfinished or wrong, which is no student's fault; nothing was graded.
-    """
+    """The questions of the quiz."""
     try:
         return Bank(read_questions(catalog.content.quiz))
     except ContentError as error:
@@ -450,11 +446,7 @@ def graded_exercises(exercises: Sequence[Exercise], bank: Bank | None) -> list[G
 
 
 def _exercises(catalog: Catalog, wanted: tuple[str, ...]) -> tuple[Exercise, ...]:
-    """The exercises to grade.
-
-    Raises:
-        UsageError: one of them is unfinished, which is no student's fault; nothing was graded.
-    """
+    """The exercises to grade."""
     chosen = catalog.exercises() if not wanted else ()
     chosen += tuple(catalog.exercise(name) for name in dict.fromkeys(wanted) if name != QUIZ)
     for exercise in chosen:

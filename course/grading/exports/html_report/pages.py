@@ -256,7 +256,6 @@ def class_page(results: Results, tally: Tally, links: Mapping[str, str], index: 
     """The whole page.
 
     Args:
-        tally: the class, counted.
         links: student -> address of the student's page.
         index: address of the list of students.
     """
@@ -367,12 +366,7 @@ def index_row(
     found: Mapping[str, Effective],
     exercises: Sequence[str],
 ) -> IndexRow:
-    """One student.
-
-    Args:
-        found: exercise -> result.
-        exercises: the columns.
-    """
+    """One student."""
     scores = tuple(_score(found.get(exercise)) for exercise in exercises)
     return IndexRow(student, place, href, results.person(student), scores)
 
@@ -401,13 +395,7 @@ def _score(effective: Effective | None) -> tuple[float | None, str] | None:
 def index_page(
     results: Results, rows: Sequence[IndexRow], exercises: Sequence[GradedExercise], report: str
 ) -> str:
-    """The whole page.
-
-    Args:
-        rows: in order.
-        exercises: the columns.
-        report: address of the page about the class.
-    """
+    """The whole page."""
     return render(
         "students",
         scripted=True,
@@ -483,11 +471,7 @@ class _Shown:
 
 
 def student_page(results: Results, student: str, found: Sequence[Effective]) -> str:
-    """The page about all of one student's work.
-
-    Args:
-        found: the student's results, in the order of the course.
-    """
+    """The page about all of one student's work."""
     person = results.person(student)
     called = person.name if person and person.name else student
     shown = [_shown_result(results, item) for item in found]
@@ -555,10 +539,6 @@ def write_html(target: Path, results: Results, options: ExportOptions) -> Writte
 
     Args:
         target: the page (``.html``), or the folder it goes into.
-
-    Raises:
-        UsageError: no such exercise.
-        MissingCapabilityError: students are missing in the roster, or a file cannot be written.
     """
     selection = select(results, options)
     path = target if target.suffix.lower() in {".html", ".htm"} else target / "report.html"
@@ -582,9 +562,6 @@ def write_pages(
 
     Returns:
         The written paths: the class page, the list of students as a page and as a table, the folder of pages.
-
-    Raises:
-        MissingCapabilityError: a file cannot be written.
     """
     noted = {item.id: item for item in results.exercises()}
     order = {name: at for at, name in enumerate(exercises)}

@@ -15,9 +15,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from course.isolation.deadline import Deadline
 from course.isolation.failures import IsolationError, StudentFailure
-from course.isolation.levels import Handle, Level, Spawner
+from course.isolation.levels import Deadline, Handle, Level, Spawner
 from course.isolation.session import Connection, LoadRefusedError
 from course.isolation.spawn import spawner
 

@@ -28,7 +28,6 @@ from pathlib import Path
 from typing import Any
 
 from course.isolation import launch
-from course.isolation.deadline import ProcessClock
 from course.isolation.failures import IsolationError
 from course.isolation.inside.frames import ENDED, LOOK
 from course.isolation.launch import View, view_for
@@ -40,6 +39,7 @@ from course.isolation.levels import (
     Handle,
     Level,
     Limits,
+    ProcessClock,
     Spawner,
     ticking,
 )

@@ -9,9 +9,8 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from course.isolation.deadline import WALL, Deadline
 from course.isolation.failures import StudentFailure
-from course.isolation.levels import Spawner
+from course.isolation.levels import WALL, Deadline, Spawner
 from course.isolation.session import Connection, LoadFault, LoadRefusedError
 from course.scoring.values import Inspected, as_march, overwritten
 from course.scoring.verdict import Places

@@ -16,10 +16,20 @@ from course.cli.frame import here
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, load_catalog
 from course.cli.frame.options import argument, option
-from course.cli.frame.replies import NextStep, WrittenFile
-from course.cli.setup.replies import Init
+from course.cli.frame.replies import Envelope, NextStep, WrittenFile
 from course.errors import CourseError, NotFoundError, UsageError
 from course.progress.workspace import MARKER, Workspace
+
+
+class Init(Envelope, tag="course.init/1", frozen=True, kw_only=True):
+    """``created`` is False where the folder was a workspace already; nothing was changed then."""
+
+    workspace: str
+    created: bool
+    course: CourseRef
+    next: NextStep
+    files: tuple[WrittenFile, ...] = ()
+
 
 # ---
 # ``course init --with``: files that bring the checks to where people work, on GitHub and in an editor.

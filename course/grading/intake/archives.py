@@ -30,7 +30,7 @@ import msgspec
 
 from course.catalog.models import Exercise
 from course.errors import InternalError, UngradableError
-from course.grading.intake import kinds
+from course.grading.intake import downloads
 from course.grading.intake.downloads import is_folder_meant, is_meant
 from course.grading.pipes import limit_cpu, limit_memory, read_frame, served, write_frame
 from course.grading.quiz import checked_record
@@ -171,7 +171,7 @@ def outline_of(path: Path, skip: tuple[str, ...]) -> list[tuple[str, bytes]]:
             (info.filename, _unpacked(path, archive, info))
             for info in members.values()
             if info.filename not in skip
-            and kinds.may_be_code(info.filename)
+            and downloads.may_be_code(info.filename)
             and not info.filename.endswith(MANIFEST)
         ]
 
@@ -201,14 +201,14 @@ _TARS = frozenset({"a tar archive", "a gzip archive", "a bzip2 archive", "an xz 
 def _compressed(path: Path, kind: str) -> list[tuple[str, bytes]]:
     """What may be code in an archive that is no zip, by name."""
     try:
-        return list(kinds.compressed(path, kind, MAX_FILE, MAX_UNPACKED))
+        return list(downloads.compressed(path, kind, MAX_FILE, MAX_UNPACKED))
     except OSError as error:
         raise _refused(path, f"it cannot be read ({error})") from None
 
 
 def _kind(path: Path) -> str:
     with path.open("rb") as handle:
-        return kinds.kind_of(path.name, handle.read(512))
+        return downloads.kind_of(path.name, handle.read(512))
 
 
 def _opened(path: Path, read: Callable[[zipfile.ZipFile, Members], T]) -> T:
@@ -251,7 +251,7 @@ def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
     files = [info for info in infos if not info.is_dir() and not unwanted(info.filename.replace("\\", "/"))]
     if len(files) > MAX_FILES:
         raise _refused(path, f"it holds more than {MAX_FILES} files")
-    if sum(info.file_size for info in files if kinds.may_be_code(info.filename)) > MAX_UNPACKED:
+    if sum(info.file_size for info in files if downloads.may_be_code(info.filename)) > MAX_UNPACKED:
         raise _refused(path, f"its files unpack to more than {MAX_UNPACKED >> 20} MB")
     members: Members = {}
     for info in files:
@@ -549,7 +549,7 @@ def _answer(ask: _Request) -> _Reply:
 def _outlines(path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> Iterator[Outline]:
     with path.open("rb") as handle:
         content = handle.read(MAX_NOTEBOOK + 1)
-    kind = kinds.kind_of(path.name, content)
+    kind = downloads.kind_of(path.name, content)
     if kind == "a zip archive" or path.suffix.casefold() == ".zip":
         files = outline_of(path, skip)
     elif kind in _TARS:
@@ -566,7 +566,7 @@ def _outlines(path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> 
     if not files:
         yield "", hashlib.sha256(content).hexdigest(), (), 0, f"{kind} without a file of code"
     for name, found in files:
-        what = kinds.kind_of(name, found)
+        what = downloads.kind_of(name, found)
         digest = hashlib.sha256(found).hexdigest()
         yield name, digest, *(_defined(name, found, functions) if what in _IS_CODE else ((), 0)), what
 
@@ -583,7 +583,7 @@ def _defined(name: str, content: bytes, functions: tuple[str, ...]) -> tuple[tup
         return (), 0  # parsing takes a hundred times as long as looking
     pieces: list[str | bytes] = [content]
     try:
-        if name.casefold().endswith(".ipynb") or kinds.is_notebook(content):
+        if name.casefold().endswith(".ipynb") or downloads.is_notebook(content):
             cells = json.loads(content).get("cells", ())
             pieces = ["".join(cell.get("source", ())) for cell in cells if cell.get("cell_type") == "code"]
     except (ValueError, AttributeError, TypeError, RecursionError):

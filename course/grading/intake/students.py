@@ -35,8 +35,7 @@ from course.catalog.models import Exercise
 from course.errors import InternalError, UngradableError
 from course.grading.gradebook.records import SubmittedAt
 from course.grading.intake.archives import ArchiveContent, RefusedError, reader
-from course.grading.intake.downloads import Place, Student, plain
-from course.grading.intake.kinds import is_clutter, is_notebook, kind_of
+from course.grading.intake.downloads import Place, Student, is_clutter, is_notebook, kind_of, plain
 from course.grading.results.roster import decoded
 from course.handed_in.limits import HANDED_IN, MANIFEST, MAX_FILE, MAX_NOTEBOOK
 from course.handed_in.notebook import RECORD

@@ -247,7 +247,7 @@ def _refused(path: Path, why: str) -> RefusedError:
 def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
     """The members by name, without the folders around all of them; every one is harmless."""
     plain = {info.filename.replace("\\", "/"): info for info in infos if not info.is_dir()}
-    unwanted = kinds.clutter(plain)
+    unwanted = downloads.clutter(plain)
     files = [info for info in infos if not info.is_dir() and not unwanted(info.filename.replace("\\", "/"))]
     if len(files) > MAX_FILES:
         raise _refused(path, f"it holds more than {MAX_FILES} files")

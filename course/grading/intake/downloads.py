@@ -397,8 +397,8 @@ def _created_at(about: Any) -> float | None:
 
 
 # ---
-# What a file is, by its content, and files in archives that are no zip. Nothing is unpacked to disk; the process
-# that reads (``archives``) calls it, within that one's limits.
+# What a file is, by its content, and files in archives that are no zip. Nothing is unpacked to disk; the
+# process that reads (``archives``) calls it, within that one's limits.
 
 
 #: What operating systems, tools and Python itself put into folders.

@@ -58,7 +58,7 @@ PARTS: dict[str, Part] = {
 CONTAINER = Part(
     "Grading in Gradescope's container",
     ("msgspec", "numpy", "pymunk", "pytest"),
-    "course.grading.container.inside",
+    "course.grading.container",
 )
 
 

@@ -89,12 +89,7 @@ class Coverage(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def read_coverage(catalog: Catalog) -> Document[Coverage]:
-    """The table of a course, with the lines its rows stand on.
-
-    Raises:
-        NotFoundError: the course has none; an installed course does not.
-        ContentError: it cannot be read.
-    """
+    """The table of a course, with the lines its rows stand on."""
     path = catalog.content.root / "docs" / "coverage.toml"
     if not path.is_file():
         raise NotFoundError(

@@ -1,7 +1,8 @@
 """New lessons and exercises: files in the right places, with marked blanks for the author.
 
 The audit names every remaining blank, with file and line, and proves the rest once they are filled. Nothing
-is ever overwritten, and either all files are written or none.
+is ever overwritten, and either all files are written or none: an id or a signature that is none, a name that
+is taken and a file that exists raise UsageError, and a student's installation MissingCapabilityError.
 """
 
 from __future__ import annotations
@@ -37,11 +38,7 @@ class Function:
 
     @classmethod
     def parse(cls, text: str, gives: str = "") -> Self:
-        """A function as its author writes it.
-
-        Raises:
-            UsageError: it is not a signature.
-        """
+        """A function as its author writes it."""
         try:
             (node,) = ast.parse(f"def {text.strip()}: ...").body
         except (SyntaxError, ValueError):
@@ -140,11 +137,6 @@ def new_exercise(
 
     Returns:
         The files, in the order an author fills them.
-
-    Raises:
-        UsageError: the id is not valid or cannot be a module, two functions share a name, or a file exists.
-        NotFoundError: there is no such lesson.
-        MissingCapabilityError: this installation has no place for solutions and graders.
     """
     words = _words_of(catalog, exercise_id, functions, title, summary, lesson)
     words["order"] = 1 + max((exercise.order for exercise in catalog.exercises()), default=0)
@@ -207,24 +199,14 @@ def _words_of(
 
 
 def new_lesson(catalog: Catalog, lesson_id: str) -> tuple[Path, ...]:
-    """Write the file of a new lesson; its place in the syllabus is the author's to choose.
-
-    Raises:
-        UsageError: the id is no id, or the file exists.
-        MissingCapabilityError: this is a student's installation.
-    """
+    """Write the file of a new lesson; its place in the syllabus is the author's to choose."""
     instructors(catalog)
     name = LessonId(lesson_id)
     return _write({catalog.content.lessons / f"{name}.md": ("lesson.md", {"id": name})})
 
 
 def new_question(catalog: Catalog, question_id: str) -> tuple[Path, ...]:
-    """Write the file of a new quiz question, with as many variants as the audit asks for.
-
-    Raises:
-        UsageError: the id is no id, or the file exists.
-        MissingCapabilityError: this is a student's installation.
-    """
+    """Write the file of a new quiz question, with as many variants as the audit asks for."""
     instructors(catalog)
     name = QuestionId(question_id)
     lessons = catalog.lesson_ids()
@@ -240,10 +222,6 @@ def new_scene(catalog: Catalog, scene_id: str) -> tuple[Path, ...]:
     """Write the file of a new sandbox scene, last in the list; it can run at once.
 
     It lies with the program's own, or in ``scenes/`` of the course that ``COURSE_CONTENT`` names.
-
-    Raises:
-        UsageError: the id is no id, or the file exists.
-        MissingCapabilityError: this is a student's installation.
     """
     from course.sandbox.scene.loading import FOLDER, scene_ids
 

@@ -311,7 +311,8 @@ class Catalog:
     Args:
         content: where the files are; the course in use if None.
 
-    Every method may raise ContentError, which names the file, the line and the fix.
+    Every method may raise ContentError, which names the file, the line and the fix, and one that takes an id
+    or other words for one item NotFoundError.
     """
 
     def __init__(self, content: Content | None = None) -> None:
@@ -367,21 +368,13 @@ class Catalog:
         return tuple(self._lesson(lesson_id) for lesson_id in self.lesson_ids())
 
     def lesson(self, lesson_id: str) -> Lesson:
-        """One lesson's head; its text is at ``lesson.path``.
-
-        Raises:
-            NotFoundError: no lesson has this id.
-        """
+        """One lesson's head; its text is at ``lesson.path``."""
         if lesson_id not in self.lesson_ids():
             raise _not_found("lesson", lesson_id, self.lesson_ids(), "course lessons")
         return self._lesson(lesson_id)
 
     def lesson_called(self, words: str) -> Lesson:
-        """One lesson, by its id or its place in the syllabus, "1" first.
-
-        Raises:
-            NotFoundError: no lesson is called so.
-        """
+        """One lesson, by its id or its place in the syllabus, "1" first."""
         ids = self.lesson_ids()
         if words.isdecimal() and len(words) < _DIGITS and 1 <= int(words) <= len(ids):
             return self._lesson(ids[int(words) - 1])
@@ -441,22 +434,14 @@ class Catalog:
         return (*self.warm_ups(lesson_id), *(one for one in led if one.lesson == lesson_id))
 
     def exercise(self, exercise_id: str) -> Exercise:
-        """One exercise, or one warm-up: their ids differ.
-
-        Raises:
-            NotFoundError: nothing has this id.
-        """
+        """One exercise, or one warm-up: their ids differ."""
         known = (*self.exercise_ids(), *self.warm_up_ids())
         if exercise_id not in known:
             raise _not_found("exercise", exercise_id, known, "course exercises")
         return self._exercise(exercise_id)
 
     def exercise_called(self, words: str) -> Exercise:
-        """One exercise, by its id or its number.
-
-        Raises:
-            NotFoundError: nothing is called so.
-        """
+        """One exercise, by its id or its number."""
         if words.isdecimal() and len(words) < _DIGITS and int(words) > 0:
             for exercise in self.exercises():
                 if exercise.number == int(words):

@@ -13,8 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from course.catalog import blocks as b
-from course.catalog.mathtext import math_spoken, math_text
-from course.catalog.mathtree import MathError
+from course.catalog.mathtext import MathError, math_spoken, math_text
 from course.catalog.reading import split_front_matter
 from course.errors import ContentError
 
@@ -31,21 +30,13 @@ _FORMAT_HELP = "docs/lesson-format.md lists what a lesson can hold."
 
 
 def read_blocks(path: Path) -> tuple[b.Block, ...]:
-    """The blocks of the lesson in a file.
-
-    Raises:
-        ContentError: the file cannot be read or is not a lesson.
-    """
+    """The blocks of the lesson in a file."""
     head = split_front_matter(_text(path), path)
     return parse_lesson(head.body, path, first_line=head.body_line)
 
 
 def read_task(path: Path) -> tuple[b.Block, ...]:
-    """The blocks of a warm-up's README below its title; the caller has the title already.
-
-    Raises:
-        ContentError: the file cannot be read, or holds something a lesson could not hold.
-    """
+    """The blocks of a warm-up's README below its title; the caller has the title already."""
     title, _, body = _text(path).partition("\n")
     if not title.startswith("# "):
         raise ContentError(path, 1, "the title is missing.", help="Start the file with: # Title")
@@ -67,9 +58,6 @@ def parse_lesson(body: str, file: Path, *, first_line: int = 1) -> tuple[b.Block
         body: the text below the front matter.
         file: where it came from, for messages.
         first_line: the line of the file that ``body`` starts on, counted from 1.
-
-    Raises:
-        ContentError: something a lesson cannot hold; the message names file and line.
     """
     from markdown_it.tree import SyntaxTreeNode
 

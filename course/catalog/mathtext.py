@@ -1,29 +1,19 @@
 """Formulae for readers without a typesetter: Unicode text for a terminal, words for a screen reader.
 
 Both forms keep what typesetting says by position: a numerator that is a sum gets brackets, a norm keeps its
-bars, an exponent with no raised form in Unicode is written with ^. A formula neither can render raises.
+bars, an exponent with no raised form in Unicode is written with ^.
+
+Formulae are the part of LaTeX that lessons use, and not one command more. What is not in the tables below
+raises MathError, so no reader gets a formula that was only half understood. Its author rewrites it or gives
+the words by hand.
 """
 
 from __future__ import annotations
 
+import re
+from dataclasses import dataclass
 from textwrap import dedent
 from typing import assert_never
-
-from course.catalog.mathtree import (
-    ACCENTS,
-    Accent,
-    Atom,
-    Fence,
-    Fraction,
-    Grid,
-    MathError,
-    Node,
-    Root,
-    Row,
-    Script,
-    is_factor,
-    read_math,
-)
 
 _RAISED = dict(
     zip(
@@ -50,20 +40,12 @@ _SPOKEN_FENCES = {
 
 
 def math_text(tex: str) -> str:
-    """A formula as Unicode text; several lines, aligned, where the source has an ``aligned`` environment.
-
-    Raises:
-        MathError: it uses something that has no agreed text form.
-    """
+    """A formula as Unicode text; several lines, aligned, where the source has an ``aligned`` environment."""
     return dedent("\n".join(line.rstrip() for line in _text(read_math(tex)).split("\n")))
 
 
 def math_spoken(tex: str) -> str:
-    """A formula in words, unambiguous when heard; several lines where the source has ``aligned``.
-
-    Raises:
-        MathError: it uses something that has no agreed spoken form.
-    """
+    """A formula in words, unambiguous when heard; several lines where the source has ``aligned``."""
     lines = []
     for line in _spoken(read_math(tex)).splitlines():
         words = line.replace(" ,", ",").replace(" ;", ";").replace(" .", ".")
@@ -289,3 +271,336 @@ def _is_operand(node: Node | None) -> bool:
     return node is not None and not (
         isinstance(node, Atom) and node.kind in ("binary", "relation", "punctuation", "space", "function")
     )
+
+
+class MathError(ValueError):
+    """A formula uses something that has no agreed text form."""
+
+
+@dataclass(frozen=True, slots=True)
+class Atom:
+    """One symbol.
+
+    Attributes:
+        kind: "letter", "number", "words", "function", "binary", "relation", "punctuation" or "space".
+        text: for the screen.
+        spoken: for the ear; empty if it is not spoken.
+    """
+
+    kind: str
+    text: str
+    spoken: str
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    items: tuple[Node, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Fraction:
+    over: Row
+    under: Row
+
+
+@dataclass(frozen=True, slots=True)
+class Root:
+    body: Row
+
+
+@dataclass(frozen=True, slots=True)
+class Script:
+    """A base with an index below, an exponent above, or both."""
+
+    base: Node
+    sub: Row | None
+    sup: Row | None
+
+
+@dataclass(frozen=True, slots=True)
+class Accent:
+    name: str
+    body: Row
+
+
+@dataclass(frozen=True, slots=True)
+class Fence:
+    """Something between a pair of delimiters: ``()``, ``[]``, ``{}``, ``||`` or ``‖‖``."""
+
+    left: str
+    right: str
+    body: Row
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """Lines of an ``aligned`` environment; the cells of a line are what ``&`` separates."""
+
+    lines: tuple[tuple[Row, ...], ...]
+
+
+Node = Atom | Row | Fraction | Root | Script | Accent | Fence | Grid
+
+_GREEK = {
+    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "varepsilon": "ε", "zeta": "ζ",
+    "eta": "η", "theta": "θ", "kappa": "κ", "lambda": "λ", "mu": "μ", "nu": "ν", "xi": "ξ", "pi": "π",
+    "rho": "ρ", "sigma": "σ", "tau": "τ", "phi": "φ", "varphi": "φ", "chi": "χ", "psi": "ψ", "omega": "ω",
+    "Gamma": "Γ", "Delta": "Δ", "Theta": "Θ", "Lambda": "Λ", "Sigma": "Σ", "Phi": "Φ", "Psi": "Ψ",
+    "Omega": "Ω",
+}  # fmt: skip
+
+_SYMBOLS = {
+    "cdot": Atom("binary", "·", "times"),
+    "times": Atom("binary", "×", "times"),
+    "pm": Atom("binary", "±", "plus or minus"),
+    "approx": Atom("relation", "≈", "is about"),
+    "le": Atom("relation", "≤", "is at most"),
+    "leq": Atom("relation", "≤", "is at most"),
+    "ge": Atom("relation", "≥", "is at least"),
+    "geq": Atom("relation", "≥", "is at least"),
+    "ne": Atom("relation", "≠", "is not"),
+    "ll": Atom("relation", "≪", "is much less than"),
+    "gg": Atom("relation", "≫", "is much greater than"),
+    "propto": Atom("relation", "∝", "is proportional to"),
+    "sim": Atom("relation", "~", "is of the order of"),
+    "to": Atom("relation", "→", "goes to"),
+    "in": Atom("relation", "∈", "is in"),
+    "infty": Atom("letter", "∞", "infinity"),
+    "partial": Atom("letter", "∂", "partial"),
+    "prime": Atom("letter", "′", "prime"),
+    "circ": Atom("letter", "°", "degrees"),
+    "top": Atom("letter", "ᵀ", "transpose"),
+    "%": Atom("letter", "%", "percent"),
+    "ldots": Atom("letter", "…", "and so on"),
+    "dots": Atom("letter", "…", "and so on"),
+    ",": Atom("space", " ", ""),
+    ";": Atom("space", " ", ""),
+    " ": Atom("space", " ", ""),
+    "quad": Atom("space", "   ", ""),
+    "qquad": Atom("space", "      ", ""),
+}
+_FUNCTIONS = {
+    "sin": "sine of", "cos": "cosine of", "tan": "tangent of", "arcsin": "arc sine of",
+    "exp": "exponential of", "ln": "natural log of", "log": "log of",
+    "max": "the maximum of", "min": "the minimum of", "det": "the determinant of", "sum": "the sum of",
+}  # fmt: skip
+_CHARACTERS = {
+    "+": Atom("binary", "+", "plus"),
+    "-": Atom("binary", "−", "minus"),
+    "/": Atom("binary", "/", "over"),
+    "=": Atom("relation", "=", "equals"),
+    "<": Atom("relation", "<", "is less than"),
+    ">": Atom("relation", ">", "is greater than"),
+    ",": Atom("punctuation", ",", ","),
+    ";": Atom("punctuation", ";", ";"),
+    ":": Atom("punctuation", ":", ":"),
+    ".": Atom("punctuation", ".", "."),
+    "!": Atom("letter", "!", "factorial"),
+    "'": Atom("letter", "′", "prime"),
+}
+ACCENTS = {"dot": "\u0307", "ddot": "\u0308", "hat": "\u0302", "bar": "\u0304", "vec": "\u20d7"}
+_PAIRS = {
+    "(": ")",
+    "[": "]",
+    r"\{": r"\}",
+    r"\lvert": r"\rvert",
+    r"\lVert": r"\rVert",
+    "|": "|",
+    r"\|": r"\|",
+}
+_SHOWN = {
+    "(": "()", "[": "[]", r"\{": "{}", r"\lvert": "||", "|": "||", r"\lVert": "‖‖", r"\|": "‖‖",
+}  # fmt: skip
+_TEXT_COMMANDS = {"text", "mathrm", "operatorname"}
+_TOKEN = re.compile(r"\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|\s+|.", re.DOTALL)
+
+
+def read_math(tex: str) -> Node:
+    """Read one formula."""
+    tokens = [token for token in _TOKEN.findall(tex.strip()) if not token.isspace()]
+    if any(token in (r"\text", r"\mathrm", r"\operatorname") for token in tokens):
+        tokens = _keep_spaces_in_words(tex.strip())
+    reader = _Reader(tokens)
+    row = reader.row(frozenset())
+    if len(row.items) == 1:
+        return row.items[0]
+    return row
+
+
+def _keep_spaces_in_words(tex: str) -> list[str]:
+    """Tokens of a formula with ``\\text{…}``: white space counts inside those braces and nowhere else."""
+    tokens: list[str] = []
+    in_words = False
+    for token in _TOKEN.findall(tex):
+        if token == "{" and tokens and tokens[-1].lstrip("\\") in _TEXT_COMMANDS:
+            in_words = True
+        elif token == "}":
+            in_words = False
+        if in_words or not token.isspace():
+            tokens.append(token)
+    return tokens
+
+
+class _Reader:
+    """Recursive descent over the tokens of one formula."""
+
+    def __init__(self, tokens: list[str]) -> None:
+        self._tokens = tokens
+        self._at = 0
+
+    def row(self, stops: frozenset[str]) -> Row:
+        """Nodes up to, and not including, one of ``stops``."""
+        items: list[Node] = []
+        while (token := self._peek()) not in stops:
+            if token is None and not stops:
+                break
+            if token is None:
+                raise MathError(f"{' or '.join(sorted(stops))} is missing")
+            if token in ("_", "^"):
+                raise MathError(f"{token} has nothing before it")
+            items.append(self._scripted(self._node()))
+        _refuse_ambiguous_slash(items)
+        return Row(tuple(items))
+
+    def _peek(self) -> str | None:
+        return self._tokens[self._at] if self._at < len(self._tokens) else None
+
+    def _next(self) -> str:
+        token = self._peek()
+        if token is None:
+            raise MathError("the formula ends too early")
+        self._at += 1
+        return token
+
+    def _expect(self, wanted: str) -> None:
+        found = self._next()
+        if found != wanted:
+            raise MathError(f"{wanted} was expected, {found} found")
+
+    def _scripted(self, base: Node) -> Node:
+        sub: Row | None = None
+        sup: Row | None = None
+        while (token := self._peek()) in ("_", "^"):
+            self._next()
+            script = self._argument()
+            if token == "_" and sub is None:
+                sub = script
+            elif token == "^" and sup is None:
+                sup = script
+            else:
+                raise MathError(f"two {token} on one symbol")
+        return Script(base, sub, sup) if sub or sup else base
+
+    def _argument(self) -> Row:
+        if self._peek() == "{":
+            self._next()
+            body = self.row(frozenset("}"))
+            self._expect("}")
+            return body
+        token = self._peek()
+        if token is not None and token.isdigit() and len(token) > 1:
+            # TeX takes one digit and leaves the rest behind: \frac12 and x^10 mislead their reader.
+            raise MathError(f"{token} needs braces around what is meant")
+        return Row((self._node(),))
+
+    def _node(self) -> Node:
+        token = self._next()
+        if token == "{":
+            self._at -= 1
+            return self._argument()
+        if token == r"\left":
+            return self._fence(self._next(), sized=True)
+        if token in _PAIRS:
+            return self._fence(token, sized=False)
+        if token == r"\begin":
+            return self._grid()
+        if token.startswith("\\"):
+            return self._command(token[1:])
+        return _character(token)
+
+    def _fence(self, left: str, *, sized: bool) -> Fence:
+        if left not in _PAIRS:
+            raise MathError(f"{left} does not open a bracket")
+        if sized:
+            body = self.row(frozenset({r"\right"}))
+            self._expect(r"\right")
+        else:
+            body = self.row(frozenset({_PAIRS[left]}))
+        self._expect(_PAIRS[left])
+        return Fence(_SHOWN[left][0], _SHOWN[left][1], body)
+
+    def _command(self, name: str) -> Node:  # noqa: PLR0911 - one return per kind of command
+        if name in _GREEK:
+            return Atom("letter", _GREEK[name], name.removeprefix("var"))
+        if name in _SYMBOLS:
+            return _SYMBOLS[name]
+        if name in _FUNCTIONS:
+            return Atom("function", "Σ" if name == "sum" else name, _FUNCTIONS[name])
+        if name in ("frac", "tfrac", "dfrac"):
+            return Fraction(self._argument(), self._argument())
+        if name == "sqrt":
+            return Root(self._argument())
+        if name in ACCENTS:
+            return Accent(name, self._argument())
+        if name == "mathbf":
+            return self._argument()
+        if name in _TEXT_COMMANDS:
+            words = self._words()
+            return Atom("words", words, words)
+        raise MathError(f"\\{name} has no agreed text form")
+
+    def _words(self) -> str:
+        self._expect("{")
+        words = []
+        while (token := self._next()) != "}":
+            words.append(token)
+        return "".join(words)
+
+    def _grid(self) -> Grid:
+        name = self._words()
+        if name != "aligned":
+            raise MathError(f"the environment {name} has no agreed text form")
+        ends = frozenset({"&", "\\\\", r"\end"})
+        lines: list[tuple[Row, ...]] = []
+        cells: list[Row] = []
+        while True:
+            cells.append(self.row(ends))
+            token = self._next()
+            if token == "&":
+                continue
+            lines.append(tuple(cells))
+            cells = []
+            if token == r"\end":
+                break
+        if self._words() != name:
+            raise MathError(f"\\end{{{name}}} is missing")
+        return Grid(tuple(lines))
+
+
+def _refuse_ambiguous_slash(items: list[Node]) -> None:
+    """``a/b c`` is read both ways by people; a fraction or brackets say which is meant."""
+    visible = [item for item in items if not (isinstance(item, Atom) and item.kind == "space")]
+    for index, item in enumerate(visible):
+        if item == _CHARACTERS["/"]:
+            factors = visible[index + 1 : index + 3]
+            if len(factors) == 2 and all(is_factor(factor) for factor in factors):
+                raise MathError("what stands under the slash is not clear; use \\frac or brackets")
+
+
+def is_factor(node: Node | None) -> bool:
+    """Whether a node beside another such node means multiplication."""
+    if node is None:
+        return False
+    return not (
+        isinstance(node, Atom) and node.kind in ("binary", "relation", "punctuation", "space", "words")
+    )
+
+
+def _character(token: str) -> Atom:
+    if token[0].isdigit():
+        return Atom("number", token, token)
+    if token.isascii() and token.isalpha():
+        return Atom("letter", token, token)
+    if token in _CHARACTERS:
+        return _CHARACTERS[token]
+    raise MathError(f"{token} has no agreed text form")

@@ -197,11 +197,7 @@ def _read_manifest(path: Path, data: bytes) -> Manifest:
 
 
 def _check_entry(path: str, content: bytes) -> tuple[str, str]:
-    """The exercise and file name of an entry whose name is safe anywhere.
-
-    Raises:
-        UsageError: the name is not, or the content is too large.
-    """
+    """The exercise and file name of an entry whose name is safe anywhere."""
     match = _ENTRY.fullmatch(path)
     if match is None or len(content) > MAX_FILE_BYTES:
         raise UsageError(

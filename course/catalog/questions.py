@@ -214,11 +214,7 @@ def placeholders(text: str) -> list[str]:
 
 
 def read_questions(folder: Path) -> tuple[Document[Question], ...]:
-    """The questions of a quiz in their order, with the lines they stand on; none where there is no folder.
-
-    Raises:
-        ContentError: a file is wrong, or two claim one place.
-    """
+    """The questions of a quiz in their order, with the lines they stand on; none where there is no folder."""
     if not folder.is_dir():
         return ()
     documents = sorted(

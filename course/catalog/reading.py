@@ -1,4 +1,4 @@
-"""Course files into typed values, with errors that say which line is wrong and how to mend it.
+"""Course files into typed values, with a ContentError that says which line is wrong and how to mend it.
 
 Every file of the course is UTF-8 and declares a ``format_version``. The type that a file is read into defines
 the rest; msgspec's errors are put into plain words here.
@@ -183,11 +183,7 @@ class Document(Generic[T]):
 
 
 def read_text(path: Path) -> str:
-    """A UTF-8 text with Unix line ends.
-
-    Raises:
-        ContentError: the file is missing, unreadable, not UTF-8, or starts with a byte order mark.
-    """
+    """A UTF-8 text with Unix line ends."""
     try:
         data = read_bytes(path)
     except (FileNotFoundError, NotADirectoryError):
@@ -212,11 +208,7 @@ def read_text(path: Path) -> str:
 
 
 def read_toml(path: Path, kind: type[T]) -> T:
-    """The TOML file at ``path`` as a value of the type ``kind``.
-
-    Raises:
-        ContentError: it is missing, not TOML, of a newer format, or does not fit the type.
-    """
+    """The TOML file at ``path`` as a value of the type ``kind``."""
     return read_document(path, kind).value
 
 
@@ -370,11 +362,7 @@ BLANK = re.compile(r"<<FILL IN:?\s*(?P<what>.*?)>>")
 
 
 def refuse_blanks(path: Path) -> None:
-    """Refuse a file that its author has not finished.
-
-    Raises:
-        ContentError: it cannot be read, or has a blank.
-    """
+    """Refuse a file that its author has not finished."""
     for number, line in enumerate(read_text(path).split("\n"), start=1):
         if match := BLANK.search(line):
             problem = f"still to be filled in: {match['what'].strip() or 'this'}."
@@ -392,7 +380,6 @@ class FrontMatter(NamedTuple):
     """A lesson file in its two parts.
 
     Attributes:
-        toml: the front matter, without its fences.
         body: the Markdown below it.
         body_line: the line of the file that the body starts on, counted from 1.
     """
@@ -403,15 +390,7 @@ class FrontMatter(NamedTuple):
 
 
 def split_front_matter(text: str, file: Path) -> FrontMatter:
-    """Part a lesson's TOML head from its Markdown body.
-
-    Args:
-        text: the whole file.
-        file: where it came from, for the message.
-
-    Raises:
-        ContentError: the file does not start with a front matter between two ``+++`` lines.
-    """
+    """Part a lesson's TOML head from its Markdown body."""
     lines = text.splitlines()
     help_ = f"Start the file with {_FENCE}, the TOML keys of a lesson, and {_FENCE} on a line of its own."
     if not lines or lines[0].rstrip() != _FENCE:

@@ -159,9 +159,6 @@ def slope(points: Sequence[tuple[float, float]], *, single: bool) -> float | Non
     Args:
         points: (step in s, error as a share); errors at the level of round-off are left out.
         single: they were computed in single precision.
-
-    Returns:
-        None if fewer than three points are left.
     """
     floor = _FLOOR_SINGLE if single else _FLOOR_DOUBLE
     used = [(math.log(dt), math.log(abs(error))) for dt, error in points if abs(error) > floor]

@@ -124,11 +124,7 @@ def availability(info: EngineInfo) -> Availability:
 
 
 def get(engine_id: str) -> EngineInfo:
-    """The engine of this id.
-
-    Raises:
-        NotFoundError: there is none.
-    """
+    """The engine of this id."""
     if engine_id in ENGINES:
         return ENGINES[engine_id]
     raise NotFoundError(

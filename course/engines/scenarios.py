@@ -11,7 +11,7 @@ import statistics
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,10 +21,9 @@ from course.errors import NotFoundError
 from course.physics import integrators as ode
 from course.physics.systems import Pendulum
 
-if TYPE_CHECKING:
-    Array = NDArray[np.float64]
-    Build = Callable[[Scene], World]
-    Measured = tuple[float, dict[str, Any]]
+Array = NDArray[np.float64]
+Build = Callable[[Scene], World]
+Measured = tuple[float, dict[str, Any]]
 
 
 # ---
@@ -627,11 +626,7 @@ SCENARIOS: dict[str, Scenario] = {
 
 
 def get(scenario_id: str) -> Scenario:
-    """The scenario of this name.
-
-    Raises:
-        NotFoundError: there is none.
-    """
+    """The scenario of this name."""
     if scenario_id in SCENARIOS:
         return SCENARIOS[scenario_id]
     raise NotFoundError(

@@ -12,15 +12,19 @@ import os
 import signal
 import sys
 import time
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Mapping
+from typing import Any
 
-from course.engines.base import AS_IT_COMES, EngineDivergedError, NotApplicableError, Tuning
+from course.engines.base import (
+    AS_IT_COMES,
+    Adapter,
+    EngineDivergedError,
+    NotApplicableError,
+    Scene,
+    Tuning,
+    World,
+)
 from course.errors import InternalError
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
-    from course.engines.base import Adapter, Scene, World
 
 
 class EngineServer:

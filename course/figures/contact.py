@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from course.figures.style import METHODS, PALETTE, new_figure, note, title
@@ -17,11 +18,7 @@ from course.physics.simulator import Simulator
 from course.physics.solver import iterations_to, stack_impulses
 from course.physics.state import RigidBodyState
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 
 #: What the figures show and the captions quote: diameter of the ball, thickness of the wall (m), step (s).

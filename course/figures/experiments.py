@@ -7,20 +7,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from course.errors import InternalError
 from course.figures.style import METHODS, PALETTE, file_of, new_figure, title
 from course.simulations.base import Result
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 
 # ---

@@ -7,9 +7,11 @@ figures hold for every spring.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from course.figures.style import METHODS, PALETTE, new_figure, note, title
@@ -17,11 +19,7 @@ from course.physics.integrators import STEPPERS, State, Trajectory, trajectory
 from course.physics.invariants import energy, jacobian, relative_change, spectral_radius
 from course.physics.systems import Oscillator
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 #: What the figures show and their captions quote.
 PHASE_Z, PHASE_STEPS = 0.85, 120

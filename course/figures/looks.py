@@ -70,11 +70,7 @@ def faults(figure_id: str, kept: Path) -> Iterator[Fault]:
 
 
 def picture_and_words(figure_id: str) -> tuple[bytes, bytes]:
-    """A figure's picture without letters, as a PNG file, and what is written in it, one text a line.
-
-    Raises:
-        NotFoundError: no figure has this id.
-    """
+    """A figure's picture without letters, as a PNG file, and what is written in it, one text a line."""
     figure = build(figure_id)
     return _without_letters(figure), _letters(figure).encode()
 

@@ -90,9 +90,6 @@ def png(figure_id: str, *, dpi: int = SCREEN_DPI) -> bytes:
 
     Args:
         dpi: pixels per inch; a figure is 6.5 in wide.
-
-    Raises:
-        NotFoundError: no figure has this id.
     """
     from io import BytesIO
 
@@ -107,15 +104,7 @@ def png(figure_id: str, *, dpi: int = SCREEN_DPI) -> bytes:
 
 
 def save(figure_id: str, folder: Path, *, dpi: int = SCREEN_DPI) -> Path:
-    """Write a figure to ``folder/<id>.png``, making the folder; an older picture of that name is replaced.
-
-    Returns:
-        The path of the picture.
-
-    Raises:
-        NotFoundError: no figure has this id.
-        UsageError: the folder cannot be written to.
-    """
+    """Write a figure to ``folder/<id>.png``, making the folder; an older picture of that name is replaced."""
     picture = png(figure_id, dpi=dpi)
     path = folder / f"{figure_id}.png"
     try:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -21,8 +21,7 @@ from course.figures.style import PALETTE, new_figure, note, title
 from course.physics.dynamics import HandPath, TwoLinkArm
 from course.physics.integrators import RK4, State, trajectory
 
-if TYPE_CHECKING:
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 
 #: What the figure shows and its caption quotes: tries a side, and the delay of the real robot.

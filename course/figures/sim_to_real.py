@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from course.figures.style import PALETTE, new_figure, note, title
@@ -14,10 +14,7 @@ from course.physics.dynamics import PassiveArm, TwoLinkArm
 from course.physics.integrators import RK4, State, trajectory
 from course.physics.solver import Chain
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 
 _H, _STEPS = 0.005, 600  # s; 3 s altogether

@@ -15,33 +15,27 @@ import io
 import json
 import re
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import Collection
 from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.text import Text
+from numpy.typing import NDArray
 from PIL import Image
 
 from course.errors import CourseError
-from course.figures.described import plot_of, read_curve
+from course.figures.described import Plot, plot_of, read_curve
 from course.figures.plots import draw
 from course.figures.registry import build, png
 from course.figures.style import house_style
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from numpy.typing import NDArray
-
-    from course.figures.described import Plot
-
 
 #: A line of this many points on paper is one pixel here.
 _PAPER_PT = 1.3
@@ -89,11 +83,7 @@ class TerminalFigure:
 
 
 def terminal_figure(figure_id: str, columns: int, rows: int) -> TerminalFigure:
-    """Draw a figure of a lesson for so many cells.
-
-    Raises:
-        NotFoundError: no figure has this id.
-    """
+    """Draw a figure of a lesson for so many cells."""
     return in_cells(lambda: build(figure_id), columns, rows)
 
 

@@ -20,8 +20,7 @@ import msgspec
 
 from course.errors import ContentError, UngradableError
 from course.progress.quiz import MAX_RECORDS
-from course.quizzing.attempt import MarkedQuestion, Result, mark, needed
-from course.quizzing.bank import MAX_SEED, Bank
+from course.quizzing.bank import MAX_SEED, Bank, MarkedQuestion, Result, mark, needed
 from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility
 
 #: The quiz's id among the exercises of a gradebook; no exercise may have it.

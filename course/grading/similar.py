@@ -18,25 +18,22 @@ import sys
 import threading
 import warnings
 from collections import Counter, deque
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
 import msgspec
 
+from course.catalog.load import Catalog
+from course.catalog.models import Exercise
 from course.errors import NotFoundError
 from course.grading.exports.html_report.pages import render
 from course.grading.pipes import limit_cpu, limit_memory, read_frame, write_frame
 from course.grading.quiz import EXERCISE_ID as QUIZ
+from course.grading.results.effective import Results
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-
-    from course.catalog.load import Catalog
-    from course.catalog.models import Exercise
-    from course.grading.results.effective import Results
-
-    Passage = tuple[int, int]
+Passage = tuple[int, int]
 
 
 # ---

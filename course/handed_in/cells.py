@@ -78,10 +78,6 @@ class CodeCell:
 def code_cells(data: bytes, name: str) -> list[CodeCell]:
     """The code cells of a notebook, in its order.
 
-    Args:
-        data: the file.
-        name: for messages.
-
     Raises:
         UngradableError: it is not a notebook, or one of another language.
     """
@@ -202,11 +198,7 @@ def _without_magics(text: str) -> tuple[str, tuple[tuple[int, str], ...]]:
 
 
 def read_notebook(path: Path) -> bytes:
-    """A notebook's file.
-
-    Raises:
-        UsageError: it is a folder, too large, or cannot be read.
-    """
+    """A notebook's file."""
     try:
         if not path.is_file():
             raise UsageError(f"{path} is not a file.", help="Name a notebook.", code="not_a_file")

@@ -110,10 +110,6 @@ def opened(files: Mapping[str, bytes], exercise: Exercise) -> Submission:
 def notebook_source(data: bytes, exercise: Exercise, name: str = "the notebook") -> NotebookSource:
     """The module of a notebook.
 
-    Args:
-        data: the file.
-        name: what to call it in messages.
-
     Raises:
         UngradableError: it is not a notebook, is one of another language, or has none of the functions.
     """

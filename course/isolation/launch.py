@@ -219,11 +219,7 @@ def _leads_around(path: Path, masked: tuple[Path, ...]) -> bool:
 
 
 def view_for(imports: tuple[str, ...]) -> View:
-    """The view of a worker whose exercise declares ``imports``.
-
-    Raises:
-        IsolationError: a declared package is not installed here.
-    """
+    """The view of a worker whose exercise declares ``imports``."""
     base = {"base": sys.base_prefix, "platbase": sys.base_prefix, "installed_base": sys.base_prefix}
     stdlib = {Path(sysconfig.get_path(name, vars=base)) for name in ("stdlib", "platstdlib")}
     interpreter = Path(os.path.realpath(getattr(sys, "_base_executable", sys.executable) or sys.executable))

@@ -15,9 +15,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from course.isolation.deadline import Deadline
 from course.isolation.failures import IsolationError, StudentFailure
-from course.isolation.levels import Handle, Level, Spawner
+from course.isolation.levels import Deadline, Handle, Level, Spawner
 from course.isolation.session import Connection, LoadRefusedError
 from course.isolation.spawn import spawner
 
@@ -61,11 +60,7 @@ class Protection:
 def open_spawner(
     imports: tuple[str, ...], *, at_least: Level = Level.L1, at_most: Level = Level.L3
 ) -> Spawner:
-    """A spawner of the strongest level that proves itself within the bounds.
-
-    Raises:
-        IsolationError: no level within the bounds works here; the message gives each cause.
-    """
+    """A spawner of the strongest level that proves itself within the bounds."""
     causes = []
     for level in reversed(Level):
         if at_least <= level <= at_most:
@@ -194,9 +189,6 @@ def open_sandbox(
 
     Args:
         processor: where this process is while it opens one; a kept one's workers stay where it was opened.
-
-    Raises:
-        IsolationError: no level within the bounds works here; the message gives each cause.
     """
     kind = (imports, at_least, at_most)
     those = [] if _free is None else _free.get(kind, [])

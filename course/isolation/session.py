@@ -13,7 +13,6 @@ from collections.abc import Callable, Mapping, Sequence
 from time import monotonic, sleep
 from typing import Any, NamedTuple
 
-from course.isolation.deadline import Deadline
 from course.isolation.failures import (
     IsolationError,
     StudentFailure,
@@ -23,7 +22,7 @@ from course.isolation.failures import (
     raised,
 )
 from course.isolation.inside import wire
-from course.isolation.levels import START_TIMEOUT, Exit, Handle, Spawner
+from course.isolation.levels import START_TIMEOUT, Deadline, Exit, Handle, Spawner
 from course.physics import systems
 from course.printable import printable
 

@@ -28,7 +28,6 @@ from pathlib import Path
 from typing import Any
 
 from course.isolation import launch
-from course.isolation.deadline import ProcessClock
 from course.isolation.failures import IsolationError
 from course.isolation.inside.frames import ENDED, LOOK
 from course.isolation.launch import View, view_for
@@ -40,6 +39,7 @@ from course.isolation.levels import (
     Handle,
     Level,
     Limits,
+    ProcessClock,
     Spawner,
     ticking,
 )
@@ -186,11 +186,7 @@ class ZygoteSpawner:
         return _ForkedHandle(ours, answer["pid"], pidfd, output, workdir, self)
 
     def reap(self, pid: int) -> Exit:
-        """Collect a worker that has ended.
-
-        Raises:
-            IsolationError: the zygote, its parent, is gone too.
-        """
+        """Collect a worker that has ended."""
         try:
             self._send({"reap": pid})
             status, *times = ENDED.unpack(self._control.recv(4096))
@@ -219,11 +215,7 @@ class ZygoteSpawner:
 
 
 def _bubblewrap(view: View, folder: Path, root: bool) -> list[str]:
-    """The command that builds a root with only the view in it, and starts a process there.
-
-    Raises:
-        IsolationError: there is no bubblewrap.
-    """
+    """The command that builds a root with only the view in it, and starts a process there."""
     binary = shutil.which("bwrap")
     if binary is None:
         raise IsolationError("bubblewrap is not installed")
@@ -455,11 +447,7 @@ class _ProcessHandle:
 
 
 def spawner(level: Level, imports: tuple[str, ...], *, limits: Limits = LIMITS) -> Spawner:
-    """A spawner for submissions that may import ``imports``.
-
-    Raises:
-        IsolationError: this machine cannot provide that level.
-    """
+    """A spawner for submissions that may import ``imports``."""
     view = view_for(imports)
     if level is Level.L1:
         return ProcessSpawner(view, imports, limits)

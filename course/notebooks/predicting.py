@@ -11,7 +11,7 @@ from course.errors import CourseError, NotFoundError
 from course.notebooks.sandbox import alive
 from course.progress.quiz import quiz_history
 from course.progress.workspace import Recorder
-from course.quizzing.attempt import Result, fresh_seed
+from course.quizzing.bank import Result, fresh_seed
 from course.reading.parts import Question, Script, read_script
 from course.reading.record import InProgress
 

@@ -8,8 +8,16 @@ from html import escape
 from course.catalog.load import Catalog
 from course.notebooks.cells import Cell, code, document, markdown, opening
 from course.notebooks.lowering import escaped
-from course.quizzing.attempt import MarkedQuestion, Result, mark, mark_sentence, needed
-from course.quizzing.bank import LETTERS, Bank, PosedQuestion
+from course.quizzing.bank import (
+    LETTERS,
+    Bank,
+    MarkedQuestion,
+    PosedQuestion,
+    Result,
+    mark,
+    mark_sentence,
+    needed,
+)
 
 #: A notebook's questions stay the same; ``course quiz take`` draws new ones each time.
 SEED = 1

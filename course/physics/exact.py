@@ -8,15 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from course.physics.systems import DampedOscillator, ForcedOscillator, FreeFall, Oscillator, System
 
-if TYPE_CHECKING:
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 __all__ = ["damped_oscillator", "forced_oscillator", "free_fall", "oscillator", "reference", "solution"]
 

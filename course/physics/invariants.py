@@ -7,15 +7,13 @@ energies of shape (...).
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from course.physics.systems import FreeFall, Kepler, Oscillator, Pendulum, System
 
-if TYPE_CHECKING:
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 __all__ = [
     "angular_momentum",

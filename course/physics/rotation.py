@@ -13,13 +13,12 @@ Source: Goldstein, Poole, Safko, Classical Mechanics, 3rd edition, 2001, chapter
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-if TYPE_CHECKING:
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 __all__ = [
     "ROTATION_STEPPERS",

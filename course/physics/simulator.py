@@ -20,7 +20,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, cast
+from dataclasses import dataclass, field
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,16 +31,59 @@ from course.physics.contact import Plane, Surface
 from course.physics.contact.impulses import Impulses, Motion, normal_speed, solve
 from course.physics.contact.pairs import Pairs, in_any_run
 from course.physics.integrators import State, Stepper, VelocityVerlet
-from course.physics.recording import Recording
-from course.physics.rotation import ByMomentum, ByQuaternion, Spin, Turning, turn, turn_back
+from course.physics.rotation import ByMomentum, ByQuaternion, Spin, Turning, kinetic_energy, turn, turn_back
 from course.physics.state import RigidBodyState
 
-if TYPE_CHECKING:
-    Array = NDArray[np.float64]
-    Flags = NDArray[np.bool_]
-    ForceLaw = Callable[[Any, Sequence[Body]], None]
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+ForceLaw = Callable[[Any, Sequence[Body]], None]
 
-__all__ = ["Simulator", "step_count"]
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """A run: n + 1 samples, the start included, of B bodies; ``...`` are the leading axes of their states.
+
+    Attributes:
+        t: shape (n + 1,), s.
+        position, velocity: shape (n + 1, B, ..., 3), m and m/s.
+        orientation: shape (n + 1, B, ..., 4). angular_velocity: (n + 1, B, ..., 3), rad/s, body axes.
+        mass: shape (B,), kg. inertia: shape (B, 3), kg m². gravity: m/s².
+        first_contact: pairs of body numbers (None is the ground) -> the time they first met, s, shape (...);
+            NaN where they did not.
+    """
+
+    t: Array
+    position: Array
+    velocity: Array
+    orientation: Array
+    angular_velocity: Array
+    mass: Array
+    inertia: Array
+    gravity: float
+    first_contact: dict[tuple[int, int | None], Array] = field(default_factory=dict)
+
+    @property
+    def ground_time(self) -> Array:
+        """When each body first met the ground, s, shape (B, ...); NaN where it did not, or there is none."""
+        never = np.full(self.position.shape[2:-1], np.nan)
+        return np.stack([self.first_contact.get((i, None), never) for i in range(self.mass.size)])
+
+    def momentum(self) -> Array:
+        """Total momentum, kg m/s, shape (n + 1, ..., 3)."""
+        return np.asarray(np.tensordot(self.mass, self.velocity, axes=(0, 1)))
+
+    def energy(self) -> Array:
+        """Total energy, motion, rotation and height together, J, shape (n + 1, ...)."""
+        total = np.zeros(self.position.shape[:1] + self.position.shape[2:-1])
+        for i, mass in enumerate(self.mass):
+            total += 0.5 * mass * np.sum(self.velocity[:, i] ** 2, axis=-1)
+            total += mass * self.gravity * self.position[:, i, ..., 2]
+            if np.all(np.isfinite(self.inertia[i])):
+                total += kinetic_energy(self.inertia[i], self.angular_velocity[:, i])
+        return total
+
+
+__all__ = ["Recording", "Simulator", "step_count"]
 
 # A step goes back to this many instants at which surfaces meet; what meets after that overlaps a little.
 _INSTANTS = 8

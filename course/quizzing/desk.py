@@ -6,18 +6,15 @@ import secrets
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, date, datetime, timedelta
-from typing import TYPE_CHECKING
 
 from course.catalog.questions import Question
 from course.catalog.reading import Document
 from course.errors import ContentError
 from course.progress import quiz
 from course.progress.quiz import Attempt
-from course.quizzing.attempt import Result, mark
-from course.quizzing.bank import Bank, PosedQuestion, clashing, pose_case
+from course.quizzing.bank import Bank, PosedQuestion, Result, clashing, mark, pose_case
 
-if TYPE_CHECKING:
-    Record = Callable[[str, str, dict[str, object]], None]
+Record = Callable[[str, str, dict[str, object]], None]
 
 
 def fits(bank: Bank, attempt: Attempt) -> bool:

@@ -17,9 +17,8 @@ from pathlib import Path
 from time import perf_counter
 
 from course.catalog.pack import zip_entry
-from course.isolation.deadline import Deadline
 from course.isolation.failures import IsolationError, StudentFailure
-from course.isolation.levels import Level, Spawner
+from course.isolation.levels import Deadline, Level, Spawner
 from course.isolation.probe import open_spawner
 from course.isolation.session import Connection, LoadRefusedError
 from course.printable import printable

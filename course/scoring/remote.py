@@ -9,9 +9,8 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from course.isolation.deadline import WALL, Deadline
 from course.isolation.failures import StudentFailure
-from course.isolation.levels import Spawner
+from course.isolation.levels import WALL, Deadline, Spawner
 from course.isolation.session import Connection, LoadFault, LoadRefusedError
 from course.scoring.values import Inspected, as_march, overwritten
 from course.scoring.verdict import Places
@@ -41,6 +40,8 @@ class Heard(NamedTuple):
 
 class RemoteSubmission:
     """One submission in a worker. A worker that died is replaced before the next check.
+
+    Whatever calls the student's code raises StudentFailure where it gave no value.
 
     Args:
         spawner: starts workers.
@@ -141,11 +142,7 @@ class RemoteSubmission:
         return Inspected(value, after, shared)
 
     def ref(self, name: str) -> Any:
-        """The student's own function, to be passed back as an argument.
-
-        Raises:
-            StudentFailure: there is none of that name.
-        """
+        """The student's own function, to be passed back as an argument."""
         self.asked.add(name)
         if name not in self._live().functions:
             raise self._live().missing(name)
@@ -220,9 +217,6 @@ class RemoteSubmission:
 
         Returns:
             The n + 1 states, the given one first; with ``carry``, the n complete returned values.
-
-        Raises:
-            StudentFailure: one of the calls gave no value.
         """
         kept = None if keep is None else list(keep)
         with self._asking(name) as worker:

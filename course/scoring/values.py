@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +20,7 @@ from course.printable import one_line
 from course.scoring.failures import CheckFailed
 from course.scoring.verdict import Finding
 
-if TYPE_CHECKING:
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 _SHOWN = 24  # numbers of an array that a finding shows
 #: Verdicts are sent and stored with signed integers of 64 bits.

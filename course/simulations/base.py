@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,9 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 from course.errors import UsageError
 from course.physics.simulator import step_count
 
-if TYPE_CHECKING:
-    Array = NDArray[np.float64]
-    Value = float | int | str
+Array = NDArray[np.float64]
+Value = float | int | str
 
 
 #: A run of more steps than this is refused: it takes too long, and no figure could show it.
@@ -203,11 +202,7 @@ def run(simulation: Simulation, pairs: Sequence[str] = ()) -> Result:
 
 
 def parse(simulation: Simulation, pairs: Sequence[str]) -> dict[str, Any]:
-    """Every parameter with its value, those in ``pairs`` read and checked.
-
-    Raises:
-        UsageError: see ``run``.
-    """
+    """Every parameter with its value, those in ``pairs`` read and checked."""
     settings: dict[str, Any] = simulation.defaults()
     seen: set[str] = set()
     for pair in pairs:

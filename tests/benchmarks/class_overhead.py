@@ -27,7 +27,7 @@ from course.grading.gradebook.file import row_digest  # noqa: E402
 from course.grading.gradebook.records import Result  # noqa: E402
 from course.grading.gradebook.salvage import back_up  # noqa: E402
 from course.grading.intake.downloads import Place  # noqa: E402
-from course.grading.intake.triage import survey  # noqa: E402
+from course.grading.intake.students import survey  # noqa: E402
 from course.grading.results.effective import Results  # noqa: E402
 from course.grading.results.roster import Person, Roster  # noqa: E402
 from course.grading.running.snapshot import Snapshot, frozen  # noqa: E402

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from course.engines import base
-from course.engines.process import EngineProcess
+from course.engines.compare import EngineProcess
 from course.engines.registry import ENGINES
 from course.engines.scenarios import BOXES, DT, SCENARIOS, Scenario
 

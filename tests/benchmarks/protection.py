@@ -33,7 +33,7 @@ from course.authoring.exercises.grading import (  # noqa: E402
     solution_path,
 )
 from course.catalog.load import Catalog  # noqa: E402
-from course.isolation.deadline import Deadline  # noqa: E402
+from course.isolation.levels import Deadline  # noqa: E402
 from course.isolation.session import Connection  # noqa: E402
 from course.scoring.judging.session import GradingSession, pinned_to  # noqa: E402
 from course.scoring.judging.submission import Submission, Terms  # noqa: E402

@@ -124,11 +124,7 @@ def digest(catalog: Catalog, exercise: Exercise) -> str:
 
 
 def table_of(catalog: Catalog, exercise: Exercise) -> Table:
-    """Compute the table of an exercise.
-
-    Raises:
-        ContentError: a file of its author's raises, or names a function that is none of the exercise's.
-    """
+    """Compute the table of an exercise."""
     with _blamed(companion_path(exercise.id, "questions")):
         return _table_of(catalog, exercise)
 
@@ -208,9 +204,6 @@ def hypotheses_of(
 
     Mutants whose diagnosis is not in the exercise's own words are left out: they are found while reading a
     value.
-
-    Raises:
-        ContentError: ``hypotheses.py`` has a program of no task of this exercise, or a code without words.
     """
     solution = solution_path(catalog, exercise)
     told = words(exercise.id).entries

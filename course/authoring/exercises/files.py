@@ -52,11 +52,7 @@ from course.scoring.judging.submission import Submission, Terms
 
 
 def audit_checks(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[CheckSource, ...]:
-    """Audit the checks of an exercise, public ones first, and return them.
-
-    Raises:
-        ContentError: a file is missing or is not Python.
-    """
+    """Audit the checks of an exercise, public ones first, and return them."""
     checks = declared(catalog, exercise)
     first: dict[str, CheckSource] = {}
     for check in checks:
@@ -71,11 +67,7 @@ def audit_checks(catalog: Catalog, exercise: Exercise, findings: Findings) -> tu
 
 
 def declared(catalog: Catalog, exercise: Exercise) -> tuple[CheckSource, ...]:
-    """The checks of an exercise with their markers, public ones first.
-
-    Raises:
-        ContentError: a file is missing or is not Python.
-    """
+    """The checks of an exercise with their markers, public ones first."""
     public, hidden = exercise.checks_path, exercise_graders(catalog, exercise) / "checks.py"
     checks = tuple(checks_in(public, parse(public), hidden=False))
     if hidden.is_file() or not exercise.is_warm_up:
@@ -237,11 +229,7 @@ def audit_points(exercise: Exercise, checks: tuple[CheckSource, ...], findings: 
 
 
 def write_points(catalog: Catalog, exercise: Exercise) -> Path | None:
-    """Write the sums over the checks; None if they are there already.
-
-    Raises:
-        ContentError: a file is missing, is not Python, or a check lacks its markers.
-    """
+    """Write the sums over the checks; None if they are there already."""
     path = exercise.checks_path.with_name("exercise.toml")
     lines = read_document(path, Exercise).lines
     text = read_text(path).split("\n")

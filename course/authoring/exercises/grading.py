@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import ast
+import contextlib
+import os
+import tempfile
 import traceback
 import types
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -15,8 +18,9 @@ import numpy as np
 
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
+from course.catalog.pack import pack_bytes
 from course.catalog.reading import read_text
-from course.errors import ContentError
+from course.errors import ContentError, UsageError
 from course.grading.intake.students import Entry
 from course.grading.running.batch import Graders
 from course.grading.running.snapshot import Snapshot, frozen
@@ -38,11 +42,7 @@ from course.scoring.verdict import Verdict
 
 
 def instructors(catalog: Catalog) -> tuple[Path, Path]:
-    """The folders of solutions and of hidden graders.
-
-    Raises:
-        MissingCapabilityError: this installation is a student's and has none.
-    """
+    """The folders of solutions and of hidden graders."""
     return catalog.content.instructors()
 
 
@@ -72,11 +72,7 @@ def mutant_files(catalog: Catalog, exercise: Exercise) -> tuple[Path, ...]:
 
 
 def compose(solution: Path, variant: Path) -> bytes:
-    """The model solution with a variant's definitions put after it.
-
-    Raises:
-        ContentError: a file is missing, or the two together are not Python.
-    """
+    """The model solution with a variant's definitions put after it."""
     model, own = read_text(solution), read_text(variant)
     if not own.lstrip().startswith(('"""', "#")):
         raise ContentError(
@@ -247,11 +243,7 @@ def _changed(source: str, model: str) -> frozenset[str]:
 
 
 def declared_checks(exercise: Exercise, catalog: Catalog) -> dict[str, Check]:
-    """The checks as pytest collects them, by id: markers whose values are computed have them here.
-
-    Raises:
-        ContentError: a file cannot be imported, or a check lacks its marks.
-    """
+    """The checks as pytest collects them, by id: markers whose values are computed have them here."""
     collected = CollectedChecks(check_files(exercise, catalog, "full"))
     try:
         return {check.id: check for check in collected.checks}
@@ -458,3 +450,55 @@ def _arrays(value: Any) -> list[Any]:
 
 def _shares(value: Any, args: Any) -> bool:
     return any(np.may_share_memory(a, b) for a in _arrays(value) for b in _arrays(args))
+
+
+def write_pack(catalog: Catalog, exercise_ids: Sequence[str], output: Path) -> dict[str, tuple[str, ...]]:
+    """Write a pack with the model solution, and its prose if there is any, of each exercise.
+
+    Args:
+        exercise_ids: at least one; one that is named twice goes in once.
+        output: must not exist; it appears whole or not at all.
+
+    Returns:
+        The names of the files that went in, by exercise.
+
+    Raises:
+        NotFoundError: there is no such exercise.
+        UsageError: no exercise is named, or ``output`` cannot be written.
+        MissingCapabilityError: this installation has no solutions.
+    """
+    instructors(catalog)
+    if output.exists():
+        raise UsageError(
+            f"{output} exists, and nothing is overwritten.", help="Name another file with -o.", code="exists"
+        )
+    solutions = {exercise_id: _files(catalog, exercise_id) for exercise_id in exercise_ids}
+    data = pack_bytes(catalog.course_id, catalog.version, solutions)
+    _write_whole(output, data)
+    return {exercise_id: tuple(sorted(files)) for exercise_id, files in solutions.items()}
+
+
+def _files(catalog: Catalog, exercise_id: str) -> dict[str, bytes]:
+    exercise = catalog.exercise(exercise_id)
+    paths = [solution_path(catalog, exercise), solutions_folder(catalog, exercise) / "README.md"]
+    if not paths[0].is_file():
+        raise ContentError(paths[0], None, "the model solution is missing.", help="Write it first.")
+    return {path.name: path.read_bytes() for path in paths if path.is_file()}
+
+
+def _write_whole(output: Path, data: bytes) -> None:
+    """Write beside the target, then move into place: a half-written pack must never look like one."""
+    try:
+        handle, name = tempfile.mkstemp(dir=output.parent, prefix=f".{output.name}.")
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(data)
+            Path(name).chmod(0o644)
+            Path(name).replace(output)
+        finally:
+            with contextlib.suppress(OSError):
+                Path(name).unlink()
+    except OSError as error:
+        raise UsageError(
+            f"{output} cannot be written: {error.strerror}.", help="Name a file in a folder you can write to."
+        ) from None

@@ -61,11 +61,7 @@ def run_mutants(
     on_progress: Progress | None = None,
     grade: GradeSources = grade_sources,
 ) -> tuple[MutantOutcome, ...]:
-    """Grade every mutant of an exercise and compare with what mutants.toml says.
-
-    Raises:
-        ContentError: a file of the exercise is wrong.
-    """
+    """Grade every mutant of an exercise and compare with what mutants.toml says."""
     mutants = catalog.mutants(exercise)
     solution = solution_path(catalog, exercise)
     sources = [compose(solution, mutant_path(catalog, exercise, mutant)) for mutant in mutants]

@@ -422,12 +422,7 @@ named, with the diagnosis named.
 
 
 def kill_table(catalog: Catalog) -> str:
-    """The page, as Markdown.
-
-    Raises:
-        ContentError: a file of an exercise is wrong.
-        MissingCapabilityError: this installation is a student's.
-    """
+    """The page, as Markdown."""
     return "\n".join([_HEAD, *(_section(catalog, exercise) for exercise in catalog.exercises())])
 
 

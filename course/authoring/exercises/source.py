@@ -64,11 +64,7 @@ class CheckSource:
 
 
 def parse(path: Path) -> ast.Module:
-    """The syntax tree of a Python file.
-
-    Raises:
-        ContentError: it cannot be read or is not Python.
-    """
+    """The syntax tree of a Python file."""
     text = read_text(path)
     try:
         return ast.parse(text, filename=str(path))

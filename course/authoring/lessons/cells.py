@@ -62,20 +62,12 @@ class LessonRun:
 
 
 def run_cells(path: Path) -> list[CellRun]:
-    """Run the code cells of the lesson in a file, in order.
-
-    Raises:
-        ContentError: the file is no lesson, or a cell raises.
-    """
+    """Run the code cells of the lesson in a file, in order."""
     return list(run_lesson(path).cells)
 
 
 def run_lesson(path: Path) -> LessonRun:
-    """Run the code cells of the lesson in a file, then evaluate every number it quotes.
-
-    Raises:
-        ContentError: the file is no lesson, a cell raises, or an expression does.
-    """
+    """Run the code cells of the lesson in a file, then evaluate every number it quotes."""
     blocks = read_blocks(path)
     namespace: dict[str, Any] = {"__name__": "lesson"}
     cells = tuple(

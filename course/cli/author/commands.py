@@ -2,47 +2,129 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Annotated
 
+import msgspec
 import typer
 
 from course.authoring import scaffold
 from course.authoring.audit import audit
 from course.authoring.coverage import Coverage, as_markdown, check_coverage, read_coverage, written_to
-from course.authoring.exercises.grading import instructors
+from course.authoring.exercises import diagnosis
+from course.authoring.exercises.files import find_blanks, write_points, write_times
+from course.authoring.exercises.grading import instructors, write_pack
 from course.authoring.exercises.mutants import MutantOutcome, run_mutants
-from course.authoring.packing import write_pack
-from course.authoring.report import AuditProblem, AuditReport
+from course.authoring.exercises.proofs import write_page
+from course.authoring.report import AuditProblem, AuditReport, Findings
 from course.catalog.load import Catalog
 from course.catalog.locate import ENVIRONMENT_VARIABLE
 from course.catalog.models import CourseRef, Exercise
 from course.cli.author.pictures import pictures
-from course.cli.author.replies import (
-    AuthorCheck,
-    AuthorCoverage,
-    AuthorMutants,
-    AuthorNew,
-    AuthorPack,
-    AuthorProblem,
-    CoverageRow,
-    MutantRow,
-)
 from course.cli.author.trying import refused
 from course.cli.frame import here
 from course.cli.frame.completion import exercise_ids, lesson_ids
 from course.cli.frame.console import Console, current, meter
 from course.cli.frame.options import argument, option
 from course.cli.frame.registry import COMMANDS, group
-from course.cli.frame.replies import filled
+from course.cli.frame.replies import Envelope, filled
 from course.errors import ContentError, UsageError
 from course.printable import counted
 from course.progress.workspace import write_atomically
 from course.sandbox.scene.loading import scene_ids
+from course.scoring.explain.story import read_table
 from course.scoring.verdict import in_points
 from course.simulations.registry import SIMULATIONS
+
+
+class AuthorProblem(msgspec.Struct, frozen=True):
+    """One thing that is wrong; ``code`` is a stable name of the broken rule."""
+
+    file: str
+    line: int | None
+    code: str
+    message: str
+    help: str
+
+
+class AuthorNew(Envelope, tag="course.author-new/1", frozen=True, kw_only=True):
+    """``kind`` is "exercise", "warm-up", "lesson", "question" or "scene"."""
+
+    kind: str
+    id: str
+    files: tuple[str, ...]
+
+
+class AuthorBuild(Envelope, tag="course.author-build/1", frozen=True, kw_only=True):
+    """The files that were computed, relative to the course."""
+
+    files: tuple[str, ...]
+
+
+class AuthorCheck(Envelope, tag="course.author-check/1", frozen=True, kw_only=True):
+    """``graded`` counts the stubs, solutions, variants and mutants that were scored to find out."""
+
+    course: CourseRef
+    lessons: tuple[str, ...]
+    exercises: tuple[str, ...]
+    questions: tuple[str, ...]
+    scenes: tuple[str, ...]
+    checks: int
+    graded: int
+    isolation: str
+    seconds: float
+    problems: tuple[AuthorProblem, ...]
+
+
+class CoverageRow(msgspec.Struct, frozen=True, kw_only=True):
+    """A part of the chapter and the places of the course that have it."""
+
+    section: str
+    lines: str
+    kind: str
+    what: str
+    word: str
+    where: tuple[str, ...]
+
+
+class AuthorCoverage(Envelope, tag="course.author-coverage/1", frozen=True, kw_only=True):
+    """``written`` is the page that was made, if one was asked for."""
+
+    source_lines: int
+    parts: tuple[CoverageRow, ...]
+    written: str | None
+    problems: tuple[AuthorProblem, ...]
+
+
+class MutantRow(msgspec.Struct, frozen=True, kw_only=True):
+    """A wrong solution and what the student who wrote it would read."""
+
+    exercise: str
+    file: str
+    task: str
+    misconception: str
+    check: str
+    diagnosis: str | None
+    caught_by: tuple[str, ...]
+    lost: float
+    message: str
+    help: str
+    faults: tuple[str, ...]
+
+
+class AuthorMutants(Envelope, tag="course.author-mutants/1", frozen=True, kw_only=True):
+    mutants: tuple[MutantRow, ...]
+
+
+class AuthorPack(Envelope, tag="course.author-pack/1", frozen=True, kw_only=True):
+    course: CourseRef
+    output: str
+    sha256: str
+    solutions: dict[str, tuple[str, ...]]
+
 
 # ---
 # ``course author coverage``: where the course has each part of the chapter it grew out of.
@@ -131,11 +213,7 @@ def is_command(words: tuple[str, ...]) -> bool:
 
 
 def load_catalog() -> Catalog:
-    """The course in use, which is the one whose checkout one stands in.
-
-    Raises:
-        UsageError: one stands in another checkout than that of this program, which would be written to.
-    """
+    """The course in use, which is the one whose checkout one stands in."""
     catalog, folder = here.load_catalog(), Path.cwd()
     for above in (folder, *folder.parents):
         if (above / "course" / "authoring").is_dir() and (above / "exercises").is_dir():
@@ -378,11 +456,6 @@ def build(
     date. With --confusion each wrong program is graded, at home and as in a grading run, and its diagnoses
     are kept beside the solution for docs/graders.md.
     """
-    from course.authoring.exercises import diagnosis as desk
-    from course.authoring.exercises.files import write_points, write_times
-    from course.authoring.exercises.proofs import write_page
-    from course.cli.author.replies import AuthorBuild
-    from course.scoring.explain.story import read_table
 
     console, catalog = current(), load_catalog()
     instructors(catalog)
@@ -391,7 +464,7 @@ def build(
     made: list[Path | None] = []
     for exercise in chosen:
         try:
-            made += [write_points(catalog, exercise), desk.build(catalog, exercise)]
+            made += [write_points(catalog, exercise), diagnosis.build(catalog, exercise)]
         except ContentError:
             _say_blanks(catalog, exercise)
             raise
@@ -399,13 +472,11 @@ def build(
     made.append(write_times(catalog, chosen))
     written = [shown(path, catalog) for path in made if path]
     if confusion:
-        from course.authoring.exercises.diagnosis import confusion_of, write_confusion
-
         for exercise in chosen:
             if exercise.readme_path.with_name("diagnoses.toml").is_file() and not exercise.is_warm_up:
                 with meter(console) as on_progress:
-                    table = confusion_of(catalog, exercise, on_progress=on_progress)
-                written.append(shown(write_confusion(catalog, exercise, table), catalog))
+                    table = diagnosis.confusion_of(catalog, exercise, on_progress=on_progress)
+                written.append(shown(diagnosis.write_confusion(catalog, exercise, table), catalog))
     if page := write_page(load_catalog()):  # with the points that were just written
         written.append(shown(page, catalog))
     for file in written:
@@ -418,9 +489,6 @@ def build(
 
 def _say_blanks(catalog: Catalog, exercise: Exercise) -> None:
     """A file with blanks is often no TOML either, and not for that reason."""
-    from course.authoring.exercises.files import find_blanks
-    from course.authoring.report import Findings
-
     findings = Findings(catalog.content.root)
     if find_blanks(catalog, exercise.id, findings):
         first = findings.problems[0]
@@ -494,8 +562,6 @@ def pack(
     It holds each exercise's model solution and the prose that goes with it; `course solution` opens it. The
     same solutions give the same bytes. Nothing is overwritten.
     """
-    import hashlib
-
     console, catalog = current(), load_catalog()
     packed = write_pack(catalog, [*solutions, *(more or [])], output)
     digest = hashlib.sha256(output.read_bytes()).hexdigest()

@@ -16,13 +16,20 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
-from course.cli.author.replies import AuthorPictures
 from course.cli.frame.completion import figure_ids
 from course.cli.frame.console import current
 from course.cli.frame.here import load_catalog
 from course.cli.frame.options import argument, option
+from course.cli.frame.replies import Envelope
 from course.errors import InternalError, UsageError
 from course.progress.workspace import write_atomically
+
+
+class AuthorPictures(Envelope, tag="course.author-pictures/1", frozen=True, kw_only=True):
+    """``stale`` names the pictures that were not up to date; without ``--check`` they are now."""
+
+    stale: tuple[str, ...]
+
 
 #: The digests, beside the pictures.
 _MADE_FROM = "made-from.json"

@@ -155,11 +155,7 @@ class Here:
         return exercise.stub_path.read_bytes() if given is None else given
 
     def history(self, exercise: Exercise) -> History:
-        """The recorded history of an exercise.
-
-        Raises:
-            IntegrityError, MissingCapabilityError: the record cannot be read.
-        """
+        """The recorded history of an exercise."""
         return history_of(self.workspace.store.events(subject=exercise.id))
 
     def standing(self) -> Standing:
@@ -203,11 +199,7 @@ class Here:
 
 
 def cwd() -> Path:
-    """The current folder.
-
-    Raises:
-        NotFoundError: it was removed.
-    """
+    """The current folder."""
     try:
         return Path.cwd()
     except OSError:

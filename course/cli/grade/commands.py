@@ -2,11 +2,208 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Annotated
+
+from course.cli.frame.console import Console, current
+from course.cli.frame.here import cwd, load_catalog
+from course.cli.frame.options import argument, option
 from course.cli.frame.registry import COMMANDS, group
-from course.cli.grade.changing import late, override, rerun, similar
-from course.cli.grade.export import export
+from course.cli.frame.replies import filled
+from course.cli.grade.changing import assign, late, log, override, rerun, salvage, similar
+from course.cli.grade.options import Exercises, Missing, moved_scores, one_of, show_roster
 from course.cli.grade.running import explain, run
-from course.cli.grade.settling import assign, log, salvage
+from course.errors import CourseError, UsageError
+from course.grading.container import write_autograder
+from course.grading.exports.formats import AUTOGRADER, FORMATS
+from course.grading.exports.formats import export as write
+from course.grading.exports.grades import STDOUT, grade_line
+from course.grading.exports.selection import ExportOptions, Written, select
+from course.grading.results.effective import Results, counting, moved
+from course.grading.results.merge import Merged, merged
+from course.grading.results.roster import Roster, read_roster
+from course.printable import command, one_line
+from course.scoring.verdict import LARGEST_SEED
+
+_SHOWN = 20
+
+
+def export(
+    out: Annotated[Path | None, argument("OUT", "Folder of a grading run; an autograder needs none.")] = None,
+    format: Annotated[  # noqa: A002 - the option's name
+        str,
+        one_of("--format", *FORMATS, AUTOGRADER),
+    ] = "csv",
+    output: Annotated[
+        Path | None, option("-o --output PATH", "File to write; in OUT if left out. - is standard output.")
+    ] = None,
+    roster: Annotated[
+        Path | None, option("--roster FILE", "Who is enrolled; merged into the stored roster.")
+    ] = None,
+    assignment: Annotated[
+        list[str] | None, option("--assignment EXERCISE=ID", "The assignment on the platform.")
+    ] = None,
+    partial: Annotated[bool, option("--partial", "Leave out students who are not on the roster.")] = False,
+    missing: Missing = "blank",
+    accept_zeros: Annotated[
+        bool, option("--accept-zeros", "Write 0 for ungraded submissions without a decision.")
+    ] = False,
+    overwrite: Annotated[
+        bool, option("--overwrite", "Replace grades and feedback that are in Moodle's worksheet.")
+    ] = False,
+    exercise: Exercises = None,
+    seed: Annotated[
+        int | None, option("--seed", "For an autograder, if no OUT is given.", min=0, max=LARGEST_SEED)
+    ] = None,
+    timeout: Annotated[
+        float, option("--timeout S", "CPU seconds per check, for an autograder.", min=0.1, max=60.0)
+    ] = 10.0,
+) -> int:
+    """Write the grades in the format of another program.
+
+    Overrides and the late policy are applied each time. Students who are not on the roster are listed and
+    stop the export, unless --partial leaves them out. An ungraded submission stops an export to a platform,
+    unless it has a score by hand or --accept-zeros makes it 0.
+    """
+    console = current()
+    if output == Path("/dev/stdout"):
+        output = STDOUT
+    if output == STDOUT and (console.json or format in {"gradescope", "html"}):
+        answer = "The answer of --json and the file do not" if console.json else f"--format {format} does not"
+        raise UsageError(f"{answer} fit on standard output.", help="Name a place with -o PATH.")
+    exercises = tuple(exercise or ())
+    found = Merged(Roster(()))
+    if format == AUTOGRADER:
+        written: Written | None = _autograder(out, output, exercises, seed, timeout)
+    elif out is None:
+        raise UsageError(
+            "This format needs OUT.", help="Name the folder that `course grade run --out` wrote."
+        )
+    else:
+        people = read_roster(roster) if roster else None
+        if missing not in {"blank", "zero"}:
+            raise UsageError(f"--missing is {missing!r}.", help="It takes blank or zero.")
+        sheet = roster if format == "moodle-worksheet" else None
+        given = _assignments(assignment or [])
+        columns = people.assignments if people else {}
+        options = ExportOptions(exercises, given, partial, missing, accept_zeros, sheet, overwrite, columns)
+        written, found = _from_gradebook(console, out, format, output, people, options)
+    if written is not None:
+        _show(console, format, written, out, found)
+    return 0
+
+
+def _from_gradebook(
+    console: Console,
+    out: Path,
+    name: str,
+    output: Path | None,
+    people: Roster | None,
+    options: ExportOptions,
+) -> tuple[Written | None, Merged]:
+    """Write it, and say first what the roster changes; nothing is written if it was printed."""
+    from course.grading.running.folder import open_results, remember
+
+    with open_results(out) as opened:
+        found, results = Merged(opened.roster or Roster(())), opened
+        if people is not None:
+            found = merged(opened, people)
+            results = Results(opened.book, found.roster)
+            found.moved = moved(counting(opened), counting(results))
+        if not console.json and output != STDOUT:
+            show_roster(console, found.roster.file, found.moved, found.dropped)
+        if console.json and name == "jsonl" and output is None:
+            for line in moved_scores(found.moved):
+                console.warn(f"With {found.roster.file}, a score changes: {line}")
+            for student in found.dropped:
+                console.warn(f"Not in {found.roster.file}, leaves the roster: {one_line(student)}")
+            _print_lines(console, results, options)
+            return None, found
+        written = write(results, name, out, output, options)
+        is_new = people is not None and opened.book.meta().get("roster") != found.roster.dump()
+    if people is not None and is_new:
+        try:
+            # Its extensions count, so the files beside the gradebook are written again.
+            with open_results(out, writing=True) as opened:
+                remember(opened.book, people)
+        except CourseError as error:  # the export itself is complete
+            console.warn(f"The roster was not remembered: {error.message}")
+    return written, found
+
+
+def _print_lines(console: Console, results: Results, options: ExportOptions) -> None:
+    """With --json, JSON Lines are the answer itself."""
+    selection = select(results, options)
+    for effective in selection.each():
+        console.emit_line(grade_line(effective, results.course))
+    for student in selection.written.unmatched:
+        console.warn(f"Left out, not in the roster: {one_line(student)}")
+
+
+def _assignments(given: list[str]) -> dict[str, str]:
+    found: dict[str, str] = {}
+    for text in given:
+        name, equals, number = text.partition("=")
+        if not (name and equals and number) or name in found:
+            raise UsageError(
+                f"--assignment is {text!r}.", help="It takes EXERCISE=ID, once for each exercise."
+            )
+        found[name] = number
+    return found
+
+
+def _autograder(
+    out: Path | None, output: Path | None, exercises: tuple[str, ...], seed: int | None, timeout: float
+) -> Written:
+    import secrets
+
+    from course.grading.running.folder import open_results
+
+    catalog = load_catalog()
+    chosen = tuple(catalog.exercise(name) for name in exercises) or catalog.exercises()
+    if out is not None and seed is None:
+        with open_results(out) as results:
+            seed = results.seed
+            noted = {item.id for item in results.exercises()}
+        if not exercises:
+            chosen = tuple(item for item in chosen if item.id in noted)
+    drawn = secrets.randbits(31) if seed is None else seed
+    target = output or (out or cwd()) / "gradescope-autograder.zip"
+    return write_autograder(target, catalog, chosen, seed=drawn, timeout=timeout, asked=bool(exercises))
+
+
+def _show(console: Console, name: str, written: Written, out: Path | None, found: Merged) -> None:
+    if console.json:
+        from course.cli.grade.replies import GradeExport
+
+        paths = tuple(map(str, written.paths))
+        console.emit(filled(GradeExport, written, found, format=name, paths=paths))
+        return
+    if STDOUT in written.paths:  # what else there is to say must not get into the file
+        for text in (
+            *written.notes,
+            *(f"Left out, not in the roster: {one_line(one)}" for one in written.unmatched),
+        ):
+            console.warn(text)
+        return
+    for path in written.paths:
+        console.line((f"Wrote {path}.", "bold"))
+    for label, listed in (
+        ("Left out, not in the roster", written.unmatched),
+        (
+            f"Without a score, a fault of the grader; run {command('grade', 'rerun', out)}",
+            written.without_grade,
+        ),
+    ):
+        if listed:
+            console.line(f"{label}: {len(listed)}")
+        for entry in listed[:_SHOWN]:
+            console.line(entry, indent=2)
+        if len(listed) > _SHOWN:
+            console.line(f"and {len(listed) - _SHOWN} more", indent=2)
+    for note in written.notes:
+        console.note(note)
+
 
 app = group(COMMANDS["grade"].summary)
 

@@ -27,8 +27,7 @@ from course.errors import INTERRUPTED, UsageError
 from course.progress import quiz
 from course.progress.quiz import Attempt
 from course.quizzing.answers import read_answers
-from course.quizzing.attempt import MarkedQuestion, check_seed, mark, mark_sentence, needed
-from course.quizzing.bank import PosedQuestion
+from course.quizzing.bank import MarkedQuestion, PosedQuestion, check_seed, mark, mark_sentence, needed
 from course.quizzing.desk import Due, finished, fits
 
 app = group(COMMANDS["quiz"].summary)

@@ -16,8 +16,17 @@ from course.cli.frame.replies import Envelope, NextStep, filled
 from course.cli.home.learning import day
 from course.errors import CourseError
 from course.progress.quiz import Attempt, QuizHistory, quiz_history
-from course.quizzing.attempt import MarkedQuestion, Result, fresh_seed, mark_sentence, needed
-from course.quizzing.bank import LETTERS, Bank, Choice, PosedQuestion
+from course.quizzing.bank import (
+    LETTERS,
+    Bank,
+    Choice,
+    MarkedQuestion,
+    PosedQuestion,
+    Result,
+    fresh_seed,
+    mark_sentence,
+    needed,
+)
 from course.quizzing.desk import GAP_DAYS, ROUNDS, Due, answered, begun, fits, schedule
 
 # ---

@@ -21,8 +21,9 @@ from course.catalog.models import Exercise
 from course.catalog.reading import read_toml
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
-from course.cli.setup.replies import Demo
+from course.cli.frame.replies import Envelope
 from course.cli.work.checking import reply_to
+from course.cli.work.replies import Check
 from course.cli.work.verdict import show_verdict
 from course.errors import InternalError
 from course.figures.described import Panel, Plot, Series
@@ -31,6 +32,23 @@ from course.handed_in.attempts import Attempt
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission
 from course.scoring.verdict import Verdict
+
+
+class Demo(Envelope, tag="course.demo/2", frozen=True, kw_only=True):
+    """A worked example with a mistake, and without it.
+
+    ``change`` is the corrected line as a diff. ``energy`` is the energy of each motion in units of its energy
+    at the start: the least and the most over ``steps`` steps of ``step_size`` seconds.
+    """
+
+    before: Check
+    after: Check
+    change: tuple[str, ...]
+    steps: int
+    step_size: float
+    energy_before: tuple[float, float]
+    energy_after: tuple[float, float]
+
 
 if TYPE_CHECKING:
     import numpy as np

@@ -19,17 +19,60 @@ from pathlib import Path
 from typing import Annotated
 from urllib.parse import quote
 
+import msgspec
+
 from course import __version__
 from course.catalog.load import Catalog
+from course.catalog.models import CourseRef
 from course.cli.frame import here
 from course.cli.frame.app import INSTALLATION
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, find_workspace, load_catalog
 from course.cli.frame.options import option
-from course.cli.frame.replies import filled
-from course.cli.setup.replies import Bug, Doctor, Fix, Package
+from course.cli.frame.replies import Envelope, WrittenFile, filled
 from course.errors import CourseError, MissingCapabilityError
 from course.extras import requirements
+
+
+class Bug(Envelope, tag="course.bug/1", frozen=True, kw_only=True):
+    """A report for a developer who looks for a fault; ``traceback`` is False where no crash was found."""
+
+    file: WrittenFile
+    traceback: bool
+
+
+class Package(msgspec.Struct, frozen=True):
+    """A requirement and what is installed for it; ``group`` is "" or the name of the extra."""
+
+    name: str
+    requirement: str
+    installed: str | None
+    ok: bool
+    group: str = ""
+
+
+class Fix(msgspec.Struct, frozen=True):
+    """A missing part and the command that installs it."""
+
+    problem: str
+    command: str
+
+
+class Doctor(Envelope, tag="course.doctor/1", frozen=True, kw_only=True):
+    course: CourseRef
+    python: str
+    platform: str
+    installation: str
+    packages: tuple[Package, ...]
+    protection: str
+    protection_causes: tuple[str, ...]
+    protection_advice: tuple[str, ...]
+    terminal: dict[str, str]
+    workspace: str | None
+    repaired: str | None
+    fixes: tuple[Fix, ...]
+    unserved: tuple[str, ...] = ()
+
 
 #: Parts that no student needs.
 _NOT_FOR_USERS = {"dev", "all"}

@@ -16,10 +16,20 @@ from course.cli.frame import here
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, load_catalog
 from course.cli.frame.options import argument, option
-from course.cli.frame.replies import NextStep, WrittenFile
-from course.cli.setup.replies import Init
+from course.cli.frame.replies import Envelope, NextStep, WrittenFile
 from course.errors import CourseError, NotFoundError, UsageError
 from course.progress.workspace import MARKER, Workspace
+
+
+class Init(Envelope, tag="course.init/1", frozen=True, kw_only=True):
+    """``created`` is False where the folder was a workspace already; nothing was changed then."""
+
+    workspace: str
+    created: bool
+    course: CourseRef
+    next: NextStep
+    files: tuple[WrittenFile, ...] = ()
+
 
 # ---
 # ``course init --with``: files that bring the checks to where people work, on GitHub and in an editor.
@@ -58,11 +68,7 @@ _ENV = """\
 
 
 def usable(requirement: str | None) -> str | None:
-    """A requirement that pip, a shell and GitHub all read in the same way.
-
-    Raises:
-        UsageError: one of them would read it differently.
-    """
+    """A requirement that pip, a shell and GitHub all read in the same way."""
     if requirement is not None and (
         not requirement.isprintable() or requirement.startswith("-") or "${{" in requirement
     ):
@@ -79,9 +85,6 @@ def write_surroundings(root: Path, kinds: tuple[str, ...], requirement: str | No
 
     Args:
         requirement: where pip gets the course from; None for the wheel in ``wheels/``.
-
-    Raises:
-        UsageError: a file cannot be written.
     """
     written = []
     for kind in kinds:
@@ -98,11 +101,7 @@ def write_surroundings(root: Path, kinds: tuple[str, ...], requirement: str | No
 
 
 def chosen_kinds(text: str) -> tuple[str, ...]:
-    """The kinds in a list such as "github,vscode".
-
-    Raises:
-        UsageError: there is no such kind.
-    """
+    """The kinds in a list such as "github,vscode"."""
     kinds = tuple(dict.fromkeys(word.strip() for word in text.split(",") if word.strip()))
     unknown = [kind for kind in kinds if kind not in KINDS]
     if unknown or not kinds:

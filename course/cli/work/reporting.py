@@ -116,8 +116,7 @@ def _write_bag(console: Console, made: Report, bag: Path) -> str:
             help="Its sensors are not written yet, or the exercise has none.",
             code="no_streams",
         )
-    from course.simulations.bags import VIEW, read_bag, write_bag
-    from course.simulations.streams import KINDS, streams_from
+    from course.simulations.bags import KINDS, VIEW, read_bag, streams_from, write_bag
 
     path = cwd() / bag.expanduser()
     write_bag(path, streams_from(made.streams))

@@ -130,11 +130,7 @@ def grade_batch(payload: bytes) -> bytes:
 
 
 def _unpacked(batch: Batch) -> bool:
-    """Whether the batch's snapshot is here; the latest few are kept.
-
-    Raises:
-        IntegrityError: it did not arrive whole.
-    """
+    """Whether the batch's snapshot is here; the latest few are kept."""
     sha256 = batch.terms.graders
     with _lock:
         if in_use(sha256) is not None:

@@ -1,21 +1,29 @@
-"""The formats by name."""
+"""The formats by name, and JUnit."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from xml.etree import ElementTree as ET
 
 from course.errors import UsageError
-from course.grading.exports.grades import write_csv, write_jsonl
-from course.grading.exports.html_report.write import write_html
-from course.grading.exports.junit import write_junit
+from course.grading.exports.grades import number, replacing, write_csv, write_jsonl
+from course.grading.exports.html_report.pages import write_html
 from course.grading.exports.platforms import write_canvas, write_gradescope, write_moodle, write_worksheet
-from course.grading.exports.selection import ExportOptions, Written, is_part, select
-from course.grading.results.effective import Results
+from course.grading.exports.selection import (
+    ExportOptions,
+    Written,
+    checks_for_student,
+    is_part,
+    problem_for_student,
+    select,
+)
+from course.grading.results.effective import Effective, Results
+from course.printable import one_line
+from course.scoring.verdict import CheckResult, Problem, Status
 
-if TYPE_CHECKING:
-    Writer = Callable[[Path, Results, ExportOptions], Written]
+Writer = Callable[[Path, Results, ExportOptions], Written]
 
 #: Needs no gradebook, and so is not one of the formats below.
 AUTOGRADER = "gradescope-autograder"
@@ -34,6 +42,114 @@ def _jsonl(path: Path, results: Results, options: ExportOptions) -> Written:
     selection.written.paths.append(path)
     return selection.written
 
+
+# ---
+# JUnit XML as Jenkins' xUnit plugin reads it (its schema junit-10): one suite per student and exercise.
+#
+# The schema allows properties under a suite and none under a case, so a suite carries score and reasons. The
+# file contains only what students may read, because build servers show such files to many people.
+
+#: What XML 1.0 cannot hold in any spelling.
+_IMPOSSIBLE = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def write_junit(path: Path, results: Results, options: ExportOptions) -> Written:
+    """One file for the class."""
+    selection = select(results, options)
+    with replacing(path) as handle:
+        handle.write(b'<?xml version="1.0" encoding="utf-8"?>\n')
+        handle.write(b"<testsuites name=%s>\n" % _attribute(results.course.id))
+        for effective in (item for item in selection.each() if not (item.missing or item.waiting)):
+            handle.write(ET.tostring(suite(effective), encoding="utf-8", xml_declaration=False) + b"\n")
+        handle.write(b"</testsuites>\n")
+    selection.written.paths.append(path)
+    return selection.written
+
+
+def _attribute(text: str) -> bytes:
+    from xml.sax.saxutils import quoteattr
+
+    return quoteattr(_text(text)).encode("utf-8")
+
+
+def suite(effective: Effective) -> ET.Element:
+    """The suite of one student and exercise."""
+    verdict = effective.verdict
+    checks = checks_for_student(verdict)
+    cases = [_case(effective, check) for check in checks]
+    problem = problem_for_student(verdict)
+    if problem is not None:
+        cases.append(_not_graded(effective, problem))
+    kinds = [child.tag for case in cases for child in case]
+    element = ET.Element(
+        "testsuite",
+        {
+            "name": _text(f"{effective.student} / {effective.exercise}"),
+            "tests": str(len(cases)),
+            "failures": str(kinds.count("failure")),
+            "errors": str(kinds.count("error")),
+            "skipped": str(kinds.count("skipped")),
+            "time": f"{sum(check.duration_ms for check in checks) / 1e3:.3f}",
+            "timestamp": effective.result.graded_at.removesuffix("Z"),
+        },
+    )
+    properties = ET.SubElement(element, "properties")
+    for name, value in _facts(effective).items():
+        ET.SubElement(properties, "property", {"name": name, "value": _text(value)})
+    element.extend(cases)
+    return element
+
+
+def _facts(effective: Effective) -> dict[str, str]:
+    override = effective.override
+    facts = {
+        "student": effective.student,
+        "exercise": effective.exercise,
+        "score": number(effective.score),
+        "max_score": number(effective.max_score),
+        "raw_score": number(effective.raw_score),
+        "late_penalty": number(effective.penalty),
+        "late_s": "" if effective.late is None else f"{effective.late:.0f}",
+        "override": override.reason if override else "",
+        "isolation": effective.verdict.isolation,
+    }
+    return {name: value for name, value in facts.items() if value}
+
+
+def _case(effective: Effective, check: CheckResult) -> ET.Element:
+    element = ET.Element(
+        "testcase",
+        {
+            "name": _text(check.id),
+            "classname": _text(f"{effective.exercise}.{check.task}"),
+            "time": f"{check.duration_ms / 1e3:.3f}",
+        },
+    )
+    if check.status is Status.PASS:
+        return element
+    words = "\n".join(part for part in (check.title, check.message, check.help, check.diagnosis) if part)
+    kind = {Status.FAIL: "failure", Status.SKIP: "skipped"}.get(check.status, "error")
+    attributes = {"message": _text(check.message), "type": _text(check.diagnosis or check.status.value)}
+    ET.SubElement(element, kind, attributes).text = _text(words)
+    if check.stdout:
+        ET.SubElement(element, "system-out").text = _text(check.stdout)
+    return element
+
+
+def _not_graded(effective: Effective, error: Problem) -> ET.Element:
+    element = ET.Element("testcase", {"name": "submission", "classname": _text(effective.exercise)})
+    attributes = {"message": _text(error.message), "type": _text(error.code)}
+    ET.SubElement(element, "error", attributes).text = _text(error.help)
+    return element
+
+
+def _text(text: str) -> str:
+    """Text that XML can hold; other characters, and control characters, are spelled out."""
+    lines = _IMPOSSIBLE.sub(lambda match: one_line(match[0]), text).split("\n")
+    return "\n".join(one_line(line) for line in lines)
+
+
+# ---
 
 #: name -> the name of its file in OUT, and the function that writes it.
 FORMATS: dict[str, tuple[str, Writer]] = {

@@ -74,11 +74,7 @@ def csv_bytes(headings: Sequence[str], rows: Iterable[Sequence[str]], *, mark: b
 
 
 def write_bytes(path: Path, content: bytes) -> None:
-    """Write a whole file or none.
-
-    Raises:
-        MissingCapabilityError: there is no room, or it cannot be written there.
-    """
+    """Write a whole file or none."""
     with replacing(path) as handle:
         handle.write(content)
 
@@ -224,11 +220,7 @@ def utc(seconds: float | None) -> str:
 
 
 def write_jsonl(path: Path, results: Iterable[Effective], course: CourseRef) -> None:
-    """One line per student and exercise, with everything: for the instructor only.
-
-    Raises:
-        MissingCapabilityError: it cannot be written.
-    """
+    """One line per student and exercise, with everything: for the instructor only."""
     with replacing(path) as handle:
         for effective in results:
             line = grade_line(effective, course)
@@ -240,9 +232,6 @@ def write_csv(path: Path, results: Results, chosen: Iterable[Effective] | None =
 
     Args:
         chosen: the rows; all if None.
-
-    Raises:
-        MissingCapabilityError: it cannot be written.
     """
     wanted = results.all() if chosen is None else chosen
     headings = (*_COLUMNS, *(_PERSON if results.roster else ()))

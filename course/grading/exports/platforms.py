@@ -49,11 +49,6 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
 
     Canvas finds a column by the assignment's id, and makes a new assignment of a title without one; so every
     exercise needs its id. An empty cell leaves Canvas' own value.
-
-    Raises:
-        UsageError: an assignment's id or the roster is missing.
-        MissingCapabilityError: students are missing in the roster, a zero was not looked at, or the file
-            cannot be written.
     """
     selection = select(results, options, usable=_has_canvas_id, needs=_CANVAS)
     missing = [name for name in selection.exercises if name not in options.assignments]
@@ -116,13 +111,7 @@ def _has_canvas_id(person: Person) -> bool:
 
 
 def write_moodle(path: Path, results: Results, options: ExportOptions) -> Written:
-    """A file for Moodle's grade import, whose columns the teacher maps; an empty cell is no grade.
-
-    Raises:
-        UsageError: the roster is missing.
-        MissingCapabilityError: students are missing in the roster, a zero was not looked at, or the file
-            cannot be written.
-    """
+    """A file for Moodle's grade import, whose columns the teacher maps; an empty cell is no grade."""
     selection = select(results, options, usable=_has_moodle_key, needs=_MOODLE)
     check_settled(selection, options)
     headings = ["moodle_key", "name", "email", *(results.title(name) for name in selection.exercises)]
@@ -199,7 +188,6 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
 
     Raises:
         UsageError: there is no worksheet, the file is not one, or there are several exercises.
-        MissingCapabilityError: students are missing in the roster, or the file cannot be written.
     """
     if options.worksheet is None:
         raise UsageError(
@@ -349,12 +337,7 @@ _LONGEST = 4000  # characters of one check's words: a student's function may ret
 
 
 def write_gradescope(folder: Path, results: Results, options: ExportOptions) -> Written:
-    """A folder with one results file per student and exercise, and ``index.csv``, which names the owners.
-
-    Raises:
-        UsageError: no such exercise.
-        MissingCapabilityError: students are missing in the roster, or a file cannot be written.
-    """
+    """A folder with one results file per student and exercise, and ``index.csv``, which names the owners."""
     selection = select(results, options)
     check_settled(selection, options)
     rows: list[Sequence[str]] = []

@@ -55,7 +55,7 @@ _CHECKPOINT_S = 5.0  # the most that a power cut costs
 
 
 class Gradebook:
-    """An open gradebook.
+    """An open gradebook. What reads rows raises IntegrityError where one is not what was written.
 
     Args:
         path: the file.
@@ -246,21 +246,13 @@ class Gradebook:
         return int(row[0])
 
     def results(self, student: str | None = None, exercise: str | None = None) -> Iterator[Result]:
-        """The newest result of each student and exercise, ordered by both.
-
-        Raises:
-            IntegrityError: a result is not what was written.
-        """
+        """The newest result of each student and exercise, ordered by both."""
         where, arguments = _about(student, exercise)
         newest = f"number IN (SELECT max(number) FROM results{where} GROUP BY student, exercise)"
         yield from self._results(f" WHERE {newest}", arguments)
 
     def verify(self) -> None:
-        """Look at every page and every decision.
-
-        Raises:
-            IntegrityError: the file is damaged.
-        """
+        """Look at every page and every decision."""
         with explained(self.path):
             told = self._db.execute("PRAGMA quick_check(1)").fetchone()[0]
             if told != "ok":
@@ -295,11 +287,7 @@ class Gradebook:
             return [row[0] for row in self._db.execute("SELECT DISTINCT exercise FROM results ORDER BY 1")]
 
     def submission(self, sha256: str) -> dict[str, bytes] | None:
-        """A submission: file name to content; None if none has that digest.
-
-        Raises:
-            IntegrityError: it is damaged.
-        """
+        """A submission: file name to content; None if none has that digest."""
         with explained(self.path):
             row = self._db.execute("SELECT files FROM submissions WHERE sha256 = ?", (sha256,)).fetchone()
         if row is None:
@@ -330,11 +318,7 @@ class Gradebook:
             self._db.execute(row_into("journal"), (self._next("journal"), at, whoami(), kind, *about))
 
     def overrides(self) -> list[Override]:
-        """Every decision, oldest first, lifted ones included.
-
-        Raises:
-            IntegrityError: one is not what was written.
-        """
+        """Every decision, oldest first, lifted ones included."""
         found: list[Override] = []
         query = "SELECT student, exercise, score, reason, at, sha256 FROM overrides ORDER BY number"
         with explained(self.path):

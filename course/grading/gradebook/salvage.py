@@ -151,11 +151,7 @@ def _varint(data: bytes, at: int) -> tuple[int, int]:
 
 
 def _record(body: bytes) -> tuple[Cell, ...]:
-    """The values of a row.
-
-    Raises:
-        _DamagedError: these are none.
-    """
+    """The values of a row."""
     end, at = _varint(body, 0)
     if end > len(body):
         raise _DamagedError
@@ -198,11 +194,7 @@ _KEPT = 2
 
 
 def back_up(path: Path) -> None:
-    """Copy a closed gradebook; the previous copy becomes the older one.
-
-    Raises:
-        MissingCapabilityError: there is no room for it; the older copies are unchanged.
-    """
+    """Copy a closed gradebook; the previous copy becomes the older one."""
     draft = _named(path, 0)
     try:
         shutil.copyfile(path, draft)

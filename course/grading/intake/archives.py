@@ -20,15 +20,17 @@ import subprocess
 import sys
 import threading
 import zipfile
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from types import SimpleNamespace
-from typing import IO, TYPE_CHECKING, Any, TypeVar
+from typing import IO, Any, TypeVar
 
 import msgspec
 
+from course.catalog.models import Exercise
 from course.errors import InternalError, UngradableError
-from course.grading.intake import kinds
+from course.grading.intake import downloads
 from course.grading.intake.downloads import is_folder_meant, is_meant
 from course.grading.pipes import limit_cpu, limit_memory, read_frame, served, write_frame
 from course.grading.quiz import checked_record
@@ -47,12 +49,6 @@ from course.isolation.inside import statements
 from course.printable import one_line
 from course.scoring.verdict import Problem
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from course.catalog.models import Exercise
-
-
 T = TypeVar("T")
 Members = dict[str, zipfile.ZipInfo]
 
@@ -63,7 +59,7 @@ _ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".whl"
 
 
 class RefusedError(Exception):
-    """One candidate cannot be read."""
+    """One candidate cannot be read: it must not be opened, is damaged, or is not there. All here raise it."""
 
     def __init__(self, code: str, message: str, advice: str) -> None:
         super().__init__(message)
@@ -71,11 +67,7 @@ class RefusedError(Exception):
 
 
 def manifest_of(path: Path) -> dict[str, Any]:
-    """The metadata that ``course submit`` put into an archive; empty for one made by hand.
-
-    Raises:
-        RefusedError: the archive must not be opened, or is damaged.
-    """
+    """The metadata that ``course submit`` put into an archive; empty for one made by hand."""
     return _opened(path, functools.partial(_manifest, path))
 
 
@@ -101,7 +93,7 @@ def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
     """A zip's module or notebook for an exercise; None if there is neither.
 
     Raises:
-        RefusedError: the archive must not be opened further, is damaged, or holds several.
+        RefusedError: also where it holds several.
     """
 
     def read(archive: zipfile.ZipFile, members: Members) -> ArchiveContent | None:
@@ -172,18 +164,14 @@ def _wanted_members(members: Members, exercise: Exercise) -> list[str]:
 
 
 def outline_of(path: Path, skip: tuple[str, ...]) -> list[tuple[str, bytes]]:
-    """Names and contents of the modules and notebooks in a zip, except those to skip.
-
-    Raises:
-        RefusedError: it must not be opened further, or is damaged.
-    """
+    """Names and contents of the modules and notebooks in a zip, except those to skip."""
 
     def read(archive: zipfile.ZipFile, members: Members) -> list[tuple[str, bytes]]:
         return [
             (info.filename, _unpacked(path, archive, info))
             for info in members.values()
             if info.filename not in skip
-            and kinds.may_be_code(info.filename)
+            and downloads.may_be_code(info.filename)
             and not info.filename.endswith(MANIFEST)
         ]
 
@@ -191,11 +179,7 @@ def outline_of(path: Path, skip: tuple[str, ...]) -> list[tuple[str, bytes]]:
 
 
 def member_of(path: Path, name: str) -> bytes:
-    """The content of one member, by the name the archive has for it, or that name with plain slashes.
-
-    Raises:
-        RefusedError: there is none, or the archive must not be opened further.
-    """
+    """The content of one member, by the name the archive has for it, or that name with plain slashes."""
 
     def read(archive: zipfile.ZipFile, members: Members) -> bytes:
         for plain, info in members.items():
@@ -215,28 +199,20 @@ _TARS = frozenset({"a tar archive", "a gzip archive", "a bzip2 archive", "an xz 
 
 
 def _compressed(path: Path, kind: str) -> list[tuple[str, bytes]]:
-    """What may be code in an archive that is no zip, by name.
-
-    Raises:
-        RefusedError: it is damaged.
-    """
+    """What may be code in an archive that is no zip, by name."""
     try:
-        return list(kinds.compressed(path, kind, MAX_FILE, MAX_UNPACKED))
+        return list(downloads.compressed(path, kind, MAX_FILE, MAX_UNPACKED))
     except OSError as error:
         raise _refused(path, f"it cannot be read ({error})") from None
 
 
 def _kind(path: Path) -> str:
     with path.open("rb") as handle:
-        return kinds.kind_of(path.name, handle.read(512))
+        return downloads.kind_of(path.name, handle.read(512))
 
 
 def _opened(path: Path, read: Callable[[zipfile.ZipFile, Members], T]) -> T:
-    """The result of ``read`` on an archive whose members are all harmless.
-
-    Raises:
-        RefusedError: the archive must not be opened further, or is damaged.
-    """
+    """The result of ``read`` on an archive whose members are all harmless."""
     try:
         if not stat.S_ISREG(path.lstat().st_mode):
             raise _refused(path, "it is not a regular file")
@@ -271,11 +247,11 @@ def _refused(path: Path, why: str) -> RefusedError:
 def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
     """The members by name, without the folders around all of them; every one is harmless."""
     plain = {info.filename.replace("\\", "/"): info for info in infos if not info.is_dir()}
-    unwanted = kinds.clutter(plain)
+    unwanted = downloads.clutter(plain)
     files = [info for info in infos if not info.is_dir() and not unwanted(info.filename.replace("\\", "/"))]
     if len(files) > MAX_FILES:
         raise _refused(path, f"it holds more than {MAX_FILES} files")
-    if sum(info.file_size for info in files if kinds.may_be_code(info.filename)) > MAX_UNPACKED:
+    if sum(info.file_size for info in files if downloads.may_be_code(info.filename)) > MAX_UNPACKED:
         raise _refused(path, f"its files unpack to more than {MAX_UNPACKED >> 20} MB")
     members: Members = {}
     for info in files:
@@ -404,11 +380,7 @@ class Reader:
         self._process: subprocess.Popen[bytes] | None = None
 
     def notebook(self, content: bytes, exercise: Exercise, name: str) -> tuple[bytes, bytes]:
-        """The module that a notebook makes up, and the record of its cells.
-
-        Raises:
-            RefusedError: it cannot be graded.
-        """
+        """The module that a notebook makes up, and the record of its cells."""
         told = self._ask(_Request("notebook", one_line(name), content=content, **_wanted(exercise)))
         return told.content, told.record
 
@@ -431,29 +403,18 @@ class Reader:
         Args:
             skip: members of the archive to ignore.
             functions: the names to look for.
-
-        Raises:
-            RefusedError: it cannot be read.
         """
         where = os.fsencode(path.absolute())
         ask = _Request("outline", one_line(path.name), path=where, tasks=functions, skip=skip)
         return self._ask(ask).outlines
 
     def member(self, path: Path, name: str) -> bytes:
-        """The content of one file of an archive.
-
-        Raises:
-            RefusedError: there is none, or the archive must not be opened.
-        """
+        """The content of one file of an archive."""
         ask = _Request("member", one_line(path.name), path=os.fsencode(path.absolute()), skip=(name,))
         return self._ask(ask).content
 
     def quiz_in(self, path: Path) -> Any:
-        """The quiz attempts in an archive; a word if they have another form, None if it has none.
-
-        Raises:
-            RefusedError: it must not be opened, or is damaged.
-        """
+        """The quiz attempts in an archive; a word if they have another form, None if it has none."""
         told = self._ask(_Request("quiz", one_line(path.name), path=os.fsencode(path.absolute())))
         return json.loads(told.content)
 
@@ -588,7 +549,7 @@ def _answer(ask: _Request) -> _Reply:
 def _outlines(path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> Iterator[Outline]:
     with path.open("rb") as handle:
         content = handle.read(MAX_NOTEBOOK + 1)
-    kind = kinds.kind_of(path.name, content)
+    kind = downloads.kind_of(path.name, content)
     if kind == "a zip archive" or path.suffix.casefold() == ".zip":
         files = outline_of(path, skip)
     elif kind in _TARS:
@@ -605,7 +566,7 @@ def _outlines(path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> 
     if not files:
         yield "", hashlib.sha256(content).hexdigest(), (), 0, f"{kind} without a file of code"
     for name, found in files:
-        what = kinds.kind_of(name, found)
+        what = downloads.kind_of(name, found)
         digest = hashlib.sha256(found).hexdigest()
         yield name, digest, *(_defined(name, found, functions) if what in _IS_CODE else ((), 0)), what
 
@@ -622,7 +583,7 @@ def _defined(name: str, content: bytes, functions: tuple[str, ...]) -> tuple[tup
         return (), 0  # parsing takes a hundred times as long as looking
     pieces: list[str | bytes] = [content]
     try:
-        if name.casefold().endswith(".ipynb") or kinds.is_notebook(content):
+        if name.casefold().endswith(".ipynb") or downloads.is_notebook(content):
             cells = json.loads(content).get("cells", ())
             pieces = ["".join(cell.get("source", ())) for cell in cells if cell.get("cell_type") == "code"]
     except (ValueError, AttributeError, TypeError, RecursionError):

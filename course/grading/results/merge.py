@@ -9,13 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from course.grading.results.effective import Results, ScoreChange
 from course.grading.results.roster import COLUMNS, Person, Roster
 
-if TYPE_CHECKING:
-    Stage = Callable[[Person], list[Person]]
+Stage = Callable[[Person], list[Person]]
 
 #: Columns whose value is one student's own, the surest first.
 _IDS = ("canvas_id", "sis_user_id", "moodle_key", "login", "email")

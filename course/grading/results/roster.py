@@ -252,11 +252,7 @@ def read_roster(path: Path) -> Roster:
 
 
 def read_text(path: Path) -> str:
-    """The text of a CSV file.
-
-    Raises:
-        UsageError: it cannot be read, is too large, or is not text.
-    """
+    """The text of a CSV file."""
     try:
         return decoded(read_bytes(path))
     except OSError as error:
@@ -266,11 +262,7 @@ def read_text(path: Path) -> str:
 
 
 def decoded(raw: bytes) -> str:
-    """The text of a CSV file: UTF-8, UTF-16 with its mark, or Windows' western code page, as Excel saves it.
-
-    Raises:
-        UnicodeError: it is not text.
-    """
+    """The text of a CSV file: UTF-8, UTF-16 with its mark, or Windows' western code page, as Excel has it."""
     if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
         return raw.decode("utf-16")
     with contextlib.suppress(UnicodeDecodeError):

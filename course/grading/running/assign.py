@@ -10,7 +10,6 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -20,16 +19,13 @@ from course.grading.gradebook.file import explained
 from course.grading.gradebook.records import Decision, Key, Result, SubmittedAt
 from course.grading.intake.archives import RefusedError
 from course.grading.intake.downloads import class_list
-from course.grading.intake.students import Entry, submission_from
-from course.grading.intake.triage import Candidate, Found
+from course.grading.intake.students import Candidate, Entry, Found, submission_from
 from course.grading.results.effective import Effective, Results, counted
 from course.grading.running.batch import Graded, grade_all
+from course.grading.running.run import GradeAll
 from course.grading.running.snapshot import Unpacked, fresh, frozen, kept
 from course.printable import command
 from course.scoring.judging.submission import Terms
-
-if TYPE_CHECKING:
-    from course.grading.running.run import GradeAll
 
 _MAX_REASON = 2000
 

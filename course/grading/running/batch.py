@@ -25,8 +25,8 @@ from course.grading.intake.students import Entry
 from course.grading.pipes import read_frame, write_frame
 from course.grading.running.grader import Answer, Config, Job
 from course.grading.running.snapshot import in_use
-from course.isolation.deadline import WALL
 from course.isolation.launch import keep_private, sweep_after_the_dead
+from course.isolation.levels import WALL
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.remote import BUDGET_S
 from course.scoring.verdict import Problem, Verdict, not_graded

@@ -12,7 +12,7 @@ import msgspec
 
 from course.errors import MissingCapabilityError, UsageError
 from course.grading.exports.grades import write_csv, write_jsonl
-from course.grading.exports.html_report.write import write_pages
+from course.grading.exports.html_report.pages import write_pages
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.file import explained
 from course.grading.gradebook.salvage import back_up
@@ -50,12 +50,7 @@ def taken_back(out: Path) -> Iterator[ClaimedName]:
 
 
 def begin(out: Path, submissions: Path, *, resume: bool) -> Gradebook:
-    """The gradebook of a new run or, with ``resume``, of an earlier one, opened for writing.
-
-    Raises:
-        UsageError: ``out`` exists, is in use, or lies among the submissions.
-        MissingCapabilityError: it cannot be made.
-    """
+    """The gradebook of a new run or, with ``resume``, of an earlier one, opened for writing."""
     if out.resolve().is_relative_to(submissions.resolve()):
         raise UsageError(
             f"--out {out} lies among the submissions.",
@@ -90,11 +85,7 @@ def begin(out: Path, submissions: Path, *, resume: bool) -> Gradebook:
 
 
 def export_all(out: Path, results: Results) -> None:
-    """The files that lie beside a gradebook after every run.
-
-    Raises:
-        MissingCapabilityError: one cannot be written; the gradebook has everything nevertheless.
-    """
+    """The files that lie beside a gradebook after every run."""
     try:
         write_jsonl(out / "results.jsonl", results.all(), results.course)
         write_csv(out / "grades.csv", results)

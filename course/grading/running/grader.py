@@ -139,11 +139,7 @@ class _Grader:
             return Answer(error=problem, exit_code=error.exit_code, **about)
 
     def _checked_version(self, job: Job) -> str:
-        """The version of the graders here, which must be the required one.
-
-        Raises:
-            MissingCapabilityError: it is not, and scores would not be comparable.
-        """
+        """The version of the graders here, which must be the required one."""
         from course.scoring.graders import grader_version
 
         if job.exercise not in self._versions:
@@ -161,12 +157,7 @@ class _Grader:
         return mine
 
     def _session(self, exercise: Exercise) -> GradingSession:
-        """The session of an exercise.
-
-        Raises:
-            ContentError: its checks cannot be run; that is found out once.
-            CourseError: this process cannot grade at all.
-        """
+        """The session of an exercise."""
         from course.scoring.judging.session import GradingSession
 
         if exercise.id in self._broken:

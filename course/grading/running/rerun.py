@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 
@@ -23,14 +23,11 @@ from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version
 from course.grading.results.effective import Effective, Results
 from course.grading.running.batch import grade_all
-from course.grading.running.run import QUIZ_RECORD, graded_exercises
+from course.grading.running.run import QUIZ_RECORD, GradeAll, graded_exercises
 from course.grading.running.snapshot import Snapshot, Unpacked, fresh, frozen, kept
 from course.quizzing.bank import Bank
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import Verdict
-
-if TYPE_CHECKING:
-    from course.grading.running.run import GradeAll
 
 #: Characters of a snapshot's digest that name it.
 _LEAST_DIGITS = 6

@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -32,14 +31,12 @@ from course.grading.results.roster import Roster
 from course.grading.running.batch import Graded, grade_all
 from course.grading.running.folder import BOOK, begin, export_all, note_without_work, remember, taken_back
 from course.grading.running.snapshot import Snapshot, Unpacked, among_graders, fresh, frozen, kept
-from course.quizzing.attempt import needed
-from course.quizzing.bank import Bank
+from course.quizzing.bank import Bank, needed
 from course.scoring.failures import OURS
 from course.scoring.graders import grader_version
 from course.scoring.judging.submission import Terms
 
-if TYPE_CHECKING:
-    GradeAll = Callable[[Iterable[Entry], Terms], Iterator[Graded]]
+GradeAll = Callable[[Iterable[Entry], Terms], Iterator[Graded]]
 
 
 # ---
@@ -413,11 +410,7 @@ class _Run:
 
 
 def _bank(catalog: Catalog) -> Bank:
-    """The questions of the quiz.
-
-    Raises:
-        UsageError: one of them is unfinished or wrong, which is no student's fault; nothing was graded.
-    """
+    """The questions of the quiz."""
     try:
         return Bank(read_questions(catalog.content.quiz))
     except ContentError as error:
@@ -453,11 +446,7 @@ def graded_exercises(exercises: Sequence[Exercise], bank: Bank | None) -> list[G
 
 
 def _exercises(catalog: Catalog, wanted: tuple[str, ...]) -> tuple[Exercise, ...]:
-    """The exercises to grade.
-
-    Raises:
-        UsageError: one of them is unfinished, which is no student's fault; nothing was graded.
-    """
+    """The exercises to grade."""
     chosen = catalog.exercises() if not wanted else ()
     chosen += tuple(catalog.exercise(name) for name in dict.fromkeys(wanted) if name != QUIZ)
     for exercise in chosen:

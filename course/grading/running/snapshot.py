@@ -168,11 +168,7 @@ def _names(content: Content) -> bytes:
 
 
 def _members(packed: bytes) -> Iterator[tuple[str, bytes]]:
-    """Names and contents; every name lies inside.
-
-    Raises:
-        IntegrityError: it cannot be read.
-    """
+    """Names and contents; every name lies inside."""
     try:
         with zipfile.ZipFile(io.BytesIO(packed)) as archive:
             infos = archive.infolist()

@@ -63,8 +63,6 @@ class GradingSession:
     """Checks and sandbox of one exercise, ready for any number of submissions.
 
     Args:
-        exercise: the exercise to grade.
-        catalog: where its files are.
         scope: "public" for the checks a student has, "full" for the hidden ones too.
         terms: protection level, deadline and seed.
         processor: picks the processor to stay on; None picks any.
@@ -394,11 +392,7 @@ def check_files(exercise: Exercise, catalog: Catalog, scope: Scope) -> list[tupl
 
 
 def _explainer(exercise: Exercise) -> Explainer | None:
-    """The explainer of failed checks, for an exercise whose words are data.
-
-    Raises:
-        ContentError: it has words, and no questions or no table of answers.
-    """
+    """The explainer of failed checks, for an exercise whose words are data."""
     if not (Path(exercise.folder) / "diagnoses.toml").is_file():
         return None
     questions = companion_path(exercise.id, "questions")

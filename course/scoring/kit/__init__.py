@@ -18,7 +18,16 @@ from course.scoring.checks.collected import companion, known_answers, reference,
 from course.scoring.explain.fingerprint import SAME, in_range
 from course.scoring.explain.story import Diagnosis, Words
 from course.scoring.failures import CheckFailed, Report, Section, finding_for, guarded_section
-from course.scoring.kit.callbacks import Counted, acceleration, black_box, counted, first_divergence
+from course.scoring.kit.callbacks import (
+    Counted,
+    Problem,
+    acceleration,
+    black_box,
+    counted,
+    first_divergence,
+    march_all_errors,
+    march_errors,
+)
 from course.scoring.kit.expectations import (
     Diagnose,
     attempt,
@@ -36,7 +45,6 @@ from course.scoring.kit.expectations import (
     expect_untouched,
     fail,
 )
-from course.scoring.kit.marching import Problem, march_all_errors, march_errors
 from course.scoring.values import (
     Inspected,
     as_array,

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from course.physics.body import Body
 from course.physics.contact import Surface
-from course.physics.integrators import STEPPERS, State, trajectory
-from course.physics.interpolation import first_crossing, hermite
-from course.physics.recording import Recording
+from course.physics.integrators import STEPPERS, State, first_crossing, hermite, trajectory
 from course.physics.rotation import ROTATION_STEPPERS, Spin, angular_momentum, kinetic_energy
-from course.physics.simulator import Simulator, step_count
+from course.physics.simulator import Recording, Simulator, step_count
 from course.physics.state import RigidBodyState
 from course.physics.systems import FreeFall
 from course.simulations.base import (
@@ -33,8 +31,7 @@ from course.simulations.base import (
     times,
 )
 
-if TYPE_CHECKING:
-    Array = NDArray[np.float64]
+Array = NDArray[np.float64]
 
 
 def _run_free_fall(p: Mapping[str, Any]) -> Result:

@@ -52,8 +52,8 @@ from course.grading.intake.students import submission_from  # noqa: E402
 from course.grading.results.late import read_policy, read_times  # noqa: E402
 from course.grading.results.roster import read_roster  # noqa: E402
 from course.grading.running.folder import open_results  # noqa: E402
-from course.isolation.deadline import Deadline  # noqa: E402
 from course.isolation.failures import StudentFailure  # noqa: E402
+from course.isolation.levels import Deadline  # noqa: E402
 from course.isolation.session import Connection, LoadRefusedError  # noqa: E402
 from course.progress.store import Store  # noqa: E402
 from course.progress.workspace import Workspace  # noqa: E402

@@ -24,7 +24,7 @@ pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="re
 
 _TRIAL = """
 import sys
-from course.isolation.deadline import Deadline
+from course.isolation.levels import Deadline
 from course.isolation.launch import keep_private
 from course.isolation.session import Connection
 from course.isolation.spawn import Level, spawner

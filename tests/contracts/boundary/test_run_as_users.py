@@ -116,7 +116,7 @@ def test_a_class_of_what_once_broke_is_graded_to_the_end(level: str, user: str, 
 
 _TWICE = """
 import sys
-from course.isolation.deadline import Deadline
+from course.isolation.levels import Deadline
 from course.isolation.failures import StudentFailure
 from course.isolation.session import Connection
 from course.isolation.spawn import Level, spawner

@@ -17,8 +17,7 @@ import pytest
 
 from course.engines import reference
 from course.engines.base import options_of
-from course.engines.compare import Request, compare
-from course.engines.process import EngineProcess
+from course.engines.compare import EngineProcess, Request, compare
 from course.engines.registry import ENGINES, availability
 from course.engines.scenarios import BOXES, SCENARIOS
 

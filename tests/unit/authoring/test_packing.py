@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from course.authoring.packing import write_pack
+from course.authoring.exercises.grading import write_pack
 from course.catalog.load import Catalog
 from course.catalog.pack import read_pack
 from course.errors import ContentError, MissingCapabilityError, NotFoundError, UsageError

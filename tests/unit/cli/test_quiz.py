@@ -15,8 +15,7 @@ from course.catalog.load import Catalog
 from course.catalog.questions import read_questions
 from course.cli.frame.console import Console
 from course.cli.quiz import screen
-from course.quizzing.attempt import mark
-from course.quizzing.bank import Bank
+from course.quizzing.bank import Bank, mark
 
 SEED = 7
 MARK = "You pass with 4 right answers out of 5."

@@ -9,8 +9,8 @@ import time
 
 import pytest
 
-from course.engines import process as module
-from course.engines.process import EngineProcess
+from course.engines import compare as module
+from course.engines.compare import EngineProcess
 
 READY = 'import sys, os, time; print(\'{"status": "ok"}\', flush=True); '
 JOB = {"do": "measure"}

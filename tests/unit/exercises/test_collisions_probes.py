@@ -15,7 +15,7 @@ from course.physics.contact import Surface
 from course.physics.simulator import Simulator
 from course.physics.state import RigidBodyState
 from course.scoring import kit
-from course.scoring.checks.plugin import MARKERS
+from course.scoring.checks.collected import MARKERS
 
 ROOT = Path(__file__).parents[3]
 HERE = ROOT / "exercises" / "collisions"

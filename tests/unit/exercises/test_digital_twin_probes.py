@@ -746,7 +746,7 @@ def test_the_report_describes_the_actuators_and_the_gyroscope_that_were_drawn():
 
 
 def test_the_drive_of_the_report_makes_streams_that_a_bag_can_hold():
-    from course.simulations import streams
+    from course.simulations import bags as streams
 
     found = kit.companion("digital-twin", "drive").streams(Fake())
     assert [type(stream).__name__ for stream in streams.streams_from(found)] == [

@@ -16,10 +16,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from course.isolation.deadline import Deadline
 from course.isolation.failures import IsolationError, StudentFailure
 from course.isolation.inside.wire import Codec, Kind
-from course.isolation.levels import Exit, ticking
+from course.isolation.levels import Deadline, Exit, ticking
 from course.isolation.session import Connection, LoadRefusedError, RemoteFunction
 from course.physics import systems
 from course.printable import printable

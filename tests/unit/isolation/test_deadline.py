@@ -12,9 +12,8 @@ from typing import Any
 
 import pytest
 
-from course.isolation.deadline import Deadline, ProcessClock
 from course.isolation.failures import StudentFailure
-from course.isolation.levels import Level
+from course.isolation.levels import Deadline, Level, ProcessClock
 from course.isolation.session import Connection
 from course.isolation.spawn import spawner
 from tests.contracts.boundary.levels import require_level
@@ -168,7 +167,7 @@ def test_honest_work_is_not_cut_off_on_a_machine_with_too_much_to_do(level: str)
 
 _AS_USER = """
 import sys
-from course.isolation.deadline import Deadline
+from course.isolation.levels import Deadline
 from course.isolation.failures import StudentFailure
 from course.isolation.launch import keep_private
 from course.isolation.session import Connection

@@ -17,10 +17,9 @@ from typing import Any
 import pytest
 
 from course.isolation import launch, probe, spawn
-from course.isolation.deadline import Deadline
 from course.isolation.failures import IsolationError, StudentFailure
 from course.isolation.launch import View, view_for
-from course.isolation.levels import LIMITS, Level
+from course.isolation.levels import LIMITS, Deadline, Level
 from course.isolation.probe import open_spawner
 from course.isolation.session import Connection
 from course.isolation.spawn import ProcessSpawner, spawner

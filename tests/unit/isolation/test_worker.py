@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from course.isolation.deadline import Deadline
 from course.isolation.failures import StudentFailure
-from course.isolation.levels import MAX_OUTPUT, Level, Limits, Spawner
+from course.isolation.levels import MAX_OUTPUT, Deadline, Level, Limits, Spawner
 from course.isolation.probe import open_spawner
 from course.isolation.session import Connection, LoadRefusedError
 from course.isolation.spawn import spawner

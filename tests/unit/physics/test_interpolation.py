@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from course.physics.interpolation import falling_root, first_crossing, hermite
+from course.physics.integrators import falling_root, first_crossing, hermite
 
 numbers = st.floats(-10, 10)
 

@@ -13,8 +13,7 @@ from course.physics.body import Body
 from course.physics.contact import Plane, Surface
 from course.physics.integrators import STEPPERS
 from course.physics.invariants import convergence_order
-from course.physics.recording import Recording
-from course.physics.simulator import Simulator, step_count
+from course.physics.simulator import Recording, Simulator, step_count
 from course.physics.state import RigidBodyState
 
 few = settings(max_examples=15)

@@ -11,8 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from course.errors import UsageError
-from course.quizzing.attempt import check_seed, fresh_seed, mark, mark_sentence, needed
-from course.quizzing.bank import MAX_SEED, Bank
+from course.quizzing.bank import MAX_SEED, Bank, check_seed, fresh_seed, mark, mark_sentence, needed
 
 
 @pytest.mark.parametrize(("right", "passes"), [(3, False), (4, True), (5, True)])

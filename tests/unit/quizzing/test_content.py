@@ -14,8 +14,7 @@ from course.catalog.load import Catalog
 from course.physics import integrators as steppers
 from course.physics.contact.models import Constraint, drop
 from course.physics.systems import FreeFall, Oscillator
-from course.quizzing.attempt import mark
-from course.quizzing.bank import Bank, PosedQuestion, pose_case, same_answer
+from course.quizzing.bank import Bank, PosedQuestion, mark, pose_case, same_answer
 
 SEEDS = range(1000)
 

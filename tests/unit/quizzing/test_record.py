@@ -15,8 +15,7 @@ from course.errors import UngradableError
 from course.grading.quiz import grade_quiz, quiz_version, record_sha256, score_record
 from course.progress import quiz as progress
 from course.progress.store import Store
-from course.quizzing.attempt import mark
-from course.quizzing.bank import MAX_SEED, Bank
+from course.quizzing.bank import MAX_SEED, Bank, mark
 from course.scoring.verdict import Status
 
 

@@ -11,9 +11,8 @@ import pytest
 from course.authoring.exercises.files import due
 from course.catalog import models
 from course.catalog.load import Catalog
-from course.isolation.deadline import Deadline
 from course.isolation.failures import StudentFailure
-from course.isolation.levels import Level
+from course.isolation.levels import Deadline, Level
 from course.isolation.session import Connection
 from course.isolation.spawn import spawner
 from course.scoring.judging.session import GradingSession

@@ -13,17 +13,17 @@ import numpy as np
 import pytest
 
 from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
-from course.simulations import bags, streams
+from course.simulations import bags
 
 needs_rosbags = pytest.mark.skipif(not bags.available(), reason="the extra ros is not installed")
 
 T = np.array([0.0, 0.1, 0.25])
-IMU = streams.ImuStream(T, np.array([0.1, -0.2, 0.3]), variance=0.04)
-SCAN = streams.ScanStream(T[:2], np.array([[1.0, 2.5, 5.0], [1.5, 5.0, 0.0]]), -0.5, 0.5, 5.0, "laser")
-ODOMETRY = streams.OdometryStream(
+IMU = bags.ImuStream(T, np.array([0.1, -0.2, 0.3]), variance=0.04)
+SCAN = bags.ScanStream(T[:2], np.array([[1.0, 2.5, 5.0], [1.5, 5.0, 0.0]]), -0.5, 0.5, 5.0, "laser")
+ODOMETRY = bags.OdometryStream(
     T, [0.0, 1.0, 2.0], [0.0, -1.0, 0.5], [0.0, 2.0, -3.0], [0.5, 0.6, 0.7], [0.0, 0.1, 0.2]
 )
-TRUTH = streams.TruthStream(
+TRUTH = bags.TruthStream(
     T, [0.0, 1.1, 2.2], [0.0, -0.9, 0.6], [0.0, 2.1, -2.9], [0.5, 0.6, 0.7], [0.0, 0.1, 0.2]
 )
 ALL = (IMU, SCAN, ODOMETRY, TRUTH)
@@ -166,7 +166,7 @@ def test_the_clock_runs_from_after_zero_through_every_stamp(tmp_path):
 
 @needs_rosbags
 def test_every_scan_finds_its_way_through_the_frames_to_the_map_at_its_own_time(tmp_path):
-    scan = streams.ScanStream(T[:2], [[1.0], [1.5]], 0.0, 0.1, 5.0)
+    scan = bags.ScanStream(T[:2], [[1.0], [1.5]], 0.0, 0.1, 5.0)
     rows = sqlite_messages(bags.write_bag(tmp_path / "drive", [scan, ODOMETRY, TRUTH]))
     ((_, kind, when, data),) = of("/tf_static", rows)
     assert kind == "tf2_msgs/msg/TFMessage"
@@ -239,13 +239,13 @@ def test_streams_come_back_as_they_were(tmp_path, storage):
     for name in ("x", "y", "heading", "speed", "turn_rate"):
         np.testing.assert_allclose(getattr(odometry, name), getattr(ODOMETRY, name), atol=1e-12)
         np.testing.assert_allclose(getattr(truth, name), getattr(TRUTH, name), atol=1e-12)
-    assert (type(odometry), type(truth)) == (streams.OdometryStream, streams.TruthStream)
+    assert (type(odometry), type(truth)) == (bags.OdometryStream, bags.TruthStream)
     assert (truth.frame, truth.child_frame) == ("map", "base_link_true")
 
 
 @needs_rosbags
 def test_headings_beyond_a_turn_come_back_within_one(tmp_path):
-    stream = streams.OdometryStream([0.0], [0.0], [0.0], [7.0], [0.0], [0.0])
+    stream = bags.OdometryStream([0.0], [0.0], [0.0], [7.0], [0.0], [0.0])
     (back,) = bags.read_bag(bags.write_bag(tmp_path / "drive", [stream]))
     assert back.heading[0] == pytest.approx(7.0 - 2 * math.pi)
 
@@ -272,7 +272,7 @@ def test_a_bag_is_never_written_over_another(tmp_path):
 
 @needs_rosbags
 def test_a_write_that_fails_leaves_nothing_behind(tmp_path):
-    wordy = streams.ImuStream([0.0], [0.0], frame=None)  # a frame that no message can hold
+    wordy = bags.ImuStream([0.0], [0.0], frame=None)  # a frame that no message can hold
     with pytest.raises(AttributeError):
         bags.write_bag(tmp_path / "drive", [wordy])
     assert list(tmp_path.iterdir()) == []
@@ -346,9 +346,9 @@ def test_plain_data_become_streams_with_float_arrays():
         },
         "imu": {"t": [0, 1], "angular_velocity_z": [1, 2]},
     }
-    scan, imu = streams.streams_from(plain)
-    assert isinstance(scan, streams.ScanStream)
-    assert isinstance(imu, streams.ImuStream)
+    scan, imu = bags.streams_from(plain)
+    assert isinstance(scan, bags.ScanStream)
+    assert isinstance(imu, bags.ImuStream)
     assert scan.ranges.dtype == imu.t.dtype == float
     assert isinstance(scan.range_max, float)
 
@@ -369,4 +369,4 @@ def test_plain_data_become_streams_with_float_arrays():
 )
 def test_plain_data_that_are_no_stream_say_why(plain, words):
     with pytest.raises(UsageError, match=words):
-        streams.streams_from(plain)
+        bags.streams_from(plain)

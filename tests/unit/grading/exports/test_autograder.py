@@ -20,9 +20,8 @@ from packaging.requirements import Requirement
 from course.catalog.load import Catalog
 from course.catalog.locate import content
 from course.errors import MissingCapabilityError
-from course.grading.container import inside
-from course.grading.container.inside import SNAPSHOT, main
-from course.grading.container.packing import write_autograder
+from course.grading import container
+from course.grading.container import SNAPSHOT, main, write_autograder
 from course.grading.intake.students import Entry
 from course.grading.running.batch import Graded
 from course.grading.running.snapshot import Snapshot
@@ -57,7 +56,7 @@ def test_the_zip_has_what_gradescope_runs_and_only_what_grading_needs(
         modes = {info.filename: info.external_attr >> 16 for info in packed.infolist()}
     assert all(modes[name] & stat.S_IXUSR for name in ("setup.sh", "run_autograder"))
     names = set(modes)
-    assert {"graders.zip", "config.json", "course/grading/container/inside.py"} <= names
+    assert {"graders.zip", "config.json", "course/grading/container.py"} <= names
     assert not [name for name in names if not name.startswith("course/") and "/" in name]
     with zipfile.ZipFile(unpacked / "source" / "graders.zip") as graders:
         inside = set(graders.namelist())
@@ -95,7 +94,7 @@ def test_it_grades_from_the_unpacked_zip_alone(unpacked: Path, solution: bytes) 
     source, results = unpacked / "source", unpacked / "results" / "results.json"
     environment = {name: value for name, value in os.environ.items() if name not in {"PYTHONPATH"}}
     environment |= {"PYTHONPATH": str(source)}
-    command = [sys.executable, "-P", "-m", "course.grading.container.inside"]
+    command = [sys.executable, "-P", "-m", "course.grading.container"]
     done = subprocess.run(
         [*command, submission, results, source / "config.json"],
         env=environment, cwd="/", capture_output=True, text=True, check=False,
@@ -121,7 +120,7 @@ def test_hidden_inputs_cannot_be_read_out_by_handing_in_again(
         seeds.append(terms.seed)
         return right(entries, terms)
 
-    monkeypatch.setattr(inside, "grade_all", noted)
+    monkeypatch.setattr(container, "grade_all", noted)
     for what in (b"", b"# below 0.5?\n", b""):
         (tmp_path / "submission" / "doubling.py").write_bytes(solution + what)
         assert graded(tmp_path)["score"] == 10

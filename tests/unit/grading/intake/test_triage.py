@@ -20,9 +20,8 @@ from course.errors import MissingCapabilityError, NotFoundError, UngradableError
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.book import Gradebook
-from course.grading.intake import students, triage
-from course.grading.intake.students import Entry
-from course.grading.intake.triage import Candidate, found_for
+from course.grading.intake import students
+from course.grading.intake.students import Candidate, Entry, found_for
 from course.grading.results.effective import override
 from course.grading.running.assign import assign, named, proposals, unsettled
 from course.grading.running.folder import open_results, previewed
@@ -320,7 +319,7 @@ def test_only_so_much_code_of_one_student_is_looked_through(
     """Sixty files, each just below what ends the process that reads, held up the run for minutes."""
     padded = SOURCE + b"#" * 1000
     lay(tmp_path, **{f"copy {number}.py": padded + b"%d" % number for number in range(9)})
-    monkeypatch.setattr(triage, "_CODE", 3 * len(padded))
+    monkeypatch.setattr(students, "_CODE", 3 * len(padded))
     found = read(tmp_path, doubling).found
     assert found is not None
     assert len(found.candidates) == 9, "all are listed"

@@ -358,8 +358,6 @@ def numbers_of(check: CheckResult) -> list[tuple[str, str]]:
         place = check.first_divergence
         when = f"step {place.step}, t = {format_value(place.t)} s"
         rows.append(("differs", f"{place.quantity}, first at {when}"))
-    if check.diagnosis:
-        rows.append(("diagnosis", check.diagnosis))
     return rows
 
 

@@ -519,7 +519,7 @@ def _share_of(check: CheckResult) -> str:
 
 
 def _numbers(check: CheckResult) -> list[tuple[str, str]]:
-    """The measured and the expected value, and the likely mistake."""
+    """The measured and the expected value."""
     return [(label, shortened(value, _LONGEST_VALUE)) for label, value in numbers_of(check)]
 
 

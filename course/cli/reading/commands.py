@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import io
-import os
-import sys
 from collections.abc import Collection
 from pathlib import Path
 from typing import Annotated
@@ -110,7 +108,7 @@ def lesson(
         return _print_code(console, chosen, code)
     if no_browser:
         keep_closed()
-    if not page and figures is None and _fills_the_screen(console):
+    if not page and figures is None and console.fills_the_screen:
         return _read_on_screen(console, here, catalog, chosen, section)
     text = io.StringIO()
     reader = _reader(catalog, chosen, console, figures, text if console.json else None)
@@ -172,17 +170,6 @@ def _reader(
 
     quiet = RichConsole(file=text, width=MAX_WIDTH, no_color=True, markup=False, emoji=False, highlight=False)
     return Reader(catalog, chosen, quiet, plain=True, figures_dir=figures, width=MAX_WIDTH)
-
-
-def _fills_the_screen(console: Console) -> bool:
-    """Whether the reader can open here: a user is there, and non-ASCII letters are shown."""
-    if not (console.fancy and console.interactive) or console.quiet:
-        return False
-    if os.environ.get("TERM", "") in {"", "dumb", "unknown"}:
-        return False
-    if not (sys.stdin and sys.stdin.isatty() and sys.stdout and sys.stdout.isatty()):
-        return False
-    return (sys.stdout.encoding or "").lower().replace("-", "") == "utf8"
 
 
 def _section(catalog: Catalog, chosen: Lesson, slug: str) -> Section:

@@ -221,13 +221,16 @@ def new_question(catalog: Catalog, question_id: str) -> tuple[Path, ...]:
 def new_scene(catalog: Catalog, scene_id: str) -> tuple[Path, ...]:
     """Write the file of a new sandbox scene, last in the list; it can run at once.
 
-    It lies with the program's own, or in ``scenes/`` of the course that ``COURSE_CONTENT`` names.
+    It lies with the program's own for an author who is in the checkout, in ``scenes/`` of the course that
+    ``COURSE_CONTENT`` names, and elsewhere where one is, as a scene of one's own.
     """
     from course.sandbox.scene.loading import FOLDER, scene_ids
 
     instructors(catalog)
     name, root = SceneId(scene_id), catalog.content.root
-    folder = FOLDER if FOLDER.is_relative_to(root) else root / "scenes"
+    here, folder = Path.cwd(), root / "scenes"
+    if FOLDER.is_relative_to(root):
+        folder = FOLDER if here.is_relative_to(root) else here
     if name in scene_ids():
         raise UsageError(
             f"There is a scene {name} already, and nothing is overwritten.",

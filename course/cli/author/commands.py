@@ -346,7 +346,8 @@ def new_question(name: _NewId) -> int:
 def new_scene(name: _NewId) -> int:
     """Write a sandbox scene that runs, with blanks to fill in.
 
-    Nothing is overwritten. Play it with `course sandbox play ID`.
+    In the checkout it becomes one of the course's scenes, and you play it with `course sandbox play ID`.
+    Elsewhere it is a scene of your own: ID.toml in the folder you are in. Nothing is overwritten.
     """
 
     catalog = load_catalog()
@@ -363,7 +364,8 @@ def _report_new(catalog: Catalog, kind: str, name: str, files: tuple[Path, ...])
         console.note("Put its id into syllabus.toml, at the place where it is read.")
     proved = ("author build", "author check")  # what the first writes, the second wants
     then = {"exercise": proved, "warm-up": proved, "scene": ("sandbox play",)}.get(kind, ("author check",))
-    commands = ", then ".join(f"course {command} {name}" for command in then)
+    own = kind == "scene" and files[0].parent == Path.cwd()  # known by its file alone
+    commands = ", then ".join(f"course {command} {files[0].name if own else name}" for command in then)
     console.note(f"Fill in the marked blanks, then run: {commands}")
     console.emit(AuthorNew(kind=kind, id=name, files=written))
     return 0

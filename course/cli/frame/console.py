@@ -472,6 +472,17 @@ class Console:
             return question
         return filled(question.rstrip(), max(20, self.terminal_width - 1)) + " "
 
+    @property
+    def fills_the_screen(self) -> bool:
+        """Whether the reader can open here: a user is there, and non-ASCII letters are shown."""
+        if not (self.fancy and self.interactive) or self.quiet:
+            return False
+        if os.environ.get("TERM", "") in {"", "dumb", "unknown"}:
+            return False
+        if not (sys.stdin and sys.stdin.isatty() and sys.stdout and sys.stdout.isatty()):
+            return False
+        return (sys.stdout.encoding or "").lower().replace("-", "") == "utf8"
+
     def go_on(self, where: str) -> bool:
         """Wait for Enter; q, n, or the end of the input, means no. Anything else is asked about again."""
         question = f"{where}{_GO_ON}".lstrip()

@@ -54,7 +54,8 @@ def go() -> int:
     ahead = exercise_ahead(here.catalog, standing, step)
     while True:
         words = _as_run(console, step)
-        if not (words[0] == "lesson" and console.fancy):  # the reader covers it and tells where it continues
+        covered = words[0] == "lesson" and console.fills_the_screen
+        if not covered:  # the reader covers it and tells where it continues
             console.note((f"course {shlex.join(words)}", "bold"), (f"  {_why(here, step)}", "dim"))
         if ahead:  # also above the reader, which leaves it on the screen
             console.note(ahead)
@@ -69,6 +70,9 @@ def go() -> int:
             console.note(f"{left}Go on at any time with: course go")
             return code
         console.note((f"Next: course {shlex.join(_as_run(console, step))}", "bold"), f"  {_why(here, step)}")
+        if covered:  # q was pressed there, and Enter would have gone on
+            console.note("Go on at any time with: course go")
+            return code
         if not console.go_on(""):
             return 0
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import io
-import os
-import sys
 from collections.abc import Collection
 from pathlib import Path
 from typing import Annotated
@@ -110,7 +108,7 @@ def lesson(
         return _print_code(console, chosen, code)
     if no_browser:
         keep_closed()
-    if not page and figures is None and _fills_the_screen(console):
+    if not page and figures is None and console.fills_the_screen:
         return _read_on_screen(console, here, catalog, chosen, section)
     text = io.StringIO()
     reader = _reader(catalog, chosen, console, figures, text if console.json else None)
@@ -125,6 +123,8 @@ def lesson(
     step = _after(here if paged else None, chosen) if whole else f"course lesson {chosen.id}"
     if paged and not whole:
         step += " --page"
+    if paged:
+        _say_unkept(console, here)
     if here is not None:
         for warning in here.warnings:
             console.warn(warning)
@@ -174,17 +174,6 @@ def _reader(
     return Reader(catalog, chosen, quiet, plain=True, figures_dir=figures, width=MAX_WIDTH)
 
 
-def _fills_the_screen(console: Console) -> bool:
-    """Whether the reader can open here: a user is there, and non-ASCII letters are shown."""
-    if not (console.fancy and console.interactive) or console.quiet:
-        return False
-    if os.environ.get("TERM", "") in {"", "dumb", "unknown"}:
-        return False
-    if not (sys.stdin and sys.stdin.isatty() and sys.stdout and sys.stdout.isatty()):
-        return False
-    return (sys.stdout.encoding or "").lower().replace("-", "") == "utf8"
-
-
 def _section(catalog: Catalog, chosen: Lesson, slug: str) -> Section:
     """A section of a lesson, by its slug."""
     sections = read_script(chosen, catalog.warm_ups(chosen.id)).sections
@@ -207,8 +196,14 @@ def _read_on_screen(
     lesson = last.script.lesson
     for warning in (here.warnings if here else []) + ([trouble] if trouble else []):
         console.warn(warning)
+    _say_unkept(console, here)
     console.next(_after(here, lesson) if last.read else f"course lesson {lesson.id}")
     return 0
+
+
+def _say_unkept(console: Console, here: Here | None) -> None:
+    if here is None:
+        console.note("Your place and your predictions are kept in a workspace only: course init my-course")
 
 
 def _print_code(console: Console, chosen: Lesson, number: int) -> int:
@@ -263,14 +258,16 @@ def warmup(
 ) -> int:
     """Do a lesson's small tasks.
 
-    Without an id: all of them by lesson, with what is done. With one: its text, and the file to work in. Five
-    minutes each, checked and explained as exercises are; they count for nothing.
+    Without an id: all of them by lesson, with what is done; with a lesson's id or number, that lesson's. With
+    the id of one: its text, and the file to work in. Five minutes each, checked and explained as exercises
+    are; they count for nothing.
     """
     console = current()
-    if name is None:
+    lesson = _lesson_named(name)
+    if name is None or lesson:
         if check:
             raise UsageError("--check needs the id of a warm-up.", help="`course warmup` lists them.")
-        return _list(console)
+        return _list(console, lesson)
     here = Here.load()
     chosen = _warm_up(here.catalog, name)
     return check_work(chosen.id) if check else _begin(console, here, chosen)
@@ -282,7 +279,14 @@ def _warm_up(catalog: Catalog, name: str) -> Exercise:
     Raises:
         NotFoundError: there is none of that id, or it is an exercise.
     """
-    chosen = catalog.exercise(name.rstrip("/\\"))
+    try:
+        chosen = catalog.exercise(name.rstrip("/\\"))
+    except NotFoundError as error:
+        raise NotFoundError(
+            f"There is no warm-up called {name!r}.",
+            help=error.help.replace("course exercises", "course warmup"),
+            code=error.code,
+        ) from None
     if not chosen.is_warm_up:
         raise NotFoundError(
             f"{chosen.id} is an exercise, not a warm-up.",
@@ -292,7 +296,15 @@ def _warm_up(catalog: Catalog, name: str) -> Exercise:
     return chosen
 
 
-def _list(console: Console) -> int:
+def _lesson_named(name: str | None) -> str:
+    """The id of the lesson that this is the id or the number of; "" if it is of none."""
+    with contextlib.suppress(NotFoundError):
+        return here_or_outside()[1].lesson_called(name).id if name else ""
+    return ""
+
+
+def _list(console: Console, lesson: str = "") -> int:
+    """The warm-ups of all lessons, or of one."""
     here, catalog = here_or_outside()
     try:
         standing = here.standing() if here else Standing()
@@ -301,16 +313,17 @@ def _list(console: Console) -> int:
     except CourseError as error:
         console.warn(f"{error.message} {error.help}")
         states = warm_up_states(catalog, Standing())
+    states = tuple(state for state in states if lesson in {"", state.lesson})
     if not states:
         console.line("This course has no warm-ups.")
     marks = _MARKS if console.fancy else _PLAIN_MARKS
     with console.paged():
-        for lesson in catalog.lessons():
-            ours = [state for state in states if state.lesson == lesson.id]
+        for one in catalog.lessons():
+            ours = [state for state in states if state.lesson == one.id]
             if not ours:
                 continue
             done = sum(state.state == "done" for state in ours)
-            console.heading(lesson.title.partition(":")[0], f"{done} of {len(ours)} done")
+            console.heading(one.title.partition(":")[0], f"{done} of {len(ours)} done")
             for state in ours:
                 console.item(marks[state.state], f"{state.title} ({state.id}), {state.minutes} min", width=6)
     left = next((state for state in states if state.state != "done"), None)

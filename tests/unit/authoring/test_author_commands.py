@@ -82,6 +82,20 @@ def test_a_new_scene_lies_in_its_course_and_is_checked_and_played_there(
     assert run(["author", "new", "scene", "falling"]) == run(["author", "new", "scene", "head-on"]) == 2
 
 
+def test_a_new_scene_lies_where_its_author_is_outside_of_the_checkout(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    try:
+        assert run(["author", "new", "scene", "falling"]) == 0
+        assert not (FOLDER / "falling.toml").exists()
+    finally:
+        (FOLDER / "falling.toml").unlink(missing_ok=True)
+    assert [path.name for path in tmp_path.iterdir()] == ["falling.toml"]
+    assert "then run: course sandbox play falling.toml\n" in capsys.readouterr().out
+    assert run(["sandbox", "play", "falling.toml", "--headless"]) == 0
+
+
 def test_a_scene_whose_run_gives_another_number_than_its_theory_is_named(
     mini: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

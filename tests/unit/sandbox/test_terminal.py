@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from textual.pilot import Pilot
-from textual.widgets import Input
+from textual.widgets import Input, Static
 
 from course.errors import MissingCapabilityError
 from course.sandbox.scene.loading import choose
@@ -230,6 +230,22 @@ def test_tab_hides_what_stands_beside_and_shows_it_again():
         assert app.canvas.size.width == width
 
     play("head-on", script)
+
+
+@pytest.mark.parametrize("scene", ["newtons-cradle", "unequal-masses"])
+def test_the_box_before_a_run_holds_the_question_alone_and_the_help_what_the_scene_is_about(
+    scene: str,
+) -> None:
+    async def script(app: Played, pilot: Pilot[None]) -> None:
+        assert isinstance(app.screen, QuestionOverlay)
+        said = " ".join(str(one.content) for one in app.screen.query("Static").results(Static)).split()
+        assert said == app.experiment.question.split()
+        assert len(said) < 45
+        note = app.chosen.scene.note.split()[:6]
+        await pilot.press("escape", "question_mark")
+        assert " ".join(note) in " ".join(app.screen.words.split())
+
+    play(scene, script, guess=None)
 
 
 def test_the_question_comes_first_and_the_comparison_after_and_both_can_be_left():

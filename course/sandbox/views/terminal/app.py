@@ -267,9 +267,7 @@ class SandboxApp(FullScreenApp):
             if guess is not None:
                 self.say(f"Your guess: {guess:g} {'' if asked.unit == '1' else asked.unit}")
 
-        self.push_screen(
-            QuestionOverlay(self.chosen.scene, self.experiment.question, asked.unit, calm=self.calm), answered
-        )
+        self.push_screen(QuestionOverlay(self.experiment.question, asked.unit, calm=self.calm), answered)
 
     def compare(self) -> None:
         """Theory, guess and simulation side by side."""

@@ -23,21 +23,23 @@ Page = Sequence[str | tuple[str, str]]
 
 
 class QuestionOverlay(Overlay[float]):
-    """The scene's question. Dismissed with the guess, or None to run without one."""
+    """The scene's question and no more: what is said of the scene stands in its help.
+
+    Dismissed with the guess, or None to run without one.
+    """
 
     DEFAULT_CSS = "Ask #wrong { height: auto; }"
 
-    def __init__(self, scene: Scene, question: str, unit: str, *, calm: bool) -> None:
+    def __init__(self, question: str, unit: str, *, calm: bool) -> None:
         super().__init__()
-        self._scene, self._question, self._unit, self._calm = scene, question, unit, calm
+        self._question, self._unit, self._calm = question, unit, calm
 
     def compose(self) -> ComposeResult:
-        """Title, note, the question and a field for the answer."""
+        """The question and a field for the answer."""
         with VerticalScroll(classes="box", can_focus=False) as box:
             box.border_title = "Before it runs: your guess"
             box.border_subtitle = "Enter: run   Escape: run without a guess"
-            yield Static(Text(clean(self._scene.note)))
-            yield Static(Text(f"\n{clean(self._question)}", style="bold"))
+            yield Static(Text(clean(self._question), style="bold"))
             entry = Field(placeholder=f"a number in {clean(self._unit)}", id="guess")
             entry.cursor_blink = not self._calm
             yield entry

@@ -83,6 +83,16 @@ def someone(monkeypatch):
     return asked
 
 
+def test_a_lesson_that_was_left_by_its_key_leads_back_to_the_shell(course, workspace, someone, monkeypatch):
+    ran, steps = [], iter(["course lesson twice-as-much", "course check doubling"])
+    monkeypatch.setattr("course.cli.home.going.next_in_course", lambda *_: next(steps))
+    monkeypatch.setattr("course.cli.home.going.again", lambda words: ran.append(words) or 0)
+    monkeypatch.setattr(Console, "fills_the_screen", property(lambda _: True))
+    said = course("go").out
+    assert (len(ran), someone) == (1, [])
+    assert said.splitlines()[-1] == "Go on at any time with: course go"
+
+
 def test_go_announces_the_command_that_it_would_run(course, workspace, someone, monkeypatch):
     ran, steps = [], iter(["course lesson twice-as-much", "course check doubling"])
     monkeypatch.setattr("course.cli.home.going.next_in_course", lambda *_: next(steps))

@@ -153,8 +153,8 @@ def ticking(sock: socket.socket) -> socket.socket:
 # ---
 # When a student's code has used up its time. On a busy machine the wall clock says little about the time that
 # a function needs: what counts is the CPU time of the worker, and the time for which it was found asleep
-# while the grader waited for it. In addition there is a wall limit, for anything that neither of these shows. Where
-# the system does not report another process' CPU time (macOS, Windows), only the wall clock counts.
+# while the grader waited for it. In addition there is a wall limit, for anything that neither of these shows.
+# Where the system does not report another process' CPU time (macOS, Windows), only the wall clock counts.
 
 
 #: The wall limit, as a multiple: a machine may have six times as much to do as it has processors for.

@@ -318,13 +318,11 @@ class Connection:
         values, changed = self._batch(self._ask(Kind.EACH, [function, calls], function), 2)
         return self._batch(values, len(calls)), changed is not None
 
-    def fold(
-        self, function: str, state: Any, calls: list[list[Any]], carry: int | None, keep: list[str] | None
-    ) -> list[Any]:
+    def fold(self, function: str, state: Any, calls: list[list[Any]], keep: list[str] | None) -> list[Any]:
         """The states that ``function(state, *args)`` goes through; see ``loops.fold``."""
-        answer = self._ask(Kind.FOLD, [function, state, calls, carry, keep], function)
+        answer = self._ask(Kind.FOLD, [function, state, calls, keep], function)
         record, last = self._batch(answer, 2)
-        record = self._batch(record, len(calls) + (carry is None))
+        record = self._batch(record, len(calls) + 1)
         return [*record[:-1], last] if keep is not None else record
 
     def _batch(self, answer: Any, length: int) -> list[Any]:

@@ -319,12 +319,12 @@ class LocalSubmission:
             raise overwritten(name)
         return [_plain(value) for value in values]
 
-    def fold(self, name: str, state: Any, calls: Any, *, carry: int | None = None, keep: Any = None) -> Any:
+    def fold(self, name: str, state: Any, calls: Any, *, keep: Any = None) -> Any:
         """Pass a state through the student's function."""
         function = self._function(name)
         escaped: list[BaseException] = []
         given = [[_given(arg, escaped) for arg in args] for args in calls]
-        values, last = self._loop(lambda: loops.fold(function, _plain(state), given, carry, keep), escaped)
+        values, last = self._loop(lambda: loops.fold(function, _plain(state), given, keep), escaped)
         return [_plain(value) for value in (values if keep is None else [*values[:-1], last])]
 
     def ref(self, name: str) -> Any:

@@ -66,7 +66,6 @@ class AuditReport:
 
     @property
     def ok(self) -> bool:
-        """True if nothing is wrong."""
         return not self.problems
 
 

@@ -469,7 +469,6 @@ class Catalog:
             raise ContentError(self.times_path, None, problem, help=fix) from None
 
     def hints(self, exercise: Exercise) -> Hints:
-        """The hints of an exercise."""
         if exercise.id not in self._hints:
             self._hints[exercise.id] = self.hints_document(exercise).value
         return self._hints[exercise.id]

@@ -267,7 +267,6 @@ def options_of(engine: str) -> Options:
 
 @functools.cache
 def choices() -> dict[str, dict[str, Choice]]:
-    """The chosen settings, by engine and scenario."""
     path = files("course").joinpath("engines", "well_set.json")
     return msgspec.json.decode(path.read_bytes(), type=dict[str, dict[str, Choice]])
 

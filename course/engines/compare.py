@@ -374,7 +374,6 @@ class EngineProcess:
 
     @property
     def pid(self) -> int | None:
-        """The process's id, if there is one."""
         return self._process.pid if self._process else None
 
     def ask(self, job: Mapping[str, Any], seconds: float) -> dict[str, Any]:
@@ -467,7 +466,6 @@ class EngineProcess:
         return f"Its last words: {said[-1][:_LAST_WORDS]}" if said else ""
 
     def close(self) -> None:
-        """End the process, if there is one."""
         process, self._process = self._process, None
         if process is not None:
             process.kill()

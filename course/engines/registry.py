@@ -107,7 +107,6 @@ class Availability:
 
     @property
     def installed(self) -> bool:
-        """True if the package is there."""
         return self.version is not None
 
 
@@ -124,7 +123,6 @@ def availability(info: EngineInfo) -> Availability:
 
 
 def get(engine_id: str) -> EngineInfo:
-    """The engine of this id."""
     if engine_id in ENGINES:
         return ENGINES[engine_id]
     raise NotFoundError(

@@ -41,7 +41,6 @@ class Machine(msgspec.Struct, frozen=True):
 
 
 def this_machine() -> Machine:
-    """The machine that this runs on."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     version = ".".join(platform.python_version_tuple()[:2])
     return Machine(_cpu(), f"{platform.system()} {platform.machine()}", cores, version)
@@ -119,7 +118,6 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def ok(self) -> bool:
-        """True if there is a value."""
         return self.status == OK
 
     @property

@@ -626,7 +626,6 @@ SCENARIOS: dict[str, Scenario] = {
 
 
 def get(scenario_id: str) -> Scenario:
-    """The scenario of this name."""
     if scenario_id in SCENARIOS:
         return SCENARIOS[scenario_id]
     raise NotFoundError(

@@ -490,7 +490,6 @@ _BLANK = 2
 
 
 def page(found: Similar) -> str:
-    """The whole page."""
     style = Path(__file__).with_name("similar.css").read_text("utf-8")
     return render("similar", scripted=False, more_style=style, found=found, sides=_sides)
 

@@ -331,11 +331,9 @@ class Connection:
         raise self._breach("a batch of another length")
 
     def output(self) -> str:
-        """The submission's output so far."""
         return printable(self._handle.output()) if self.alive else self._printed
 
     def close(self) -> None:
-        """End the worker."""
         self._finish()
 
     def _finish(self) -> Exit | None:
@@ -454,7 +452,6 @@ class Connection:
         self.deadline = deadline
 
     def _fault(self, value: dict[str, Any]) -> LoadFault:
-        """What a worker reports that it could not load."""
         failure = self._raised(value)
         line = claimed_line(value.get("at"), self._lines())
         failure.line = line or failure.line
@@ -468,7 +465,6 @@ class Connection:
         return self._files[self._main].decode("utf-8", "replace").splitlines()
 
     def _raised(self, value: Any) -> StudentFailure:
-        """The exception a worker reports."""
         return raised(value, self._main, self._lines()) or self._breach("an exception in another form")
 
     # -- frames ---------------------------------------------------------------------------------------

@@ -60,7 +60,6 @@ def step(default: float = 0.01, high: float = 1.0) -> Parameter:
 
 
 def duration(default: float, high: float = 1000.0) -> Parameter:
-    """How long to simulate."""
     return Parameter(
         "duration", default, "s", "how long to simulate; a whole number of steps", low=1e-5, high=high
     )
@@ -136,11 +135,9 @@ class Result:
     columns: tuple[Column, ...] = field(repr=False)
 
     def column(self, name: str) -> Array:
-        """The values of one column."""
         return next(column.values for column in self.columns if column.name == name)
 
     def row(self, quantity: str) -> Row:
-        """One row by its quantity."""
         return next(row for row in self.rows if row.quantity == quantity)
 
 
@@ -165,11 +162,9 @@ class Simulation:
     run: Callable[[Mapping[str, Any]], Result]
 
     def parameter(self, name: str) -> Parameter | None:
-        """A parameter by name."""
         return next((parameter for parameter in self.parameters if parameter.name == name), None)
 
     def defaults(self) -> dict[str, Value]:
-        """Every parameter at its default."""
         return {parameter.name: parameter.default for parameter in self.parameters}
 
 

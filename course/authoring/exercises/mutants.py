@@ -50,7 +50,6 @@ class MutantOutcome:
 
 
 def mutant_path(catalog: Catalog, exercise: Exercise, mutant: Mutant) -> Path:
-    """The file of a mutant."""
     return solutions_folder(catalog, exercise) / "mutants" / mutant.file
 
 

@@ -64,7 +64,6 @@ class CheckSource:
 
 
 def parse(path: Path) -> ast.Module:
-    """The syntax tree of a Python file."""
     text = read_text(path)
     try:
         return ast.parse(text, filename=str(path))
@@ -106,7 +105,6 @@ def foreign_imports(tree: ast.Module, allowed: tuple[str, ...]) -> Iterator[tupl
 
 
 def checks_in(path: Path, tree: ast.Module, *, hidden: bool) -> tuple[CheckSource, ...]:
-    """The checks of a file, in order."""
     return tuple(
         _check(node, path, hidden=hidden)
         for node in tree.body

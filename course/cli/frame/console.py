@@ -108,7 +108,6 @@ def bare(piece: Piece) -> str:
 
 
 def rich_text(pieces: Sequence[Piece]) -> Text:
-    """Pieces as one Rich text."""
     from rich.text import Text
 
     text = Text()
@@ -237,12 +236,10 @@ class Console:
 
     @property
     def terminal_width(self) -> int:
-        """Columns of the terminal, or the value of COLUMNS."""
         return shutil.get_terminal_size().columns
 
     @property
     def height(self) -> int:
-        """Lines of the terminal, or the value of LINES."""
         return shutil.get_terminal_size().lines
 
     def _is_fancy(self) -> bool:
@@ -529,7 +526,6 @@ class Console:
             status.stop()
 
     def flush(self) -> None:
-        """Flush everything."""
         self._out.flush()
         self._err.flush()
 
@@ -545,7 +541,6 @@ def install(console: Console) -> Console:
 
 
 def current() -> Console:
-    """The console of this run."""
     return _installed if _installed is not None else install(Console())
 
 

@@ -96,20 +96,17 @@ class DartWorld:
         return links
 
     def step(self, n: int = 1) -> None:
-        """See ``World``."""
         step = self.world.step
         for _ in range(n):
             step()
 
     def motion(self) -> Motion:
-        """See ``World``."""
         x = np.array([node.getCOM() for node in self.bodies]).reshape(-1, 3)
         v = np.array([node.getCOMLinearVelocity() for node in self.bodies]).reshape(-1, 3)
         w = np.array([node.getAngularVelocity() for node in self.bodies]).reshape(-1, 3)
         return Motion(x, v, w)
 
     def contacts(self) -> tuple[int, float]:
-        """See ``World``."""
         found = self.world.getLastCollisionResult().getContacts()
         depths = [contact.penetrationDepth for contact in found]
         return len(depths), max(depths, default=0.0)

@@ -31,11 +31,9 @@ class MujocoWorld:
         mujoco.mj_forward(self.model, self.data)
 
     def step(self, n: int = 1) -> None:
-        """See ``World``."""
         mujoco.mj_step(self.model, self.data, n)
 
     def motion(self) -> Motion:
-        """See ``World``."""
         model, data = self.model, self.data
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
@@ -46,7 +44,6 @@ class MujocoWorld:
         return Motion(data.xipos[1:].copy(), twist[:, 3:], twist[:, :3])
 
     def contacts(self) -> tuple[int, float]:
-        """See ``World``."""
         depths = [-float(contact.dist) for contact in self.data.contact if contact.dist <= 0.0]
         return len(depths), max(depths, default=0.0)
 

@@ -88,7 +88,6 @@ class OdeWorld:
         return joint
 
     def step(self, n: int = 1) -> None:
-        """See ``World``."""
         collide, advance, dt = self.space.autoCollide, self._advance, self._dt
         empty = self._joints_of_contacts.empty
         for _ in range(n):
@@ -97,7 +96,6 @@ class OdeWorld:
             empty()
 
     def motion(self) -> Motion:
-        """See ``World``."""
         x, v, w = (
             np.array([tuple(read(body)) for body in self.bodies], dtype=float)
             for read in (ode.OdeBody.getPosition, ode.OdeBody.getLinearVel, ode.OdeBody.getAngularVel)

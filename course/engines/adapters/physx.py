@@ -115,20 +115,17 @@ class PhysxWorld:
         return entity
 
     def step(self, n: int = 1) -> None:
-        """See ``World``."""
         step = self.system.step
         for _ in range(n):
             step()
 
     def motion(self) -> Motion:
-        """See ``World``."""
         x = np.array([body.entity_pose.p for body in self.bodies], dtype=float)
         v = np.array([body.linear_velocity for body in self.bodies], dtype=float)
         w = np.array([body.angular_velocity for body in self.bodies], dtype=float)
         return Motion(x, v, w)
 
     def contacts(self) -> tuple[int, float]:
-        """See ``World``."""
         depths = [
             -point.separation
             for contact in self.system.get_contacts()

@@ -70,20 +70,17 @@ class PymunkWorld:
         self.space.add(shape)
 
     def step(self, n: int = 1) -> None:
-        """See ``World``."""
         step, dt = self.space.step, self._dt
         for _ in range(n):
             step(dt)
 
     def motion(self) -> Motion:
-        """See ``World``."""
         x = np.array([(b.position.x, 0.0, b.position.y) for b in self.bodies])
         v = np.array([(b.velocity.x, 0.0, b.velocity.y) for b in self.bodies])
         w = np.array([(0.0, -b.angular_velocity, 0.0) for b in self.bodies])
         return Motion(x, v, w)
 
     def contacts(self) -> tuple[int, float]:
-        """See ``World``."""
         points: dict[Any, float] = {}
 
         def note(arbiter: pymunk.Arbiter) -> None:

@@ -163,13 +163,11 @@ class Results:
         return cls(Gradebook(out / "gradebook.sqlite"))
 
     def take_in(self, times: Iterable[SubmittedAt]) -> None:
-        """Add times of submission."""
         for time in times:
             place = self._times.setdefault((time.student, time.exercise), [])
             place.append((time.submission_sha256, time.source, time.at))
 
     def exercises(self) -> tuple[GradedExercise, ...]:
-        """The graded exercises, in the order of the course."""
         return tuple(self._exercises.values())
 
     def students(self) -> list[str]:
@@ -485,7 +483,6 @@ def lift(results: Results, student: str, exercise: str, reason: str) -> Effectiv
 
 
 def _told(counts: Effective | None) -> str:
-    """The score that counted, for the journal."""
     if counts is None or counts.score is None:
         return "no score"
     by = f"by hand: {counts.override.reason}" if counts.override else counts.verdict.state

@@ -194,12 +194,10 @@ class Roster:
         return one_line(" ".join(told))
 
     def dump(self) -> str:
-        """The roster as text for the gradebook."""
         return msgspec.json.encode(self.people).decode()
 
     @classmethod
     def load(cls, text: str) -> Roster:
-        """A roster as ``dump`` gave it."""
         return cls(msgspec.json.decode(text, type=tuple[Person, ...]))
 
 
@@ -252,7 +250,6 @@ def read_roster(path: Path) -> Roster:
 
 
 def read_text(path: Path) -> str:
-    """The text of a CSV file."""
     try:
         return decoded(read_bytes(path))
     except OSError as error:

@@ -227,7 +227,6 @@ class Graders:
             self._idle.append(grader)
 
     def close(self) -> None:
-        """End the processes."""
         for grader in self._graders:
             if grader in self._idle:
                 self._threads.submit(grader.close, 5.0)

@@ -410,7 +410,6 @@ class _Run:
 
 
 def _bank(catalog: Catalog) -> Bank:
-    """The questions of the quiz."""
     try:
         return Bank(read_questions(catalog.content.quiz))
     except ContentError as error:
@@ -446,7 +445,6 @@ def graded_exercises(exercises: Sequence[Exercise], bank: Bank | None) -> list[G
 
 
 def _exercises(catalog: Catalog, wanted: tuple[str, ...]) -> tuple[Exercise, ...]:
-    """The exercises to grade."""
     chosen = catalog.exercises() if not wanted else ()
     chosen += tuple(catalog.exercise(name) for name in dict.fromkeys(wanted) if name != QUIZ)
     for exercise in chosen:

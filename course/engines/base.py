@@ -151,16 +151,9 @@ class Tuning:
 AS_IT_COMES = Tuning()
 
 
-@dataclass(frozen=True, slots=True)
-class Adapter:
-    """One engine.
-
-    Attributes:
-        build: puts a scene into the engine. Its options are empty for the engine as it comes, otherwise the
-            result of ``tuning``; it raises NotApplicableError if the engine cannot express the scene.
-    """
-
-    build: Callable[[Scene, Mapping[str, Any]], World]
+#: An engine: puts a scene into it. The options are empty for the engine as it comes, otherwise the result of
+#: ``tuning``; it raises NotApplicableError if it cannot express the scene.
+Adapter = Callable[[Scene, Mapping[str, Any]], World]
 
 
 def energy(scene: Scene, motion: Motion) -> float:

@@ -190,7 +190,11 @@ def compare(request: Request, progress: Progress = lambda _done, _total, _what: 
         for job in jobs
     ]
     # Rows that cannot be measured here are shown from the reference, if it has them.
-    lacking = {(row.engine, row.scenario, row.setting, row.dt) for row in rows if _lacks(row)}
+    lacking = {
+        (row.engine, row.scenario, row.setting, row.dt)
+        for row in rows
+        if row.status in ("not_installed", "unavailable")
+    }
     shipped = reference.load()
     filled = [row for row in shipped.rows if (row.engine, row.scenario, row.setting, row.dt) in lacking]
     return Comparison(
@@ -200,10 +204,6 @@ def compare(request: Request, progress: Progress = lambda _done, _total, _what: 
         reference=msgspec.structs.replace(shipped, rows=()) if filled else None,
         quick=request.quick,
     )
-
-
-def _lacks(row: Row) -> bool:
-    return row.status in ("not_installed", "unavailable")
 
 
 def _steps(request: Request, scenario: str) -> tuple[float, ...]:

@@ -15,7 +15,7 @@ import numpy as np
 from panda3d import bullet
 from panda3d.core import BitMask32, ConfigVariableBool, ConfigVariableInt, NodePath, Point3, Vec3
 
-from course.engines.base import Adapter, Body, Motion, Scene
+from course.engines.base import Body, Motion, Scene
 
 #: The package's own default.
 _ITERATIONS = 10
@@ -111,4 +111,4 @@ class BulletWorld:
         return len(depths), max(depths, default=0.0)
 
 
-ADAPTER = Adapter(BulletWorld)
+ADAPTER = BulletWorld

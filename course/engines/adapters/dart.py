@@ -13,7 +13,7 @@ from typing import Any
 import dartpy as dart
 import numpy as np
 
-from course.engines.base import Adapter, Body, Motion, Scene
+from course.engines.base import Body, Motion, Scene
 
 
 class DartWorld:
@@ -116,4 +116,4 @@ def _inertia(body: Body) -> Any:
     return dart.dynamics.Inertia(body.mass, np.zeros(3), np.eye(3) * body.inertia)
 
 
-ADAPTER = Adapter(DartWorld)
+ADAPTER = DartWorld

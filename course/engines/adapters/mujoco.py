@@ -15,7 +15,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from course.engines.base import Adapter, Motion, Scene
+from course.engines.base import Motion, Scene
 
 
 class MujocoWorld:
@@ -127,4 +127,4 @@ def _join(values: Any) -> str:
     return " ".join(repr(float(value)) for value in values)
 
 
-ADAPTER = Adapter(MujocoWorld)
+ADAPTER = MujocoWorld

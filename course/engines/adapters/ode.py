@@ -16,7 +16,7 @@ import numpy as np
 from panda3d import ode
 from panda3d.core import Quat, Vec4
 
-from course.engines.base import Adapter, Body, Motion, Scene
+from course.engines.base import Body, Motion, Scene
 
 #: The maximum number of points between two bodies; two cubes face to face have at most eight.
 _POINTS = 8
@@ -114,4 +114,4 @@ class OdeWorld:
         return len(depths), max(depths, default=0.0)
 
 
-ADAPTER = Adapter(OdeWorld)
+ADAPTER = OdeWorld

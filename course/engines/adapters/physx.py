@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from course.engines.base import Adapter, Body, Motion, Scene
+from course.engines.base import Body, Motion, Scene
 
 with warnings.catch_warnings():
     # It looks for Vulkan, which draws; nothing is drawn here.
@@ -139,4 +139,4 @@ class PhysxWorld:
 _FLOOR = sapien.Pose(q=[0.7071067811865476, 0.0, -0.7071067811865476, 0.0])
 
 
-ADAPTER = Adapter(PhysxWorld)
+ADAPTER = PhysxWorld

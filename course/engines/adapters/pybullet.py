@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pybullet as p
 
-from course.engines.base import Adapter, Body, Motion, Scene
+from course.engines.base import Body, Motion, Scene
 
 
 class PybulletWorld:
@@ -148,4 +148,4 @@ class PybulletWorld:
             p.disconnect(self._server)
 
 
-ADAPTER = Adapter(PybulletWorld)
+ADAPTER = PybulletWorld

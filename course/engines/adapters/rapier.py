@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import rapier3d as rapier
 
-from course.engines.base import Adapter, Body, Motion, Scene
+from course.engines.base import Body, Motion, Scene
 
 
 class RapierWorld:
@@ -107,4 +107,4 @@ class RapierWorld:
         return len(depths), max(depths, default=0.0)
 
 
-ADAPTER = Adapter(RapierWorld)
+ADAPTER = RapierWorld

@@ -460,7 +460,7 @@ def override(results: Results, student: str, exercise: str, score: float, reason
         )
     before = _told(next(results.all(student, exercise), None))
     results.book.add_override(Override(student, exercise, float(score), reason), before)
-    return _now_counts(results, student, exercise)
+    return next(type(results)(results.book).all(student, exercise))
 
 
 def lift(results: Results, student: str, exercise: str, reason: str) -> Effective | None:
@@ -487,10 +487,6 @@ def _told(counts: Effective | None) -> str:
         return "no score"
     by = f"by hand: {counts.override.reason}" if counts.override else counts.verdict.state
     return f"{format_points(counts.score)}, {by}"
-
-
-def _now_counts(results: Results, student: str, exercise: str) -> Effective:
-    return next(type(results)(results.book).all(student, exercise))
 
 
 def _maximum(results: Results, student: str, exercise: str) -> float:

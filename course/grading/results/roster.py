@@ -212,12 +212,8 @@ def _key(column: str, value: str) -> str:
     """A cell for comparison."""
     if column == "name":
         return _folded(value)
-    return value.casefold() if column in {"email", "login"} else _composed(value)
-
-
-def _composed(name: str) -> str:
-    """A student's id in one Unicode spelling: macOS decomposes names."""
-    return unicodedata.normalize("NFC", name)
+    # Of ids one Unicode spelling: macOS decomposes names.
+    return value.casefold() if column in {"email", "login"} else unicodedata.normalize("NFC", value)
 
 
 def _folded(name: str) -> str:

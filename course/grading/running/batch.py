@@ -120,13 +120,10 @@ class WarmGrader:
             if self._said(process) is not None:
                 return process
             self.close()
-        raise self._cannot_start()
+        raise InternalError("A grader process cannot start; what it printed is above.")
 
     def _start(self) -> subprocess.Popen[bytes]:
         return start_grader(self.config)
-
-    def _cannot_start(self) -> InternalError:
-        return InternalError("A grader process cannot start; what it printed is above.")
 
     def _said(self, process: subprocess.Popen[bytes], job: Job | None = None) -> bytes | None:
         """What a process says to a job, or first of all; None once it is dead.

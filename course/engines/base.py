@@ -80,7 +80,6 @@ class Scene:
         friction, restitution: the coefficients that must act between any two surfaces. An adapter sets the
             values that its engine's rule for two materials turns into these.
         floor: there is a plane z = 0.
-        walls: fixed boxes.
         pivots: for a chain: body i hangs by a hinge about the y axis at ``pivots[i]`` on body i - 1, the
             first on the world. Bodies of a chain do not collide.
         dt: the step, s.

@@ -167,9 +167,6 @@ def compare(request: Request, progress: Progress = lambda _done, _total, _what: 
 
     Args:
         progress: called with measurements done, their total, and the last one's name.
-
-    Raises:
-        NotFoundError: no such engine or scenario.
     """
     infos = [get(name) for name in dict.fromkeys(request.engines or ENGINES)]
     scenarios = [get_scenario(name).id for name in dict.fromkeys(request.scenarios or SCENARIOS)]
@@ -353,7 +350,6 @@ class EngineProcess:
     """One engine's process; a context manager. It starts with the first job, and again after it has died.
 
     Args:
-        engine: its id.
         command: run in place of the worker, for tests.
     """
 

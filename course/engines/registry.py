@@ -17,8 +17,6 @@ class EngineInfo:
 
     Attributes:
         id: for ``--engine``; the adapter is the module of this name in ``course.engines.adapters``.
-        name: on the screen.
-        package: the package to install for it.
         extra: the course's extra that brings it; empty for what the course needs anyway.
         licence: of the engine itself, an SPDX expression.
         about: the kind of engine, in half a line.

@@ -208,11 +208,7 @@ def _beside_theory(axes: Axes, result: Result, name: str, formula: str) -> None:
 
 
 def render(result: Result, kind: str) -> bytes:
-    """The figure of a result as the bytes of a file; the same result gives the same bytes.
-
-    Args:
-        kind: "png", "svg" or "pdf".
-    """
+    """The figure of a result as the bytes of a file; the same result gives the same bytes."""
     return file_of(lambda: draw(result), kind)
 
 

@@ -73,7 +73,6 @@ class Prints(msgspec.Struct, frozen=True):
     Attributes:
         marks: hash -> the lines it was seen on, as (first, last) pairs, 1 first.
         whole: digest of the whole sequence of nodes; equal for sources that differ in names and layout only.
-        nodes: its length.
     """
 
     marks: dict[int, tuple[tuple[int, int], ...]]
@@ -291,7 +290,6 @@ class Similar:
     Attributes:
         pairs: the most alike first, at most ``MAX_PAIRS``.
         groups: the largest first, made from all pairs.
-        compared: number of submissions.
         unreadable: "student exercise" of each file that is not Python, or is too long to compare.
         left_out: pairs beyond ``MAX_PAIRS``.
     """

@@ -48,7 +48,6 @@ def where_it_hangs(handle: Handle, begun: bytes, main: str, source: bytes) -> St
         handle: the worker, which is to be ended afterwards.
         begun: what came from it and was not read yet.
         main: name of the submission's file.
-        source: what is in it.
     """
     if wire.LOOK is None:
         return None
@@ -187,7 +186,6 @@ class Connection:
     """One worker with one submission loaded.
 
     Args:
-        spawner: starts the worker.
         files: the submission: file name to content.
         main: the file whose functions are called.
         deadline: by which loading must be done.

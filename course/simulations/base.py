@@ -33,7 +33,6 @@ class Parameter:
         unit: "" for words, "1" for pure numbers.
         low, high: the range, both ends allowed. ``above``: the lower end itself is not.
         choices: the words that are allowed, for a parameter that is a word.
-        meaning: one line.
     """
 
     name: str
@@ -80,7 +79,6 @@ class Row:
     """One number that was measured, beside what theory says.
 
     Attributes:
-        quantity: its meaning, in a few words.
         simulated: measured in the simulation; NaN if it did not happen.
         unit: "1" for a pure number.
         theory: None where nothing is known in closed form, NaN if theory too says that it does not happen.
@@ -119,9 +117,7 @@ class Result:
     """The results of one run.
 
     Attributes:
-        simulation: its id.
         settings: every parameter with the value it had.
-        rows: measured beside theory.
         headline: the finding in at most 78 characters, for the head of a figure.
         finding: the finding in a sentence or two.
         columns: for ``--csv``: series of one length, the first one being the axis.
@@ -146,7 +142,6 @@ class Simulation:
     """A simulation that can be listed and run.
 
     Attributes:
-        id, title: ...
         question: what to predict before running it.
         teaches: its subject: a kind of simulation, or a factor of its accuracy.
         parameters: those that can be set.

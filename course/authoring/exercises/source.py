@@ -48,7 +48,6 @@ class CheckSource:
         title: first line of its docstring; empty if there is none.
         task, points: what its markers say; None where a marker is missing or is not written as a plain value.
         requires: ids of the checks it depends on.
-        hidden: True for a grader, False for a public check.
         indirect: names of markers whose values are known only when the file runs.
     """
 

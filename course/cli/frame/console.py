@@ -155,13 +155,7 @@ class Settings:
 
 
 class Console:
-    """Prints in the shape that this run asks for.
-
-    Args:
-        settings: the global options.
-        stdout, stderr: where to; the process's own by default.
-        environ: the environment; the process's own by default.
-    """
+    """Prints in the shape that this run asks for."""
 
     def __init__(
         self,

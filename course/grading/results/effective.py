@@ -56,7 +56,6 @@ class Effective:
         result: the newest grading, with its verdict.
         score: in points; None if it is missing or not graded yet, or if a fault of ours kept it from being
             graded.
-        max_score: points of the exercise.
         passed: whether ``score`` reaches the exercise's pass mark.
         penalty: points taken off for lateness; 0 under an override.
         late: seconds after the deadline; None if in time, or if the time is not known.
@@ -118,8 +117,6 @@ class Results:
         roster: a class list; None takes the gradebook's own.
 
     Attributes:
-        folder: of the grading run.
-        course: its id and version.
         seed: of the run's hidden inputs.
         policy: the late policy in force, if any.
         waiting: students whose work a run has still to look at.

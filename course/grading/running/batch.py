@@ -57,7 +57,6 @@ def grade_all(entries: Iterable[Entry], terms: Terms, *, graders: int = 1) -> It
 
     Args:
         terms: which snapshot judges, and how; it must be unpacked here.
-        graders: processes.
 
     Raises:
         CourseError: no grader can work here at all (protection level, content).
@@ -88,11 +87,7 @@ def start_grader(config: Config) -> subprocess.Popen[bytes]:
 
 
 class WarmGrader:
-    """A grader process, started when there is something to grade and replaced when it dies.
-
-    Args:
-        config: how to grade.
-    """
+    """A grader process, started when there is something to grade and replaced when it dies."""
 
     def __init__(self, config: Config) -> None:
         self.config = config

@@ -73,7 +73,6 @@ class Summary:
         pass_marks: of the exercises with results: the points that pass, and all points.
         unsettled: entries that could not be graded and have no score by hand.
         edited: exercises scored by other graders than the present ones: a resumed run keeps its own.
-        elapsed_s: wall seconds.
         write_s: of these, spent on writing the gradebook.
     """
 

@@ -252,11 +252,7 @@ def finite(value: Any) -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class Places:
-    """Lines of a file. A notebook has cells, and its own class for them.
-
-    Attributes:
-        module: name of the file whose functions are checked.
-    """
+    """Lines of a file. A notebook has cells, and its own class for them."""
 
     module: str = ""
 

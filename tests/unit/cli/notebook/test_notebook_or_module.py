@@ -172,7 +172,7 @@ def test_a_watch_of_a_notebook_grades_each_save(course, notebook):
 
     from course.cli.frame.console import Console, Settings
     from course.cli.frame.here import Here
-    from course.cli.work.watching import Watcher
+    from course.cli.loop import Watcher
     from course.handed_in import attempts
 
     here = Here.load()

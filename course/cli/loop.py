@@ -266,7 +266,7 @@ class _Loop:
         return following
 
     def _after_all(self, *, unasked: bool = False) -> int:
-        """No task is left: the quiz, and handing in, as the user says; where nobody is there, if ``unasked``."""
+        """No task is left: the quiz, and handing in, if the user agrees; of nobody, if ``unasked``."""
         step = next_in_course(self.here.catalog, self.here.standing())
         while True:
             self.console.note((f"Next: {step}", "bold"), (f"  {why(self.here.catalog, step)}", "dim"))

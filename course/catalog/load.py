@@ -10,7 +10,7 @@ import difflib
 import math
 import re
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
@@ -417,10 +417,17 @@ class Catalog:
 
     def warm_ups(self, lesson_id: str | None = None) -> tuple[Exercise, ...]:
         """All warm-ups, or those of one lesson, in the order of the lessons and then of their own."""
-        lessons = {name: number for number, name in enumerate(self.lesson_ids())}
         found = (self._exercise(name) for name in self.warm_up_ids())
-        chosen = [one for one in found if lesson_id in {None, one.lesson}]
-        return tuple(sorted(chosen, key=lambda one: (lessons.get(one.lesson, len(lessons)), one.order)))
+        return self._as_met(one for one in found if lesson_id in {None, one.lesson})
+
+    def every_task(self) -> tuple[Exercise, ...]:
+        """Warm-ups and exercises as the lessons lead to them: a lesson's warm-ups, then its exercise."""
+        return self._as_met((*self.warm_ups(), *self.exercises()))
+
+    def _as_met(self, tasks: Iterable[Exercise]) -> tuple[Exercise, ...]:
+        lessons = {name: number for number, name in enumerate(self.lesson_ids())}
+        rank = lambda one: (lessons.get(one.lesson, len(lessons)), not one.is_warm_up, one.order, one.id)  # noqa: E731
+        return tuple(sorted(tasks, key=rank))
 
     def tasks(self, lesson_id: str) -> tuple[Exercise, ...]:
         """The tasks of a lesson: its warm-ups, and the exercises that it leads to."""
@@ -435,12 +442,27 @@ class Catalog:
         return self._exercise(exercise_id)
 
     def exercise_called(self, words: str) -> Exercise:
-        """One exercise, by its id or its number."""
-        if words.isdecimal() and len(words) < _DIGITS and int(words) > 0:
-            for exercise in self.exercises():
-                if exercise.number == int(words):
-                    return exercise
+        """One exercise, by its id or its place among the exercises, "1" first.
+
+        Raises:
+            NotFoundError: nothing is called so.
+        """
+        return self._called(words, self.exercises)
+
+    def warm_up_called(self, words: str) -> Exercise:
+        """One warm-up, likewise; an exercise, if its id is given."""
+        return self._called(words, self.warm_ups)
+
+    def _called(self, words: str, among: Callable[[], tuple[Exercise, ...]]) -> Exercise:
+        every = among() if words.isdecimal() and len(words) < _DIGITS else ()
+        if 1 <= (place := int(words) if every else 0) <= len(every):
+            return every[place - 1]
         return self.exercise(words)
+
+    def place_of(self, exercise: Exercise) -> int:
+        """The number that it is called by: its place among the exercises, or the warm-ups, from 1."""
+        every = self.warm_ups() if exercise.is_warm_up else self.exercises()
+        return 1 + [one.id for one in every].index(exercise.id)
 
     def read_exercise(self, exercise_id: str) -> Exercise:
         """The declaration in the folder of this name; not kept."""

@@ -58,7 +58,8 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         module: file name of the stub, and of the student's file.
         lesson: the lesson to read first.
         order: position in lists, 1 first: the order in which the lessons lead to them.
-        number: the number it is known by outside of the course, such as a chapter's; 0 if it has none.
+        number: the number it has in the chapter that the course is based on; 0 if it has none. Commands call
+            it by its place among the exercises.
         task: the tasks, in the order a student does them.
         pass_mark: share of the maximum that passes.
         imports: top-level packages a submission may import beside the standard library.

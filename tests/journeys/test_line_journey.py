@@ -68,6 +68,11 @@ class Lines:
         os.write(self._terminal, f"{words}\n".encode())
         return self.wait(*(ends or ENDS)).partition("\n")[2]  # the terminal shows what was typed
 
+    def press(self, key: str, *ends: str) -> str:
+        """A key without Enter, and what it says; all of it if the program ends."""
+        os.write(self._terminal, key.encode())
+        return self.wait(*ends)
+
     def interrupt(self) -> str:
         os.write(self._terminal, b"\x03")
         return self.wait(*ENDS)

@@ -35,8 +35,8 @@ def test_the_first_hour(student: Way, tmp_path: Path) -> None:
     assert "course go" in student("init", "work").stdout
     work = tmp_path / "work"
     first = CATALOG.lesson_ids()[0]
-    assert first in student(cwd=work).stdout
-    assert CATALOG.lesson(first).title in student("go", cwd=work).stdout
+    assert f"Next: course warmup {CATALOG.every_task()[0].id}" in student(cwd=work).stdout
+    assert CATALOG.lesson(first).title in student("lesson", cwd=work).stdout
     environment = {**student.environment, "TERM": "xterm-256color"}
     lines = Lines(
         work, "lesson", first, "--plain", "--page", command=student.command, environment=environment
@@ -50,6 +50,32 @@ def test_the_first_hour(student: Way, tmp_path: Path) -> None:
     assert predicted, said
     overview = json.loads(student("progress", "--json", cwd=work).stdout)
     assert {lesson["id"]: lesson["read_at"] for lesson in overview["lessons"]}[first]
+
+
+@pytest.mark.parametrize("shape", [(), ("--plain",)], ids=["fancy", "plain"])
+def test_five_tasks_in_a_row_without_leaving_the_loop(
+    student: Way, workspace: Path, shape: tuple[str, ...]
+) -> None:
+    """One program on one half of the screen; on the other an editor, which only saves."""
+    environment = {**student.environment, "TERM": "xterm-256color"}
+    lines = Lines(workspace, "go", *shape, command=student.command, environment=environment)
+    keys = ("q leave\r\n", "q leave\x1b[0m\r\n")
+    five = CATALOG.every_task()[:5]
+    for number, task in enumerate(five, start=1):
+        said = lines.wait(*keys)
+        assert f"Warm-up {number} of {len(WARM_UPS)}: {task.id}" in said
+        assert f"Explained in: course lesson {task.lesson}" in said
+        module = workspace / task.place / task.module
+        module.write_text(f"{module.read_text('utf-8')}\n# saved\n", "utf-8")
+        assert "checks pass" in lines.wait(*keys), "the stub does not pass, and the task stays"
+        shutil.copy(model(task.id), module)
+    assert "Warm-up 6 of" in lines.wait(*keys)
+    assert f"Warm-up 5 of {len(WARM_UPS)}" in lines.press("b", *keys)
+    assert "Waiting for a save" in lines.press("t", *keys)
+    lines.press("q")
+    lines.close()
+    done = json.loads(student("progress", "--json", cwd=workspace).stdout)["warm_ups"]
+    assert [one["id"] for one in done if one["state"] == "done"] == [task.id for task in five]
 
 
 def test_every_exercise_from_its_stub_to_the_zip(student: Way, workspace: Path) -> None:

@@ -445,17 +445,31 @@ def _rank(exercise: Exercise) -> tuple[str, int]:
 
 
 def _audit_order(catalog: Catalog, exercise: Exercise, path: Path, line: int, findings: Findings) -> None:
-    """Exercises are in the order in which the lessons lead to them."""
+    """Exercises are in the order in which the lessons lead to them, warm-ups in that of their sections."""
     lessons = catalog.lesson_ids()
-    if exercise.is_warm_up or exercise.lesson not in lessons:
+    if exercise.lesson not in lessons:
         return
-    place = lessons.index(exercise.lesson)
-    for other in map(partial(_readable, catalog), catalog.exercise_ids()):
-        if other is not None and other.order < exercise.order and other.lesson in lessons[place + 1 :]:
-            problem = f"exercise {other.id} has a lower order, {other.order}, and its lesson comes later."
-            fix = f"Let the orders follow the lessons: {exercise.id} before {other.id}."
-            findings.add(path, line, "exercise", problem, fix)
-            return
+    if exercise.is_warm_up:
+        what, ids = "section", catalog.warm_up_ids()
+        places = [part.slug for part in read_script(catalog.lesson(exercise.lesson)).sections] + [""]
+    else:
+        what, ids, places = "lesson", catalog.exercise_ids(), list(lessons)
+
+    def stands(one: Exercise) -> str:
+        return one.after if one.is_warm_up else one.lesson
+
+    if stands(exercise) not in places:  # named already
+        return
+    later = places[places.index(stands(exercise)) + 1 :]
+    for other in map(partial(_readable, catalog), ids):
+        if other is None or other.order >= exercise.order or stands(other) not in later:
+            continue
+        if exercise.is_warm_up and other.lesson != exercise.lesson:
+            continue
+        problem = f"{other.kind} {other.id} has a lower order, {other.order}, and its {what} comes later."
+        fix = f"Let the orders follow the {what}s: {exercise.id} before {other.id}."
+        findings.add(path, line, "exercise", problem, fix)
+        return
 
 
 def _readable(catalog: Catalog, exercise_id: str) -> Exercise | None:

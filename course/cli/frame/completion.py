@@ -209,7 +209,9 @@ LessonName = Annotated[
 ]
 
 #: A warm-up, or all of them.
-WarmUpName = Annotated[str | None, argument("ID", "Its id; a list of all if left out.", warm_up_ids)]
+WarmUpName = Annotated[
+    str | None, argument("ID", "Its id or its number; a list of all if left out.", warm_up_ids)
+]
 
 #: What a verdict hides.
 Verbose = Annotated[bool, option("--verbose -v", "Show tracebacks and all that your code printed.")]

@@ -64,12 +64,28 @@ class Here:
         """
         if wanted is not None:
             # Completion of a folder name leaves a separator at its end.
-            return self.catalog.exercise_called(wanted.rstrip("/\\"))
+            chosen = self.catalog.exercise_called(wanted.rstrip("/\\"))
+            self._say_renumbered(chosen, wanted)
+            return chosen
         known = (*self.catalog.exercise_ids(), *self.catalog.warm_up_ids())
         for name in (self._folder_name(), self._last_worked_on(), *self._only_started()):
             if name in known:
                 return self.catalog.exercise(str(name))
         raise self.nothing_started()
+
+    def of_folder(self) -> Exercise | None:
+        """The exercise or warm-up that the current folder is of."""
+        known = (*self.catalog.exercise_ids(), *self.catalog.warm_up_ids())
+        return self.catalog.exercise(name) if (name := self._folder_name() or "") in known else None
+
+    def _say_renumbered(self, chosen: Exercise, number: str) -> None:
+        """Of a number that meant another exercise before 2.0, the chapter's: name both."""
+        before = next((one for one in self.catalog.exercises() if str(one.number) == number), chosen)
+        if before is not chosen:
+            current().warn(
+                f"{number} is {chosen.id}, by the order of the lessons; before 2.0 it was {before.id}, "
+                f"which is {self.catalog.place_of(before)} now."
+            )
 
     def nothing_started(self) -> NotFoundError:
         """The error that no exercise has been started; its advice names the first one."""

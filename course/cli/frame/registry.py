@@ -53,8 +53,10 @@ class Entry:
 COMMANDS: dict[str, Entry] = {
     "demo": Entry("setup.demo", "demo", LEARN, "Find and fix a mistake, without a workspace.", "course demo"),
     "init": Entry("setup.making", "init", LEARN, "Make a workspace.", "course init my-course"),
-    "go": Entry("home.going", "go", LEARN, "Open what is next: a lesson, a task or the quiz.", "course go"),
-    "next": Entry("home.going", "next_command", LEARN, "Name what is next, and open nothing.", "course next"),
+    "go": Entry("loop", "go", LEARN, "Do one task after the other, checked at every save.", "course go"),
+    "next": Entry(
+        "home.overview", "next_command", LEARN, "Name what is next, and open nothing.", "course next"
+    ),
     "lessons": Entry(
         "reading.commands", "lessons", LEARN, "List the lessons, with what is read.", "course lessons"
     ),
@@ -73,9 +75,7 @@ COMMANDS: dict[str, Entry] = {
         "work.changing", "start", PRACTISE, "Put an exercise into the workspace.", "course start integrators"
     ),
     "check": Entry("work.checking", "check", PRACTISE, "Run the public checks.", "course check integrators"),
-    "watch": Entry(
-        "work.watching", "watch", PRACTISE, "Check again on every save.", "course watch integrators"
-    ),
+    "watch": Entry("loop", "watch", PRACTISE, "Check again on every save.", "course watch integrators"),
     "hint": Entry("work.hinting", "hint", PRACTISE, "Show the next hint.", "course hint integrators"),
     "diff": Entry(
         "work.changing", "diff", PRACTISE, "Show what changed since the stub.", "course diff integrators"

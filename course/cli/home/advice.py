@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from course.catalog.load import Catalog
@@ -36,7 +37,7 @@ def after_warm_up(here: Here, warm_up: Exercise) -> str:
     """After a finished warm-up: its report, or what comes next."""
     if (Path(warm_up.folder) / "report.py").is_file():
         return f"course report {warm_up.id}"
-    return _rest_of_lesson(here, warm_up)
+    return _after(here, warm_up)
 
 
 def after_report(here: Here, exercise: Exercise) -> str:
@@ -47,47 +48,89 @@ def after_report(here: Here, exercise: Exercise) -> str:
         last = None
     if last is None or not last.all_pass:
         return f"course check {exercise.id}"
-    return _rest_of_lesson(here, exercise) if exercise.is_warm_up else "course submit"
+    return _after(here, exercise) if exercise.is_warm_up else "course submit"
 
 
-def _rest_of_lesson(here: Here, warm_up: Exercise) -> str:
-    """Its lesson if partly read; otherwise the lesson's next warm-up, the lesson, or what comes next."""
+def _after(here: Here, done: Exercise) -> str:
     try:
         standing = here.standing()
-        begun = standing.events("bookmark", warm_up.lesson)
-        done = {event.subject for event in standing.events("check") if event.data.get("all_pass")}
-        read = warm_up.lesson in standing.read
     except CourseError:  # a record that cannot be read is warned about elsewhere
-        standing, begun, done, read = Standing(), (), set(), False
-    if begun and not read:  # the other warm-ups wait there, each in its place
-        return f"course lesson {warm_up.lesson}"
-    left = [one.id for one in here.catalog.warm_ups(warm_up.lesson) if one.id not in {*done, warm_up.id}]
-    if left:
-        return f"course warmup {left[0]}"
-    return next_in_course(here.catalog, standing) if read else f"course lesson {warm_up.lesson}"
+        standing = Standing()
+    return next_in_course(here.catalog, standing, done)
 
 
-def next_in_course(catalog: Catalog, standing: Standing) -> str:
-    """From anywhere: the first lesson unread or exercise unfinished, in the order of the syllabus."""
-    read, started = standing.read, standing.started
-    # Warm-ups are offered where the student is now; moving on leaves the rest of them behind.
-    furthest = next((name for name in reversed(catalog.lesson_ids()) if name in read), "")
-    for lesson in catalog.lessons():
-        if not started.intersection(lesson.exercises):
-            if lesson.id not in read:
-                return f"course lesson {lesson.id}"
-            if lesson.id == furthest and (step := _warm_up_step(catalog, standing, lesson.id)):
-                return step
-        for name in lesson.exercises:
-            if name in catalog.exercise_ids() and (step := _exercise_step(standing, name)):
-                return step
-    for exercise in catalog.exercises():
-        if step := _exercise_step(standing, exercise.id):
-            return step
-    if not started:
+#: What is noted of a task that somebody works on.
+_WORK = frozenset({"start", "check", "hint"})
+
+
+def next_task(catalog: Catalog, standing: Standing, done: Exercise | None = None) -> Exercise | None:
+    """The task last worked on if it is not done, else the next one; None if all are done.
+
+    A lesson that is read for the first time leads to its tasks. At the end come the exercises that were left
+    out. Warm-ups that were left out are left behind.
+
+    Args:
+        done: a task to go on from, instead.
+    """
+    every = catalog.every_task()
+    place = every.index(done) + 1 if done is not None else _last_place(every, standing)
+    left = [*every[place:], *(one for one in every[:place] if not one.is_warm_up)]
+    return next((one for one in left if one is not done and not is_done(standing, one)), None)
+
+
+def is_done(standing: Standing, task: Exercise) -> bool:
+    """Whether all checks passed: of a warm-up once, of an exercise when all were last run."""
+    return standing.history(task.id).done is not None if task.is_warm_up else standing.is_complete(task.id)
+
+
+def _last_place(every: Sequence[Exercise], standing: Standing) -> int:
+    names, lessons = [one.id for one in every], [one.lesson for one in every]
+    for event in reversed(standing.events()):
+        if event.kind in _WORK and event.subject in names and not event.data.get("all"):
+            return names.index(event.subject)
+        if event.kind == "lesson" and event.subject in lessons and standing.read[event.subject] == event.at:
+            return lessons.index(event.subject)
+    return 0
+
+
+def next_in_course(catalog: Catalog, standing: Standing, done: Exercise | None = None) -> str:
+    """From anywhere: the next task, a lesson without tasks that was not read, the quiz, or handing in.
+
+    Args:
+        done: a task to go on from, instead of the one last worked on.
+    """
+    if (task := next_task(catalog, standing, done)) is not None:
+        if standing.is_begun(task.id):
+            return f"course check {task.id}"
+        return f"course {'warmup' if task.is_warm_up else 'start'} {task.id}"
+    leading = {one.lesson for one in catalog.every_task()}
+    unread = (name for name in catalog.lesson_ids() if name not in leading and name not in standing.read)
+    if lesson := next(unread, ""):
+        return f"course lesson {lesson}"
+    if not leading:
         return "course lessons"
-    best = standing.quiz.best if any(catalog.content.quiz.glob("*.toml")) else None
-    return "course submit" if best is None or best.passed else "course quiz take"
+    best = standing.quiz.best
+    taken = (best is not None and best.passed) or not any(catalog.content.quiz.glob("*.toml"))
+    return "course submit" if taken else "course quiz take"
+
+
+#: A step in words, by its command.
+_WHY = {
+    "lesson": "a lesson you have not read to its end",
+    "lessons": "everything this course has was read",
+    "warmup": "the next small task",
+    "start": "the next exercise",
+    "quiz": "the quiz",
+    "submit": "everything is done: hand it in",
+}
+
+
+def why(catalog: Catalog, step: str) -> str:
+    """What a step is, in words."""
+    _, name, *rest = step.split()
+    if name == "check":
+        return f"the {'small task' if rest[0] in catalog.warm_up_ids() else 'exercise'} you started"
+    return _WHY.get(name, "")
 
 
 def exercise_ahead(catalog: Catalog, standing: Standing, step: str) -> str:
@@ -102,7 +145,7 @@ def exercise_ahead(catalog: Catalog, standing: Standing, step: str) -> str:
     if exercise is None or exercise.lesson not in catalog.lesson_ids():
         return ""
     after = catalog.lesson_ids().index(exercise.lesson) + 1
-    called = f"Exercise {exercise.number}, {exercise.id}," if exercise.number else f"Exercise {exercise.id}"
+    called = f"Exercise {catalog.place_of(exercise)}, {exercise.id},"
     return f"{called} comes after lesson {after}. To start it now: course start {exercise.id}"
 
 
@@ -118,20 +161,6 @@ def _in_progress(catalog: Catalog, standing: Standing) -> str:
         go_on = f"{exercise.id}: {state}. To go on: course check {exercise.id}"
         begun.append((last.at.isoformat() if last else "", go_on))
     return max(begun, key=lambda one: one[0])[1] if begun else ""
-
-
-def _warm_up_step(catalog: Catalog, standing: Standing, lesson: str) -> str:
-    """The first warm-up of a lesson that is not done; empty if there is none."""
-    for warm_up in catalog.warm_ups(lesson):
-        if standing.history(warm_up.id).done is None:
-            return f"course {'check' if warm_up.id in standing.started else 'warmup'} {warm_up.id}"
-    return ""
-
-
-def _exercise_step(standing: Standing, name: str) -> str:
-    if not standing.is_begun(name):
-        return f"course start {name}"
-    return "" if standing.is_complete(name) else f"course check {name}"
 
 
 def _before_writing(here: Here, exercise: Exercise) -> str:

@@ -9,12 +9,13 @@ from course.catalog.models import Exercise
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, here_or_outside
 from course.cli.frame.replies import NextStep, filled
-from course.cli.home.advice import exercise_ahead, next_in_course
+from course.cli.home.advice import exercise_ahead, next_in_course, why
 from course.cli.home.learning import Learning, day, objective_states, show_learning, show_objectives
 from course.cli.home.replies import (
     Exercises,
     ExerciseState,
     LessonState,
+    Next,
     Progress,
     QuizState,
     Status,
@@ -60,7 +61,8 @@ def progress() -> int:
         done = sum(x.state in {"passed", "complete"} for x in exercises)
         console.heading("Exercises", f"{done} of {len(exercises)} passed")
         for exercise in exercises:
-            console.line(f"{exercise.title} ({exercise.id}): {_progress_line(exercise)}", indent=2)
+            name = f"{exercise.number}. {exercise.title} ({exercise.id})"
+            console.line(f"{name}: {_progress_line(exercise)}", indent=2)
         if quiz is not None:
             console.heading("Quiz", _quiz_line(quiz))
         often = _count(len(sent), "time")
@@ -103,14 +105,15 @@ def _show_reading(console: Console, lessons: Sequence[LessonState], warm_ups: Se
 
 def warm_up_states(catalog: Catalog, standing: Standing) -> tuple[WarmUpState, ...]:
     """Every warm-up and how far the student is; raises what reading the record raises."""
-    return tuple(_warm_up_state(one, standing) for one in catalog.warm_ups())
+    return tuple(_warm_up_state(one, n, standing) for n, one in enumerate(catalog.warm_ups(), start=1))
 
 
-def _warm_up_state(warm_up: Exercise, standing: Standing) -> WarmUpState:
+def _warm_up_state(warm_up: Exercise, number: int, standing: Standing) -> WarmUpState:
     history = standing.history(warm_up.id)
     return filled(
         WarmUpState,
         warm_up,
+        number=number,
         state="done" if history.done else "started" if standing.is_begun(warm_up.id) else "new",
         checks_run=len(history.runs),
         hints_shown=len(history.hints),
@@ -124,16 +127,17 @@ def _done_of(states: Sequence[WarmUpState]) -> str:
 
 def exercise_states(catalog: Catalog, standing: Standing) -> tuple[ExerciseState, ...]:
     """Every exercise and how far the student is; raises what reading the record raises."""
-    return tuple(_exercise_state(one, standing) for one in catalog.exercises())
+    return tuple(_exercise_state(one, n, standing) for n, one in enumerate(catalog.exercises(), start=1))
 
 
-def _exercise_state(exercise: Exercise, standing: Standing) -> ExerciseState:
+def _exercise_state(exercise: Exercise, number: int, standing: Standing) -> ExerciseState:
     history = standing.history(exercise.id)
     graded, best, first_pass, last = history.last_graded, history.best, history.first_pass, history.last
     return filled(
         ExerciseState,
         exercise,
-        number=exercise.number or None,
+        number=number,
+        chapter=exercise.number or None,
         state=_state(exercise.id in standing.started, history),
         score=graded.score if graded else None,
         max_score=graded.max_score if graded else None,
@@ -235,8 +239,8 @@ def _inside(console: Console, here: Here) -> int:
         show_objectives(console, objectives, {state.id: _evidence(state) for state in states}, taken=taken)
     elif states:
         console.table(
-            ("Exercise", "State", "Score"),
-            [(state.id, WORDS[state.state], score_of(state)) for state in states],
+            ("Exercise", "No.", "State", "Score"),
+            [(state.id, str(state.number), WORDS[state.state], score_of(state)) for state in states],
         )
     if here.workspace.version != catalog.version:
         console.note(
@@ -284,8 +288,7 @@ def _progress_line(exercise: ExerciseState) -> str:
 
 
 def _evidence(state: ExerciseState) -> str:
-    name = f"exercise {state.number}, {state.id}" if state.number else f"exercise {state.id}"
-    return f"{name}: {WORDS[state.state]} {score_of(state)}".rstrip()
+    return f"exercise {state.number}, {state.id}: {WORDS[state.state]} {score_of(state)}".rstrip()
 
 
 def _quiz_line(quiz: QuizState) -> str:
@@ -306,6 +309,18 @@ def _count(number: int, one: str) -> str:
     return f"{number} {one}{'' if number == 1 else 's'}"
 
 
+def next_command() -> int:
+    """Name what is next, and open nothing.
+
+    `course go` does it.
+    """
+    console, here = current(), Here.load()
+    step = next_in_course(here.catalog, here.standing())
+    console.line(step)
+    console.note((reason := why(here.catalog, step), "dim"))
+    return here.answer(Next(next=NextStep(step), why=reason))
+
+
 # ---
 # ``course exercises``: the list of them.
 
@@ -313,24 +328,16 @@ def _count(number: int, one: str) -> str:
 def exercises() -> int:
     """List the exercises.
 
-    In the order in which the lessons lead to them. The numbers are the chapter's: `course start 2` and
+    In the order in which the lessons lead to them, which their numbers follow: `course start 2` and
     `course check 2` take them as well as ids.
     """
     console, (here, catalog) = current(), here_or_outside()
     states = exercise_states(catalog, here.standing() if here else Standing())
     for state in states:
+        chapter = f"the chapter's {state.chapter}" if state.chapter else "ours, not the chapter's"
         known = f"; {WORDS[state.state]} {score_of(state)}".rstrip() if here else ""
-        console.item(
-            str(state.number or "ours"),
-            (state.id, "bold"),
-            f": {state.title}; lesson {state.lesson}{known}",
-            indent=0,
-            width=4,
-        )
-    console.note(
-        "In the order of the lessons. A number is the chapter's; what is `ours` has none and is called by "
-        "its name."
-    )
+        words = f": {state.title}; lesson {state.lesson}; {chapter}{known}"
+        console.item(str(state.number), (state.id, "bold"), words, indent=0, width=2)
     left = next((state for state in states if state.state not in {"passed", "complete"}), None)
     step = f"course start {left.id}" if left is not None and left.state == "new" else ""
     if left is not None and not step:

@@ -16,8 +16,10 @@ class ExerciseState(msgspec.Struct, frozen=True, kw_only=True):
     summary: str
     lesson: str
     state: str
+    #: What commands call it by: its place in the order in which the lessons lead to the exercises, from 1.
+    number: int
     #: The number it has in the chapter; None if it is not the chapter's.
-    number: int | None = None
+    chapter: int | None = None
     score: float | None = None
     max_score: float | None = None
     best_score: float | None = None
@@ -38,7 +40,10 @@ class LessonState(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class WarmUpState(msgspec.Struct, frozen=True, kw_only=True):
-    """One warm-up. ``state`` is "new", "started" or "done": all its checks passed once."""
+    """One warm-up. ``state`` is "new", "started" or "done": all its checks passed once.
+
+    ``number`` is its place in the order of the lessons, from 1; commands take it.
+    """
 
     id: str
     title: str
@@ -46,6 +51,7 @@ class WarmUpState(msgspec.Struct, frozen=True, kw_only=True):
     lesson: str
     minutes: int
     state: str
+    number: int
     checks_run: int = 0
     hints_shown: int = 0
     done_at: str | None = None
@@ -93,7 +99,7 @@ class Go(Envelope, tag="course.go/1", frozen=True, kw_only=True):
     why: str
 
 
-class Exercises(Envelope, tag="course.exercises/1", frozen=True, kw_only=True):
+class Exercises(Envelope, tag="course.exercises/2", frozen=True, kw_only=True):
     """In the order in which the lessons lead to them. ``workspace`` is None outside of one."""
 
     workspace: str | None
@@ -101,7 +107,7 @@ class Exercises(Envelope, tag="course.exercises/1", frozen=True, kw_only=True):
     next: NextStep | None = None
 
 
-class Status(Envelope, tag="course.status/1", frozen=True, kw_only=True):
+class Status(Envelope, tag="course.status/2", frozen=True, kw_only=True):
     """The dashboard. ``workspace`` is None outside of one."""
 
     course: CourseRef
@@ -183,7 +189,7 @@ class Revisit(msgspec.Struct, frozen=True, kw_only=True):
     command: str
 
 
-class Progress(Envelope, tag="course.progress/1", frozen=True, kw_only=True):
+class Progress(Envelope, tag="course.progress/2", frozen=True, kw_only=True):
     course: CourseRef
     workspace: str
     lessons: tuple[LessonState, ...]

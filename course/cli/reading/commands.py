@@ -274,13 +274,13 @@ def warmup(
 
 
 def _warm_up(catalog: Catalog, name: str) -> Exercise:
-    """The warm-up of that id.
+    """The warm-up of that id or number.
 
     Raises:
-        NotFoundError: there is none of that id, or it is an exercise.
+        NotFoundError: there is none, or it is an exercise.
     """
     try:
-        chosen = catalog.exercise(name.rstrip("/\\"))
+        chosen = catalog.warm_up_called(name.rstrip("/\\"))
     except NotFoundError as error:
         raise NotFoundError(
             f"There is no warm-up called {name!r}.",
@@ -325,7 +325,8 @@ def _list(console: Console, lesson: str = "") -> int:
             done = sum(state.state == "done" for state in ours)
             console.heading(one.title.partition(":")[0], f"{done} of {len(ours)} done")
             for state in ours:
-                console.item(marks[state.state], f"{state.title} ({state.id}), {state.minutes} min", width=6)
+                name = f"{state.number}. {state.title} ({state.id}), {state.minutes} min"
+                console.item(marks[state.state], name, width=6)
     left = next((state for state in states if state.state != "done"), None)
     step = f"course warmup {left.id}" if left else ""
     if step:
@@ -337,26 +338,23 @@ def _list(console: Console, lesson: str = "") -> int:
 def _begin(console: Console, here: Here, chosen: Exercise) -> int:
     """Its text, and its file in the workspace."""
     if not console.quiet and not console.json:
-        lesson = here.catalog.lesson(chosen.lesson)
-        reader = Reader(
-            here.catalog,
-            lesson,
-            console.rich(),
-            plain=console.plain,
-            width=console.width,
-            wraps=console.wraps,
-        )
-        console.heading(chosen.title, counted(chosen.minutes, "minute"))
-        reader.show_task(chosen)
-        console.blank()
+        show_text(console, here, chosen)
     files = put(console, here, chosen)
     step = f"course check {chosen.id}"
     console.note(
         f"Write in {chosen.place}/{chosen.module} with your own editor, "
         f"about {counted(chosen.minutes, 'minute')}."
     )
-    if not console.led:
-        console.note(f"Check it:          {step}")
-        console.note(f"On every save:     course watch {chosen.id}")
-        console.note(f"Still failing:     course hint {chosen.id}")
+    console.note(f"Check it:          {step}")
+    console.note(f"On every save:     course watch {chosen.id}")
+    console.note(f"Still failing:     course hint {chosen.id}")
     return here.answer(Start(exercise=chosen.id, files=files, next=NextStep(step)))
+
+
+def show_text(console: Console, here: Here, chosen: Exercise) -> None:
+    """The text of a warm-up."""
+    lesson = here.catalog.lesson(chosen.lesson)
+    reader = _reader(here.catalog, lesson, console, None, None)
+    console.heading(chosen.title, counted(chosen.minutes, "minute"))
+    reader.show_task(chosen)
+    console.blank()

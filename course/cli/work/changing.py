@@ -246,24 +246,32 @@ def start(
     chosen = here.exercise(exercise)
     files = put(console, here, chosen)
     step = f"course watch {chosen.id}"
+    tell_length(console, chosen)
+    console.note(f"Then check it on every save: {step}")
+    console.note(f"Or once, now and then: course check {chosen.id}")
+    return here.answer(Start(exercise=chosen.id, files=files, next=NextStep(step)))
+
+
+def tell_length(console: Console, chosen: Exercise) -> None:
+    """Where an exercise is to be read and to be written, and how long reading takes."""
     minutes = max(1, round(len(chosen.readme_path.read_text(encoding="utf-8").split()) / _WORDS_A_MINUTE))
     console.note(f"Read {chosen.place}/README.md, write your code in {chosen.place}/{chosen.module}.")
     if minutes > _LONG:
         console.note(f"It takes {minutes} minutes to read; you can begin after the first function's section.")
-    if not console.led:
-        console.note(f"Then check it on every save: {step}")
-        console.note(f"Or once, now and then: course check {chosen.id}")
-    return here.answer(Start(exercise=chosen.id, files=files, next=NextStep(step)))
 
 
 def put(console: Console, here: Here, chosen: Exercise) -> tuple[FileReply, ...]:
-    """Put the files of an exercise into the workspace where they are not there yet, and say so."""
+    """Put the files of an exercise into the workspace where they are not there yet.
+
+    It says so, unless one task leads to the next.
+    """
     files = []
     for source in chosen.given:
         target = here.workspace.path(chosen.place, source.name)
         new = here.workspace.give(chosen.place, source.name, source.read_bytes())
         files.append(FileReply(path=str(target), action="created" if new else "kept"))
         verb = "created" if new else "exists already and was not changed"
-        console.line(f"{here.workspace.shown(target)} {verb}.")
+        if not console.led:
+            console.line(f"{here.workspace.shown(target)} {verb}.")
     here.record("start", chosen.id, {"version": here.catalog.version})
     return tuple(files)

@@ -70,7 +70,10 @@ class CheckAll(Envelope, tag="course.check-all/1", frozen=True, kw_only=True):
 
 
 class WatchRun(msgspec.Struct, frozen=True):
-    """One verdict of a watch. ``at`` is UTC; ``latency_ms`` runs from noticing the save to the verdict."""
+    """One verdict of a watch. ``at`` is UTC; ``latency_ms`` runs from noticing the save to the verdict.
+
+    ``exercise`` is the one that was checked: without a name, a watch goes from one to the next.
+    """
 
     at: str
     state: str
@@ -78,10 +81,11 @@ class WatchRun(msgspec.Struct, frozen=True):
     max_score: float
     passed: bool
     latency_ms: float
+    exercise: str = ""
 
 
 class Watch(Envelope, tag="course.watch/1", frozen=True, kw_only=True):
-    """Printed when the watch ends."""
+    """Printed when the watch ends. ``exercise`` is the one that was watched last."""
 
     refers_to = (Check,)
 

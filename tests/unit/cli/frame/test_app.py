@@ -113,7 +113,7 @@ def test_version_wins_wherever_it_stands(course, words):
 @pytest.mark.parametrize(
     ("line", "schema", "code"),
     [
-        ("", "course.status/1", 0),
+        ("", "course.status/2", 0),
         ("init", "course.init/1", 0),
         ("lessons", "course.lessons/1", 0),
         ("lesson", "course.lesson/1", 0),
@@ -125,7 +125,7 @@ def test_version_wins_wherever_it_stands(course, words):
         ("diff doubling", "course.diff/1", 0),
         ("reset doubling --yes", "course.reset/1", 0),
         ("update", "course.update/1", 0),
-        ("progress", "course.progress/1", 0),
+        ("progress", "course.progress/2", 0),
         ("submit", "course.submit/1", 3),
         ("--version", "course.version/1", 0),
         ("--help", "course.help/1", 0),

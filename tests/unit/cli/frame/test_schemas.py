@@ -161,15 +161,15 @@ author pack --solutions doubling -o released.coursepack
 
 def _stand_in_for_what_waits(monkeypatch):
     """A watch ends at once, what `course open` starts is there already, and no film is made."""
+    from course.cli import loop
     from course.cli.author import pictures
-    from course.cli.work import watching
     from course.notebooks import server
 
-    def ended(_):
-        yield
+    def ended(*_):
+        yield ""
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(watching, "saves", ended)
+    monkeypatch.setattr(loop, "saves", ended)
     monkeypatch.setattr(pictures, "PICTURES", {"sandbox.gif": (lambda: b"another film", bytes)})
     lab = server.Lab("http://localhost:8888/lab?token=1", None)
     monkeypatch.setattr(server, "started", lambda *_: contextlib.nullcontext(lab))

@@ -19,24 +19,43 @@ def record(workspace):
 
 
 def test_exercises_and_lessons_are_called_by_number_too(course, workspace):
-    assert course("start", "1", "--json").json["exercise"] == "halving", "its own number, not its place"
+    assert course("start", "1", "--json").json["exercise"] == "doubling", "its place among them"
+    assert course("start", "2", "--json").json["exercise"] == "halving"
     assert course("lesson", "2", "--json").json["id"] == "half-as-much"
-    for words in (("start", "2"), ("lesson", "3"), ("lesson", "0"), ("lesson", "9" * 5000)):
+    for words in (("start", "3"), ("start", "0"), ("lesson", "3"), ("lesson", "0"), ("lesson", "9" * 5000)):
         assert course(*words).code == 5
     assert "Did you mean halving" in course("start", "halvin").err
+
+
+def test_a_number_that_meant_another_exercise_names_both(course, workspace):
+    said = course("check", "1").err
+    assert "1 is doubling, by the order of the lessons; before 2.0 it was halving, which is 2 now." in said
+    assert "before 2.0" not in course("start", "2").err, "the chapter has no 2"
+    assert "before 2.0" not in course("start", "doubling").err
+
+
+def test_warm_ups_are_called_by_number_too(course, tmp_path, monkeypatch):
+    monkeypatch.delenv("COURSE_CONTENT", raising=False)
+    monkeypatch.chdir(tmp_path)
+    course("init", ".")
+    warm_ups = course("warmup", "--json").json["warm_ups"]
+    assert [one["number"] for one in warm_ups] == list(range(1, len(warm_ups) + 1))
+    assert f"4. {warm_ups[3]['title']}" in course("warmup").out
+    assert course("warmup", "4", "--json").json["exercise"] == warm_ups[3]["id"]
+    assert course("warmup", str(len(warm_ups) + 1)).code == 5
 
 
 def test_exercises_lists_numbers_lessons_and_states(course, workspace, write):
     write("RIGHT", "RIGHT")
     course("check", "doubling")
     body = course("exercises", "--json").json
-    assert [(one["id"], one["number"], one["lesson"], one["state"]) for one in body["exercises"]] == [
-        ("doubling", None, "twice-as-much", "complete"),
-        ("halving", 1, "half-as-much", "new"),
+    assert [(one["id"], one["number"], one["chapter"], one["state"]) for one in body["exercises"]] == [
+        ("doubling", 1, None, "complete"),
+        ("halving", 2, 1, "new"),
     ]
     assert body["next"]["command"] == "course start halving"
     assert (
-        "ours: doubling: Doubling; lesson twice-as-much; every public check passes 4/4"
+        "1: doubling: Doubling; lesson twice-as-much; ours, not the chapter's; every public check passes 4/4"
         in course("exercises").out
     )
 
@@ -65,14 +84,6 @@ def test_go_outside_of_a_workspace_says_how_to_make_one(course, tmp_path, monkey
     assert "course init" in ran.err
 
 
-def test_go_runs_the_next_command_once_where_nobody_is_there(course, workspace):
-    record(workspace).append("lesson", "twice-as-much")
-    ran = course("go")
-    assert ran.code == 1, "the stub fails its checks"
-    assert ran.out.startswith("course check doubling")
-    assert "public checks" in ran.out
-
-
 @pytest.fixture
 def someone(monkeypatch):
     """A person who presses Enter; what they were asked."""
@@ -83,51 +94,22 @@ def someone(monkeypatch):
     return asked
 
 
-def test_a_lesson_that_was_left_by_its_key_leads_back_to_the_shell(course, workspace, someone, monkeypatch):
-    ran, steps = [], iter(["course lesson twice-as-much", "course check doubling"])
-    monkeypatch.setattr("course.cli.home.going.next_in_course", lambda *_: next(steps))
-    monkeypatch.setattr("course.cli.home.going.again", lambda words: ran.append(words) or 0)
-    monkeypatch.setattr(Console, "fills_the_screen", property(lambda _: True))
-    said = course("go").out
-    assert (len(ran), someone) == (1, [])
-    assert said.splitlines()[-1] == "Go on at any time with: course go"
-
-
-def test_go_announces_the_command_that_it_would_run(course, workspace, someone, monkeypatch):
-    ran, steps = [], iter(["course lesson twice-as-much", "course check doubling"])
-    monkeypatch.setattr("course.cli.home.going.next_in_course", lambda *_: next(steps))
-    monkeypatch.setattr("course.cli.home.going.again", lambda words: ran.append(words) or 0)
-    monkeypatch.setattr(Console, "go_on", lambda *_: False)
-    said = course("go").out
-    assert [words[:2] for words in ran] == [["lesson", "twice-as-much"]]
-    assert "Next: course watch doubling" in said
-
-
-def test_at_a_terminal_what_comes_next_is_said_once(course, workspace, someone, monkeypatch):
-    steps = iter(["course lesson twice-as-much", "course check doubling"])
-    monkeypatch.setattr("course.cli.home.going.next_in_course", lambda *_: next(steps))
-    monkeypatch.setattr(Console, "go_on", lambda *_: False)
-    said = course("go").out
-    assert "Next: course watch doubling" in said
-    assert said.count("Next: ") == 1, said
-
-
-def test_go_and_the_dashboard_say_where_the_next_exercise_comes(course, tmp_path, monkeypatch):
+def test_the_dashboard_says_where_the_next_exercise_comes(course, tmp_path, monkeypatch):
     monkeypatch.delenv("COURSE_CONTENT", raising=False)
     monkeypatch.chdir(tmp_path)
     course("init", ".")
-    ahead = "Exercise 2, integrators, comes after lesson 3. To start it now: course start integrators\n"
-    for line in ("go", ""):
-        assert ahead in course(*line.split()).out
+    ahead = "Exercise 1, integrators, comes after lesson 3. To start it now: course start integrators\n"
+    assert ahead in course().out
     said = course("start", "integrators").out
     assert re.search(r"It takes \d minutes to read; you can begin after the first function's section\.", said)
-    for line in ("go", ""):
-        said = course(*line.split()).out
-        assert "integrators: started, not checked yet. To go on: course check integrators\n" in said
-        assert "comes after lesson" not in said
+    course("warmup", "first-program")
+    said = course().out
+    assert "integrators: started, not checked yet. To go on: course check integrators\n" in said
+    assert "comes after lesson" not in said
     course("check", "integrators")
+    course("warmup", "first-program")
     going = r"integrators: in progress, 0 of \d+ points. To go on: course check integrators\n"
-    assert re.search(going, course("go").out)
+    assert re.search(going, course().out)
 
 
 def test_the_dashboard_says_nothing_of_a_quiz_that_was_not_taken(course, tmp_path, monkeypatch):
@@ -171,34 +153,6 @@ def test_the_reader_on_the_whole_screen_and_page_by_page_go_on_where_the_other_w
     assert "Going on" not in course("lesson", "twice-as-much", "--page").out, "it was read to its end"
 
 
-def test_go_is_one_loop_until_a_step_is_not_finished(course, workspace, write, someone, monkeypatch):
-    from course.cli.home import going
-
-    ran_with = []
-
-    def again(words):
-        ran_with.append(words)
-        if words[0] == "lesson":
-            record(workspace).append("lesson", words[1])
-            return 0
-        if words[0] == "start":
-            return course_again(words)
-        return 130  # a watch that was ended
-
-    course_again = going.again
-    monkeypatch.setattr(going, "again", again)
-    write("RIGHT", "RIGHT")
-    course("check", "doubling")
-    ran = course("go")
-    assert ran_with == [
-        ["lesson", "half-as-much", "--page"],
-        ["start", "halving"],
-        ["watch", "halving"],
-    ]
-    assert len(someone) == 2, "asked before each further step"
-    assert "Not finished yet: course check halving." in ran.out
-
-
 def test_each_lesson_exercise_and_question_belongs_to_one_objective():
     catalog = Catalog()
     held = catalog.syllabus.objective
@@ -209,12 +163,15 @@ def test_each_lesson_exercise_and_question_belongs_to_one_objective():
     assert len(held) == 5
 
 
-def test_exercises_have_the_chapters_numbers_and_the_lessons_order():
+def test_exercises_are_numbered_in_the_lessons_order_and_know_the_chapters_numbers():
     catalog = Catalog()
     chapter = ("engine-comparison", "integrators", "sim-to-real", "digital-twin", "validation")
     assert [catalog.exercise(name).number for name in chapter] == [1, 2, 3, 4, 5]
-    places = [catalog.lesson_ids().index(one.lesson) for one in catalog.exercises()]
-    assert places == sorted(places)
+    for tasks in (catalog.exercises(), catalog.warm_ups(), catalog.every_task()):
+        places = [catalog.lesson_ids().index(one.lesson) for one in tasks]
+        assert places == sorted(places)
+    assert [catalog.place_of(one) for one in catalog.exercises()] == [1, 2, 3, 4, 5, 6]
+    assert catalog.exercise_called("1").id == "integrators"
 
 
 def test_the_dashboard_shows_the_evidence_for_each_objective(course, tmp_path, monkeypatch):
@@ -239,7 +196,7 @@ def test_the_dashboard_shows_the_evidence_for_each_objective(course, tmp_path, m
         if a != b
     ]
     assert changed == [(["engines"], 1, ["which-engine"])]
-    assert "exercise 1, engine-comparison: not started" in course().out
+    assert "exercise 3, engine-comparison: not started" in course().out
 
 
 def test_next_offers_the_warm_ups_of_the_lesson_just_read_and_then_its_exercise(
@@ -266,13 +223,45 @@ def test_next_offers_the_warm_ups_of_the_lesson_just_read_and_then_its_exercise(
     assert step() == "course check integrators"
 
 
+def test_next_begins_with_a_task_and_goes_on_from_what_was_done_last(course, tmp_path, monkeypatch):
+    monkeypatch.delenv("COURSE_CONTENT", raising=False)
+    monkeypatch.chdir(tmp_path)
+    course("init", ".")
+    store, every = record(tmp_path), Catalog().every_task()
+
+    def step():
+        return course("next", "--quiet").out.strip()
+
+    assert step() == f"course warmup {every[0].id}", "no lesson stands before it"
+    store.append("start", every[5].id)
+    assert step() == f"course warmup {every[5].id}", "where the student went"
+    store.append("check", every[5].id, passing())
+    assert step() == f"course warmup {every[6].id}"
+    store.append("check", every[0].id, passing() | {"all": True})
+    assert step() == f"course warmup {every[6].id}", "a check of all is about none"
+    for task in every[6:]:
+        store.append("check", task.id, passing())
+    assert step() == "course quiz take", "warm-ups that were left out are left behind"
+
+
+def test_an_exercise_that_was_left_out_comes_at_the_end(course, tmp_path, monkeypatch):
+    monkeypatch.delenv("COURSE_CONTENT", raising=False)
+    monkeypatch.chdir(tmp_path)
+    course("init", ".")
+    store, every = record(tmp_path), Catalog().every_task()
+    for task in every:
+        if task.id != "collisions":
+            store.append("check", task.id, passing())
+    assert course("next", "--quiet").out == "course start collisions\n"
+
+
 def test_a_warm_up_that_was_begun_is_checked_and_moving_on_leaves_it_behind(course, tmp_path, monkeypatch):
     monkeypatch.delenv("COURSE_CONTENT", raising=False)
     monkeypatch.chdir(tmp_path)
     course("init", ".")
     record(tmp_path).append("lesson", "why-simulate")
     (first, *_) = Catalog().warm_ups("why-simulate")
-    assert course("go").out.startswith(f"course warmup {first.id}")
+    assert course("warmup", first.id).code == 0
     assert course("next", "--quiet").out == f"course check {first.id}\n"
     record(tmp_path).append("lesson", "how-an-engine-works")
     assert first.id not in course("next", "--quiet").out

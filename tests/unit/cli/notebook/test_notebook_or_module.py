@@ -172,13 +172,13 @@ def test_a_watch_of_a_notebook_grades_each_save(course, notebook):
 
     from course.cli.frame.console import Console, Settings
     from course.cli.frame.here import Here
-    from course.cli.work.watching import Watcher
+    from course.cli.loop import Watcher
     from course.handed_in import attempts
 
     here = Here.load()
     exercise = here.exercise("doubling")
     console = Console(Settings(), stdout=io.StringIO(), stderr=io.StringIO())
-    watcher = Watcher(console=console, here=here, exercise=exercise, name=notebook.name)
+    watcher = Watcher(console=console, here=here, exercise=exercise)
     session = attempts.open_session(exercise, here.catalog)
     write_into(notebook, GOOD)
     assert watcher.look(session)

@@ -24,7 +24,7 @@ def test_the_dashboard_names_the_next_step(course, workspace, write):
     course("check")
     ran = course()
     assert "every public check passes" in ran.out
-    assert "Next: course lesson half-as-much" in ran.out
+    assert "Next: course start halving" in ran.out
 
 
 def test_the_dashboard_survives_a_damaged_record(course, workspace):

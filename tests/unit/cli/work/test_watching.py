@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import contextlib
 import io
-import itertools
 import os
 import threading
 import time
+import tty
 
 import pytest
 
+from course.cli import loop
 from course.cli.frame.console import Console, Settings
 from course.cli.frame.here import Here
-from course.cli.work.watching import Watcher, saves
+from course.cli.loop import Watcher, saves
 from course.handed_in import attempts
 
 
@@ -112,7 +113,7 @@ def test_saves_are_noticed_quickly(tmp_path, how):
     folder.mkdir()
     path = folder / "doubling.py"
     path.write_text("one")
-    noticed = saves(path)
+    noticed = saves([path])
     next(noticed)
     done: list[float] = []
 
@@ -142,41 +143,183 @@ def test_saves_are_noticed_quickly(tmp_path, how):
 
 
 def test_ctrl_c_ends_a_watch_with_its_one_object(course, workspace, write, monkeypatch):
-    from course.cli.work import watching as module
-
     write("wrong", "RIGHT")
 
-    def two_saves(path):
-        yield
-        path.write_text(path.read_text().replace("wrong", "RIGHT"))
-        yield
+    def two_saves(paths, keys):
+        yield ""
+        paths[0].write_text(paths[0].read_text().replace("wrong", "RIGHT"))
+        yield ""
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(module, "saves", two_saves)
-    ran = course("watch", "--json")
+    monkeypatch.setattr(loop, "saves", two_saves)
+    ran = course("watch", "doubling", "--json")
     assert ran.code == 130
     body = ran.json
     assert (body["schema"], body["exit_code"], body["exercise"]) == ("course.watch/1", 130, "doubling")
-    assert [run["score"] for run in body["runs"]] == [2.0, 4.0]
+    assert [(run["exercise"], run["score"]) for run in body["runs"]] == [("doubling", 2.0), ("doubling", 4.0)]
     assert body["last"]["schema"] == "course.check/1"
 
 
+@pytest.fixture
+def pressed(monkeypatch):
+    """What happens in a loop, in this order: a key, or a call that is a save; at the end Ctrl-C."""
+
+    def script(*happens):
+        left = iter(happens)
+
+        def saves(paths, keys):
+            yield ""
+            for one in left:
+                if callable(one):
+                    one()
+                yield "" if callable(one) else one
+            raise KeyboardInterrupt
+
+        monkeypatch.setattr(loop, "saves", saves)
+        monkeypatch.setattr(loop, "_keys", lambda console: contextlib.nullcontext(Quiet()))
+
+    return script
+
+
+class Quiet:
+    """A keyboard that nobody touches while checks run."""
+
+    leave = False
+
+
+def _solve(name):
+    def save():
+        path = Here.load().workspace.root / name / f"{name}.py"
+        path.write_text("".join(f"def {task.id}(x):\n    'RIGHT'\n\n" for task in _exercise(name).task))
+
+    return save
+
+
+def _exercise(name):
+    return Here.load().catalog.exercise(name)
+
+
 def test_each_verdict_and_each_answer_to_a_key_ends_with_the_keys_and_the_file(
-    course, workspace, write, monkeypatch
+    course, workspace, write, pressed
 ):
-    from types import SimpleNamespace
-
-    from course.cli.work import watching as module
-
     write("wrong", "RIGHT")
-    pressed = iter(("", "v", "x\n", "q"))
-    monkeypatch.setattr(module, "saves", lambda path, wake: itertools.repeat(None))
-    keys = SimpleNamespace(taken=lambda: list(next(pressed)))
-    monkeypatch.setattr(module, "_keys", lambda console, wake: contextlib.nullcontext(keys))
-    ran = course("watch")
+    pressed("v", "x", "\n", "q", "r")
+    ran = course("watch", "doubling")
     assert ran.code == 0
-    assert ran.out.count("Waiting for a save of doubling/doubling.py. Keys: h next hint") == 2
-    assert ran.out.endswith("q leave.\n")
+    waiting = "Waiting for a save of doubling/doubling.py.\nKeys: h hint, v more, l lesson, t text, q leave\n"
+    assert ran.out.count(waiting) == 2
+    assert ran.out.endswith(waiting)
+
+
+@pytest.mark.parametrize("words", [("go",), ("watch",)])
+def test_the_next_task_opens_by_itself_when_one_passes(course, workspace, pressed, words):
+    pressed(_solve("doubling"), _solve("halving"))
+    ran = course(*words)
+    said = ran.out
+    assert said.index("Exercise 1 of 2: doubling") < said.index("All 2 public checks pass")
+    assert said.index("All 2 public checks pass") < said.index("Exercise 2 of 2: halving")
+    assert "Explained in: course lesson half-as-much" in said
+    assert said.endswith("Next: course submit  everything is done: hand it in\n")
+    assert (workspace / "halving" / "halving.py").is_file(), "it was put there"
+    assert ran.code == 0
+
+
+def test_what_is_in_the_files_already_counts(course, workspace, write, pressed):
+    write("RIGHT", "RIGHT")
+    pressed("q")
+    said = course("go").out
+    assert said.index("All 2 public checks pass") < said.index("Exercise 2 of 2: halving")
+    assert "Write RIGHT" not in said, "a file as it was handed out waits for its first save"
+
+
+def test_a_task_as_it_was_handed_out_is_checked_at_the_first_save_or_on_r(course, workspace, pressed):
+    pressed("r", "q")
+    said = course("go").out
+    assert said.count("Keys: r check, l lesson, t text, s skip, q leave") == 1
+    assert said.count("Keys: v more, l lesson, t text, s skip, q leave") == 1
+
+
+def test_keys_lead_to_other_tasks_and_back_and_a_task_that_is_done_stays(course, workspace, write, pressed):
+    write("RIGHT", "RIGHT")
+    course("check", "doubling")
+    pressed("b", "s", "q")
+    said = course("go").out
+    assert [line for line in said.splitlines() if line.startswith("Exercise ")] == [
+        "Exercise 2 of 2: halving",
+        "Exercise 1 of 2: doubling",
+        "Exercise 2 of 2: halving",
+    ]
+    assert "b back, s skip" in said
+
+
+def test_what_was_skipped_is_where_the_next_go_is_not(course, workspace, pressed):
+    pressed("s", "q")
+    assert "Exercise 2 of 2" in course("go").out
+    pressed("q")
+    assert "Exercise 1 of 2" not in course("go").out
+    assert "Exercise 1 of 2" in course("watch", "-C", "doubling").out, "a folder keeps to its task first"
+
+
+def test_the_lesson_the_text_and_the_way_back_are_keys(course, workspace, pressed, monkeypatch):
+    ran = []
+    monkeypatch.setattr(loop, "again", lambda words: ran.append(words) or 0)
+    pressed("l", "t", "q")
+    said = course("go").out
+    assert ran == [["lesson", "twice-as-much", "--page"]]
+    assert said.count("Waiting for a save of doubling/doubling.py.") == 3
+    assert "# Doubling" in said, "the whole text"
+
+
+def test_a_named_watch_stays_with_its_exercise(course, workspace, pressed):
+    pressed(_solve("doubling"), "s", "b", "q")
+    said = course("watch", "doubling").out
+    assert "All 2 public checks pass" in said
+    assert "halving" not in said
+
+
+def test_a_lesson_that_cannot_be_opened_is_said_and_the_loop_goes_on(course, workspace, pressed, monkeypatch):
+    from course.errors import NotFoundError
+
+    def fails(words):
+        raise NotFoundError("There is no such lesson.", code="lesson_not_found")
+
+    monkeypatch.setattr(loop, "again", fails)
+    pressed("l", "q")
+    ran = course("go")
+    assert (ran.code, ran.err) == (0, "There is no such lesson.\n")
+
+
+def test_q_while_checks_run_drops_them_and_records_nothing(watching, write):
+    watcher, session = watching
+    write("wrong", "RIGHT")
+    dropped, grade = threading.Event(), session.grade
+
+    def slow(submission, only=None):
+        assert dropped.wait(20)
+        return grade(submission, only)
+
+    session.drop, session.running, session.grade = dropped.set, "a check", slow
+    watcher.pressed = type("Leaving", (), {"leave": True})()
+    assert watcher.look(session)
+    assert watcher.runs == []
+    assert not watcher.here.history(watcher.exercise).runs
+
+
+def test_keys_are_taken_one_by_one_and_what_follows_q_stays_for_the_shell():
+    import pty
+
+    mine, terminal = pty.openpty()
+    try:
+        tty.setcbreak(terminal)
+        os.write(mine, b"hqls\n")
+        keys = loop.Keys(terminal)
+        while not keys.leave:
+            pass
+        assert (keys.wait(1), keys.wait(1)) == ("h", "q")
+        assert os.read(terminal, 9) == b"ls\n"
+    finally:
+        os.close(mine)
+        os.close(terminal)
 
 
 def test_there_must_be_a_file_to_begin_with(course, workspace):
@@ -240,12 +383,12 @@ def test_keys_give_a_hint_the_next_function_details_and_another_run(watching, wr
 def test_keys_name_a_hint_once_one_is_due_and_another_function_once_another_one_fails(watching, write):
     watcher, session = watching
     watcher.look(session)
-    assert watcher.keys == "v details, r again, q leave"
+    assert watcher.keys == ["v more"]
     write("wrong", "raise NotImplementedError")
     watcher.look(session)
-    assert watcher.keys == "h next hint, v details, r again, q leave"
+    assert watcher.keys == ["h hint", "v more"]
     watcher.press("h", session)
-    assert "next hint" not in watcher.keys
+    assert "h hint" not in watcher.keys
     write("wrong", "also wrong")
     watcher.look(session)
-    assert watcher.keys == "h next hint, n next failing function, v details, r again, q leave"
+    assert watcher.keys == ["h hint", "n next failing", "v more"]

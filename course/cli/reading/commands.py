@@ -258,9 +258,9 @@ def warmup(
 ) -> int:
     """Do a lesson's small tasks.
 
-    Without an id: all of them by lesson, with what is done; with a lesson's id or number, that lesson's. With
-    the id of one: its text, and the file to work in. Five minutes each, checked and explained as exercises
-    are; they count for nothing.
+    Without an id: all of them by lesson, with what is done; with a lesson's id, that lesson's. With the id or
+    the number of one: its text, and the file to work in. Five minutes each, checked and explained as
+    exercises are; they count for nothing.
     """
     console = current()
     lesson = _lesson_named(name)
@@ -297,10 +297,8 @@ def _warm_up(catalog: Catalog, name: str) -> Exercise:
 
 
 def _lesson_named(name: str | None) -> str:
-    """The id of the lesson that this is the id or the number of; "" if it is of none."""
-    with contextlib.suppress(NotFoundError):
-        return here_or_outside()[1].lesson_called(name).id if name else ""
-    return ""
+    """The id of the lesson that this is the id of; "" if it is of none. A number is a warm-up's."""
+    return name if name and name in here_or_outside()[1].lesson_ids() else ""
 
 
 def _list(console: Console, lesson: str = "") -> int:

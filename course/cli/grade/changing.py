@@ -1,7 +1,5 @@
 """After a run: ``rerun``, ``override``, ``late``, ``similar``, ``assign``, ``log`` and ``salvage``."""
 
-from __future__ import annotations
-
 from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial

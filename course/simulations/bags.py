@@ -33,6 +33,8 @@ more package to read MCAP. ``/tf_static`` is offered as "transient local", witho
 Writing the same streams to the same name gives the same bytes. This needs the extra ``ros``.
 """
 
+from __future__ import annotations
+
 import math
 import shutil
 import tempfile

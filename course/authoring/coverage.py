@@ -5,8 +5,6 @@ with the lines it takes up in the chapter, so that a part that was forgotten sho
 though the text itself is not here. ``docs/coverage.md`` is the same for readers; a test compares the two.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field

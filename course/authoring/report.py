@@ -1,7 +1,5 @@
 """The result of an audit: problems with file, line and fix, and the numbers of checked parts."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path

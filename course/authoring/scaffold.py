@@ -5,8 +5,6 @@ is ever overwritten, and either all files are written or none: an id or a signat
 is taken and a file that exists raise UsageError, and a student's installation MissingCapabilityError.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The results of a comparison in sentences, each made only from its rows."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 

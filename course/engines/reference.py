@@ -1,7 +1,5 @@
 """One measurement that ships with the course, for engines that are not installed; always marked as such."""
 
-from __future__ import annotations
-
 import functools
 import math
 from importlib.resources import files

@@ -1,7 +1,5 @@
 """Which engines exist, and which of them this machine has."""
 
-from __future__ import annotations
-
 import importlib.metadata
 from dataclasses import dataclass
 from typing import cast

@@ -1,7 +1,5 @@
 """The results of a comparison, as data: the same in memory, in the cache and in the shipped reference."""
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import hashlib

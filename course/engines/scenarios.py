@@ -4,8 +4,6 @@ Each one builds its scenes, runs them and reduces the outcome to one number, to 
 one. A scene gives the friction and the restitution that must act; the adapter finds the values to set.
 """
 
-from __future__ import annotations
-
 import math
 import statistics
 import time

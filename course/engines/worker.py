@@ -4,8 +4,6 @@ It answers each line of JSON on its standard input with one on its standard outp
 goes to standard error, where the parent finds the last lines of one that died.
 """
 
-from __future__ import annotations
-
 import functools
 import json
 import os

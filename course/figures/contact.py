@@ -1,7 +1,5 @@
 """Figures of the lesson on contact: a pair that passes or parts, a wall that is missed, a stack."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

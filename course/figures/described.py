@@ -3,8 +3,6 @@
 ``course.figures.plots`` draws them; nothing here imports matplotlib.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal

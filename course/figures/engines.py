@@ -1,7 +1,5 @@
 """The figure in the lesson on engines that shows what options do, drawn from the reference measurements."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

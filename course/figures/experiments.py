@@ -3,8 +3,6 @@
 ``render`` serves ``course sim run --plot``; ``of`` draws a simulation with its default settings, for lessons.
 """
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Callable

@@ -4,8 +4,6 @@ Everything is drawn in the spring's own measure z = h omega, step times angular 
 figures hold for every spring.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -4,8 +4,6 @@ How each looked when somebody last looked at it is kept, without its letters, wh
 business; what is written in it is kept as text.
 """
 
-from __future__ import annotations
-
 import inspect
 import traceback
 from collections.abc import Iterator

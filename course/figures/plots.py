@@ -1,7 +1,5 @@
 """Draws figures that are described as data, in the house style."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

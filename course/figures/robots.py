@@ -5,8 +5,6 @@ lean with ``kp`` and against the rate of leaning with ``kd``, through an ankle t
 the foot is long, and it acts on the state of some time ago.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Figure of the lesson on the gap between simulation and reality: one gain, chosen in four worlds."""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 

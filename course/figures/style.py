@@ -6,8 +6,6 @@ of its own and, where there is room, its name at the curve, so that a photocopy 
 Source: Okabe and Ito, Color Universal Design, 2002 (palette).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass

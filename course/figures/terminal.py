@@ -8,8 +8,6 @@ left out, ticks before titles.
 JSON request a line on standard input, one JSON answer a line on standard output.
 """
 
-from __future__ import annotations
-
 import base64
 import io
 import json

@@ -9,8 +9,6 @@ container allows and says which in the output that the instructor sees. A result
 the grader fails, it says so and gives no score, so that no student loses points for it.
 """
 
-from __future__ import annotations
-
 import hashlib
 import io
 import json

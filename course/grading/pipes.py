@@ -4,8 +4,6 @@ Also the life of such a process, which ends with the one that started it, and it
 untrusted files.
 """
 
-from __future__ import annotations
-
 import _thread
 import os
 import queue

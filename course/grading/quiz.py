@@ -9,8 +9,6 @@ Of several attempts the best one counts. Two with the same seed have the same qu
 student has read the explanations: only the first of each seed counts.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from dataclasses import dataclass

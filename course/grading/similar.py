@@ -6,8 +6,6 @@ a copy with changed names counts in full. Similarity is a reason to talk, not a 
 few right solutions.
 """
 
-from __future__ import annotations
-
 import ast
 import contextlib
 import hashlib

@@ -24,7 +24,7 @@ from course.isolation.failures import IsolationError
 #: each other by the same relative names in both places.
 _PACKAGE = "course_worker"
 _COPIED = (
-    *(f"isolation/inside/{name}.py" for name in ("frames", "encoding", "decoding", "wire")),
+    "isolation/inside/wire.py",
     *(f"isolation/inside/{name}.py" for name in ("loops", "statements", "declared", "loading")),
     *(f"isolation/inside/{name}.py" for name in ("worker", "lockdown", "zygote")),
     "physics/systems.py",

@@ -29,7 +29,7 @@ from typing import Any
 
 from course.isolation import launch
 from course.isolation.failures import IsolationError
-from course.isolation.inside.frames import ENDED, LOOK
+from course.isolation.inside.wire import ENDED, LOOK
 from course.isolation.launch import View, view_for
 from course.isolation.levels import (
     LIMITS,

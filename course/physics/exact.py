@@ -4,8 +4,6 @@
 it with the closed forms.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -4,8 +4,6 @@ Energies are per unit mass (J/kg) and take a whole trajectory at once: q and v o
 energies of shape (...).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -10,8 +10,6 @@ gyroscopic one, is why a body spun about its middle axis flips over and over (Dz
 Source: Goldstein, Poole, Safko, Classical Mechanics, 3rd edition, 2001, chapters 4 and 5.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 

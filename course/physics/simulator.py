@@ -16,8 +16,6 @@ States may hold many runs at once (leading axes), which are then advanced togeth
     [0.452, 1.01, 1.428]
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field

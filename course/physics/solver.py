@@ -9,8 +9,6 @@ Gauss-Seidel, called sequential impulses from 2006 on); Müller et al., Position
 et al., Small Steps in Physics Simulation, 2019.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

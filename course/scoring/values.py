@@ -15,7 +15,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from course.isolation.inside.frames import MAX_VALUES
+from course.isolation.inside.wire import MAX_VALUES
 from course.printable import one_line
 from course.scoring.failures import CheckFailed
 from course.scoring.verdict import Finding

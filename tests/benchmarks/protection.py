@@ -35,9 +35,9 @@ from course.authoring.exercises.grading import (  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.isolation.levels import Deadline  # noqa: E402
 from course.isolation.session import Connection  # noqa: E402
+from course.scoring import kit  # noqa: E402
 from course.scoring.judging.session import GradingSession, pinned_to  # noqa: E402
 from course.scoring.judging.submission import Submission, Terms  # noqa: E402
-from course.scoring.kit import expectations  # noqa: E402
 
 TICK = os.sysconf("SC_CLK_TCK")
 
@@ -131,7 +131,7 @@ def diagnosis(exercise_id: str, rounds: int) -> None:
     catalog = Catalog()
     exercise = catalog.exercise(exercise_id)
     model = solution_path(catalog, exercise)
-    explained = expectations._explained
+    explained = kit._explained
     ratios = {}
     with GradingSession(exercise, catalog, scope="full", processor=0) as session:
         explainer = session._explainer
@@ -140,14 +140,14 @@ def diagnosis(exercise_id: str, rounds: int) -> None:
             for number in range(2 * rounds + 2):
                 silent = number % 2
                 session._explainer = None if silent else explainer
-                expectations._explained = (lambda _: (None, "")) if silent else explained
+                kit._explained = (lambda _: (None, "")) if silent else explained
                 start = time.process_time() + descendants_cpu(os.getpid())
                 session.grade(handed_in)
                 # The first of each side is not counted: what all students of a run share is made in it.
                 if number > 1:
                     cpu[silent] += time.process_time() + descendants_cpu(os.getpid()) - start
             ratios[path.stem] = cpu[0] / cpu[1]
-    expectations._explained = explained
+    kit._explained = explained
     worst = sorted(ratios, key=ratios.__getitem__)[-5:]
     print(
         f"{exercise_id}: {len(ratios)} mistakes, {rounds} gradings each; with diagnosis over without: median"

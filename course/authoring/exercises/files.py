@@ -4,8 +4,6 @@ Blanks left by ``course author new``, hints, README, stub against solution, and 
 ``course.authoring.exercises.proofs`` has the rules that take a grading run.
 """
 
-from __future__ import annotations
-
 import ast
 import hashlib
 import math

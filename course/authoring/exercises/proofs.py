@@ -4,8 +4,6 @@ Every submission is graded with all checks, as in a grading run. A wrong verdict
 file, and where possible the line, that an author would open first.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """Reads Python files of an exercise without running them: signatures, imports, and the checks' markers."""
 
-from __future__ import annotations
-
 import ast
 import copy
 import json

@@ -5,8 +5,6 @@ records, and each number in the prose, ``[0.0890](=error)``, with the value of i
 the author wrote.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 import re

@@ -1,7 +1,5 @@
 """``course author``: write lessons and exercises, and prove that they are right. Needs a checkout."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 from collections.abc import Callable, Iterable, Iterator

@@ -4,8 +4,6 @@ A file beside the README's has the digest of each picture's source. A test compu
 takes seconds, and names each picture that is out of date.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

@@ -1,7 +1,5 @@
 """Whether the commands that a lesson gives to try do something, in a fresh workspace."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import json

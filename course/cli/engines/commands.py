@@ -1,7 +1,5 @@
 """``course engines``: which real engines this machine has, and the same scenarios in each of them."""
 
-from __future__ import annotations
-
 import csv
 import io
 import math

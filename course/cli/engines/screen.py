@@ -1,7 +1,5 @@
 """A comparison on the screen: one table for each scenario, the truth in its first column."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 

@@ -1,7 +1,5 @@
 """After a run: ``rerun``, ``override``, ``late``, ``similar``, ``assign``, ``log`` and ``salvage``."""
 
-from __future__ import annotations
-
 from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
@@ -64,8 +62,8 @@ from course.grading.results.late import (
 from course.grading.results.merge import merged
 from course.grading.results.roster import Roster, read_roster
 from course.grading.running import assign as assigning
+from course.grading.running import batch
 from course.grading.running.assign import Assigned, Unsettled
-from course.grading.running.batch import grade_all
 from course.grading.running.folder import export_all, open_results, previewed
 from course.grading.running.rerun import Regraded, RerunOptions
 from course.grading.running.rerun import rerun as regrade
@@ -104,7 +102,7 @@ def rerun(
     def grading(accepted: str) -> Regraded:
         mine = replace(options, accepted=accepted)
         with open_results(out, writing=not dry_run) as results, console.working("Grading again"):
-            return regrade(results, catalog, mine, grade=partial(grade_all, graders=jobs))
+            return regrade(results, catalog, mine, grade=partial(batch.grade_all, graders=jobs))
 
     done = agreed(console, grading, yes=yes)
     code = InternalError.exit_code if done.faults else 0
@@ -428,7 +426,7 @@ def assign(
     else:
         level, at_least = levels(isolation)
         reason = reason or ("the match that was proposed" if accept_names else "")
-        grade = partial(grade_all, graders=jobs)
+        grade = partial(batch.grade_all, graders=jobs)
 
         def assigned(accepted: str) -> tuple[list[Assigned], list[Unsettled]]:
             with previewed(out) if dry_run else open_results(out, writing=True) as results:

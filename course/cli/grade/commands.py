@@ -1,7 +1,5 @@
 """``course grade``: an instructor's commands for a class. They need a checkout."""
 
-from __future__ import annotations
-
 import secrets
 from pathlib import Path
 from typing import Annotated

@@ -1,7 +1,5 @@
 """The options of ``course grade`` that need more than a line, or that several commands take."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The replies of ``course grade --json``, except ``course.grade/1``, which the exports define."""
 
-from __future__ import annotations
-
 import msgspec
 
 from course.cli.frame.replies import Envelope

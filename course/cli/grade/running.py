@@ -40,7 +40,7 @@ from course.grading.gradebook.records import Decision, Result
 from course.grading.results.effective import MISSING, NOT_YET, Effective
 from course.grading.results.late import in_days
 from course.grading.results.roster import read_roster
-from course.grading.running.batch import grade_all
+from course.grading.running import batch
 from course.grading.running.folder import open_results
 from course.grading.running.rerun import Change, RerunOptions, rerun
 from course.grading.running.run import GradeAll, RunOptions, Summary, Ungraded, grade_class
@@ -155,7 +155,7 @@ def _only_one_way(jobs: int, local_cluster: int | None, scheduler: str | None) -
 def _graders(jobs: int, local_cluster: int | None, scheduler: str | None) -> AbstractContextManager[GradeAll]:
     """The graders: processes on this machine, or a cluster."""
     if local_cluster is None and scheduler is None:
-        return nullcontext(partial(grade_all, graders=jobs))
+        return nullcontext(partial(batch.grade_all, graders=jobs))
     cluster: AbstractContextManager[GradeAll] = (
         extras.load("cluster").local_cluster(local_cluster or 1)
         if scheduler is None

@@ -5,8 +5,6 @@ and interpolates in between. Here it takes the given time as one step (``max_sub
 results lag by up to a step.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any

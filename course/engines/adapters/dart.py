@@ -4,8 +4,6 @@ The restitutions of two bodies are multiplied; of two frictions the smaller one 
 too: each is a skeleton with a free joint.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any

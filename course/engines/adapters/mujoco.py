@@ -5,8 +5,6 @@ of two geoms is the larger of the two. The energy needs present velocities: afte
 quantities are still those at the beginning of the step, so ``motion`` updates them first.
 """
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Mapping

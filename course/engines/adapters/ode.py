@@ -7,8 +7,6 @@ precision solver divides by zero and ends the process, so it stays at ODE's own 
 An exception inside a callback of panda3d is printed and dropped; the one callback here cannot fail.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -4,8 +4,6 @@ Two materials' coefficients are averaged. By default contacts slower than 2 m/s 
 an articulation have friction, and its links are damped.
 """
 
-from __future__ import annotations
-
 import warnings
 from typing import Any
 

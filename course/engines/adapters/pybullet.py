@@ -4,8 +4,6 @@ Restitutions and frictions of two bodies are multiplied. By default it damps eve
 motion and in its spin (0.04 each); a joint of a robot has a motor that holds it, which is switched off here.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Mapping

@@ -4,8 +4,6 @@ Its defaults are made for worlds measured in pixels: bodies may overlap by 0.1 u
 apart. Friction and restitution of two shapes are multiplied.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any

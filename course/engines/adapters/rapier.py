@@ -3,8 +3,6 @@
 It averages the coefficients of two materials by default, so equal ones act unchanged.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -8,8 +8,6 @@ is never on disk: any program that can talk to a scheduler can make its workers 
 of the machine can reach a port.
 """
 
-from __future__ import annotations
-
 import contextlib
 import json
 import logging

@@ -5,8 +5,6 @@ ends its grader is soon alone. A worker also grades other submissions, and may d
 submission is blamed, it is graded while nothing else is, after the rest of the class.
 """
 
-from __future__ import annotations
-
 import itertools
 import queue
 import time

@@ -1,7 +1,5 @@
 """The formats by name, and JUnit."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The instructor's two plain exports: ``results.jsonl`` with everything, ``grades.csv`` with the scores."""
 
-from __future__ import annotations
-
 import contextlib
 import csv
 import io

@@ -4,8 +4,6 @@ Both find a student by their own id, which only the roster has. An id is written
 that a spreadsheet would take for a formula cannot be escaped without becoming another id.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import math

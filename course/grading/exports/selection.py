@@ -1,7 +1,5 @@
 """The content of an export, who is left out, and why; the same for every format."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path

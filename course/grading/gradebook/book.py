@@ -7,8 +7,6 @@ of the graders', a late policy) are stored separately and never change the resul
 ``course.grading.results.effective`` puts the two together.
 """
 
-from __future__ import annotations
-
 import contextlib
 import getpass
 import hashlib

@@ -14,8 +14,6 @@ damaged file without anything around them. Deleted rows are overwritten, so none
 comes back.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import itertools

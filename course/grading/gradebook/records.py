@@ -1,7 +1,5 @@
 """The content of a gradebook, as types."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

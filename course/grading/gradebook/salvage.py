@@ -5,8 +5,6 @@ order matters, and damaged rows are left out. An override is in the gradebook tw
 in the journal, on pages that are not the same.
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import shutil

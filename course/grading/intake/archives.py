@@ -4,8 +4,6 @@ Links, devices, bombs and paths that lead elsewhere are refused with a reason th
 folder around everything, and the backslashes of Windows, are accepted and noted.
 """
 
-from __future__ import annotations
-
 import ast
 import atexit
 import contextlib

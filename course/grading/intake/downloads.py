@@ -10,8 +10,6 @@ The kind follows from all the names together. A folder in which only some names 
 and the others are listed; a file without a known owner is reported, never guessed.
 """
 
-from __future__ import annotations
-
 import bz2
 import contextlib
 import datetime as dt

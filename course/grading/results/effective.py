@@ -9,8 +9,6 @@ an option decides how an export writes it. Until a run has looked at all of a st
 ``missing``: it is ``not_graded_yet``, and no platform is told anything.
 """
 
-from __future__ import annotations
-
 import contextlib
 import itertools
 import math

@@ -5,8 +5,6 @@ numbers, then by any id, at last by a name that one row alone has. The new file 
 that only the stored roster has goes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 

@@ -4,8 +4,6 @@ No file is renamed. The graders are those of the run, so the score is the one th
 given; ``course grade run --resume`` leaves assigned files alone.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass

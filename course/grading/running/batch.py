@@ -4,8 +4,6 @@ A grader that dies takes one submission with it at most: that one is tried again
 it kills it is reported as our fault. A grader that hangs is ended at a deadline beyond those of a submission.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """The folder of a run: created, opened for later commands, and its files written anew."""
 
-from __future__ import annotations
-
 import contextlib
 import shutil
 from collections.abc import Iterator

@@ -5,8 +5,6 @@ seed. Submissions are regraded if another version of the graders scored them, or
 unscored. Old results are kept beside the new ones; an override still replaces both.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any

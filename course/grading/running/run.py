@@ -1,7 +1,5 @@
 """A grading run from folder to gradebook: what ``course grade run`` does, without the words."""
 
-from __future__ import annotations
-
 import contextlib
 import secrets
 import time

@@ -2,6 +2,5 @@
 
 worker, zygote, lockdown  the process, the one it is forked from, and what it may not do
 loops, declared           marches and folds run where the function is; what may be imported
-wire, frames, encoding, decoding
-                          the language of questions and answers
+wire                      the language of questions and answers
 """

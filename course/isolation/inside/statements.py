@@ -16,11 +16,6 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
 
-__all__ = [
-    "PYTHON_MAGICS", "UNREADABLE", "Piece", "bound", "defined_in", "loaded", "needed", "parsed", "pieces",
-    "tree", "without_magics", "without_shell",
-]  # fmt: skip
-
 #: What Python raises for a text that it cannot read; the last two for nesting that its parser cannot follow.
 UNREADABLE = (SyntaxError, ValueError, RecursionError, MemoryError)
 #: A line on which a statement of a module begins: neither indented, nor a comment, nor the end of a bracket,

@@ -12,8 +12,6 @@ Source: Catto, Soft Constraints (Game Developers Conference), 2011, and Open Dyn
 CFM); MuJoCo documentation, Computation (solref, solimp); Horak and Trinkle, IEEE RA-L 4, 2019 (comparison).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Protocol

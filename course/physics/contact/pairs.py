@@ -3,8 +3,6 @@
 Source: Ericson, Real-Time Collision Detection, 2005, section 5.5 (moving spheres).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

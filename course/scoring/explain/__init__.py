@@ -6,32 +6,3 @@ the same at home and in a grading run. The answers are compared with those of ea
 probes of the single checks decide, and of several probes the one that the others do not contradict.
 The words are data.
 """
-
-from course.scoring.explain.fingerprint import Answers, fingerprint
-from course.scoring.explain.story import (
-    Diagnosis,
-    Failure,
-    Row,
-    Story,
-    Table,
-    Words,
-    matching,
-    read_table,
-    read_words,
-    story_of,
-)
-
-__all__ = [
-    "Answers",
-    "Diagnosis",
-    "Failure",
-    "Row",
-    "Story",
-    "Table",
-    "Words",
-    "fingerprint",
-    "matching",
-    "read_table",
-    "read_words",
-    "story_of",
-]

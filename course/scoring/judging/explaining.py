@@ -15,19 +15,28 @@ import numpy as np
 
 from course.isolation.failures import StudentFailure
 from course.isolation.session import LoadRefusedError
-from course.scoring.explain import (
+from course.scoring.explain.fingerprint import (
+    calls_between,
+    fingerprint,
+    in_range,
+    may_remember,
+    numbers_of,
+    read,
+)
+from course.scoring.explain.story import (
+    TABLE,
+    WORDS,
     Diagnosis,
     Failure,
     Story,
     Table,
     Words,
-    fingerprint,
+    is_right,
+    matching,
     read_table,
     read_words,
     story_of,
 )
-from course.scoring.explain.fingerprint import calls_between, in_range, may_remember, numbers_of, read
-from course.scoring.explain.story import TABLE, WORDS, is_right, matching
 from course.scoring.failures import CheckFailed
 from course.scoring.remote import Heard, RemoteSubmission
 from course.scoring.verdict import CheckResult, Finding, Status

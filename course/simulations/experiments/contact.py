@@ -1,7 +1,5 @@
 """Two balls meet head on: when, how fast do they part, and what is kept?"""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any

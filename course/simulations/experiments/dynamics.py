@@ -1,7 +1,5 @@
 """An arm of two links: plan a path (kinematics), find the torques (inverse), let them act (forward)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """A ball is let go: when does it land, and what does each method make of the simplest motion there is?"""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -13,7 +13,7 @@ import recorder
 
 from course.physics.invariants import convergence_order
 from course.scoring import kit
-from course.scoring.kit.callbacks import march_all_errors
+from course.scoring.kit import march_all_errors
 
 
 class SlopeRecorder(recorder.Recorder):

@@ -13,9 +13,8 @@ import pytest
 
 from course.authoring.exercises.grading import LocalSubmission
 from course.scoring import kit
-from course.scoring.explain import fingerprint, matching, read_table
-from course.scoring.explain.fingerprint import read
-from course.scoring.explain.story import is_right
+from course.scoring.explain.fingerprint import fingerprint, read
+from course.scoring.explain.story import is_right, matching, read_table
 
 ROOT = Path(__file__).resolve().parents[3]
 SOLUTION = ROOT / "solutions" / "digital-twin"

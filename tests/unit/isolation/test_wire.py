@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from course.isolation.inside import decoding, wire
+from course.isolation.inside import wire
 from course.isolation.inside.wire import Codec, Kind, Reference, Rhs, Seed, UnsupportedValueError, WireError
 
 _DTYPES = st.sampled_from([np.dtype(name) for name in ("<f8", "<i8", "?", "<c16")])
@@ -102,7 +102,7 @@ def test_every_plain_value_comes_back_as_it_was(value: Any) -> None:
 def test_the_quick_way_and_the_long_way_agree(value: list[Any]) -> None:
     body = _body(value)
     assert _same(value, Codec().decode(body))
-    assert _same(value, decoding.Reader(body, None, False).take(wire.MAX_DEPTH))
+    assert _same(value, wire.Reader(body, None, False).take(wire.MAX_DEPTH))
 
 
 def test_arrays_that_arrive_can_be_written_to_and_are_aligned() -> None:

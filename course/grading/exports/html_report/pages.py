@@ -1,7 +1,5 @@
 """The templates of these pages: text is escaped, and characters that affect other text are spelled out."""
 
-from __future__ import annotations
-
 import base64
 import contextlib
 import hashlib

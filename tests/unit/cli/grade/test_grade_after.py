@@ -219,7 +219,7 @@ def test_a_share_is_a_part_of_one_or_a_percentage(course, out: Path, monkeypatch
         asked.append(at_least)
         return Similar()
 
-    monkeypatch.setattr("course.grading.similar.compare", compare)
+    monkeypatch.setattr("course.cli.grade.changing.compare", compare)
     assert course("grade", "similar", "out", "--share", text).code == 0
     assert course("grade", "similar", "out").code == 0
     assert asked == [0.25, 0.6]

@@ -94,13 +94,7 @@ def test_imu_inputs(submission, rng):
 @pytest.mark.points(5)
 def test_fit_noise_unknown(submission, rng):
     """Gyroscopes of other kinds and other sampling rates are identified from their recordings"""
-
-    def make():
-        density, dt = 10 ** rng.uniform(-3.5, -2.0), rng.uniform(0.005, 0.03)
-        # The walk takes over after some 60 to 120 samples: both are to be seen in one recording.
-        return dt, density, density / (dt * rng.uniform(60, 120)), density * rng.uniform(10, 60)
-
-    sensors.expect_fits(submission, sensors.recordings(rng, 12, make))
+    sensors.expect_fits(submission, sensors.recordings(rng, 12, lambda: sensors.unknown_gyroscope(rng)))
 
 
 @pytest.mark.task("fit_noise")

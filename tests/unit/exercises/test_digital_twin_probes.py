@@ -813,3 +813,19 @@ def test_small_steps_of_a_gear_count():
     play(Fake(), *asked)
     with pytest.raises(kit.CheckFailed):
         play(Fake("backlash", play_without_small_steps), *asked)
+
+
+@pytest.mark.parametrize("seed", [None, 0, 1, 4])
+def test_a_mistake_in_a_fit_is_named_alike_whatever_recordings_a_run_draws(seed):
+    def of_the_whole(still, dt):
+        """Near the walk where walk and density are alike, as in the recordings of the public check."""
+        std = np.std(still)
+        walk = std / math.sqrt(dt * len(still))
+        return {"noise_density": std * math.sqrt(dt), "bias_random_walk": walk, "bias0": still[0]}
+
+    rng = np.random.default_rng(seed or 0)
+    like_at_home = 0.01, 0.002, 0.003, 0.05
+    make = (lambda: like_at_home) if seed is None else (lambda: sensor_bundles.unknown_gyroscope(rng))
+    with pytest.raises(kit.CheckFailed) as failed:
+        sensor_bundles.expect_fits(Fake("fit_noise", of_the_whole), sensor_bundles.recordings(rng, 8, make))
+    assert failed.value.guess.code == "DRIFT_COUNTED_AS_NOISE"

@@ -132,10 +132,15 @@ def test_a_page_asks_for_nothing_and_fits_a_phone(browser: Any, folder: Path, na
     page.on("request", lambda request: asked.append(request.url))
     page.goto((folder / name).as_uri())
     width = page.evaluate("document.documentElement.scrollWidth")
+    cut = page.evaluate(
+        "[...document.querySelectorAll('.scroll')].filter(one => one.scrollWidth > one.clientWidth + 1)"
+        ".map(one => one.ariaLabel)"
+    )
     context.close()
     assert said == []
     assert asked == [(folder / name).as_uri()]
     assert width == 390
+    assert cut == [], "no column of a table lies beside the screen"
 
 
 def test_tables_sort_and_filter_by_keyboard(browser: Any, folder: Path) -> None:

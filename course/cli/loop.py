@@ -18,6 +18,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from course.catalog.models import Exercise
 from course.cli.frame.app import again
@@ -37,8 +38,10 @@ from course.cli.work.verdict import is_unwritten, show_loading, show_verdict
 from course.errors import INTERRUPTED, CourseError, UngradableError
 from course.handed_in import attempts
 from course.handed_in.attempts import Attempt
-from course.scoring.judging.session import GradingSession
 from course.scoring.verdict import Verdict
+
+if TYPE_CHECKING:
+    from course.scoring.judging.session import GradingSession
 
 # ---
 # Single key presses while a command waits or works, on a terminal only.
@@ -202,12 +205,16 @@ class _Loop:
         if not self.alone and not watcher.is_begun:
             stays = False
             watcher.wait()
+        session: GradingSession | None = None
         try:
-            console.flush()
-            with attempts.open_session(task, self.here.catalog) as session:
+            with contextlib.ExitStack() as kept:
                 while True:
                     with _keys(console) as keys:
                         watcher.pressed = keys
+                        self._remind(watcher, keys)
+                        # Once there is something to read: what a session needs takes a second to load.
+                        if session is None:
+                            session = kept.enter_context(attempts.open_session(task, self.here.catalog))
                         key = self._until_key(watcher, session, keys, stays=stays)
                     if key not in {"l", "t"}:
                         return self._other(task, key)
@@ -221,7 +228,6 @@ class _Loop:
         Args:
             stays: a pass at the first look does not lead on.
         """
-        self._remind(watcher, keys)
         for key in saves(watcher.paths, keys):
             if key in self._elsewhere(watcher.exercise) and key:
                 return key

@@ -18,6 +18,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from course.catalog.models import Exercise
 from course.cli.frame.app import again
@@ -37,8 +38,10 @@ from course.cli.work.verdict import is_unwritten, show_loading, show_verdict
 from course.errors import INTERRUPTED, CourseError, UngradableError
 from course.handed_in import attempts
 from course.handed_in.attempts import Attempt
-from course.scoring.judging.session import GradingSession
 from course.scoring.verdict import Verdict
+
+if TYPE_CHECKING:
+    from course.scoring.judging.session import GradingSession
 
 # ---
 # Single key presses while a command waits or works, on a terminal only.
@@ -175,8 +178,10 @@ class _Loop:
         from course.isolation.probe import kept_sandboxes
 
         task, code, name = task or next_task(self.here.catalog, self.here.standing()), 0, ""
-        led, self.console.led = self.console.led, True
+        self.console.led = True
         try:
+            if task is None:
+                self._after_all()
             with kept_sandboxes():  # the tasks are checked one after the other
                 while task is not None:
                     name = task.id
@@ -186,9 +191,7 @@ class _Loop:
             if self.console.fancy:
                 self.console.blank()  # the terminal has written ^C
         finally:
-            self.console.led = led
-        if not name:
-            return self._after_all(unasked=True)
+            self.console.led = False
         self.console.emit(Watch(exit_code=code, exercise=name, runs=tuple(self.runs), last=self.last))
         return code
 
@@ -196,18 +199,23 @@ class _Loop:
         """Work on a task until it passes or the user wants another one, which is returned."""
         self.here, console = Here.load(), self.console
         watcher = Watcher(console, self.here, task, self.verbose, self.named, self.runs)
-        stays = is_done(self.here.standing(), task)  # back to one that is done: not on at once
+        stays = self.alone
         if not self.alone:
             self._open(task)
-        if not self.alone and not watcher.is_begun:
-            stays = False
-            watcher.wait()
+            if watcher.is_begun:  # back to one that is done: not on at once
+                stays = is_done(self.here.standing(), task)
+            else:
+                watcher.wait()
+        session: GradingSession | None = None
         try:
-            console.flush()
-            with attempts.open_session(task, self.here.catalog) as session:
+            with contextlib.ExitStack() as kept:
                 while True:
                     with _keys(console) as keys:
                         watcher.pressed = keys
+                        self._remind(watcher, keys)
+                        # Once there is something to read: what a session needs takes a second to load.
+                        if session is None:
+                            session = kept.enter_context(attempts.open_session(task, self.here.catalog))
                         key = self._until_key(watcher, session, keys, stays=stays)
                     if key not in {"l", "t"}:
                         return self._other(task, key)
@@ -221,16 +229,15 @@ class _Loop:
         Args:
             stays: a pass at the first look does not lead on.
         """
-        self._remind(watcher, keys)
         for key in saves(watcher.paths, keys):
             if key in self._elsewhere(watcher.exercise) and key:
                 return key
             told = watcher.press(key, session) if key else watcher.look(session)
-            if told and key in {"", "r"} and watcher.passes and not stays and not self.alone:
+            if told and key in {"", "r"} and watcher.passes and not stays:
                 return ""
             if told:
                 self._remind(watcher, keys)
-            stays = False
+            stays = self.alone
         return _LEAVE
 
     def _remind(self, watcher: Watcher, keys: Keys | None) -> None:
@@ -265,17 +272,15 @@ class _Loop:
             self._after_all()
         return following
 
-    def _after_all(self, *, unasked: bool = False) -> int:
-        """No task is left: the quiz, and handing in, if the user agrees; of nobody, if ``unasked``."""
-        step = next_in_course(self.here.catalog, self.here.standing())
-        while True:
+    def _after_all(self) -> None:
+        """No task is left: the quiz, and handing in, each if the user agrees."""
+        before, step = "", next_in_course(self.here.catalog, self.here.standing())
+        while step != before:
             self.console.note((f"Next: {step}", "bold"), (f"  {why(self.here.catalog, step)}", "dim"))
-            if not (self.console.go_on("") if self.console.interactive else unasked):
-                return 0
-            code = again(shlex.split(step)[1:])
+            if not self.console.interactive or not self.console.go_on(""):
+                return
+            again(shlex.split(step)[1:])
             before, step = step, next_in_course(self.here.catalog, self.here.standing())
-            if step == before or not self.console.interactive:
-                return code
 
     def _open(self, task: Exercise) -> None:
         """The text of a task, and its file in the workspace."""
@@ -304,16 +309,14 @@ class _Loop:
             for each in task.task:
                 console.item(each.id, each.title, width=max(len(one.id) for one in task.task))
             tell_length(console, task)
-        console.note(f"Explained in: {self._lesson(task)}")
-
-    def _lesson(self, task: Exercise, about: str = "") -> str:
-        return f"course lesson {task.where_to_read(about)}"
+        console.note(f"Explained in: course lesson {task.where_to_read('')}")
 
     def _show(self, task: Exercise, watcher: Watcher, key: str) -> None:
         """The task's text once more, or the lesson where it explains it."""
         try:
             if key == "l":
-                again([*shlex.split(self._lesson(task, watcher.about))[1:], *self._by_line()])
+                by_line = ["--page"] if self.console.plain else []
+                again(["lesson", task.where_to_read(watcher.about), *by_line])
             elif task.is_warm_up:
                 self._text(task)
             else:
@@ -322,9 +325,6 @@ class _Loop:
         except CourseError as error:
             self.console.error(error.message, error.help)
         self.here = watcher.here = Here.load()
-
-    def _by_line(self) -> list[str]:
-        return ["--page"] if self.console.plain else []
 
 
 def saves(paths: Sequence[Path], keys: Keys | None = None) -> Iterator[str]:

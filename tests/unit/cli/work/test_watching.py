@@ -277,6 +277,26 @@ def test_a_named_watch_stays_with_its_exercise(course, workspace, pressed):
     assert "halving" not in said
 
 
+def test_with_no_task_left_nothing_is_handed_in_unasked(course, workspace, pressed, write):
+    write("RIGHT", "RIGHT")
+    course("check", "doubling")
+    course("start", "halving")
+    pressed(_solve("halving"))
+    course("watch", "halving")
+    course("check", "halving")
+    for words in (("go",), ("watch",)):
+        assert course(*words).out == "Next: course submit  everything is done: hand it in\n"
+    assert course("watch", "--json").json["exercise"] == ""
+    assert not list(workspace.glob("*.zip"))
+
+
+def test_a_named_watch_works_where_the_record_cannot_be_read(course, workspace, pressed):
+    (workspace / ".course" / "progress.sqlite").write_bytes(b"not a database, not at all, no" * 10)
+    pressed("q")
+    assert course("watch", "doubling").code == 0
+    assert course("go").code != 0
+
+
 def test_a_lesson_that_cannot_be_opened_is_said_and_the_loop_goes_on(course, workspace, pressed, monkeypatch):
     from course.errors import NotFoundError
 

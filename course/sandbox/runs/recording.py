@@ -36,7 +36,10 @@ _MOST_TICKS = 100_000_000
 #: Characters of what a parser says, which may quote the whole file.
 _MOST_SAID = 200
 #: The methods that a line of a recording may call.
-_INPUTS = {"reset", "set", "grab", "drag", "release", "throw", "spawn"}
+_INPUTS = {
+    *("reset", "set", "grab", "drag", "release", "throw", "spawn"),
+    *("place", "aim", "change", "remove", "copy", "stop"),
+}
 
 
 class Head(msgspec.Struct, frozen=True, kw_only=True, tag_field="kind", tag="head"):
@@ -96,8 +99,8 @@ class Recording:
             )
         ]
         self._every = every
-        world.on_input = self._note
-        world.on_tick = (every, self._hash)
+        world.on_input.append(self._note)
+        world.on_tick.append((every, self._hash))
 
     def encode(self) -> bytes:
         """The file, up to the present step."""

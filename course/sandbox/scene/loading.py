@@ -161,7 +161,7 @@ def unsaid(scene: Scene) -> Iterator[str]:
     tried |= {
         name: (setting.low, setting.high)
         for name, setting in SETTINGS.items()
-        if name != "iterations" and (name in values_of(usual) or name not in {"left", "right"})
+        if name not in {"iterations", "walls"} and (name in values_of(usual) or name not in {"left", "right"})
     }
     for name, (low, high) in tried.items():
         ready, parameters, rest = _put_in(scene, {name: low + 0.37 * (high - low)})

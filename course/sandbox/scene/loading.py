@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -184,6 +185,15 @@ def question(chosen: Chosen) -> str:
     """
     asked = chosen.scene.prediction
     return "" if asked is None else fill(asked.question, values_of(chosen))
+
+
+def own_copy(chosen: Chosen, id_: str) -> bytes:
+    """The scene's file as somebody's own: another id, and its parameters as they are set now."""
+    text = re.sub(r'(?m)^id = ".*"$', f'id = "{id_}"', read_text(chosen.path), count=1)
+    for name, value in chosen.parameters.items():
+        block = rf'(\[\[parameter\]\]\nname = "{re.escape(name)}"\n(?:(?!\[).*\n)*?default = ).*'
+        text = re.sub(block, rf"\g<1>{value!r}", text, count=1)
+    return text.encode()
 
 
 def unwritten(path: Path) -> tuple[int, ...]:

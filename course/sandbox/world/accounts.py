@@ -296,6 +296,15 @@ class Accounts:
         """The last minute; call ``close`` first."""
         return History(*np.array(self._history).reshape(-1, 10).T)
 
+    def samples(self, after: float) -> list[list[float]]:
+        """The rows of the history that are later than this time, in s; call ``close`` first."""
+        rows: list[list[float]] = []
+        for row in reversed(self._history):
+            if row[0] <= after:
+                break
+            rows.append(row)
+        return rows[::-1]
+
     # -- booking ---------------------------------------------------------------------------------
 
     def close(self) -> Block | None:

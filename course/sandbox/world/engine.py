@@ -192,8 +192,7 @@ class Ledger:
         most = np.hypot(c.impulse[:, 0], c.impulse[:, 1]) * c.half
         rows = np.concatenate([c.row * bodies + c.a, c.row * bodies + c.b])
         summed = np.bincount(rows, weights=np.tile(most, 2), minlength=count * bodies)
-        levers: Floats = summed.reshape(count, bodies) * (1 + 1e-9)
-        return levers
+        return summed.astype(np.float64).reshape(count, bodies) * (1 + 1e-9)
 
     def energies(self, velocities: Floats) -> Floats:
         """Kinetic energies of several states, (k,), in J; velocities (k, n, 3)."""

@@ -279,6 +279,11 @@ class World:
         self._settle()
         return self._accounts.history()
 
+    def samples(self, after: float) -> list[list[float]]:
+        """The rows of ``history`` that are later than this time, in s."""
+        self._settle()
+        return self._accounts.samples(after)
+
     def state_hash(self) -> str:
         """Sixteen letters that stand for every bit of every body's state."""
         names = "\n".join(part.name for part in self.parts).encode()

@@ -1,7 +1,7 @@
 """The history of a run: frames of what became of a world, beside the recording of what was done to it.
 
-What was done is exact: from it any moment is made again, to the last bit. Frames are for the eye: they show any
-moment at once.
+What was done is exact: from it any moment is made again, to the last bit. Frames are for the eye: they show
+any moment at once.
 """
 
 from __future__ import annotations
@@ -37,10 +37,10 @@ _BYTES, _WHOLE = 280_000_000, 36_000
 def frame(world: World, pace: float = 1.0, number: int = 0) -> Frame:
     """Where everything is, (HEAD + 5 bodies + 4 joints,).
 
-    ``HEAD`` numbers: 1, version, t, pace, bodies, joints, whether a body is held, the four of the hand, kinetic,
-    potential, contacts, friction, rods, residual, momentum x and y, angular momentum, row of the body that is
-    held or -1, number of the world, start + given, and 1 if it is of the past. Then x, y, angle, vx, vy of each
-    body, then the two ends of each joint.
+    ``HEAD`` numbers: 1, version, t, pace, bodies, joints, whether a body is held, the four of the hand,
+    kinetic, potential, contacts, friction, rods, residual, momentum x and y, angular momentum, row of the
+    body that is held or -1, number of the world, start + given, and 1 if it is of the past. Then x, y, angle,
+    vx, vy of each body, then the two ends of each joint.
 
     Args:
         pace: simulated seconds per second that were really made, as a part of those asked for.
@@ -216,7 +216,7 @@ _PREVIEW, _LOOP = 60, 3.0
 
 
 def preview(chosen: Chosen) -> tuple[tuple[Part, ...], Frame, Frame]:
-    """A scene for a card: its bodies; where they are, (frames, n, 3): x, y, angle; the joints, (frames, m, 4)."""
+    """A scene for a card: its bodies; x, y and angle of each, (frames, n, 3); its joints, (frames, m, 4)."""
     world = World(chosen.scene, chosen.settings, receipt=False)
     length = min(chosen.scene.duration, _LOOP)
     cast: dict[str, Part] = {}

@@ -1,4 +1,4 @@
-"""A scene that is played: its world, its experiment, its story and its history, and all that can be done to them.
+"""A scene that is played: its world, experiment, story and history, and all that can be done to them.
 
 Views draw a stage and pass on what hands do. They hold no physics and no history of their own.
 """

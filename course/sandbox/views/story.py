@@ -118,8 +118,8 @@ class Experiment:
         self._asked: tuple[dict[str, float] | None, str] = (None, "")
         self.guess = guess
         self._answered = guess is not None
-        #: "none" (nothing is asked), "ask" (nobody guessed), "run" (somebody did), "touched" (not comparable any
-        #: more) or "done".
+        #: "none" (nothing is asked), "ask" (nobody guessed), "run" (somebody did), "touched" (not
+        #: comparable any more) or "done".
         self.stage = "none"
         if chosen.scene.prediction is not None:
             self._begin()

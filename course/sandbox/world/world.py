@@ -568,9 +568,12 @@ class World:
         """One of a body's ``NUMBERS`` now."""
         return self._space.number_of(name, key)
 
+    def moves(self, name: str) -> bool:
+        """Whether there is a body of this name that can move."""
+        return any(part.name == name and not part.fixed for part in self._space.parts)
+
     def _movable(self, name: str) -> None:
-        part = next((part for part in self._space.parts if part.name == name), None)
-        if part is None or part.fixed:
+        if not self.moves(name):
             raise UsageError(f"There is no {str(name)[:60]!r} that moves.", code="bad_parameter")
 
     def _wall(self) -> None:

@@ -341,7 +341,7 @@ class Stage:
             lines of the story that are new.
         """
         if self._work is not None:
-            self._work_on(budget)
+            self._work_on(2 * budget)  # nothing else moves meanwhile
             return []
         if self.at is not None:
             self._play_on(dt)

@@ -142,18 +142,18 @@ class Allowance:
 def past(stage: Stage, most: int = 900) -> bytes:
     """The past, for plots in a page that opened later.
 
-    3, version, rows, columns, and then rows of t, kinetic, potential, contacts, friction, rods, residual, px
+    3, rows, columns, and then rows of t, kinetic, potential, contacts, friction, rods, residual, px
     and py. A first number of 2 says that these rows come after what was sent before.
 
     Args:
         most: rows at most; the last ones, about 60 of them a second.
     """
-    return _rows(3.0, stage, stage.world.samples(-math.inf)[-most:])
+    return _rows(3.0, stage.world.samples(-math.inf)[-most:])
 
 
-def _rows(kind: float, stage: Stage, rows: list[list[float]]) -> bytes:
+def _rows(kind: float, rows: list[list[float]]) -> bytes:
     table = np.array(rows, dtype=np.float64).reshape(len(rows), -1)[:, :_PAST]
-    return _packed(np.concatenate([np.array([kind, stage.world.version, len(rows), _PAST]), table.ravel()]))
+    return _packed(np.concatenate([np.array([kind, len(rows), _PAST]), table.ravel()]))
 
 
 def _packed(numbers: Floats | Frame) -> bytes:
@@ -172,6 +172,8 @@ MAX_PAGES = 8
 _FPS = 60.0
 #: Texts that may wait for a page that reads slowly; one that is further behind is let go.
 _WAITING = 400
+#: Rows for the plots that may wait: a minute of them.
+_MOST_ROWS = 3600
 #: Requests beyond the allowance, in one go, after which a page is let go.
 _PATIENCE = 2000
 #: What the first number of a message says besides a frame (1) and the past (2, 3).
@@ -179,7 +181,7 @@ _CARD, _PATH, _FILM = 4.0, 5.0, 6.0
 
 
 class Page:
-    """One page's end: texts in order, and of each world only the newest of the frames.
+    """One page's end: texts in order, of each world only the newest of the frames, and all rows for the plots.
 
     Args:
         now: in s, on the session's clock.
@@ -195,6 +197,7 @@ class Page:
         self.allowance = Allowance(now)
         self._texts: deque[str | bytes] = deque()
         self._frames: dict[int, bytes] = {}
+        self._rows: list[list[float]] = []
         self._news = asyncio.Event()
 
     def tell(self, message: str | bytes) -> None:
@@ -219,7 +222,15 @@ class Page:
         """The next message to send; None if there is none."""
         if self._texts:
             return self._texts.popleft()
-        return self._frames.pop(next(iter(self._frames))) if self._frames else None
+        if self._frames:
+            return self._frames.pop(next(iter(self._frames)))
+        rows, self._rows = self._rows, []
+        return _rows(2.0, rows) if rows else None
+
+    def add(self, rows: list[list[float]]) -> None:
+        """Rows for the plots, which go out together when the page has time for them."""
+        self._rows = [*self._rows, *rows][-_MOST_ROWS:]
+        self._news.set()
 
     async def fetch(self) -> str | bytes | None:
         """Wait for the next message to send; None if the page is closed."""
@@ -265,7 +276,8 @@ class Session:
         self._wake = asyncio.Event()
         self._seen: tuple[Any, ...] = ()
         self._told: dict[str, Any] = {}
-        self._version = self._anew = self._cast_of_ghost = -1
+        self._version = self._cast_of_ghost = -1
+        self._anew = self.stage.anew
         self._sent = -math.inf
         self._marked = 0
         self._ghost = False
@@ -531,7 +543,8 @@ class Session:
         rows = stage.world.samples(self._sent) if stage.at is None and not stage.working else []
         if rows:
             self._sent = rows[-1][0]
-            self._show_all(_rows(2.0, stage, rows))
+            for page in self.pages:
+                page.add(rows)
         self._tell_film()
         status = self._status()
         if status != self._told:
@@ -563,11 +576,6 @@ class Session:
         kept[21] = 1.0
         for page in watching:
             page.show(_packed(kept), 1)
-
-    def _show_all(self, data: bytes) -> None:
-        for page in self.pages:
-            if page.watching:
-                page.tell(data)
 
     # -- what is said --------------------------------------------------------------------------------
 

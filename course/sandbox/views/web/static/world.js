@@ -223,9 +223,9 @@ class View {
     else if (kind === 4) this.gallery.numbers(n);
     else if (kind === 5) this.trace = this.trace && { ...this.trace, rows: rowsOf(n, 2, n[1], 3) };
     else {
-      const [, , rows, columns] = n;
+      const [, rows, columns] = n;
       if (kind === 3) this.past.clear();
-      for (const row of rowsOf(n, 4, rows, columns)) this.past.add(row);
+      for (const row of rowsOf(n, 3, rows, columns)) this.past.add(row);
     }
     this.changed = true;
     return undefined;

@@ -54,7 +54,6 @@ class _Counter:
 def measure(scene: str, size: tuple[int, int], frames: int) -> dict[str, Any]:
     """One scene at one size."""
     chosen = choose(scene)
-    world = World(chosen.scene, chosen.settings)
     clock = _Clock()
     app = _Measured(Stage(chosen, clock=clock), fps=FPS, clock=clock)
     app.plan(clock, frames, size)
@@ -75,7 +74,7 @@ def measure(scene: str, size: tuple[int, int], frames: int) -> dict[str, Any]:
     return {
         "scene": scene,
         "size": f"{size[0]}x{size[1]}",
-        "bodies": len(world.parts),
+        "bodies": len(app.world.parts),
         "frames": len(drawn),
         "steps_ms": round(1e3 * statistics.median(app.stepping), 2),
         "p10_ms": round(1e3 * drawn[len(drawn) // 10], 2),

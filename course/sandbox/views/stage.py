@@ -240,7 +240,7 @@ class Stage:
         elif kind == "contact":
             self.hear()
             until, met = world.t + _AHEAD, False
-            while world.t < until and not met and self.clock() - began < 1.0:
+            while world.t < until and not met and self.clock() - began < 3.0:
                 world.step(max(1, round(_PICTURE / 8 / world.settings["step"])))
                 self.hear()
                 met = any(event.kind == "contact" and not event.minor for event in self.heard)

@@ -31,6 +31,7 @@ class Narrator:
         self._last: dict[tuple[str, str], float] = {}
         self._told: deque[dict[str, Any]] = deque(maxlen=_KEPT)
         self._free, self._then, self._left = _BURST, 0.0, 0
+        self._done = ("", -1.0)
 
     def told(self) -> list[dict[str, Any]]:
         """The latest lines, oldest first."""
@@ -56,6 +57,10 @@ class Narrator:
         for event in events:
             if event.kind == "contact" and self._again(event):
                 continue
+            if event.kind == "input":  # a body that is carried is put elsewhere in every frame
+                same, self._done = self._done == (event.text, event.t), (event.text, event.t)
+                if same:
+                    continue
             if event.kind in {"contact", "rest"} and not self._may():
                 continue
             if self._left:

@@ -481,8 +481,7 @@ class World:
             return False
         self._input("place", name, x, y)
         self._accounts.gave()
-        at = self._space.body(name).position
-        self._say(f"{name} is put at x = {at.x:.2f} m, y = {at.y:.2f} m", name)
+        self._say(f"{name} is put elsewhere", name)
         return True
 
     def aim(self, name: str, vx: float, vy: float) -> None:

@@ -18,7 +18,7 @@ export class Prediction {
     const { scene } = this.view;
     this.chip.hidden = !question;
     const guessed = guess === null ? "Predict?" : `Your guess: ${plain(guess)}${unit(scene.unit)}`;
-    this.chip.textContent = stage === "touched" ? `${guessed} You changed this run: nothing to compare` : guessed;
+    this.chip.textContent = stage === "touched" ? `You changed this run: nothing to compare. ${guessed}` : guessed;
     const key = JSON.stringify([stage, comparison]);
     if (before && stage === "done" && comparison && key !== this.said) {
       this.show(this.compare(comparison));
@@ -34,7 +34,7 @@ export class Prediction {
     if (!this.view.scene.unit) return;
     if (!this.element.hidden) this.close();
     else this.show(stage === "done" && comparison ? this.compare(comparison) : this.ask());
-    this.element.querySelector("input, button.main")?.focus();
+    this.element.querySelector("input, summary")?.focus();
   }
 
   show(inside) {
@@ -92,8 +92,14 @@ export class Prediction {
     return [
       h("dl", { class: "answers" }, ...answers),
       h("p", { class: "verdict" }, c.verdict),
-      h("details", {}, h("summary", {}, "Why"), h("p", {}, c.why), h("p", {}, h("strong", {}, "Think: "), this.view.scene.after)),
-      h("div", { class: "actions" }, button("Run again", again, { class: "main" }), button("Guess", () => this.show(this.ask()))),
+      h(
+        "details",
+        {},
+        h("summary", {}, "Why, and once more"),
+        h("p", {}, c.why),
+        h("p", {}, h("strong", {}, "Think: "), this.view.scene.after),
+        h("div", { class: "actions" }, button("Run again", again, { class: "main" }), button("Guess", () => this.show(this.ask()))),
+      ),
     ];
   }
 }
@@ -102,7 +108,7 @@ export class Prediction {
 export class Body {
   constructor(view) {
     this.view = view;
-    this.line = h("summary");
+    this.line = h("summary", {}, "No body is chosen");
     this.fields = h("div", { class: "fields" });
     const act = (what) => () => view.send({ do: what, name: view.chosen });
     this.element = h(

@@ -51,7 +51,7 @@ export class Plot {
     );
   }
 
-  draw(past, span, colour, at = null) {
+  draw(past, span, colour, shown, at = null) {
     const { canvas } = this;
     const width = canvas.clientWidth;
     const height = canvas.clientHeight;
@@ -79,7 +79,7 @@ export class Plot {
     const drawn = this.series.filter((s) => s.colour !== "--rods" || rows.some((row) => row[s.at]));
     this.series.forEach((s, i) => {
       this.values[i].parentElement.hidden = !drawn.includes(s);
-      this.values[i].textContent = short(now[s.at], scale);
+      this.values[i].textContent = short(shown[s.at], scale);
     });
     if (scale < 1e-12) high = 1;
     const pad = (high - low) * 0.06;

@@ -262,7 +262,9 @@ export class Tools {
     } else if (view.state.paused) {
       const row = view.rowOf(view.chosen);
       const far = (top - bottom) * 0.01 * times;
-      view.send({ do: "place", name: view.chosen, x: row[0] + dx * far, y: row[1] + dy * far });
+      const [x, y] = [row[0] + dx * far, row[1] + dy * far];
+      view.send({ do: "place", name: view.chosen, x, y });
+      view.tell(`${spoken(view.chosen)} to x ${short(x)}, y ${short(y)} metres.`);
     } else {
       const speed = view.gain * (top - bottom) * 0.05 * times;
       view.send({ do: "push", name: view.chosen, vx: dx * speed, vy: dy * speed });

@@ -97,7 +97,10 @@ class View {
     this.undo = button("Undo", ask({ do: "undo" }));
     this.redo = button("Redo", ask({ do: "redo" }));
     this.line = h("input", { type: "range", id: "line", min: "0", max: "0", step: "any", "aria-label": "Time line" });
-    this.line.addEventListener("input", () => this.later("look", { do: "look", t: this.line.valueAsNumber }));
+    this.line.addEventListener("input", () => {
+      this.sought = this.line.valueAsNumber;
+      this.later("look", { do: "look", t: this.sought });
+    });
     this.line.addEventListener("keydown", (event) => this.lineKey(event));
     this.marked = h("canvas", { "aria-hidden": "true" });
     this.lineShown = h("span", { class: "value" });
@@ -387,6 +390,7 @@ class View {
     this.ghostly.disabled = status.ghost === null;
     if (!status.ghost) this.ghost.frame = null;
     const past = status.at !== null;
+    if (!past || !status.paused) this.sought = null;
     this.goOn.hidden = this.now.hidden = !past;
     this.root.classList.toggle("past", past);
     const { working } = status;
@@ -471,7 +475,9 @@ class View {
     const step = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 }[event.key];
     if (!step) return;
     event.preventDefault();
-    this.send({ do: "look", t: this.frame.t + (step * Number(this.line.max)) / 100 });
+    // Keys come faster than frames: each goes on from where the last one went.
+    this.sought = Math.max(0, (this.sought ?? this.frame.t) + (step * Number(this.line.max)) / 100);
+    this.later("look", { do: "look", t: this.sought });
   }
 
   zoom(factor) {
@@ -581,8 +587,9 @@ class View {
     this.ticks(end);
     const colour = (name) => this.colour(name);
     const at = this.state.at === null ? null : t;
-    this.energy.draw(this.past, this.span, colour, at);
-    this.momentum.draw(this.past, this.span, colour, at);
+    const shown = [t, ...n.subarray(11, 19)];
+    this.energy.draw(this.past, this.span, colour, shown, at);
+    this.momentum.draw(this.past, this.span, colour, shown, at);
     this.energy.sum.textContent = `start + given = ${short(n[22])} J`;
   }
 

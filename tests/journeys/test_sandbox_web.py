@@ -487,7 +487,7 @@ def test_every_scene_is_drawn_dragged_set_and_reloaded(sandbox, scene: str, tmp_
     page.get_by_role("button", name="Run", exact=True).click()
     page.get_by_role("button", name="Pause").wait_for()
     at.catch(name)
-    assert at.names[int(at.frame[HEAD - 1])] == name
+    assert at.names[int(at.frame[20])] == name
     page.mouse.move(*at.pixel(x, up), steps=3)
     speed.focus()
     for _ in range(3):

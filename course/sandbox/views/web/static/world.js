@@ -340,10 +340,16 @@ class View {
     const values = does === "set" ? stops(knob, now) : even(knob, now);
     const input = h("input", { type: "range", id, min: "0", max: String(values.length - 1), step: "1" });
     input.values = values;
-    input.addEventListener("input", () => {
+    const commit = () => {
       this.show(key, values[input.value]);
       this.later(key, { do: does, key: knob.name, value: values[input.value] });
-    });
+    };
+    input.addEventListener("input", commit);
+    // A slider at its end that shows what bodies have of their own moves no further, and yet it was meant.
+    const meant = ({ key: pressed }) => {
+      if (input.classList.contains("unset") && (!pressed || /^(Arrow|Home|End)/.test(pressed))) commit();
+    };
+    for (const kind of ["click", "keyup"]) input.addEventListener(kind, meant);
     return make(input);
   }
 

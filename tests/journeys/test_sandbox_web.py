@@ -294,7 +294,7 @@ def test_the_scenes_own_numbers_are_the_first_sliders_and_its_file_becomes_ones_
     at.until(lambda: at.status["parameters"]["angle"] == 80)
     at.page.get_by_text("About this scene").click()
     at.page.get_by_role("button", name="Make it mine").click()
-    at.until(lambda: (tmp_path / "my-newtons-cradle.toml").exists())
+    at.until((tmp_path / "my-newtons-cradle.toml").exists)
     assert "default = 80" in (tmp_path / "my-newtons-cradle.toml").read_text()
 
 
@@ -574,6 +574,58 @@ def test_everything_has_a_name_and_can_be_read(sandbox, scheme: str) -> None:
     assert at.page.evaluate(_BASICS) == []
     paper = at.page.evaluate("getComputedStyle(document.querySelector('.sandbox')).backgroundColor")
     assert paper == {"light": "rgb(255, 255, 255)", "dark": "rgb(20, 23, 27)"}[scheme]
+
+
+@pytest.fixture(scope="module")
+def axe(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The source of axe-core, fetched by npm."""
+    npm, folder = shutil.which("npm"), tmp_path_factory.mktemp("axe")
+    if npm is None:
+        pytest.skip("npm is missing: axe-core cannot be fetched")
+    command = [npm, "install", "--no-audit", "--no-fund", "--ignore-scripts", "--prefix", str(folder)]
+    done = subprocess.run([*command, "axe-core@4.14.1"], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        pytest.skip(f"npm could not fetch axe-core: {done.stderr.strip()[-200:]}")
+    return (folder / "node_modules" / "axe-core" / "axe.min.js").read_text("utf-8")
+
+
+@pytest.mark.parametrize(
+    ("width", "scheme"), [(1280, "light"), (1280, "dark"), (390, "light"), (390, "dark")]
+)
+def test_axe_finds_nothing_on_any_screen(sandbox, axe: str, width: int, scheme: str) -> None:
+    at = sandbox(None, (width, 844))
+    at.page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
+    console = at.page.context.new_cdp_session(at.page)
+
+    def look(screen: str) -> None:
+        at.page.wait_for_timeout(400)
+        console.send("Runtime.evaluate", {"expression": axe})  # as the page's policy lets no script do
+        found = at.page.evaluate("() => axe.run()")
+        wrong = [
+            (one["id"], [node["html"][:120] for node in one["nodes"][:3]]) for one in found["violations"]
+        ]
+        assert wrong == [], screen
+        assert len(found["passes"]) > 10, "axe looked at something"
+
+    at.page.locator(".gallery .scene").nth(12).wait_for()
+    look("gallery")
+    at.page.get_by_role("button", name="A row of restitutions").click()
+    at.page.locator("h1").filter(has_text="A row").wait_for()
+    look("running")
+    at.page.keyboard.press("p")
+    look("question")
+    at.page.get_by_label("Your guess").fill("2")
+    at.page.keyboard.press("Enter")
+    at.page.locator(".answers").wait_for(timeout=30_000)
+    look("comparison")
+    at.page.get_by_role("button", name="Close the prediction").click()
+    at.page.keyboard.press("n")
+    at.page.keyboard.press("Enter")
+    look("a body's numbers")
+    at.page.keyboard.press("Escape")
+    at.page.keyboard.press("j")
+    at.until(lambda: at.status["at"] is not None)
+    look("the past")
 
 
 def test_another_page_reaches_nothing_even_with_the_address(browser, sandbox) -> None:

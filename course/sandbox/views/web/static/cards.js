@@ -21,7 +21,8 @@ export class Prediction {
     this.chip.textContent = stage === "touched" ? `You changed this run: nothing to compare. ${guessed}` : guessed;
     const key = JSON.stringify([stage, comparison]);
     if (before && stage === "done" && comparison && key !== this.said) {
-      this.show(this.compare(comparison));
+      // Nobody's guess is taken out of their hands while they type it.
+      if (!this.element.querySelector("form") || this.element.hidden) this.show(this.compare(comparison));
       this.view.tell(comparison.verdict);
     } else if (stage !== "done" && this.said.startsWith('["done"')) this.close();
     this.said = key;

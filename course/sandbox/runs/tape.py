@@ -30,8 +30,8 @@ HEAD = 24
 PER_BODY = 5
 #: Between two frames, in simulated s; of a run that is over in a moment, this part of it.
 _EVERY, _PART = 1 / 60, 1 / 240
-#: Bytes that frames may hold, and frames that are kept whole: ten minutes of them.
-_BYTES, _WHOLE = 280_000_000, 36_000
+#: Bytes that frames may hold (there is a ghost as well), and frames that are kept whole: ten minutes of them.
+_BYTES, _WHOLE = 140_000_000, 36_000
 
 
 def frame(world: World, pace: float = 1.0, number: int = 0) -> Frame:

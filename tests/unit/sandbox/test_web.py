@@ -265,6 +265,7 @@ def test_a_page_is_told_everything_it_needs_to_draw() -> None:
             "friction",
             "step",
             "iterations",
+            "walls",
         }
         assert [body["name"] for body in bodies["bodies"]] == [part.name for part in made.stage.world.parts]
         assert past[0] == 3

@@ -181,7 +181,7 @@ _CARD, _PATH, _FILM = 4.0, 5.0, 6.0
 
 
 class Page:
-    """One page's end: texts in order, of each world only the newest of the frames, and all rows for the plots.
+    """One page's end: texts in order, of each world only the newest frame, and all rows for the plots.
 
     Args:
         now: in s, on the session's clock.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import re
 from collections.abc import Callable
 from html import escape
 from pathlib import Path
@@ -15,7 +16,8 @@ import anywidget
 import course.sandbox.views.web
 from course.notebooks.quiz import Marks
 from course.sandbox.scene.loading import choose
-from course.sandbox.views.web.session import Page, Session
+from course.sandbox.views.stage import Desk, Stage
+from course.sandbox.views.web.session import SCRIPTS, Page, Session
 from course.sandbox.world.world import World
 
 _SCRIPTS = Path(__file__).parent / "static"
@@ -123,6 +125,22 @@ def style() -> str:
     return (STATIC / "style.css").read_text("utf-8").replace(_WINDOW, _CELL) + _HERE
 
 
+def one_module() -> str:
+    """The modules of the page as one script: a cell takes in no more."""
+    texts = [(STATIC / f"{name}.js").read_text("utf-8") for name in SCRIPTS]
+    return "".join(re.sub(r"(?m)^import .*\n|^export ", "", text) for text in texts)
+
+
+def _save(name: str, data: bytes) -> str:
+    """Write a file beside the notebook; one that is there already stays."""
+    path, number = Path(name), 1
+    while path.exists():
+        number += 1
+        path = Path(f"{Path(name).stem}-{number}{Path(name).suffix}")
+    path.write_bytes(data)
+    return str(path)
+
+
 # ---
 # The live sandbox in a notebook: the world runs in the kernel, the page draws it as the web view does.
 
@@ -147,14 +165,12 @@ class Sandbox(anywidget.AnyWidget):  # type: ignore[misc]
         RuntimeError: no event loop runs here, as one does in every kernel.
     """
 
-    _esm = (STATIC / "world.js").read_text("utf-8") + (_SCRIPTS / "sandbox.js").read_text("utf-8")
+    _esm = one_module() + (_SCRIPTS / "sandbox.js").read_text("utf-8")
     _css = style()
 
     def __init__(self, scene_id: str, **settings: float) -> None:
         super().__init__()
-        chosen = choose(scene_id, settings)
-        self.world = World(chosen.scene, chosen.settings)
-        self.session = Session(self.world, chosen)
+        self.session = Session(Stage(choose(scene_id, settings)), Desk(save=_save))
         self._page: Page | None = None
         self._tasks: list[asyncio.Task[None]] = []
         self._seen = asyncio.Event()
@@ -163,6 +179,11 @@ class Sandbox(anywidget.AnyWidget):  # type: ignore[misc]
         # everything here belongs to the loop that ran this cell.
         self._loop = asyncio.get_running_loop()
         self.on_msg(lambda _, message, __: self._soon(self._hear, message))
+
+    @property
+    def world(self) -> World:
+        """What is played now."""
+        return self.session.stage.world
 
     def _soon(self, call: Callable[..., None], *given: Any) -> None:
         """Call a function on the loop that the world lives in, from any thread."""

@@ -24,8 +24,8 @@ from typing import Any
 from textual.geometry import Size
 
 from course.sandbox.scene.loading import choose
+from course.sandbox.views.stage import Stage
 from course.sandbox.views.terminal.app import SandboxApp
-from course.sandbox.world.world import World
 
 FPS = 30.0
 SIZES = ((80, 24), (160, 50))
@@ -54,9 +54,8 @@ class _Counter:
 def measure(scene: str, size: tuple[int, int], frames: int) -> dict[str, Any]:
     """One scene at one size."""
     chosen = choose(scene)
-    world = World(chosen.scene, chosen.settings)
     clock = _Clock()
-    app = _Measured(world, chosen, fps=FPS, clock=clock, guess=0.0)
+    app = _Measured(Stage(chosen, clock=clock), fps=FPS, clock=clock)
     app.plan(clock, frames, size)
     outer, inner = pty.openpty()
     counter = _Counter(outer)
@@ -75,7 +74,7 @@ def measure(scene: str, size: tuple[int, int], frames: int) -> dict[str, Any]:
     return {
         "scene": scene,
         "size": f"{size[0]}x{size[1]}",
-        "bodies": len(world.parts),
+        "bodies": len(app.world.parts),
         "frames": len(drawn),
         "steps_ms": round(1e3 * statistics.median(app.stepping), 2),
         "p10_ms": round(1e3 * drawn[len(drawn) // 10], 2),
@@ -111,16 +110,15 @@ class _Measured(SandboxApp):
         """Frames from here, not from a timer."""
         self.world.paused = False
         self._last = self.clock()
-        advance = self.pacer.advance
+        advance = self.stage.tick
 
-        def timed(dt: float, until: float | None = None) -> bool:
+        def timed(dt: float, budget: float) -> list[Any]:
             began = time.process_time()
-            ended = advance(dt, until)
+            told = advance(dt, budget)
             self.stepping.append(time.process_time() - began)
-            return ended
+            return told
 
-        self.pacer.advance = timed  # type: ignore[method-assign]
-        self.experiment.touch()  # so that no comparison is laid over it
+        self.stage.tick = timed  # type: ignore[method-assign]
         self.run_worker(self._frames())
 
     async def _frames(self) -> None:

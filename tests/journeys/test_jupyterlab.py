@@ -292,18 +292,21 @@ def test_the_sandbox_moves_and_a_throw_changes_a_path(open_notebook: Any) -> Non
     canvas = widget.locator("canvas.world")
     canvas.wait_for()
     canvas.scroll_into_view_if_needed()
+    widget.get_by_role("button", name="Pause", exact=True).click()
+    widget.get_by_role("button", name="Reset", exact=True).click()
     page.wait_for_function("() => document.querySelector('.sandbox .clock').innerText === '0.00 s'")
     page.wait_for_timeout(500)  # the bodies are drawn in the frame after
-    # The world waits for a guess, and while it stands, dragging sets a velocity of 2 m/s for each metre.
+    # Time stands: the tip of an arrow sets a velocity of 2 m/s for each metre.
     x, y = _start("head-on", "left-puck")
-    page.mouse.move(*_pixel(canvas, "head-on", x, y))
+    page.mouse.click(*_pixel(canvas, "head-on", x, y))
+    page.mouse.move(*_pixel(canvas, "head-on", x + 1.0, y))
     page.mouse.down()
     page.mouse.move(*_pixel(canvas, "head-on", x, y + 0.5), steps=8)
     shot(page, "sandbox-dragging", "canvas.world")
     page.mouse.up()
-    widget.locator(".picked", has_text=re.compile(r"left puck, 1 kg: (0\.9|1\.0)")).wait_for()
+    widget.locator(".body summary", has_text=re.compile(r"left puck, 1 kg: (0\.9|1\.0)")).wait_for()
     assert widget.locator(".clock").inner_text() == "0.00 s"
-    widget.locator(".card", has_text="You changed this run").wait_for()
+    widget.locator(".chip", has_text="You changed this run").wait_for()
     widget.get_by_role("button", name="Run", exact=True).click()
     page.wait_for_function("() => document.querySelector('.sandbox .clock').innerText !== '0.00 s'")
     page.wait_for_function("() => !document.querySelector('.sandbox .clock').innerText.startsWith('0')")

@@ -19,8 +19,8 @@ from urllib.parse import urlsplit
 import numpy as np
 import pytest
 
+from course.sandbox.runs.tape import HEAD
 from course.sandbox.scene.loading import scene_ids
-from course.sandbox.views.web.session import FRAME_HEAD
 
 CHROMIUM = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
 
@@ -41,7 +41,6 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
-HEAD = FRAME_HEAD
 _COLOURS = """() => {
   const canvas = document.querySelector('canvas.world');
   const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
@@ -67,10 +66,11 @@ def complains(message) -> bool:
 class Sandbox:
     """A scene that is served, a page that shows it, and what went over the wire."""
 
-    def __init__(self, context, scene: str, size: tuple[int, int]) -> None:
+    def __init__(self, context, scene: str | None, size: tuple[int, int], folder: Path) -> None:
+        played = ["play", scene] if scene else []
         self.server = subprocess.Popen(
-            [sys.executable, "-m", "course", "sandbox", "play", scene, "--web", "--no-browser"],
-            cwd=ROOT,
+            [sys.executable, "-m", "course", "sandbox", *played, "--web", "--no-browser"],
+            cwd=folder,
             stdout=subprocess.PIPE,
             text=True,
             env={**os.environ, "COLUMNS": "200", "PYTHONUNBUFFERED": "1"},
@@ -105,7 +105,7 @@ class Sandbox:
     def _heard(self, data: str | bytes) -> None:
         if isinstance(data, bytes):
             numbers = np.frombuffer(data, "<f4")
-            if numbers[0] == 1:
+            if numbers[0] == 1 and numbers[21] == 0:
                 self.frame = numbers
             return
         message = json.loads(data)
@@ -113,7 +113,7 @@ class Sandbox:
             self.status, self.view = message["status"], message["view"]
         elif message["type"] == "status":
             self.status = message
-        elif message["type"] == "bodies":
+        elif message["type"] == "bodies" and message["world"] == 0:
             self.bodies = message["bodies"]
             self.names = [body["name"] for body in self.bodies]
 
@@ -169,11 +169,11 @@ class Sandbox:
 
 
 @pytest.fixture
-def sandbox(browser):
+def sandbox(browser, tmp_path: Path):
     made: list[Sandbox] = []
 
-    def make(scene: str, size: tuple[int, int] = (1280, 800)) -> Sandbox:
-        made.append(Sandbox(browser, scene, size))
+    def make(scene: str | None, size: tuple[int, int] = (1280, 800)) -> Sandbox:
+        made.append(Sandbox(browser, scene, size, tmp_path))
         return made[-1]
 
     yield make
@@ -186,8 +186,6 @@ def sandbox(browser):
 
 def test_a_body_is_dragged_and_thrown_with_the_mouse(sandbox) -> None:
     at = sandbox("head-on")
-    at.page.get_by_role("button", name="Just run").click()
-    at.until(lambda: not at.status["paused"])
     at.page.get_by_role("button", name="Reset").click()
     at.page.locator("label.speed input").focus()
     for _ in range(3):
@@ -206,22 +204,123 @@ def test_a_body_is_dragged_and_thrown_with_the_mouse(sandbox) -> None:
     assert "the hand lets go" in at.page.locator(".events").inner_text()
 
 
-def test_while_time_stands_dragging_sets_the_velocity(sandbox) -> None:
+def test_while_time_stands_a_drag_places_and_a_drag_of_the_arrows_tip_aims(sandbox) -> None:
     at = sandbox("restitution-row")
+    at.page.keyboard.press("Space")
+    at.page.keyboard.press("r")
+    at.until(lambda: at.status["paused"] and at.frame[2] == 0)
     x, y, *_ = at.body("ball-3")
-    at.page.mouse.move(*at.pixel(x, y))
-    at.page.mouse.down()
-    at.page.mouse.move(*at.pixel(x + 0.5, y + 0.25), steps=3)
-    at.page.mouse.up()
+    box = at.page.locator("canvas.world").bounding_box()
+
+    def drag(start: tuple[float, float], *way: tuple[float, float]) -> None:
+        at.page.mouse.move(*at.pixel(*start))
+        at.page.mouse.down()
+        for place in way:
+            at.page.mouse.move(*at.pixel(*place), steps=3)
+        at.page.mouse.up()
+
+    drag((x, y), (x + 0.2, y + 0.3))
+    at.until(lambda: at.body("ball-3")[:2] == pytest.approx((x + 0.2, y + 0.3), abs=0.02))
+    assert at.page.locator("canvas.world").bounding_box() == box, "no card ever resizes the stage"
+    x, y, *_ = at.body("ball-3")
+    scale = at.pixel(1, 0)[0] - at.pixel(0, 0)[0]
+    radius = next(body["radius"] for body in at.bodies if body["name"] == "ball-3")
+    drag((x + radius + 14 / scale, y), (x + 0.5, y + 0.25))
     at.until(lambda: at.body("ball-3")[3] != 0)
-    assert at.body("ball-3")[3] == pytest.approx(1.0, abs=0.05)
-    assert at.body("ball-3")[4] == pytest.approx(0.5, abs=0.05)
+    assert at.body("ball-3")[3:] == pytest.approx((1.0, 0.5), abs=0.05)
     assert at.status["paused"]
+    for _ in range(2):
+        at.page.get_by_role("button", name="Undo").click()
+        at.page.wait_for_timeout(200)
+    at.until(lambda: at.status["undo"] in {"", "the reset"} and at.body("ball-3")[3] == 0)
+
+
+def test_two_balls_of_the_cradle_are_set_aside_and_let_go(sandbox) -> None:
+    at = sandbox("newtons-cradle")
+    at.page.keyboard.press("Space")
+    at.page.keyboard.press("r")
+    at.until(lambda: at.status["paused"] and at.frame[2] == 0)
+    for name, place in (("ball-1", (-1.1, 0.3)), ("ball-2", (-0.9, 0.3))):
+        at.page.mouse.move(*at.pixel(*at.body(name)[:2]))
+        at.page.mouse.down()
+        at.page.mouse.move(*at.pixel(*place), steps=8)
+        at.page.mouse.up()
+        at.page.wait_for_timeout(200)
+    at.page.keyboard.press("Space")
+    at.until(lambda: at.body("ball-4")[0] > 0.35 and at.body("ball-5")[0] > 0.55)
+    assert at.body("ball-3")[0] == pytest.approx(0.0, abs=0.02)
+
+
+def test_a_run_is_scrubbed_gone_on_from_the_middle_and_filmed(sandbox) -> None:
+    at = sandbox("newtons-cradle")
+    at.until(lambda: at.frame[2] > 1.2)
+    at.page.locator("#line").focus()
+    for _ in range(40):
+        at.page.keyboard.press("ArrowLeft")
+    at.until(lambda: at.status["at"] is not None and at.frame[2] < 0.9)
+    at.page.get_by_role("button", name="Go on from here").click()
+    at.until(lambda: at.status["at"] is None and at.status["working"] is None and at.frame[23] == 0)
+    at.until(lambda: not at.status["paused"] and at.frame[2] > 1.0)
+    at.page.keyboard.press("g")
+    at.until(lambda: at.status["ghost"] is True)
+    with at.page.expect_download() as film:
+        at.page.get_by_label("Save this run").select_option("gif 640")
+    assert Path(film.value.path()).read_bytes()[:6] == b"GIF89a"
+
+
+def test_every_scene_opens_from_the_gallery_without_a_command(sandbox) -> None:
+    at = sandbox(None)
+    gallery = at.page.locator(".gallery .scene")
+    gallery.nth(12).wait_for()
+    titles = [card.locator("strong").inner_text() for card in gallery.all()]
+    assert len(titles) == len(scene_ids())
+    for number, title in enumerate(titles):
+        gallery.nth(number).click()
+        at.page.locator("h1").filter(has_text=title).wait_for()
+        at.until(lambda: at.frame is not None and at.frame[2] > 0)
+        at.page.keyboard.press("o")
+        gallery.nth(12).wait_for()
+    assert at.page.locator(".played").count() == len(titles)
+    at.page.keyboard.press("Escape")
+    assert not at.page.locator(".gallery").is_visible()
+
+
+def test_the_scenes_own_numbers_are_the_first_sliders_and_its_file_becomes_ones_own(
+    sandbox, tmp_path
+) -> None:
+    at = sandbox("newtons-cradle")
+    assert at.page.locator(".knob label").first.inner_text().lower() == "gap"
+    at.page.get_by_role("slider", name="angle").press("End")
+    at.until(lambda: at.status["parameters"]["angle"] == 80)
+    at.page.get_by_text("About this scene").click()
+    at.page.get_by_role("button", name="Make it mine").click()
+    at.until((tmp_path / "my-newtons-cradle.toml").exists)
+    assert "default = 80" in (tmp_path / "my-newtons-cradle.toml").read_text()
+
+
+def test_wheel_zooms_a_drag_on_nothing_pans_and_a_tap_opens_a_body(sandbox) -> None:
+    at = sandbox("restitution-row")
+    at.page.keyboard.press("Space")
+    at.until(lambda: at.status["paused"])
+    ruler = at.page.locator(".ruler span")
+    before = ruler.inner_text()
+    at.page.mouse.move(*at.pixel(0, 1.5))
+    at.page.mouse.wheel(0, -1500)
+    at.page.wait_for_timeout(200)
+    assert ruler.inner_text() != before
+    at.page.keyboard.press("0")
+    at.page.wait_for_timeout(100)
+    assert ruler.inner_text() == before
+    at.page.mouse.click(*at.pixel(*at.body("ball-2")[:2]))
+    at.page.get_by_label("mass").fill("3")
+    at.page.keyboard.press("Tab")
+    at.until(lambda: {body["name"]: body["mass"] for body in at.bodies}["ball-2"] == 3)
+    at.page.get_by_role("button", name="Delete").click()
+    at.until(lambda: "ball-2" not in at.names)
 
 
 def test_a_finger_drags_on_a_phone(sandbox) -> None:
     at = sandbox("head-on", (390, 844))
-    at.page.get_by_role("button", name="Just run").click()
     at.page.get_by_role("button", name="Reset").click()
     at.page.locator("label.speed input").focus()
     at.page.keyboard.press("Home")
@@ -262,6 +361,7 @@ def test_sliders_act_and_say_what_they_are_at(sandbox) -> None:
 
 def test_the_question_follows_the_sliders_and_what_was_typed_stays(sandbox) -> None:
     at = sandbox("bullet-wall")
+    at.page.get_by_role("button", name="Predict?").click()
     question = at.page.locator(".card .question")
     question.filter(has_text="one step of 0.004167 s").wait_for(timeout=10_000)
     at.page.get_by_label("Your guess").fill("0,2")
@@ -272,28 +372,36 @@ def test_the_question_follows_the_sliders_and_what_was_typed_stays(sandbox) -> N
 
 def test_a_guess_is_set_beside_theory_and_simulation(sandbox) -> None:
     at = sandbox("head-on")
+    at.page.get_by_role("button", name="Predict?").click()
     at.page.get_by_label("Your guess").fill("two")
     at.page.get_by_role("button", name="Run and compare").click()
     assert at.page.get_by_role("alert").filter(has_text="A number, please.").is_visible()
     at.page.get_by_label("Your guess").fill("1,5")
     at.page.keyboard.press("Enter")
     at.page.locator(".answers").wait_for(timeout=30_000)
+    at.page.get_by_text("Why, and once more").click()
     answers = at.page.locator(".answers").inner_text().split()
     assert answers == ["Your", "guess", "1.5", "m/s", "Theory", "2", "m/s", "Simulation", "2", "m/s"]
+    assert not at.status["paused"], "no run ends"
     at.page.get_by_role("button", name="Run again").click()
     at.until(lambda: at.status["stage"] == "run")
 
 
 def test_a_reload_changes_nothing(sandbox) -> None:
     at = sandbox("head-on")
+    at.page.keyboard.press("p")
     at.page.get_by_label("Your guess").fill("2")
     at.page.keyboard.press("Enter")
     at.page.locator(".answers").wait_for(timeout=30_000)
+    at.page.get_by_role("button", name="Pause").click()
+    at.until(lambda: at.status["paused"])
+    at.page.wait_for_timeout(100)
     told = at.page.locator(".events ol").inner_text()
     where, answers = at.body("right-puck"), at.page.locator(".answers").inner_text()
     at.frame = None
     at.page.reload()
     at.until(lambda: at.frame is not None)
+    at.page.get_by_role("button", name="Your guess: 2").click()
     at.page.locator(".answers").wait_for()
     assert at.body("right-puck") == where
     assert at.page.locator(".events ol").inner_text() == told
@@ -308,67 +416,78 @@ def test_everything_can_be_done_with_keys(sandbox) -> None:
         reached.add(
             at.page.evaluate("(e => e.id || e.textContent.trim() || e.className)(document.activeElement)")
         )
-    wanted = {
-        "Run",
-        "Step",
-        "Reset",
-        "+ Ball",
-        "+ Box",
-        "speed",
-        "guess",
-        "world",
-        "knob-gravity",
-        "knob-step",
-    }
+    wanted = {"Pause", "Step", "Contact", "Reset", "+ Ball", "+ Box", "Stop all", "Scenes", "speed", "line"}
+    wanted |= {"world", "knob-speed", "knob-gravity", "knob-step", "knob-walls", "Predict?"}
     assert wanted <= {item.removesuffix(" over") for item in reached}
     at.page.locator("canvas.world").focus()
-    at.page.keyboard.press("n")
-    assert "left puck" in at.page.locator(".picked").inner_text()
-    assert "left puck" in at.page.get_by_role("status").inner_text()
-    at.page.keyboard.press("ArrowUp")
-    at.until(lambda: at.body("left-puck")[4] > 0)
-    at.page.keyboard.press("b")
+    press, live = at.page.keyboard.press, at.page.get_by_role("status")
+    press(" ")
+    at.until(lambda: at.status["paused"] and "Paused at" in live.inner_text())
+    press("r")
+    at.until(lambda: at.frame[2] == 0)
+    press("n")
+    assert "left puck" in at.page.locator(".body summary").inner_text()
+    assert "left puck" in live.inner_text()
+    press("ArrowUp")
+    at.until(lambda: at.body("left-puck")[1] > 0)
+    assert "left puck to x" in live.inner_text()
+    press("z")
+    at.until(lambda: at.body("left-puck")[1] == 0)
+    press("d")
     at.until(lambda: "new-1" in at.names)
-    at.page.keyboard.press("s")
+    press("Delete")
+    at.until(lambda: "left-puck" not in at.names)
+    press("b")
+    at.until(lambda: "new-2" in at.names)
+    press(".")
     at.until(lambda: at.frame[2] > 0)
-    at.page.keyboard.press("r")
-    at.until(lambda: at.frame[2] == 0 and "new-1" not in at.names)
-    at.page.keyboard.press(" ")
-    at.until(lambda: not at.status["paused"])
+    press("q")
+    at.until(lambda: at.body("right-puck")[3] == 0)
+    press("w")
+    at.until(lambda: at.status["settings"].get("walls") == 1)
+    press("r")
+    at.until(lambda: at.frame[2] == 0 and "new-1" not in at.names and "left-puck" in at.names)
+    # Keys belong to the page, whatever was used last.
+    at.page.get_by_role("slider", name="gravity").press("ArrowRight")
+    press(" ")
+    at.until(lambda: not at.status["paused"] and "Running" in live.inner_text())
+    press("n")
+    press("ArrowUp")
+    at.until(lambda: any(at.body(name)[4] > 0 for name in ("left-puck", "right-puck")))
 
 
 @pytest.mark.parametrize("scene", scene_ids())
 def test_every_scene_is_drawn_dragged_set_and_reloaded(sandbox, scene: str, tmp_path: Path) -> None:
     at = sandbox(scene)
     page, speed = at.page, at.page.locator("label.speed input")
-    at.until(lambda: at.colours() >= 3)
-    page.screenshot(path=tmp_path / f"{scene}-asked.png")
-    assert at.status["paused"]
+    at.until(lambda: at.colours() >= 3 and at.frame[2] > 0)
+    page.keyboard.press("Space")
+    page.keyboard.press("r")
+    at.until(lambda: at.status["paused"] and at.frame[2] == 0)
     assert at.status["stage"] == "ask"
 
-    # Time stands still: a drag says where it shall fly.
+    # Time stands still: a drag says where it shall be.
     name = at.highest()
     x, y = at.body(name)[:2]
-    before = at.body(name)[3:]
+    before = at.body(name)[:2]
     left, bottom, right, top = at.view
     up = min(y + 0.12 * (top - bottom), top)
     page.mouse.move(*at.pixel(x, y))
     page.mouse.down()
     page.mouse.move(*at.pixel(x + 0.1 * (right - left), up), steps=3)
-    page.screenshot(path=tmp_path / f"{scene}-aimed.png")
+    page.screenshot(path=tmp_path / f"{scene}-placed.png")
     page.mouse.up()
-    at.until(lambda: at.body(name)[3:] != before)
-    assert at.body(name)[:2] == (x, y)
+    at.until(lambda: at.body(name)[:2] != before)
 
     # Time runs, as slowly as it can until a hand has hold of the body: then the body follows it upwards.
     page.get_by_role("button", name="Reset").click()
     speed.focus()
     page.keyboard.press("Home")
     at.until(lambda: at.status["speed"] == 0.01)
-    page.get_by_role("button", name="Just run").click()
+    page.get_by_role("button", name="Run", exact=True).click()
     page.get_by_role("button", name="Pause").wait_for()
     at.catch(name)
-    assert at.names[int(at.frame[HEAD - 1])] == name
+    assert at.names[int(at.frame[20])] == name
     page.mouse.move(*at.pixel(x, up), steps=3)
     speed.focus()
     for _ in range(3):
@@ -444,12 +563,69 @@ def test_everything_has_a_name_and_can_be_read(sandbox, scheme: str) -> None:
     at.page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
     at.page.wait_for_timeout(500)  # what was changing when it was asked for goes on to its end
     assert at.page.evaluate(_BASICS) == []
+    at.page.keyboard.press("n")
+    at.page.keyboard.press("Enter")
+    assert at.page.evaluate(_BASICS) == []
+    at.page.keyboard.press("Escape")
+    at.page.keyboard.press("p")
     at.page.get_by_label("Your guess").fill("1")
     at.page.keyboard.press("Enter")
     at.page.locator(".answers").wait_for(timeout=30_000)
     assert at.page.evaluate(_BASICS) == []
     paper = at.page.evaluate("getComputedStyle(document.querySelector('.sandbox')).backgroundColor")
     assert paper == {"light": "rgb(255, 255, 255)", "dark": "rgb(20, 23, 27)"}[scheme]
+
+
+@pytest.fixture(scope="module")
+def axe(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The source of axe-core, fetched by npm."""
+    npm, folder = shutil.which("npm"), tmp_path_factory.mktemp("axe")
+    if npm is None:
+        pytest.skip("npm is missing: axe-core cannot be fetched")
+    command = [npm, "install", "--no-audit", "--no-fund", "--ignore-scripts", "--prefix", str(folder)]
+    done = subprocess.run([*command, "axe-core@4.14.1"], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        pytest.skip(f"npm could not fetch axe-core: {done.stderr.strip()[-200:]}")
+    return (folder / "node_modules" / "axe-core" / "axe.min.js").read_text("utf-8")
+
+
+@pytest.mark.parametrize(
+    ("width", "scheme"), [(1280, "light"), (1280, "dark"), (390, "light"), (390, "dark")]
+)
+def test_axe_finds_nothing_on_any_screen(sandbox, axe: str, width: int, scheme: str) -> None:
+    at = sandbox(None, (width, 844))
+    at.page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
+    console = at.page.context.new_cdp_session(at.page)
+
+    def look(screen: str) -> None:
+        at.page.wait_for_timeout(400)
+        console.send("Runtime.evaluate", {"expression": axe})  # as the page's policy lets no script do
+        found = at.page.evaluate("() => axe.run()")
+        wrong = [
+            (one["id"], [node["html"][:120] for node in one["nodes"][:3]]) for one in found["violations"]
+        ]
+        assert wrong == [], screen
+        assert len(found["passes"]) > 10, "axe looked at something"
+
+    at.page.locator(".gallery .scene").nth(12).wait_for()
+    look("gallery")
+    at.page.get_by_role("button", name="A row of restitutions").click()
+    at.page.locator("h1").filter(has_text="A row").wait_for()
+    look("running")
+    at.page.keyboard.press("p")
+    look("question")
+    at.page.get_by_label("Your guess").fill("2")
+    at.page.keyboard.press("Enter")
+    at.page.locator(".answers").wait_for(timeout=30_000)
+    look("comparison")
+    at.page.get_by_role("button", name="Close the prediction").click()
+    at.page.keyboard.press("n")
+    at.page.keyboard.press("Enter")
+    look("a body's numbers")
+    at.page.keyboard.press("Escape")
+    at.page.keyboard.press("j")
+    at.until(lambda: at.status["at"] is not None)
+    look("the past")
 
 
 def test_another_page_reaches_nothing_even_with_the_address(browser, sandbox) -> None:

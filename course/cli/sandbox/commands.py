@@ -73,27 +73,20 @@ _SET = option("--set KEY=VALUE", "Set a parameter; repeatable.", scene_settings)
 @app.callback(epilog="Example: course sandbox play newtons-cradle")
 def menu(
     ctx: typer.Context,
+    web: Annotated[bool, option("--web", "In a browser, on this machine only.")] = False,
+    port: Annotated[int, option("--port", "For --web; 0 takes a free one.")] = 0,
+    no_browser: Annotated[bool, option("--no-browser", "For --web: only print the address.")] = False,
 ) -> int | None:
     """Play with collisions, and see where the energy goes.
 
-    Without a command: a menu in a terminal, the list of scenes anywhere else.
+    Without a command: all scenes to choose from, in a terminal or with --web; the list anywhere else.
     """
     if ctx.invoked_subcommand is not None:
         return None
     console = current()
-    asks = console.interactive and console.fancy
-    _list(console, None, asks=asks)
-    if not asks:
-        return 0
-    while answer := console.ask("Which one? A number or a name, Enter for none: "):
-        if answer.lower() in {"q", "quit"}:
-            break
-        try:
-            choose(answer)
-        except NotFoundError as error:
-            console.line(f"{error.message} {error.help}".rstrip())
-        else:
-            return play(answer)
+    if web or (console.interactive and console.fancy):
+        return sandbox_play.gallery(console, web=web, port=port, browser=not no_browser)
+    _list(console, None)
     return 0
 
 
@@ -223,16 +216,15 @@ def export(
     return 0
 
 
-def _list(console: Console, name: str | None, *, asks: bool = False) -> tuple[Scene, ...]:
+def _list(console: Console, name: str | None) -> tuple[Scene, ...]:
     found = scenes() if name is None else (choose(name).scene,)
     if not found:
         raise NotFoundError("There are no scenes.", help="Install the course again.", code="no_scenes")
     for place, scene in enumerate(found, 1):
         _describe(console, scene, place, whole=name is not None)
     example = name or found[0].id
-    if not asks:
-        step = f"course sandbox play {example}" if name else f"course sandbox list {example}"
-        console.note((f"Next: {step}", "bold"))
+    step = f"course sandbox play {example}" if name else f"course sandbox list {example}"
+    console.note((f"Next: {step}", "bold"))
     console.emit(SandboxList(scenes=tuple(_entry(scene) for scene in found)))
     return found
 

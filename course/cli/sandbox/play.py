@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import importlib
 import io
@@ -28,8 +29,10 @@ from course.sandbox.scene.loading import (
     choose,
     guess_of,
     question,
+    scene_ids,
     unwritten,
 )
+from course.sandbox.views.stage import Desk
 from course.sandbox.world.accounts import Event, Receipt
 from course.sandbox.world.world import Snapshot, World
 
@@ -310,24 +313,61 @@ def _guess(console: Console, chosen: Chosen, options: PlayOptions) -> float | No
 
 def _play_seen(console: Console, chosen: Chosen, options: PlayOptions, targets: _Targets) -> int:
     """Open a view; it asks for the prediction and shows the comparison itself."""
-    from course.sandbox.runs.recording import Recording
-    from course.sandbox.world.world import World
-
-    world = World(chosen.scene, chosen.settings)
-    recording = Recording(world) if "record" in targets.paths else None
-    view = _view("web" if options.web else "terminal")
-    more: dict[str, Any] = {"chosen": chosen, "guess": options.guess, "keep": lambda c: _keep(chosen, c)}
-    if options.web:
-        more |= {"port": options.port, "open_browser": not options.no_browser, "say": _saying(console)}
-    try:
-        view(world, chosen.scene, **more)
-    except KeyboardInterrupt:
-        pass  # the usual way to leave
-    finally:
-        if recording is not None:
-            write(console, targets.paths["record"], recording.encode(), "record")
+    recorded = _view_of(
+        console,
+        chosen,
+        web=options.web,
+        port=options.port,
+        browser=not options.no_browser,
+        guess=options.guess,
+    )
+    if "record" in targets.paths:
+        write(console, targets.paths["record"], recorded, "record")
     console.note(("After playing: ", "bold"), chosen.scene.after)
     return 0
+
+
+def gallery(console: Console, *, web: bool, port: int = 0, browser: bool = True) -> int:
+    """Open a view with all scenes."""
+    if web:
+        require("web")
+    _view_of(console, None, web=web, port=port, browser=browser, guess=None)
+    return 0
+
+
+def _view_of(
+    console: Console, chosen: Chosen | None, *, web: bool, port: int, browser: bool, guess: float | None
+) -> bytes:
+    """Play until the user leaves; the recording of what was played last."""
+    view = _view("web" if web else "terminal")
+    more: dict[str, Any] = {"port": port, "open_browser": browser, "say": _saying(console)} if web else {}
+    return view(chosen, _desk(), guess=guess, **more)
+
+
+def _desk() -> Desk:
+    """What a view may ask of this program: to keep things in the workspace, and files where it runs."""
+    played: set[str] = set()
+    with contextlib.suppress(CourseError):  # playing needs no workspace
+        store = Here.load().workspace.store
+        played = {
+            event.subject for kind in ("sandbox-guess", "sandbox-played") for event in store.events(kind)
+        }
+
+    def opened(scene: str) -> None:
+        if scene not in played and scene in scene_ids():
+            played.add(scene)
+            with contextlib.suppress(CourseError):
+                Here.load().workspace.store.append("sandbox-played", scene, {})
+
+    def save(name: str, data: bytes) -> str:
+        path = cwd() / name
+        number = 1
+        while path.exists():
+            number += 1
+            path = cwd() / f"{Path(name).stem}-{number}{Path(name).suffix}"
+        return str(here.write(path, data, why="sandbox").path)
+
+    return Desk(keep=_keep, save=save, played=frozenset(played), opened=opened)
 
 
 def _saying(console: Console) -> Callable[[str], None]:
@@ -340,7 +380,7 @@ def _saying(console: Console) -> Callable[[str], None]:
     return say
 
 
-def _view(name: str) -> Callable[..., None]:
+def _view(name: str) -> Callable[..., bytes]:
     """A view's ``play``."""
     try:
         module = importlib.import_module(f"course.sandbox.views.{name}.view")
@@ -350,7 +390,7 @@ def _view(name: str) -> Callable[..., None]:
             help="Run the scene with --headless, --describe or --gif FILE.",
             code="no_view",
         ) from error
-    play_in: Callable[..., None] = module.play
+    play_in: Callable[..., bytes] = module.play
     return play_in
 
 

@@ -11,6 +11,7 @@ import math
 import platform
 import shutil
 import subprocess
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, assert_never
 
@@ -31,12 +32,17 @@ if TYPE_CHECKING:
 FORMAT = "course.sandbox-recording/1"
 #: Steps between two hashes. A hash costs what two steps of a small scene do.
 EVERY = 240
+#: Steps between two looks at the clock when a moment is made again.
+_SLICE = 16
 #: Steps that a recording may hold; a day at 1/240 s is 20.7 million.
 _MOST_TICKS = 100_000_000
 #: Characters of what a parser says, which may quote the whole file.
 _MOST_SAID = 200
 #: The methods that a line of a recording may call.
-_INPUTS = {"reset", "set", "grab", "drag", "release", "throw", "spawn"}
+_INPUTS = {
+    *("reset", "set", "grab", "drag", "release", "throw", "spawn"),
+    *("place", "aim", "change", "remove", "copy", "stop"),
+}
 
 
 class Head(msgspec.Struct, frozen=True, kw_only=True, tag_field="kind", tag="head"):
@@ -80,39 +86,98 @@ class Recording:
     Args:
         world: before its first step.
         every: steps between two hashes.
+        before: what led to the world, if it stands in for another one: its recording is gone on with.
+
+    Attributes:
+        head: the scene and the settings that it began with.
+        inputs, hashes: in the order of their steps; nothing in them is ever changed, so others may remember
+            how long they were.
     """
 
-    def __init__(self, world: World, every: int = EVERY) -> None:
-        if world.ticks:
+    def __init__(self, world: World, every: int = EVERY, before: Recording | None = None) -> None:
+        if world.ticks and before is None:
             raise UsageError("A recording has to begin before the first step.")
         self._world = world
-        self._lines: list[Line] = [
-            Head(
+        self.head: Head = (
+            before.head
+            if before is not None
+            else Head(
                 format=FORMAT,
                 scene=world.scene,
                 settings=dict(world.settings),
                 every=every,
                 versions=_versions(),
             )
-        ]
-        self._every = every
-        world.on_input = self._note
-        world.on_tick = (every, self._hash)
+        )
+        self.inputs: list[Input] = []
+        self.hashes: list[Hash] = []
+        world.on_input.append(self._note)
+        world.on_tick.append((self.head.every, self._hash))
 
     def encode(self) -> bytes:
         """The file, up to the present step."""
         world = self._world
         end = End(tick=world.ticks, hash=world.state_hash())
-        return b"".join(msgspec.json.encode(line) + b"\n" for line in (*self._lines, end))
+        # What is done at a step comes after the hash of it.
+        lines: list[Input | Hash] = [*self.hashes, *self.inputs]
+        lines.sort(key=lambda line: (line.tick, isinstance(line, Input)))
+        return b"".join(msgspec.json.encode(line) + b"\n" for line in (self.head, *lines, end))
 
     def _note(self, tick: int, what: str, arguments: tuple[Any, ...]) -> None:
-        last = self._lines[-1]
-        if what == "drag" and isinstance(last, Input) and last.what == "drag" and last.tick == tick:
-            self._lines.pop()  # only the last place before a step is ever felt
-        self._lines.append(Input(tick=tick, what=what, arguments=arguments))
+        last = self.inputs[-1] if self.inputs else None
+        if what == "drag" and last is not None and last.what == "drag" and last.tick == tick:
+            self.inputs.pop()  # only the last place before a step is ever felt
+        self.inputs.append(Input(tick=tick, what=what, arguments=arguments))
 
     def _hash(self) -> None:
-        self._lines.append(Hash(tick=self._world.ticks, hash=self._world.state_hash()))
+        self.hashes.append(Hash(tick=self._world.ticks, hash=self._world.state_hash()))
+
+    # -- any moment again ------------------------------------------------------------------------
+
+    def run_at(self, count: int) -> tuple[int, dict[str, float]]:
+        """The run that the first ``count`` inputs end in.
+
+        Returns:
+            how many of them are before it, and the settings that it started with.
+        """
+        settings, first, began = dict(self.head.settings), 0, dict(self.head.settings)
+        for number, one in enumerate(self.inputs[:count], 1):
+            if one.what == "set":
+                settings[str(one.arguments[0])] = float(one.arguments[1])
+            elif one.what == "stop" and "left" in settings:
+                settings |= {"left": 0.0, "right": 0.0}
+            elif one.what == "reset":
+                first, began = number, dict(settings)
+        return first, began
+
+    def replayed(
+        self, count: int, tick: int, version: int, ready: Callable[[World, Recording], None]
+    ) -> Iterator[float]:
+        """Make the moment after ``tick`` steps and the first ``count`` inputs again, in a world of its own.
+
+        Args:
+            version: the first for the new world.
+            ready: called with the new world and its recording, before the first step.
+
+        Yields:
+            how far it is, 0 to 1, every few steps.
+        """
+        first, settings = self.run_at(count)
+        world = World(self.head.scene, settings)
+        began = self.inputs[first - 1].tick if first else 0
+        world.ticks, world.version = began, version
+        made = Recording(world, self.head.every, before=self)
+        made.inputs = self.inputs[:first]
+        made.hashes = [one for one in self.hashes if one.tick <= began]
+        ready(world, made)
+        for one in [*self.inputs[first:count], None]:
+            until = tick if one is None else one.tick
+            while world.ticks < until:
+                world.step(min(_SLICE, until - world.ticks))
+                yield (world.ticks - began) / max(1, tick - began)
+            if one is not None:
+                act(world, one)
+        yield 1.0
 
 
 class Replay(msgspec.Struct, frozen=True, kw_only=True):
@@ -192,7 +257,7 @@ def replay(recorded: Replay) -> Difference:
         while inputs and (inputs[-1].tick < point.tick or isinstance(point, End)):
             step = inputs.pop()
             world.step(step.tick - world.ticks)
-            _act(world, step)
+            act(world, step)
         world.step(point.tick - world.ticks)
         if world.state_hash() != point.hash:
             return Difference(
@@ -203,7 +268,8 @@ def replay(recorded: Replay) -> Difference:
     return Difference(same=True, tick=None, good_until=good, t=None, checked=count, versions=other)
 
 
-def _act(world: World, step: Input) -> None:
+def act(world: World, step: Input) -> None:
+    """Do again what was done."""
     try:
         getattr(world, step.what)(*step.arguments)
     except TypeError as error:
@@ -257,7 +323,7 @@ _INK = "#222222"
 _FAINT = "#c9ccd1"
 _MOST_FRAMES = 3000
 #: Longest side of a picture, in pixels.
-_LARGEST = 1600
+_LARGEST = 1920
 
 
 def ffmpeg() -> str:
@@ -380,6 +446,10 @@ class Film:
         data = io.BytesIO()
         self.draw(parts, snapshot).save(data, format="PNG")
         return data.getvalue()
+
+    def made(self, kind: str, fps: float) -> bytes:
+        """The film as "gif" or "mp4"."""
+        return self.gif(fps) if kind == "gif" else self.mp4(fps)
 
     def _some(self) -> list[Image]:
         if not self._frames:

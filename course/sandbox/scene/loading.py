@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -161,7 +162,7 @@ def unsaid(scene: Scene) -> Iterator[str]:
     tried |= {
         name: (setting.low, setting.high)
         for name, setting in SETTINGS.items()
-        if name != "iterations" and (name in values_of(usual) or name not in {"left", "right"})
+        if name not in {"iterations", "walls"} and (name in values_of(usual) or name not in {"left", "right"})
     }
     for name, (low, high) in tried.items():
         ready, parameters, rest = _put_in(scene, {name: low + 0.37 * (high - low)})
@@ -184,6 +185,15 @@ def question(chosen: Chosen) -> str:
     """
     asked = chosen.scene.prediction
     return "" if asked is None else fill(asked.question, values_of(chosen))
+
+
+def own_copy(chosen: Chosen, id_: str) -> bytes:
+    """The scene's file as somebody's own: another id, and its parameters as they are set now."""
+    text = re.sub(r'(?m)^id = ".*"$', f'id = "{id_}"', read_text(chosen.path), count=1)
+    for name, value in chosen.parameters.items():
+        block = rf'(\[\[parameter\]\]\nname = "{re.escape(name)}"\n(?:(?!\[).*\n)*?default = ).*'
+        text = re.sub(block, rf"\g<1>{value!r}", text, count=1)
+    return text.encode()
 
 
 def unwritten(path: Path) -> tuple[int, ...]:

@@ -387,6 +387,20 @@ def spawned(name: str, shape: str, size: float, place: Vector, velocity: Vector,
     return _part(body, material, name, place, PALETTE[sum(map(ord, name)) % len(PALETTE)])
 
 
+def wall(name: str, a: Vector, b: Vector, half: float) -> Part:
+    """A wall from ``a`` to ``b``, ``2 half`` m thick, that gives everything back and rubs a little."""
+    body = Body(
+        name="wall",
+        shape="segment",
+        material="wall",
+        points=(a, b),
+        thickness=2 * half,
+        position=(0.0, 0.0),
+        fixed=True,
+    )
+    return _part(body, Material(name="wall", restitution=1.0, friction=0.5), name, (0.0, 0.0), FIXED_COLOUR)
+
+
 def _places(body: Body, chance: random.Random) -> Iterator[tuple[str, float, float]]:
     """Name and place of each copy."""
     offsets: list[Vector] = [(0.0, 0.0)]

@@ -54,6 +54,7 @@ SETTINGS: dict[str, Setting] = {
         Setting(
             "iterations", "1", "of the contact solver in each step", 1, 1000, 2.0, times=True, whole=True
         ),
+        Setting("walls", "1", "1 puts walls around what is shown", 0, 1, 1.0, whole=True),
         Setting("left", "m/s", "rim speed of the left wheel, in scenes with wheels", -5.0, 5.0, 0.1),
         Setting("right", "m/s", "rim speed of the right wheel, in scenes with wheels", -5.0, 5.0, 0.1),
     )

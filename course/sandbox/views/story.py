@@ -31,6 +31,7 @@ class Narrator:
         self._last: dict[tuple[str, str], float] = {}
         self._told: deque[dict[str, Any]] = deque(maxlen=_KEPT)
         self._free, self._then, self._left = _BURST, 0.0, 0
+        self._done = ("", -1.0)
 
     def told(self) -> list[dict[str, Any]]:
         """The latest lines, oldest first."""
@@ -56,6 +57,10 @@ class Narrator:
         for event in events:
             if event.kind == "contact" and self._again(event):
                 continue
+            if event.kind == "input":  # a body that is carried is put elsewhere in every frame
+                same, self._done = self._done == (event.text, event.t), (event.text, event.t)
+                if same:
+                    continue
             if event.kind in {"contact", "rest"} and not self._may():
                 continue
             if self._left:
@@ -83,22 +88,23 @@ class Narrator:
 
 
 def _line(event: Event) -> dict[str, Any]:
-    line: dict[str, Any] = {"text": sentence(event), "kind": event.kind}
+    line: dict[str, Any] = {"text": sentence(event), "kind": event.kind, "t": event.t}
     if event.kind == "contact":
         line |= {"x": event.x, "y": event.y, "speed": event.approach}
     return line
 
 
 class Experiment:
-    """A guess before the run, and theory, guess and simulation side by side after it.
+    """Theory, simulation and, if somebody made one, a guess side by side, at the end of the scene's time.
 
     The run on the screen is compared, as long as the user moved no body: the theory is not about a ball that
-    the user threw. Settings may be changed before the first step; theory takes them into account.
+    the user threw. Settings may be changed before the first step; theory takes them into account. The run
+    goes on after it.
 
     Args:
         world: before its first step.
         chosen: its scene.
-        guess: given before; None to ask for one.
+        guess: given before, if there is one.
         keep: called with each comparison that has a guess.
     """
 
@@ -117,7 +123,8 @@ class Experiment:
         self._asked: tuple[dict[str, float] | None, str] = (None, "")
         self.guess = guess
         self._answered = guess is not None
-        #: "none" (nothing is asked), "ask", "run", "touched" (not comparable any more) or "done".
+        #: "none" (nothing is asked), "ask" (nobody guessed), "run" (somebody did), "touched" (not
+        #: comparable any more) or "done".
         self.stage = "none"
         if chosen.scene.prediction is not None:
             self._begin()
@@ -130,10 +137,10 @@ class Experiment:
         self._probes = Probes(self._world, self._chosen)
 
     def answer(self, guess: float | None) -> None:
-        """Take the guess, or None; it counts for all runs from here on."""
-        if self.stage == "ask":
-            self.guess, self._answered = guess, True
-            self.stage = "run"
+        """Take the guess, or None for none; it counts for all runs from here on."""
+        if self.stage in {"ask", "run"}:
+            self.guess, self._answered = guess, guess is not None
+            self.stage = "run" if self._answered else "ask"
 
     def again(self) -> None:
         """The world was reset."""
@@ -145,10 +152,14 @@ class Experiment:
         if self.stage in {"ask", "run"}:
             self.stage = "touched"
 
-    def changed(self) -> None:
-        """A setting was changed."""
-        if self._world.steps > 0:
+    def felt(self, what: str) -> None:
+        """Something was done to the world. Settings may change before the first step: theory knows them."""
+        if what not in {"reset", "drag", "release"} and not (what == "set" and self._world.steps == 0):
             self.touch()
+
+    def keep_with(self, keep: Callable[[Comparison], None] | None) -> None:
+        """Call this with comparisons from now on."""
+        self._keep = keep
 
     def take(self, events: Sequence[Event]) -> None:
         """Hand events to the probes."""

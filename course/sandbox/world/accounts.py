@@ -173,10 +173,11 @@ class Receipt(msgspec.Struct, frozen=True, kw_only=True):
         kinetic, potential: now; potential energy is zero at y = 0 (x = 0).
         contacts: lost across contacts, along their normals.
         friction: lost along surfaces, and to the floor of a scene seen from above.
-        rods: lost in joints that stopped a body which was thrown against them.
+        rods: lost in joints: a body that is thrown against them, and what they correct.
         residual: missing without a known loss. Below zero: the solver made energy.
-        integrator: the part of ``residual`` that comes from moving bodies before accelerating them: half a
-            step's worth of gravity's power, -m g (v - v at the start) h/2. It comes back with the velocity.
+        integrator: the part of ``residual`` that comes from how bodies are moved. They are moved before they
+            are accelerated, which is half a step's worth of gravity's power, -m g (v - v at the start) h/2,
+            and comes back with the velocity; and bodies inside each other are moved apart, up or down.
     """
 
     start: float
@@ -254,14 +255,13 @@ class Accounts:
     Args:
         space: whose bodies.
         gravity: in m/s².
-        joints: whether there are any.
     """
 
-    def __init__(self, space: Space, gravity: tuple[float, float], clock: Clock, *, joints: bool) -> None:
+    def __init__(self, space: Space, gravity: tuple[float, float], clock: Clock) -> None:
         self.space = space
         self.clock = clock
-        self.recorder = Recorder(space, both_points=joints)
-        self.ledger = Ledger(space.parts, gravity, joints=joints)
+        self.recorder = Recorder(space)
+        self.ledger = Ledger(space.parts, gravity)
         #: The state that the next step starts from; (n, 6).
         self.base = space.state()
         self.ledger.start = self._energy()
@@ -270,8 +270,7 @@ class Accounts:
         self._pushes: dict[int, tuple[Floats, float, float]] = {}
         #: By row of the block to come: the body that a hand held, and the impulses of the hand.
         self._held: dict[int, tuple[int, tuple[float, float, float]]] = {}
-        #: What joints will take in the next step, in J.
-        self._to_rods = space.stopped_by_joints()
+        self._ties = space.ties()
         self._remember(np.zeros(1), self.base[None], np.zeros((1, 4)))
 
     # -- reading ---------------------------------------------------------------------------------
@@ -297,6 +296,15 @@ class Accounts:
         """The last minute; call ``close`` first."""
         return History(*np.array(self._history).reshape(-1, 10).T)
 
+    def samples(self, after: float) -> list[list[float]]:
+        """The rows of the history that are later than this time, in s; call ``close`` first."""
+        rows: list[list[float]] = []
+        for row in reversed(self._history):
+            if row[0] <= after:
+                break
+            rows.append(row)
+        return rows[::-1]
+
     # -- booking ---------------------------------------------------------------------------------
 
     def close(self) -> Block | None:
@@ -310,36 +318,35 @@ class Accounts:
             first_step=first,
             times=self.clock.ends(first, count),
             before=np.concatenate([self.base[None, :, 3:], states[:-1, :, 3:]]),
+            start=self.base[:, :2],
             states=states,
             contacts=contacts,
         )
         given, rubbed = np.zeros(count), np.zeros(count)
-        impulses = np.zeros(block.before.shape)
-        for row, (body, pulled) in self._held.items():
-            impulses[row, body] = pulled
-        by_hand = self.ledger.work(block, impulses) if self._held else given.copy()
-        self._held.clear()
         for row, push in self._pushes.items():
             block.before[row], given[row], rubbed[row] = push
         self._pushes.clear()
-        self._book(block, given, by_hand, rubbed)
+        impulses = None
+        if self._held:
+            impulses = np.zeros(block.before.shape)
+            for row, (body, pulled) in self._held.items():
+                impulses[row, body] = pulled
+            self._held.clear()
+            given += self.ledger.work(block, impulses)
+        self._book(block, given, impulses, rubbed)
         self.base = states[-1].copy()
         return block
 
-    def _book(self, block: Block, given: Floats, by_hand: Floats, rubbed: Floats) -> None:
+    def _book(self, block: Block, given: Floats, by_hand: Floats | None, rubbed: Floats) -> None:
         """Book a block and what was pushed during it, and sample it for the history."""
         ledger = self.ledger
         had = ledger.given, ledger.contacts, ledger.friction, ledger.rods
-        across, along = ledger.settle(block, self.clock.size, by_hand)
-        given = given + by_hand
-        stopped = np.zeros(len(given))
-        stopped[0], self._to_rods = self._to_rods, 0.0
+        lost = ledger.settle(block, self.clock.size, by_hand, self._ties)
         ledger.given += float(given.sum())
         ledger.friction += float(rubbed.sum())
-        ledger.rods += float(stopped[0])
         every = max(1, round(_SAMPLE / self.clock.size))
         rows = slice((-block.first_step) % every, None, every)
-        changes = (np.cumsum([given, across, along + rubbed, stopped], axis=1).T + had)[rows]
+        changes = (np.cumsum([given, lost.contacts, lost.friction + rubbed, lost.rods], axis=1).T + had)[rows]
         self._remember(block.times[rows], block.states[rows], changes)
 
     def gave(self) -> None:
@@ -347,12 +354,12 @@ class Accounts:
         had = self._energy()
         self.base = self.space.state()
         self.ledger.given += self._energy() - had
-        self._to_rods = self.space.stopped_by_joints()
 
     def recast(self, gravity: tuple[float, float]) -> None:
         """Bodies came or went, or gravity changed: book the energy it brought as given."""
         had = self._energy()
         self.ledger.adopt(self.space.parts, gravity)
+        self._ties = self.space.ties()
         self.base = self.space.state()
         self.ledger.given += self._energy() - had
 

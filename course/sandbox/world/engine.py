@@ -46,7 +46,9 @@ class Contacts:
         first: 1 where the two did not touch in the step before.
         impulse: on ``a``, in N s, (n, 2).
         normal: from ``a`` to ``b``, (n, 2).
-        point: in m, (n, 2).
+        point, other: where it acts on ``a`` and where on ``b``, in m, (n, 2); they differ by how deep the
+            bodies are in each other. Of a contact along an edge it is the middle.
+        half: half of the length of a contact along an edge, in m, (n,); 0 for a contact at a point.
     """
 
     row: Ints
@@ -56,6 +58,8 @@ class Contacts:
     impulse: Floats
     normal: Floats
     point: Floats
+    other: Floats
+    half: Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +70,7 @@ class Block:
         first_step: number of the first of them.
         times: at their ends, in s, (k,).
         before: velocities and spin at the start of each step, (k, n, 3).
+        start: where the bodies were before the first of the steps, (n, 2), in m.
         states: state at the end of each, (k, n, 6), columns as in ``COLUMNS``. Like the contacts these
             are the engine's own memory: good until the next step, so copy what is to be kept.
         contacts: during them.
@@ -74,6 +79,7 @@ class Block:
     first_step: int
     times: Floats
     before: Floats
+    start: Floats
     states: Floats
     contacts: Contacts
 
@@ -84,17 +90,15 @@ class Ledger:
     Args:
         parts: the bodies, in the order of the rows of every state.
         gravity: in m/s².
-        joints: whether joints do work as well; their errors then go to the residual.
     """
 
-    def __init__(self, parts: Sequence[Part], gravity: tuple[float, float], *, joints: bool) -> None:
+    def __init__(self, parts: Sequence[Part], gravity: tuple[float, float]) -> None:
         self.contacts = 0.0
         self.friction = 0.0
         self.rods = 0.0
         self.integrator = 0.0
         self.given = 0.0
         self.start = 0.0
-        self.joints = joints
         self.adopt(parts, gravity)
 
     def adopt(self, parts: Sequence[Part], gravity: tuple[float, float]) -> None:
@@ -103,7 +107,8 @@ class Ledger:
         self.mass = np.array([p.mass for p in parts])
         self.inertia = np.array(finite)
         self.gravity = gravity
-        self._weights = np.column_stack([self.mass, self.mass, self.inertia]).ravel() / 2
+        self._inertias = np.column_stack([self.mass, self.mass, self.inertia])
+        self._weights = self._inertias.ravel() / 2
         self._heights = np.column_stack([-self.mass * gravity[0], -self.mass * gravity[1]]).ravel()
         forces = [self.mass * gravity[0], self.mass * gravity[1], 0.0 * self.mass]
         self._weight_force = np.column_stack(forces).ravel()
@@ -127,29 +132,67 @@ class Ledger:
 
     # -- of many steps ---------------------------------------------------------------------------
 
-    def settle(self, block: Block, step: float, given: Floats | float = 0.0) -> tuple[Floats, Floats]:
-        """Book the losses of a block.
+    def settle(
+        self, block: Block, step: float, given: Floats | None = None, tied: Ties | None = None
+    ) -> Losses:
+        """Book the losses of a block, each from the impulses of its own kind.
 
         Args:
             block: the steps.
             step: their size, in s.
-            given: what a hand gave in each step, (k,), in J.
-
-        Returns:
-            what each step lost at contacts, (k,), and by friction, (k,), in J.
+            given: the impulses of a hand, (k, n, 3), in N s and N m s.
+            tied: the joints, if there are any.
         """
-        count = len(block.times)
         before, after = block.before, block.states[:, :, 3:]
         mean = (before + after) / 2
-        from_gravity = mean.reshape(count, -1) @ self._weight_force * step
-        contacts, friction = self._of_contacts(block, mean, count)
-        if not self.joints and len(block.contacts.row):
-            gained = self.energies(after) - self.energies(before)
-            contacts = from_gravity + given - gained - friction
+        contacts, friction = self._of_contacts(block, mean)
+        rods = np.zeros(len(mean))
+        if tied is not None:
+            # What nobody has been found for yet is the joints'.
+            left = (after - before) * self._inertias - self._weight_force.reshape(-1, 3) * step
+            left -= np.stack([self._impulses(block, axis) for axis in range(3)], axis=2)
+            if given is not None:
+                left -= given
+            pulled = tied.impulses(block.states, left, self._inertias)
+            rods = -(pulled * mean).sum(axis=(1, 2))
+            turning = left[:, :, 2] - pulled[:, :, 2]
+        elif block.contacts.half.any():
+            turning = (after[:, :, 2] - before[:, :, 2]) * self.inertia - self._impulses(block, 2)
+            if given is not None:
+                turning -= given[:, :, 2]
+        if block.contacts.half.any():
+            # How an edge's impulse is spread along it shows in how the body turns, and nowhere else.
+            most = self._levers(block)
+            contacts -= (np.clip(turning, -most, most) * mean[:, :, 2]).sum(axis=1)
         self.contacts += float(contacts.sum())
         self.friction += float(friction.sum())
-        self.integrator += float((before[0] - after[-1]).ravel() @ self._weight_force) * step / 2
-        return contacts, friction
+        self.rods += float(rods.sum())
+        # Bodies are moved before they are accelerated, and out of each other without a velocity.
+        jumps = block.states[-1, :, :2] - block.start - before[:, :, :2].sum(axis=0) * step
+        self.integrator += float((before - after).sum(axis=0).ravel() @ self._weight_force) * step / 2
+        self.integrator += float(jumps.ravel() @ self._weight_force.reshape(-1, 3)[:, :2].ravel())
+        return Losses(contacts, friction, rods)
+
+    def _impulses(self, block: Block, axis: int) -> Floats:
+        """What contacts did to each body in each step along x, along y or turning (axis 2), (k, n)."""
+        c, (count, bodies) = block.contacts, block.states.shape[:2]
+        total = np.zeros(count * bodies)
+        for index, point, sign in ((c.a, c.point, 1.0), (c.b, c.other, -1.0)):
+            row = c.row * bodies + index
+            part = c.impulse[:, axis % 2]
+            if axis == 2:
+                arm = point - block.states.reshape(-1, 6)[:, :2].take(row, axis=0)
+                part = arm[:, 0] * c.impulse[:, 1] - arm[:, 1] * c.impulse[:, 0]
+            total += sign * np.bincount(row, weights=part, minlength=count * bodies)
+        return total.reshape(count, bodies)
+
+    def _levers(self, block: Block) -> Floats:
+        """The most that edges can turn each body beyond that, (k, n), in N m s."""
+        c, (count, bodies) = block.contacts, block.states.shape[:2]
+        most = np.hypot(c.impulse[:, 0], c.impulse[:, 1]) * c.half
+        rows = np.concatenate([c.row * bodies + c.a, c.row * bodies + c.b])
+        summed = np.bincount(rows, weights=np.tile(most, 2), minlength=count * bodies)
+        return summed.astype(np.float64).reshape(count, bodies) * (1 + 1e-9)
 
     def energies(self, velocities: Floats) -> Floats:
         """Kinetic energies of several states, (k,), in J; velocities (k, n, 3)."""
@@ -175,37 +218,109 @@ class Ledger:
         work: Floats = ((block.before + block.states[:, :, 3:]) * impulses).sum(axis=(1, 2)) / 2
         return work
 
-    def _of_contacts(self, block: Block, mean: Floats, count: int) -> tuple[Floats, Floats]:
+    def _of_contacts(self, block: Block, mean: Floats) -> tuple[Floats, Floats]:
         """Energy that impulses took along normals and along surfaces, by step.
 
         The velocity of a body's point p is ``(vx + w y - w py, vy - w x + w px)``: what does not depend on p
         is computed once per body, and only three numbers per body are looked up for each contact.
         """
-        c = block.contacts
-        zero = np.zeros(count)
+        c, count = block.contacts, len(mean)
         if not len(c.row):
-            return zero, zero
+            return np.zeros(count), np.zeros(count)
         spin = mean[:, :, 2]
         field = np.stack(
             [mean[:, :, 0] + spin * block.states[:, :, 1], mean[:, :, 1] - spin * block.states[:, :, 0], spin]
         ).reshape(3, -1)
         start = c.row * mean.shape[1]
         a, b = start + c.a, start + c.b
-        vx, vy, turn = (column.take(b) - column.take(a) for column in field)
+        va, vb = field.take(a, axis=1), field.take(b, axis=1)
         # Columns once, side by side: reading them out of wide rows again and again costs more.
         px, py = c.point.T.copy()
+        qx, qy = c.other.T.copy()
         nx, ny = c.normal.T.copy()
         jx, jy = c.impulse.T.copy()
-        vx -= turn * py
-        vy += turn * px
+        vx = vb[0] - va[0] - vb[2] * qy + va[2] * py
+        vy = vb[1] - va[1] + vb[2] * qx - va[2] * px
         along = (jy * nx - jx * ny) * (vy * nx - vx * ny)
         friction: Floats = np.bincount(c.row, weights=along, minlength=count).astype(np.float64)
-        if not self.joints:
-            return zero, friction
         across = (jx * nx + jy * ny) * (vx * nx + vy * ny)
         return np.bincount(c.row, weights=across, minlength=count).astype(np.float64), friction
 
 
+@dataclass(frozen=True, slots=True)
+class Losses:
+    """What each step lost in contacts, to friction and in rods, (k,) each, in J."""
+
+    contacts: Floats
+    friction: Floats
+    rods: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Ties:
+    """The joints of a space: which bodies they hold, and where.
+
+    Attributes:
+        a, b: indices of the bodies, (m,).
+        anchors: in the frames of ``a`` and ``b``, (2, m, 2), in m.
+        rod: (m,); a joint that is no rod keeps both directions.
+    """
+
+    a: Ints
+    b: Ints
+    anchors: Floats
+    rod: NDArray[np.bool_]
+
+    def impulses(self, states: Floats, left: Floats, inertias: Floats) -> Floats:
+        """The impulses with which joints account best for what is left of the momenta.
+
+        With the conditions ``C v = 0`` that joints put on velocities, they can only push by ``C' s``. The
+        sizes ``s`` are those for which ``C W (left - C' s) = 0``, with the inverse masses ``W``.
+
+        Args:
+            states: (k, n, 6).
+            left: (k, n, 3), in N s and N m s.
+            inertias: mass twice and moment, (n, 3); 0 for what does not move.
+
+        Returns:
+            (k, n, 3).
+        """
+        rows, inverse = self._conditions(states), np.zeros_like(inertias)
+        np.divide(1.0, inertias, out=inverse, where=inertias > 0)
+        weighted = rows * inverse.ravel()
+        system = weighted @ rows.transpose(0, 2, 1)
+        wanted = weighted @ left.reshape(len(left), -1, 1)
+        pulled: Floats = (
+            rows.transpose(0, 2, 1) @ (np.linalg.pinv(system, hermitian=True) @ wanted)
+        ).reshape(left.shape)
+        return pulled
+
+    def _conditions(self, states: Floats) -> Floats:
+        """(k, c, 3 n): a row for each direction that a joint keeps."""
+        count, bodies = states.shape[:2]
+        places, arms = [], []
+        for index, anchor in zip((self.a, self.b), self.anchors, strict=True):
+            cos, sin = np.cos(states[:, index, 2]), np.sin(states[:, index, 2])
+            arm = np.stack(
+                [cos * anchor[:, 0] - sin * anchor[:, 1], sin * anchor[:, 0] + cos * anchor[:, 1]], axis=2
+            )
+            arms.append(arm)
+            places.append(states[:, index, :2] + arm)
+        along = places[1] - places[0]
+        size = np.hypot(along[..., 0], along[..., 1])[..., None]
+        along = np.divide(along, size, out=np.zeros_like(along), where=size > 0)
+        rows = np.zeros((count, 2 * len(self.a), bodies, 3))
+        for j, (a, b, rod) in enumerate(zip(self.a, self.b, self.rod, strict=True)):
+            for d in range(1 if rod else 2):
+                n = along[:, j] if rod else np.broadcast_to(np.eye(2)[d], (count, 2))
+                for body, arm, sign in ((a, arms[0][:, j], -1.0), (b, arms[1][:, j], 1.0)):
+                    turn = arm[:, 0] * n[:, 1] - arm[:, 1] * n[:, 0]
+                    rows[:, 2 * j + d, body] += sign * np.column_stack([n, turn])
+        return rows.reshape(count, 2 * len(self.a), -1)
+
+
+#: How often a body that is placed is moved until it fits, and how well it has to, in m.
+_TRIES, _NEAR = 80, 1e-4
 #: Ids of bodies are addresses.
 Ids: TypeAlias = NDArray[np.uint64]
 
@@ -221,10 +336,14 @@ _CONTACT = (
     | batch.ArbiterFields.IS_FIRST_CONTACT
     | batch.ArbiterFields.TOTAL_IMPULSE
     | batch.ArbiterFields.NORMAL
+    | batch.ArbiterFields.CONTACT_COUNT
     | batch.ArbiterFields.POINT_A_1
+    | batch.ArbiterFields.POINT_B_1
+    | batch.ArbiterFields.POINT_A_2
+    | batch.ArbiterFields.POINT_B_2
 )
-#: In a world with joints the middle of a contact along an edge matters, so both its points are read.
-_BOTH_POINTS = _CONTACT | batch.ArbiterFields.CONTACT_COUNT | batch.ArbiterFields.POINT_A_2
+#: Numbers of one contact in the engine's buffers.
+_WHOLE, _NUMBERS = 4, 12
 
 
 def versions() -> dict[str, str]:
@@ -332,6 +451,129 @@ class Space:
     def part(self, name: str) -> Part:
         return self._bodies[self._by_name[name]][0]
 
+    def number_of(self, name: str, key: str) -> float:
+        """A body's mass, restitution, friction, vx, vy or spin."""
+        _, body, shape = self._bodies[self._by_name[name]]
+        found = {
+            "mass": body.mass,
+            "restitution": shape.elasticity,
+            "friction": shape.friction,
+            "vx": body.velocity.x,
+            "vy": body.velocity.y,
+            "spin": body.angular_velocity,
+        }
+        return float(found[key])
+
+    def change(self, name: str, key: str, value: float) -> None:
+        """Change one of these."""
+        part, body, shape = self._bodies[self._by_name[name]]
+        match key:
+            case "mass":
+                moment = part.moment * value / part.mass
+                body.mass, body.moment = value, moment
+                self._bodies[body.id] = (replace(part, mass=value, moment=moment), body, shape)
+            case "restitution":
+                shape.elasticity = value
+                self._bodies[body.id] = (replace(part, restitution=value), body, shape)
+            case "friction":
+                shape.friction = value
+                self._bodies[body.id] = (replace(part, friction=value), body, shape)
+            case "vx":
+                body.velocity = value, body.velocity.y
+            case "vy":
+                body.velocity = body.velocity.x, value
+            case "spin":
+                body.angular_velocity = value
+        self._number()
+
+    def place(self, name: str, x: float, y: float) -> bool:
+        """Put a body's centre at a place, or as near as joints and other bodies let it.
+
+        Returns:
+            whether it fits; else it is where it was.
+        """
+        _, body, shape = self._bodies[self._by_name[name]]
+        was = body.position
+        body.position = x, y
+        for _ in range(_TRIES):
+            # One after the other, and again until both agree: what a rod asks for may be in another body.
+            off = self._onto_joints(body) + self._out_of_others(body, shape)
+            if off < _NEAR * 1e-3:
+                break
+        if off > _NEAR:
+            body.position = was
+        self.space.reindex_shapes_for_body(body)
+        return bool(off <= _NEAR)
+
+    def copy(self, name: str, made: str) -> bool:
+        """Another body like this one, where there is room beside it. Returns whether there was."""
+        part, body, old = self._bodies[self._by_name[name]]
+        size = max([part.radius, *(math.hypot(*corner) for corner in part.outline)])
+        self._insert(
+            replace(
+                part,
+                name=made,
+                angle=body.angle,
+                vx=body.velocity.x,
+                vy=body.velocity.y,
+                spin=body.angular_velocity,
+                appears=0.0,
+            )
+        )
+        _, _, shape = self._bodies[self._by_name[made]]
+        shape.elasticity, shape.friction = old.elasticity, old.friction
+        for far in (2.1, 3.2, 4.3):
+            for turn in range(8):
+                way = math.tau * turn / 8
+                wanted = (
+                    body.position.x + far * size * math.cos(way),
+                    body.position.y + far * size * math.sin(way),
+                )
+                if self.place(made, *wanted):
+                    self._number()
+                    return True
+        self.remove(made)
+        return False
+
+    def _onto_joints(self, body: pymunk.Body) -> float:
+        """Move a body to where its joints hold it; how far that was, in m."""
+        moved = 0.0
+        for joint in self.joints:
+            if body not in (joint.a, joint.b):
+                continue
+            mine, other = (
+                (joint.anchor_a, joint.anchor_b) if body is joint.a else (joint.anchor_b, joint.anchor_a)
+            )
+            fixed = (joint.b if body is joint.a else joint.a).local_to_world(other)
+            arm = body.local_to_world(mine) - fixed
+            length = joint.distance if isinstance(joint, pymunk.PinJoint) else 0.0
+            size = arm.length
+            wanted = arm * (length / size) if size > 0 else pymunk.Vec2d(0.0, -length)
+            body.position += wanted - arm
+            moved += (wanted - arm).length
+        return moved
+
+    def _out_of_others(self, body: pymunk.Body, shape: pymunk.Shape) -> float:
+        """Move a body out of all others; how far that was, in m."""
+        tied = {
+            one
+            for joint in self.joints
+            if not joint.collide_bodies and body in (joint.a, joint.b)
+            for one in (joint.a, joint.b)
+        }
+        moved = 0.0
+        for hit in self.space.shape_query(shape):
+            if hit.shape is None or hit.shape.body in tied or hit.shape.body is body:
+                continue
+            depth = (
+                min((point.distance for point in hit.contact_point_set.points), default=0.0)
+                + self.space.collision_slop
+            )
+            if depth < 0.0:
+                body.position += hit.contact_point_set.normal * depth
+                moved -= depth
+        return moved
+
     def set_material(self, *, restitution: float | None = None, friction: float | None = None) -> None:
         """Give every movable body another restitution or friction; fixed ones keep theirs."""
         for part, _, shape in self._bodies.values():
@@ -361,30 +603,18 @@ class Space:
             ends.append((float(a.x), float(a.y), float(b.x), float(b.y)))
         return ends
 
-    def stopped_by_joints(self) -> float:
-        """The energy that joints take from bodies that move against them, in J.
-
-        An ideal joint takes what of the velocities it does not allow, at once, with the least impulse that
-        does. With conditions ``J v = 0`` and inverse masses ``W`` that is ``(J v)' (J W J')^-1 (J v) / 2``.
-        """
+    def ties(self) -> Ties | None:
+        """What the joints hold, by the rows of every state; None if there are none."""
         if not self.joints:
-            return 0.0
-        rows: list[Floats] = []
-        for joint, (ax, ay, bx, by) in zip(self.joints, self.ends_of_joints(), strict=True):
-            along = np.array([bx - ax, by - ay])
-            rod = isinstance(joint, pymunk.PinJoint) and bool(along.any())
-            for nx, ny in [along / np.hypot(*along)] if rod else np.eye(2):
-                row = np.zeros((len(self.parts), 3))
-                for body, x, y, sign in ((joint.a, ax, ay, -1.0), (joint.b, bx, by, 1.0)):
-                    part = self._bodies[body.id][0]
-                    turn = (x - body.position.x) * ny - (y - body.position.y) * nx
-                    row[self.index[part.name]] += sign * np.array([nx, ny, turn])
-                rows.append(row.ravel())
-        conditions = np.array(rows)
-        masses = [(0.0,) * 3 if p.fixed else (1 / p.mass, 1 / p.mass, 1 / p.moment) for p in self.parts]
-        wrong = conditions @ self.state()[:, 3:].ravel()
-        least = np.linalg.lstsq(conditions * np.ravel(masses) @ conditions.T, wrong, rcond=None)[0]
-        return float(wrong @ least) / 2
+            return None
+        rows = [
+            [self.index[self._bodies[j.a.id][0].name], self.index[self._bodies[j.b.id][0].name]]
+            for j in self.joints
+        ]
+        anchors = [[tuple(j.anchor_a), tuple(j.anchor_b)] for j in self.joints]
+        a, b = np.array(rows).T
+        rod = np.array([isinstance(j, pymunk.PinJoint) for j in self.joints])
+        return Ties(a=a, b=b, anchors=np.array(anchors, dtype=float).transpose(1, 0, 2), rod=rod)
 
     # -- everything at once ----------------------------------------------------------------------
 
@@ -416,15 +646,12 @@ class Recorder:
 
     Args:
         space: whose.
-        both_points: read both points of contacts along an edge.
     """
 
-    def __init__(self, space: Space, *, both_points: bool) -> None:
+    def __init__(self, space: Space) -> None:
         self._space = space
         self._states = batch.Buffer()
         self._contacts = batch.Buffer()
-        self._fields = _BOTH_POINTS if both_points else _CONTACT
-        self._whole, self._numbers = (4, 8) if both_points else (3, 6)
         self._ends: list[int] = []
 
     def __len__(self) -> int:
@@ -433,7 +660,7 @@ class Recorder:
     def take(self) -> None:
         """Append the step that was just made."""
         batch.get_space_bodies(self._space.space, _STATE, self._states)
-        batch.get_space_arbiters(self._space.space, self._fields, self._contacts)
+        batch.get_space_arbiters(self._space.space, _CONTACT, self._contacts)
         self._ends.append(len(self._contacts.int_buf()))
 
     def block(self) -> tuple[Floats, Contacts]:
@@ -443,13 +670,11 @@ class Recorder:
         """
         count = len(self._ends)
         states = np.frombuffer(self._states.float_buf(), dtype=np.float64).reshape(count, -1, 6)
-        ends = np.array(self._ends) // (8 * self._whole)
-        whole = np.frombuffer(self._contacts.int_buf(), dtype=np.uint64).reshape(-1, self._whole)
-        numbers = np.frombuffer(self._contacts.float_buf(), dtype=np.float64).reshape(-1, self._numbers)
-        point = numbers[:, 4:6]
-        if self._whole == 4:
-            along_edge = (whole[:, 3] == 2)[:, None]
-            point = np.where(along_edge, (point + numbers[:, 6:8]) / 2, point)
+        ends = np.array(self._ends) // (8 * _WHOLE)
+        whole = np.frombuffer(self._contacts.int_buf(), dtype=np.uint64).reshape(-1, _WHOLE)
+        numbers = np.frombuffer(self._contacts.float_buf(), dtype=np.float64).reshape(-1, _NUMBERS)
+        to_middle = (numbers[:, 8:12] - numbers[:, 4:8]) * ((whole[:, 3] == 2) / 2)[:, None]
+        points = numbers[:, 4:8] + to_middle
         bodies = [self._space.indices(whole[:, i]) for i in (0, 1)]
         contacts = Contacts(
             row=np.repeat(np.arange(count), np.diff(ends, prepend=0)),
@@ -458,7 +683,9 @@ class Recorder:
             first=whole[:, 2],
             impulse=numbers[:, 0:2],
             normal=numbers[:, 2:4],
-            point=point,
+            point=points[:, :2],
+            other=points[:, 2:],
+            half=np.hypot(to_middle[:, 0], to_middle[:, 1]),
         )
         self._states.clear()
         self._contacts.clear()

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from course.errors import UsageError
-from course.sandbox.scene.model import Material, Part, Scene, layout, spawned
+from course.sandbox.scene.model import Material, Part, Scene, layout, spawned, wall
 from course.sandbox.scene.rules import SETTINGS, checked, number
 from course.sandbox.world.accounts import BLOCK, Accounts, Clock, Event, Hand, History, Receipt
 from course.sandbox.world.contacts import ContactCollector, contact_events
@@ -79,6 +79,17 @@ MAX_BODIES = 1000
 _TIDY = 64
 #: A gap in real time that a stalled view makes up for, at most, in s.
 _MAX_GAP = 0.25
+#: The names of the walls that the setting puts up.
+_WALLS = ("wall-below", "wall-right", "wall-above", "wall-left")
+#: A body's numbers that can be changed: unit, lowest and highest.
+NUMBERS = {
+    "mass": ("kg", 1e-3, 1e4),
+    "restitution": ("1", 0.0, 1.0),
+    "friction": ("1", 0.0, 10.0),
+    "vx": ("m/s", -1e3, 1e3),
+    "vy": ("m/s", -1e3, 1e3),
+    "spin": ("rad/s", -1e3, 1e3),
+}
 #: Events kept until they are drained; older ones are dropped and counted.
 _MAX_EVENTS = 5000
 
@@ -122,8 +133,8 @@ class World:
         ticks: steps since the world was made; a reset does not turn it back.
         paused, speed: for views: ``advance`` does nothing while paused, and runs ``speed`` times real time.
         dropped: events that were not drained in time.
-        on_input: called with the tick, the method and its arguments, before anything done by hand acts.
-        on_tick: every how many steps, and the function to call then.
+        on_input: each is called with the tick, the method and its arguments of anything done by hand.
+        on_tick: every how many steps, and the function to call then, for each.
         on_block: called with every stretch of steps that was booked.
     """
 
@@ -137,8 +148,8 @@ class World:
         self.dropped = 0
         self.paused = False
         self.speed = 1.0
-        self.on_input: Callable[[int, str, tuple[Any, ...]], None] | None = None
-        self.on_tick: tuple[int, Callable[[], None]] | None = None
+        self.on_input: list[Callable[[int, str, tuple[Any, ...]], None]] = []
+        self.on_tick: list[tuple[int, Callable[[], None]]] = []
         self.on_block: list[Callable[[Block], None]] = []
         self._with_receipt = receipt
         self._events: deque[Event] = deque()
@@ -171,10 +182,11 @@ class World:
             restitution=self.settings.get("restitution"), friction=self.settings.get("friction")
         )
         self._space.space.gravity = self._gravity()
+        self._wall()
         if not self._with_receipt:
             self._space.on_contact(ContactCollector(self._space, self._clock_now, self._report).begin)
         self._clock = Clock(self.settings["step"])
-        self._accounts = Accounts(self._space, self._gravity(), self._clock, joints=bool(scene.joint))
+        self._accounts = Accounts(self._space, self._gravity(), self._clock)
         self._watch = Watch(scene.view)
         self._hand: Hand | None = None
         self._spawned = 0
@@ -267,6 +279,11 @@ class World:
         self._settle()
         return self._accounts.history()
 
+    def samples(self, after: float) -> list[list[float]]:
+        """The rows of ``history`` that are later than this time, in s."""
+        self._settle()
+        return self._accounts.samples(after)
+
     def state_hash(self) -> str:
         """Sixteen letters that stand for every bit of every body's state."""
         names = "\n".join(part.name for part in self.parts).encode()
@@ -310,8 +327,9 @@ class World:
                     self._settle()
             if self.ticks % _TIDY == 0:
                 self._tidy()
-            if self.on_tick is not None and self.ticks % self.on_tick[0] == 0:
-                self.on_tick[1]()
+            for every, tell in self.on_tick:
+                if self.ticks % every == 0:
+                    tell()
 
     def run_until(self, t: float) -> None:
         """Step until this time, in s, is reached; a time that steps do not hit is passed by less than one."""
@@ -350,6 +368,9 @@ class World:
             self._space.space.iterations = int(amount)
         elif key == "step":
             self._clock.resize(amount)
+        elif key == "walls":
+            self._wall()
+            self._recast()
         self._say(f"{key} is now {amount:g} {SETTINGS[key].unit}".removesuffix(" 1"))
 
     def grab(self, x: float, y: float, reach: float = 0.3) -> str | None:
@@ -441,6 +462,130 @@ class World:
         self._say(f"{name} appears", name)
         return name
 
+    # -- what is done to one body, known by its name ---------------------------------------------------
+
+    def place(self, name: str, x: float, y: float) -> bool:
+        """Put a body's centre at a place, or as near as its rods and its neighbours let it.
+
+        Its velocity stays.
+
+        Returns:
+            whether it fits there; else it stays where it was.
+        """
+        self._movable(name)
+        x, y = self._place(x, y)
+        if self.held == name:
+            self.release()
+        self._settle()
+        if not self._space.place(name, x, y):
+            return False
+        self._input("place", name, x, y)
+        self._accounts.gave()
+        self._say(f"{name} is put elsewhere", name)
+        return True
+
+    def aim(self, name: str, vx: float, vy: float) -> None:
+        """Give a body this velocity, in m/s."""
+        self._movable(name)
+        vx, vy = _bounded(vx, "vx"), _bounded(vy, "vy")
+        self._input("aim", name, vx, vy)
+        self._settle()
+        self._space.body(name).velocity = vx, vy
+        self._accounts.gave()
+        self._say(f"{name} now moves at {math.hypot(vx, vy):.2f} m/s", name)
+
+    def change(self, name: str, key: str, value: float) -> None:
+        """Change one of a body's ``NUMBERS``; of a mass, its moment changes with it.
+
+        Raises:
+            UsageError: there is no such body or number, or it is out of range.
+        """
+        self._movable(name)
+        if key not in NUMBERS:
+            raise UsageError(
+                f"A body has no {str(key)[:20]!r}.",
+                help=f"It has {', '.join(NUMBERS)}.",
+                code="bad_parameter",
+            )
+        unit, low, high = NUMBERS[key]
+        amount = number(value, key)
+        if not low <= amount <= high:
+            raise UsageError(
+                f"{key} must be from {low:g} to {high:g}, and {amount:g} is not.", code="bad_parameter"
+            )
+        self._input("change", name, key, amount)
+        self._settle()
+        self._space.change(name, key, amount)
+        self._accounts.recast(self._gravity())
+        if key in {"mass", "restitution", "friction"}:
+            self.version += 1
+        self._say(f"{key} of {name} is now {amount:g} {unit}".removesuffix(" 1"), name)
+
+    def remove(self, name: str) -> None:
+        """Take a body out, and the joints that hold it."""
+        self._movable(name)
+        self._input("remove", name)
+        self._settle()
+        self._say(f"{name} is taken away", name)
+        self._take_out(name)
+
+    def copy(self, name: str) -> str:
+        """Another body like this one, beside it, as fast as it is. Returns the name of the new one.
+
+        Raises:
+            UsageError: there is no such body, no room beside it, or there are too many.
+        """
+        self._movable(name)
+        if len(self._space.parts) >= MAX_BODIES:
+            raise UsageError(f"There are {MAX_BODIES} bodies; that is enough.", code="too_many_bodies")
+        self._settle()
+        made = f"new-{self._spawned + 1}"
+        if not self._space.copy(name, made):
+            raise UsageError(f"There is no room beside {name} for another one.", code="no_room")
+        self._input("copy", name)
+        self._spawned += 1
+        if self._space.part(made).wheels is not None:
+            self._wheeled.append(self._space.part(made))
+        self._recast()
+        self._say(f"{made} appears, like {name}", made)
+        return made
+
+    def stop(self) -> None:
+        """Let everything stand still; wheels stop as well."""
+        self._input("stop")
+        self._settle()
+        for part in self._space.parts:
+            if not part.fixed:
+                body = self._space.body(part.name)
+                body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
+        if self._wheeled:
+            self.settings |= {"left": 0.0, "right": 0.0}
+        self._accounts.gave()
+        self._say("everything is stopped")
+
+    def number_of(self, name: str, key: str) -> float:
+        """One of a body's ``NUMBERS`` now."""
+        return self._space.number_of(name, key)
+
+    def moves(self, name: str) -> bool:
+        """Whether there is a body of this name that can move."""
+        return any(part.name == name and not part.fixed for part in self._space.parts)
+
+    def _movable(self, name: str) -> None:
+        if not self.moves(name):
+            raise UsageError(f"There is no {str(name)[:60]!r} that moves.", code="bad_parameter")
+
+    def _wall(self) -> None:
+        """Put walls around what is shown, or take them away, as the settings say."""
+        left, bottom, right, top = self.scene.view
+        corners = [(left, bottom), (right, bottom), (right, top), (left, top)]
+        there = [part.name for part in self._space.parts if part.name in _WALLS]
+        for name in there:
+            self._space.remove(name)
+        if self.settings.get("walls"):
+            for name, a, b in zip(_WALLS, corners, corners[1:] + corners[:1], strict=True):
+                self._space.add(wall(name, a, b, (top - bottom) / 100), {})
+
     def _place(self, x: float, y: float) -> tuple[float, float]:
         """A place the user points at, kept within a view's size around what is drawn."""
         left, bottom, right, top = self.scene.view
@@ -449,8 +594,8 @@ class World:
         return x, min(max(number(y, "y"), bottom - height), top + height)
 
     def _input(self, what: str, *arguments: Any) -> None:
-        if self.on_input is not None:
-            self.on_input(self.ticks, what, arguments)
+        for tell in self.on_input:
+            tell(self.ticks, what, arguments)
 
     def _say(self, text: str, name: str = "") -> None:
         self._report(Event(kind="input", t=self._clock.t, step=self._clock.steps, a=name, text=text))
@@ -500,11 +645,14 @@ class World:
                 x, y = float(state[i, 0]), float(state[i, 1])
                 self._report(Event(kind=kind, t=self.t, step=self.steps, a=parts[i].name, x=x, y=y))
         for name in [parts[i].name for i in gone]:
-            if self.held == name:
-                self._hand = None
-            self._wheeled = [part for part in self._wheeled if part.name != name]
-            self._space.remove(name)
-            self._recast()
+            self._take_out(name)
+
+    def _take_out(self, name: str) -> None:
+        if self.held == name:
+            self._hand = None
+        self._wheeled = [part for part in self._wheeled if part.name != name]
+        self._space.remove(name)
+        self._recast()
 
 
 def _bounded(value: float, what: str) -> float:

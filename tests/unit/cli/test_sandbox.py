@@ -53,20 +53,31 @@ def test_a_scene_is_played_without_the_word_play(tmp_path: Path) -> None:
     assert "No such command 'plai'" in sandbox("plai", cwd=tmp_path, code=2).stderr
 
 
-def test_a_typo_in_the_menu_is_asked_about_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_in_a_terminal_or_with_web_all_scenes_open(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from course.cli.frame.console import Console
-    from course.cli.sandbox import commands
+    from course.cli.sandbox import play as opened
 
-    typed, played = iter(["99", "newton", "2", "never asked"]), []
+    asked = []
+
+    def view(name: str):
+        def play(chosen, desk, **more) -> bytes:
+            path = desk.save("my-scene.toml", b"one")
+            again = desk.save("my-scene.toml", b"two")
+            asked.append((name, chosen, Path(path).name, Path(again).name, sorted(more)))
+            return b""
+
+        return play
+
+    monkeypatch.setattr(opened, "_view", view)
+    sandbox("--web", "--no-browser", cwd=tmp_path)
     monkeypatch.setattr(Console, "interactive", property(lambda _: True))
-    monkeypatch.setattr(Console, "ask", lambda *_: next(typed))
-    monkeypatch.setattr(commands, "play", lambda name: played.append(name) or 0)
     monkeypatch.setenv("FORCE_COLOR", "1")
-    assert "no scene" in sandbox(cwd=tmp_path).stdout
-    assert played == ["2"]
-    typed = iter(["q"])
     sandbox(cwd=tmp_path)
-    assert played == ["2"], "q leaves"
+    assert asked == [
+        ("web", None, "my-scene.toml", "my-scene-2.toml", ["guess", "open_browser", "port", "say"]),
+        ("terminal", None, "my-scene-3.toml", "my-scene-4.toml", ["guess"]),
+    ]
+    assert (tmp_path / "my-scene.toml").read_bytes() == b"one", "a file that is there stays"
 
 
 def test_question_answer_and_reason_have_the_numbers_that_were_set(tmp_path: Path) -> None:

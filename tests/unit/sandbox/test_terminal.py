@@ -8,32 +8,42 @@ from typing import Any
 
 import pytest
 from textual.pilot import Pilot
-from textual.widgets import Input, Static
+from textual.widgets import Input, OptionList, Static
 
 from course.errors import MissingCapabilityError
-from course.sandbox.scene.loading import choose
+from course.sandbox.scene.loading import choose, scene_ids
+from course.sandbox.views.stage import Desk, Stage
 from course.sandbox.views.terminal import view as terminal
 from course.sandbox.views.terminal.app import SandboxApp
-from course.sandbox.views.terminal.asking import PageOverlay, QuestionOverlay
-from course.sandbox.world.world import World
+from course.sandbox.views.terminal.asking import ChangeOverlay, Gallery, PageOverlay, QuestionOverlay
 
 
 class Played(SandboxApp):
     """The view with a clock of its own: frames come when a test asks for them."""
 
-    def __init__(self, scene: str, **more: Any) -> None:
+    def __init__(self, scene: str | None, **more: Any) -> None:
         self.now = 0.0
         self.kept: list[Any] = []
-        chosen = choose(scene)
-        world = World(chosen.scene, chosen.settings)
-        more = {"keep": self.kept.append, **more}
-        super().__init__(world, chosen, clock=lambda: self.now, **more)
+        self.saved: dict[str, bytes] = {}
+        guess = more.pop("guess", None)
+
+        def clock() -> float:
+            return self.now
+
+        chosen = choose(scene) if scene else None
+        stage = Stage(chosen, guess=guess, keep=self.kept.append, clock=clock) if chosen else None
+
+        def save(name: str, data: bytes) -> str:
+            self.saved[name] = data
+            return f"/home/me/{name}"
+
+        super().__init__(stage, Desk(save=save, played=frozenset({"free-fall"})), clock=clock, **more)
         # A machine under load is no reason to step less here.
-        self.pacer._budget = 1e9
+        self._budget = 1e9
 
     def begin(self) -> None:
-        if self.experiment.stage == "ask":
-            self.ask()
+        if self._gallery_first:
+            self.action_scenes()
 
     def frames(self, count: int) -> None:
         for _ in range(count):
@@ -44,18 +54,17 @@ class Played(SandboxApp):
         """Column and row on the screen of a body."""
         shot = self.world.snapshot()
         row = [part.name for part in self.world.parts].index(name)
-        column, line = self.stage.camera.cell(float(shot.x[row]), float(shot.y[row]))
+        column, line = self.sight.camera.cell(float(shot.x[row]), float(shot.y[row]))
         return column + self.canvas.region.x, line + self.canvas.region.y
 
 
 def play(
-    scene: str,
+    scene: str | None,
     script: Callable[[Played, Pilot[None]], Awaitable[None]],
     size: tuple[int, int] = (80, 24),
     **more: Any,
 ) -> Played:
-    """Run a script against the view; without a question unless the script wants one."""
-    more = {"guess": 1.0, **more}
+    """Run a script against the view."""
 
     async def run() -> Played:
         app = Played(scene, **more)
@@ -78,8 +87,10 @@ def test_keys_act_on_time_and_settings():
         steps = world.steps
         app.frames(3)
         assert world.steps == steps
-        await pilot.press("full_stop", "full_stop")
+        await pilot.press("colon", "colon")
         assert world.steps == steps + 2
+        await pilot.press("full_stop")
+        assert world.t == pytest.approx((steps + 2) * 0.0005 + 1 / 60, abs=1e-3)
         await pilot.press("minus")
         assert world.speed == 0.5
         await pilot.press("plus", "equals_sign")
@@ -130,7 +141,7 @@ def test_a_drag_moves_a_body_and_letting_go_throws_it():
     async def script(app: Played, pilot: Pilot[None]) -> None:
         x, y = app.at("right-puck")
         # Beside its rim is near enough.
-        near = (x + 2 + round(0.2 * app.stage.camera.scale), y)
+        near = (x + 2 + round(0.2 * app.sight.camera.scale), y)
         await pilot.mouse_down(offset=near)
         assert app.world.held == "right-puck"
         for i in range(1, 9):
@@ -150,21 +161,144 @@ def test_a_drag_moves_a_body_and_letting_go_throws_it():
     play("head-on", script)
 
 
-def test_a_drag_while_time_stands_still_aims_a_throw():
+def test_a_drag_while_time_stands_still_places_and_the_other_button_aims():
     async def script(app: Played, pilot: Pilot[None]) -> None:
         await pilot.press("space")
         x, y = app.at("left-puck")
         await pilot.mouse_down(offset=(x, y))
-        await pilot.hover(offset=(x + 8, y))
+        await pilot.hover(offset=(x, y - 3))
+        app.frames(1)
+        assert "course sandbox play head-on --web" in app.keys.text, "by eye it is better done in the page"
+        await pilot.mouse_up(offset=(x, y - 3))
+        assert app.at("left-puck") == (x, y - 3)
+        await pilot.mouse_down(offset=(x, y - 3), button=3)
+        await pilot.hover(offset=(x + 8, y - 3))
         app.frames(1)
         assert "aiming" in app.head.text
-        await pilot.mouse_up(offset=(x + 8, y))
+        await pilot.mouse_up(offset=(x + 8, y - 3))
         vx = float(app.world.snapshot().vx[0])
-        assert vx == pytest.approx(3.0 * 8 / app.stage.camera.scale, rel=0.15)
-        assert app.world.steps == app.world.ticks
+        assert vx == pytest.approx(3.0 * 8 / app.sight.camera.scale, rel=0.15)
         assert app.world.paused
+        await pilot.press("u", "u")
+        app.frames(2)
+        assert app.at("left-puck") == (x, y)
+        assert float(app.world.snapshot().vx[0]) == 2.0
 
     play("head-on", script)
+
+
+def test_keys_place_and_aim_copy_and_take_away():
+    async def script(app: Played, pilot: Pilot[None]) -> None:
+        await pilot.press("space")
+        app.pointer.at = tuple(
+            a - b for a, b in zip(app.at("left-puck"), app.canvas.region.offset, strict=True)
+        )
+        app.pointer.by_keys = True
+        before = app.at("left-puck")
+        await pilot.press("enter", "up", "up", "enter")
+        assert app.at("left-puck") == (before[0], before[1] - 2)
+        await pilot.press("v", "shift+up", "v")
+        app.frames(1)
+        assert "will fly" in app.keys.text
+        await pilot.press("shift+down", "y")
+        assert "new-1" in {part.name for part in app.world.parts}
+        await pilot.press("delete")
+        assert "left-puck" not in {part.name for part in app.world.parts}
+        await pilot.press("s")
+        assert app.world.receipt.kinetic == 0.0
+
+    play("head-on", script)
+
+
+def test_the_past_is_looked_at_played_backwards_and_gone_on_from():
+    async def script(app: Played, pilot: Pilot[None]) -> None:
+        app.frames(30)
+        await pilot.press("less_than_sign")
+        app.frames(1)
+        assert app.stage.t == pytest.approx(0.5, abs=0.1)
+        assert "of 1.0" in app.head.text
+        await pilot.press("c")
+        app.frames(1)
+        assert "You look at" in app.keys.text
+        await pilot.press("j")
+        app.frames(6)
+        assert app.stage.t == pytest.approx(0.3, abs=0.1)
+        assert "◀" in app.head.text
+        await pilot.press("space", "enter")
+        app.frames(6)
+        assert app.stage.at is None
+        assert app.world.t == pytest.approx(0.5, abs=0.15)
+        await pilot.press("Z", "t")
+        app.frames(1)
+        assert app.sight.ghost
+        await pilot.press("comma", "k")
+        assert app.stage.at is None
+
+    play("head-on", script)
+
+
+def test_the_gallery_opens_any_scene_and_back():
+    async def script(app: Played, pilot: Pilot[None]) -> None:
+        assert isinstance(app.screen, Gallery)
+        app.screen.move()
+        words = [str(option.prompt) for option in app.screen.query_one(OptionList).options]
+        assert len(words) == len(scene_ids())
+        assert [word for word in words if word.startswith("✓")] == ["✓ Free fall"]
+        await pilot.press("down", "down", "enter")
+        app.frames(3)
+        assert app.stage.chosen.scene.id == "newtons-cradle"
+        assert app.world.t > 0
+        await pilot.press("escape")
+        assert isinstance(app.screen, Gallery)
+        t = app.world.t
+        app.frames(3)
+        assert app.world.t == t
+        await pilot.press("escape")
+        app.frames(3)
+        assert app.world.t > t, "back in the same run"
+
+    play(None, script)
+
+
+def test_a_line_changes_a_parameter_a_setting_or_a_body_and_makes_the_scene_ones_own():
+    async def script(app: Played, pilot: Pilot[None]) -> None:
+        async def say(line: str) -> None:
+            await pilot.press("slash")
+            assert isinstance(app.screen, ChangeOverlay)
+            app.screen.query_one(Input).value = line
+            await pilot.press("enter")
+            app.frames(1)
+
+        await say("speed 5")
+        assert app.stage.chosen.parameters["speed"] == 5
+        assert app.world.t < 0.1
+        await say("gravity = 2")
+        assert app.world.settings["gravity"] == 2
+        app.pointer.at = tuple(
+            a - b for a, b in zip(app.at("left-puck"), app.canvas.region.offset, strict=True)
+        )
+        await say("mass 3")
+        assert app.world.number_of("left-puck", "mass") == 3
+        for wrong in ("speed", "speed fast", "warp 9", "speed 1e9"):
+            await say(wrong)
+        assert app.stage.chosen.parameters["speed"] == 5
+        await pilot.press("ctrl+s")
+        app._film[0].join(60)
+        app.frames(1)
+        assert app.saved["head-on.gif"][:6] == b"GIF89a"
+
+    play("head-on", script)
+
+
+def test_arrows_drive_what_has_wheels():
+    async def script(app: Played, pilot: Pilot[None]) -> None:
+        await pilot.press("up", "right")
+        assert app.world.settings["left"] == pytest.approx(0.65)
+        assert app.world.settings["right"] == pytest.approx(0.5)
+        app.frames(1)
+        assert "Wheels: left 0.65" in app.keys.text
+
+    play("robot-boxes", script)
 
 
 def test_the_other_button_and_keys_put_new_bodies_in():
@@ -211,7 +345,7 @@ def test_any_size_works_and_a_resize_lays_everything_out_again(size: tuple[int, 
         if size[0] >= 60:
             assert "motion" in app.panel.text
             assert app.canvas.size.width >= 30
-            assert app.stage.camera.columns == app.canvas.size.width
+            assert app.sight.camera.columns == app.canvas.size.width
         for lines in (app.head, app.panel, app.events, app.keys):
             if lines.display and size[0] >= 12:
                 assert all(len(line) <= lines.size.width for line in lines.text.split("\n"))
@@ -233,66 +367,59 @@ def test_tab_hides_what_stands_beside_and_shows_it_again():
 
 
 @pytest.mark.parametrize("scene", ["newtons-cradle", "unequal-masses"])
-def test_the_box_before_a_run_holds_the_question_alone_and_the_help_what_the_scene_is_about(
+def test_the_box_for_a_guess_holds_the_question_alone_and_the_help_what_the_scene_is_about(
     scene: str,
 ) -> None:
     async def script(app: Played, pilot: Pilot[None]) -> None:
+        await pilot.press("p")
         assert isinstance(app.screen, QuestionOverlay)
         said = " ".join(str(one.content) for one in app.screen.query("Static").results(Static)).split()
         assert said == app.experiment.question.split()
         assert len(said) < 45
-        note = app.chosen.scene.note.split()[:6]
+        note = app.stage.chosen.scene.note.split()[:6]
         await pilot.press("escape", "question_mark")
         assert " ".join(note) in " ".join(app.screen.words.split())
 
     play(scene, script, guess=None)
 
 
-def test_the_question_comes_first_and_the_comparison_after_and_both_can_be_left():
+def test_a_guess_starts_the_run_and_the_comparison_is_a_line_while_time_goes_on():
     async def script(app: Played, pilot: Pilot[None]) -> None:
-        assert isinstance(app.screen, QuestionOverlay)
         app.frames(5)
-        assert app.world.steps == 0
+        assert app.world.t > 0, "nothing is asked before it runs"
+        await pilot.press("p")
+        assert isinstance(app.screen, QuestionOverlay)
         app.screen.query_one(Input).value = "two"
         await pilot.press("enter")
         assert isinstance(app.screen, QuestionOverlay)
         app.screen.query_one(Input).value = "2,0"
         await pilot.press("enter")
         assert not isinstance(app.screen, QuestionOverlay)
-        app.frames(90)
-        await pilot.pause()
-        assert app.world.t == pytest.approx(2.0, abs=1 / 240)
-        assert app.world.paused
+        app.frames(63)
+        assert app.world.t > 2.0
+        assert "Your guess is right" in app.keys.text
+        app.frames(30)
+        assert app.world.t > 3.0, "no run ends"
+        await pilot.press("p")
         assert isinstance(app.screen, PageOverlay)
         page = app.screen.words
         for words in ("your guess", "theory", "simulation", "Your guess is right", "And now:"):
             assert words in page
-        await pilot.press("question_mark")
-        assert "reset: from the start" in app.screen.words, "the keys, not the picture"
-        await pilot.press("escape", "p")
-        assert "Your guess is right" in app.screen.words
         await pilot.press("r")
-        assert not isinstance(app.screen, PageOverlay)
         app.frames(3)
         assert 0 < app.world.t < 1
-        assert not app.world.paused
 
-    app = play("head-on", script, guess=None)
+    app = play("head-on", script)
     assert [kept.guess for kept in app.kept] == [2.0]
 
 
 def test_a_run_without_a_guess_is_compared_with_theory_and_kept_nowhere():
     async def script(app: Played, pilot: Pilot[None]) -> None:
-        await pilot.press("escape")
         app.frames(90)
-        await pilot.pause()
-        assert isinstance(app.screen, PageOverlay)
-        await pilot.press("escape")
-        await pilot.press("space")
-        app.frames(30)
+        assert app.experiment.stage == "done"
         assert app.world.t > 2.5
 
-    assert play("head-on", script, guess=None).kept == []
+    assert play("head-on", script).kept == []
 
 
 def test_a_run_that_a_hand_was_in_is_compared_with_nothing_and_goes_on():
@@ -304,7 +431,7 @@ def test_a_run_that_a_hand_was_in_is_compared_with_nothing_and_goes_on():
         assert not isinstance(app.screen, PageOverlay)
         await pilot.press("p")
         app.frames(1)
-        assert "You changed this run" in app.keys.text
+        assert isinstance(app.screen, QuestionOverlay), "a guess begins anew"
 
     play("head-on", script)
 
@@ -316,25 +443,17 @@ def test_a_run_that_is_over_in_a_blink_starts_in_slow_motion():
     play("bullet-wall", script)
 
 
-def test_help_says_how_to_set_what_has_no_key():
-    async def script(app: Played, pilot: Pilot[None]) -> None:
-        await pilot.press("question_mark")
-        assert isinstance(app.screen, PageOverlay)
-        assert (
-            "course sandbox play newtons-cradle --set gap=NUMBER; also angle, backwards" in app.screen.words
-        )
-
-    play("newtons-cradle", script)
-
-
 def test_help_names_every_key_and_time_stands_still_meanwhile():
     async def script(app: Played, pilot: Pilot[None]) -> None:
         await pilot.press("question_mark")
         assert isinstance(app.screen, PageOverlay)
         page = app.screen.words
         keys = {key.strip() for binding in app.BINDINGS for key in binding.key.split(",")}
-        named = {"full_stop": ".", "minus": "-", "plus": "+", "tab": "Tab", "enter": "Enter"}
-        silent = {"ctrl+q", "ctrl+c", "underscore", "equals_sign", "question_mark", "f1"}
+        named = {"full_stop": ".", "minus": "-", "plus": "+", "tab": "Tab", "enter": "Enter", "comma": ","}
+        named |= {"less_than_sign": "<", "greater_than_sign": ">", "colon": ":", "slash": "/", "home": "Home"}
+        named |= {"delete": "Delete", "backspace": "Backspace", "pageup": "PgUp", "pagedown": "PgDn"}
+        named |= {"ctrl+s": "Ctrl+S", "escape": "Escape"}
+        silent = {"ctrl+q", "ctrl+c", "underscore", "equals_sign", "question_mark", "f1", "ctrl+z", "ctrl+y"}
         arrows = {prefix + way for prefix in ("", "shift+") for way in ("left", "right", "up", "down")}
         words = page.split()
         for key in keys - silent - arrows - {"a", "A", "d", "D"}:
@@ -389,7 +508,7 @@ def test_calm_means_four_pictures_a_second_and_no_flashes():
         app._draw = counted  # type: ignore[method-assign]
         app.frames(30)
         assert 3 <= drawn <= 5
-        assert app.stage._flashes == []
+        assert app.sight._flashes == []
 
     play("head-on", script)
 
@@ -425,16 +544,15 @@ def test_there_are_keys_to_leave(key: str):
 
 def test_ctrl_c_leaves_the_question_as_well():
     async def script(app: Played, pilot: Pilot[None]) -> None:
-        await pilot.press("ctrl+c")
+        await pilot.press("p", "ctrl+c")
         await pilot.pause()
         assert app._exit
 
-    play("head-on", script, guess=None)
+    play("head-on", script)
 
 
 def test_without_a_terminal_the_way_out_is_named(capsys):
-    scene = choose("head-on").scene
     with pytest.raises(MissingCapabilityError) as caught:
-        terminal.play(World(scene), scene)
+        terminal.play(choose("head-on"))
     assert "--describe" in caught.value.help
     assert "--headless" in caught.value.help

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from course.sandbox.scene.loading import choose
+from course.sandbox.views.stage import Stage
 from course.sandbox.views.terminal.words import (
-    Pacer,
     bars,
     clean,
     head,
@@ -72,14 +72,14 @@ def test_words_wrap_and_too_long_ones_are_cut():
 def test_lines_above_and_below_fit(width: int):
     world = World(choose("newtons-cradle").scene)
     world.speed = 1 / 1024
-    assert len(plain(head(world, "", 0.3, width))) <= width
-    assert len(plain(keys_line(width, paused=True))) <= width
+    assert len(plain(head(world, 0.0, "", 0.3, width))) <= width
+    assert len(plain(keys_line(width, paused=True, past=True))) <= width
 
 
 def test_a_slow_machine_is_named_and_a_quick_one_is_not():
     world = World(choose("head-on").scene)
-    assert "manages 30 %" in plain(head(world, "", 0.3, 120))
-    assert "manages" not in plain(head(world, "", 1.0, 120))
+    assert "manages 30 %" in plain(head(world, 0.0, "", 0.3, 120))
+    assert "manages" not in plain(head(world, 0.0, "", 1.0, 120))
 
 
 @pytest.mark.parametrize(("width", "height"), [(23, 10), (23, 19), (27, 19), (43, 40), (43, 60)])
@@ -87,7 +87,7 @@ def test_a_slow_machine_is_named_and_a_quick_one_is_not():
 def test_the_panel_fits_and_its_energies_add_up(scene: str, width: int, height: int):
     world = World(choose(scene).scene)
     world.run_until(0.3)
-    lines = panel(world, width, height)
+    lines = panel(world, [("angle", "30 deg")], width, height)
     assert len(lines) <= height
     assert {len(plain(line)) for line in lines if len(line) == 3} == {width}
     if height >= 19:
@@ -116,22 +116,21 @@ def test_a_world_that_is_too_slow_for_its_budget_gives_way_and_says_so():
         now += 0.01
         return now
 
-    world = World(choose("newtons-cradle").scene)
-    pacer = Pacer(world, budget=0.015, clock=clock)
-    pacer.advance(0.1)
-    assert 0 < world.steps < 200
-    assert pacer.pace < 1.0
+    stage = Stage(choose("newtons-cradle"), clock=clock)
+    stage.tick(0.1, budget=0.015)
+    assert 0 < stage.world.steps < 200
+    assert stage.pace < 1.0
 
 
-def test_a_run_stops_exactly_where_it_is_told_to():
-    world = World(choose("head-on").scene)
-    pacer = Pacer(world, budget=1e9, clock=lambda: 0.0)
-    for _ in range(20):
-        pacer.advance(0.06, until=0.5)
-    assert world.steps == 120
+def test_a_run_is_compared_exactly_where_it_was_told_to():
+    stage = Stage(choose("head-on"), clock=lambda: 0.0)
+    while stage.experiment.stage != "done":
+        before = stage.world.steps
+        stage.tick(0.07)
+    assert before < stage.world.steps == 480
 
 
 def test_where_room_is_short_every_setting_is_still_there():
-    lines = [plain(line) for line in panel(World(choose("newtons-cradle").scene), 23, 15)]
+    lines = [plain(line) for line in panel(World(choose("newtons-cradle").scene), (), 23, 15)]
     for name in ("gravity", "restitution", "friction", "step h", "iterations", "along y"):
         assert any(name in line for line in lines), name

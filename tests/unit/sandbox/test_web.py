@@ -22,22 +22,22 @@ from starlette.websockets import WebSocketDisconnect
 
 from course.errors import MissingCapabilityError, UsageError
 from course.extras import PARTS, require
+from course.sandbox.runs.tape import HEAD
 from course.sandbox.scene.loading import choose
+from course.sandbox.views.stage import Stage
 from course.sandbox.views.web import view as web
-from course.sandbox.views.web.session import FRAME_HEAD, MAX_PAGES, Session
+from course.sandbox.views.web.session import MAX_PAGES, SCRIPTS, Session
 from course.sandbox.views.web.view import STATIC, Guard, make_app
-from course.sandbox.world.world import World
 
 PORT, TOKEN = 8765, "a-token-of-some-length"
 BASE = f"http://127.0.0.1:{PORT}"
 SOCKET = f"ws://127.0.0.1:{PORT}/{TOKEN}/socket"
 OWN = {"origin": BASE}
-FILES = ("", "world.js", "page.js", "style.css", "icon.svg")
+FILES = ("", *(f"{name}.js" for name in SCRIPTS), "page.js", "style.css", "icon.svg")
 
 
 def session(name: str = "restitution-row") -> Session:
-    chosen = choose(name)
-    return Session(World(chosen.scene, chosen.settings), chosen)
+    return Session(Stage(choose(name)))
 
 
 @pytest.fixture(scope="module")
@@ -251,7 +251,7 @@ def receive(socket) -> dict | np.ndarray:
 
 def test_a_page_is_told_everything_it_needs_to_draw() -> None:
     made = session()
-    made.world.throw(3, 1, 3.0, -4.0, reach=5.0)
+    made.stage.world.throw(3, 1, 3.0, -4.0, reach=5.0)
     with (
         TestClient(make_app(made, PORT, TOKEN), base_url=BASE) as client,
         client.websocket_connect(SOCKET, headers=OWN) as open_socket,
@@ -265,15 +265,16 @@ def test_a_page_is_told_everything_it_needs_to_draw() -> None:
             "friction",
             "step",
             "iterations",
+            "walls",
         }
-        assert [body["name"] for body in bodies["bodies"]] == [part.name for part in made.world.parts]
+        assert [body["name"] for body in bodies["bodies"]] == [part.name for part in made.stage.world.parts]
         assert past[0] == 3
         while isinstance(frame, dict):
             frame = receive(open_socket)
-        shot, receipt = made.world.snapshot(), made.world.receipt
+        shot, receipt = made.stage.world.snapshot(), made.stage.world.receipt
         assert frame[0] == 1
-        assert len(frame) == FRAME_HEAD + 5 * len(shot.x) + 4 * len(shot.joints)
-        rows = frame[FRAME_HEAD : FRAME_HEAD + 5 * len(shot.x)].reshape(-1, 5)
+        assert len(frame) == HEAD + 5 * len(shot.x) + 4 * len(shot.joints)
+        rows = frame[HEAD : HEAD + 5 * len(shot.x)].reshape(-1, 5)
         np.testing.assert_allclose(
             rows, np.stack([shot.x, shot.y, shot.angle, shot.vx, shot.vy], axis=1), rtol=1e-6
         )
@@ -297,7 +298,7 @@ def test_what_a_page_asks_for_happens_and_the_answer_is_a_status() -> None:
                 break
         else:
             pytest.fail("no status with the new gravity")
-        assert made.world.settings["gravity"] == 3.5
+        assert made.stage.world.settings["gravity"] == 3.5
 
 
 def test_malformed_requests_are_answered_and_the_socket_stays_open() -> None:
@@ -345,7 +346,7 @@ def test_without_the_extra_it_says_what_to_install(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     chosen = choose("head-on")
     with pytest.raises(MissingCapabilityError) as caught:
-        web.play(World(chosen.scene), chosen.scene, say=print)
+        web.play(chosen, say=print)
     assert "starlette, uvicorn and websockets" in caught.value.message
     for name in PARTS["web"].packages:
         assert f"'{name}" in caught.value.help

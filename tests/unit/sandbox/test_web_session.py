@@ -16,8 +16,8 @@ from course.errors import MissingCapabilityError
 from course.sandbox.runs.running import run
 from course.sandbox.scene.loading import choose
 from course.sandbox.scene.rules import SETTINGS
+from course.sandbox.views.stage import Desk, Stage
 from course.sandbox.views.web.session import Page, Session
-from course.sandbox.world.world import World
 
 
 class Clock:
@@ -32,8 +32,9 @@ class Clock:
 
 
 def make(name: str = "restitution-row", clock: Clock | None = None, **more) -> tuple[Session, Page]:
-    chosen = choose(name, more.pop("settings", None))
-    made = Session(World(chosen.scene, chosen.settings), chosen, clock=clock or Clock(), **more)
+    chosen, clock = choose(name, more.pop("settings", None)), clock or Clock()
+    desk = more.pop("desk", None)
+    made = Session(Stage(chosen, clock=clock, **more), desk, clock=clock)
     page = made.join()
     assert page is not None
     return made, page
@@ -69,14 +70,14 @@ def test_a_body_that_is_dragged_follows_the_hand_and_flies_on() -> None:
     made, page = make("head-on")
     send(made, page, "pause", on=False)
     send(made, page, "grab", x=-1, y=0, reach=0.1)
-    assert made.world.held == "left-puck"
+    assert made.stage.world.held == "left-puck"
     for i in range(30):
         send(made, page, "drag", x=-1.0, y=i / 30)
         made.tick(1 / 60)
     send(made, page, "release")
-    row = [part.name for part in made.world.parts].index("left-puck")
-    shot = made.world.snapshot()
-    assert made.world.held is None
+    row = [part.name for part in made.stage.world.parts].index("left-puck")
+    shot = made.stage.world.snapshot()
+    assert made.stage.world.held is None
     assert shot.y[row] > 0.5
     assert shot.vy[row] > 1.0
 
@@ -88,18 +89,18 @@ def test_only_the_page_that_holds_a_body_moves_it_and_leaving_lets_go() -> None:
     send(made, page, "grab", x=-1, y=0)
     send(made, other, "drag", x=5, y=5)
     send(made, other, "release")
-    assert made.world.held == "left-puck"
-    assert made.world.snapshot().hand[2:] == (-1.0, 0.0)
+    assert made.stage.world.held == "left-puck"
+    assert made.stage.world.snapshot().hand[2:] == (-1.0, 0.0)
     made.leave(page)
-    assert made.world.held is None
+    assert made.stage.world.held is None
 
 
 def test_a_push_by_name_adds_to_the_velocity_and_fixed_bodies_do_not_move() -> None:
     made, page = make()
-    names = [part.name for part in made.world.parts]
+    names = [part.name for part in made.stage.world.parts]
     send(made, page, "push", name="ball-3", vx=1.5, vy=0.5)
     send(made, page, "push", name="ball-3", vx=1.0, vy=0.0)
-    shot = made.world.snapshot()
+    shot = made.stage.world.snapshot()
     assert (shot.vx[names.index("ball-3")], shot.vy[names.index("ball-3")]) == (2.5, 0.5)
     told(page)
     send(made, page, "push", name="floor", vx=1, vy=0)
@@ -131,20 +132,20 @@ def test_a_new_body_is_announced_before_the_frame_that_has_it() -> None:
 def test_nothing_passes_while_nobody_looks() -> None:
     async def go(watching: bool, pages: bool) -> int:
         chosen = choose("head-on")
-        made = Session(World(chosen.scene), chosen)
-        made.world.paused = False
+        made = Session(Stage(chosen))
+        made.stage.world.paused = False
         if pages:
             page = made.join()
             made.receive(page, json.dumps({"do": "watch", "on": watching}))
         task = asyncio.create_task(made.run())
         for _ in range(20):
             await asyncio.sleep(0.005)
-            if made.world.ticks:
+            if made.stage.world.ticks:
                 break
         task.cancel()
         with contextlib.suppress(asyncio.CancelledError):
             await task
-        return made.world.ticks
+        return made.stage.world.ticks
 
     assert asyncio.run(go(watching=True, pages=True)) > 0
     assert asyncio.run(go(watching=False, pages=True)) == 0
@@ -159,7 +160,7 @@ def test_a_world_that_is_too_much_work_runs_slower_and_says_so() -> None:
     for _ in range(40):
         made.tick(1 / 60)
     # A frame asks for 16,667 steps; about six looks at the clock fit into its time.
-    assert made.world.ticks < 40 * 200
+    assert made.stage.world.ticks < 40 * 200
     data = page.take()
     while not isinstance(data, bytes) or np.frombuffer(data, "<f4")[0] != 1:
         data = page.take()
@@ -168,8 +169,8 @@ def test_a_world_that_is_too_much_work_runs_slower_and_says_so() -> None:
 
 def test_a_run_too_short_to_be_seen_starts_in_slow_motion() -> None:
     made, _ = make("bullet-wall")
-    assert made.world.speed < 0.1
-    assert make("head-on")[0].world.speed == 1.0
+    assert made.stage.world.speed < 0.1
+    assert make("head-on")[0].stage.world.speed == 1.0
 
 
 def test_of_frames_that_a_slow_page_did_not_fetch_only_the_newest_is_kept() -> None:
@@ -181,14 +182,15 @@ def test_of_frames_that_a_slow_page_did_not_fetch_only_the_newest_is_kept() -> N
     while (data := page.take()) is not None:
         if isinstance(data, bytes):
             frames.append(np.frombuffer(data, "<f4"))
+    frames = [one for one in frames if one[0] == 1]
     assert len(frames) == 1
-    assert frames[0][2] == pytest.approx(made.world.t)
+    assert frames[0][2] == pytest.approx(made.stage.world.t)
 
 
 def test_a_page_that_never_reads_is_let_go() -> None:
     made, page = make("head-on")
     for i in range(1000):
-        made.world.set("gravity", i % 2)
+        made.stage.world.set("gravity", i % 2)
         made.tick(0)
     assert page.lost
     assert asyncio.run(page.fetch()) is None
@@ -209,8 +211,8 @@ def test_after_a_reload_a_page_knows_what_happened_before() -> None:
     assert scene["status"]["guess"] == 2
     assert any("the right puck meet at" in event["text"] for event in scene["events"])
     past = np.frombuffer(data[2], "<f4")
-    table = past[4:].reshape(int(past[2]), int(past[3]))
-    assert table[-1, 0] == pytest.approx(made.world.t, abs=0.05)
+    table = past[3:].reshape(int(past[1]), int(past[2]))
+    assert table[-1, 0] == pytest.approx(made.stage.world.t, abs=0.05)
     assert table[0, 1] == pytest.approx(2.5)
 
 
@@ -221,13 +223,13 @@ def test_after_a_reload_a_page_knows_what_happened_before() -> None:
 def test_the_run_that_was_watched_gives_what_a_run_unseen_gives(name: str) -> None:
     kept = []
     made, page = make(name, keep=kept.append)
-    assert made.world.paused
+    watch(made, 0.1)
     send(made, page, "guess", value=1.5)
     watch(made, 12)
     wanted = run(choose(name), guess=1.5).comparison
     assert kept == [wanted]
-    assert made.world.paused
-    assert made.world.t == pytest.approx(made.scene.duration)
+    assert not made.stage.world.paused, "no run ends"
+    assert made.stage.world.t > made.stage.chosen.scene.duration
     last = of(told(page), "status")[-1]
     assert (last["stage"], last["comparison"]["verdict"]) == ("done", wanted.verdict)
 
@@ -275,6 +277,7 @@ def test_a_reset_ends_the_story_of_the_run_before() -> None:
     watch(made, 1)
     assert "meet at" in json.dumps(of(told(page), "events"))
     send(made, page, "reset")
+    made.tick(0)
     assert [message for message in of(told(page), "events") if message.get("anew")]
     late = made.join()
     assert late is not None
@@ -291,19 +294,167 @@ def test_a_comparison_that_cannot_be_kept_is_still_shown() -> None:
     messages = told(page)
     assert [error["message"] for error in of(messages, "error")] == ["The disk is full."]
     assert of(messages, "status")[-1]["stage"] == "done"
-    assert made.world.paused
+
+
+# -- the time line, hands and the gallery --------------------------------------------------------------------
+
+
+def frames(page: Page) -> list[np.ndarray]:
+    numbers = []
+    while (data := page.take()) is not None:
+        if isinstance(data, bytes):
+            numbers.append(np.frombuffer(data, "<f4"))
+    return numbers
+
+
+def test_a_page_looks_at_the_past_and_goes_on_from_it() -> None:
+    made, page = make("newtons-cradle")
+    watch(made, 1.5)
+    told(page)
+    send(made, page, "look", t=0.5)
+    made.tick(0)
+    numbers = frames(page)
+    assert numbers[-1][2] == pytest.approx(0.5, abs=0.02)
+    assert numbers[-1][23] == 1
+    assert (made._status()["at"], made._status()["now"]) == (0.5, made.stage.world.t)
+    send(made, page, "spawn", shape="box", x=0, y=1)
+    assert "You look at" in of(told(page), "error")[-1]["message"]
+    send(made, page, "go")
+    made.stage.finish()
+    made.tick(0)
+    messages = told(page)
+    assert of(messages, "events")[-1]["anew"]
+    assert of(messages, "marks")[-1]["anew"]
+    assert made.stage.world.t == pytest.approx(0.5, abs=0.02)
+    send(made, page, "ghost", on=True)
+    made.tick(1 / 60)
+    data = []
+    while (item := page.take()) is not None:
+        data.append(item)
+    ghosts = [json.loads(one) for one in data if isinstance(one, str) and '"world":1' in one]
+    shown = [np.frombuffer(one, "<f4") for one in data if isinstance(one, bytes)]
+    assert [one[1] for one in shown if one[0] == 1 and one[21] == 1] == [ghosts[0]["version"]]
+
+
+def test_plots_get_every_sample_however_few_frames_there_were() -> None:
+    made, page = make("head-on")
+    told(page)
+    for _ in range(10):
+        made.tick(0.1)
+    rows = np.concatenate([one[3:].reshape(-1, int(one[2])) for one in frames(page) if one[0] == 2])
+    assert np.diff(rows[:, 0]).max() == pytest.approx(1 / 60, rel=0.01)
+    assert rows[-1, 0] == pytest.approx(made.stage.world.t, abs=1 / 60)
+    assert len(rows) == pytest.approx(60 * made.stage.world.t, abs=2)
+
+
+def test_start_and_given_are_in_every_frame_so_that_the_account_can_be_seen_to_close() -> None:
+    made, page = make("restitution-row")
+    watch(made, 1.0)
+    send(made, page, "spawn", shape="circle", x=0, y=1)
+    made.tick(1 / 60)
+    last = [one for one in frames(page) if one[0] == 1][-1]
+    assert last[22] == pytest.approx(last[11:17].sum(), rel=1e-5)
+
+
+def test_the_gallery_shows_every_scene_with_a_loop_and_opens_any_in_place() -> None:
+    opened = []
+    made = Session(None, Desk(played=frozenset({"incline"}), opened=opened.append), clock=Clock())
+    page = made.join()
+    assert told(page)[0]["gallery"]
+    send(made, page, "scenes")
+    for _ in range(20):
+        made.tick(1 / 60)
+    data = []
+    while (item := page.take()) is not None:
+        data.append(item)
+    listed = next(json.loads(one) for one in data if isinstance(one, str) and '"scenes"' in one)
+    assert [one["id"] for one in listed["scenes"] if one["played"]] == ["incline"]
+    cards = [json.loads(one)["id"] for one in data if isinstance(one, str) and '"card"' in one]
+    loops = [one for one in data if isinstance(one, bytes) and np.frombuffer(one[:4], "<f4")[0] == 4]
+    assert len(cards) == len(loops) == len(listed["scenes"]) == 13
+    for name in ("dominoes", "head-on"):
+        send(made, page, "open", id=name)
+        scene = of(told(page), "scene")[-1]
+        assert (scene["id"], scene["gallery"], scene["status"]["paused"]) == (name, False, False)
+    assert opened == ["dominoes", "head-on"]
+    send(made, page, "open", id="../secrets")
+    assert "There is no scene" in of(told(page), "error")[-1]["message"]
+
+
+def test_a_parameter_and_an_own_copy_are_requests() -> None:
+    saved = {}
+
+    def save(name: str, data: bytes) -> str:
+        saved[name] = data
+        path = tmp / name
+        path.write_bytes(data)
+        return str(path)
+
+    import tempfile
+    from pathlib import Path
+
+    with tempfile.TemporaryDirectory() as folder:
+        tmp = Path(folder)
+        made, page = make("newtons-cradle", desk=Desk(save=save))
+        send(made, page, "parameter", key="angle", value=45)
+        send(made, page, "parameter", key="colour", value=45)
+        send(made, page, "parameter", key="angle", value=450)
+        assert [one["message"][:20] for one in of(told(page), "error")] == [
+            "This scene has no 'c",
+            "angle must be from 1",
+        ]
+        send(made, page, "mine")
+        scene = of(told(page), "scene")[-1]
+        assert (scene["id"], scene["own"], scene["status"]["parameters"]["angle"]) == (
+            "my-newtons-cradle",
+            True,
+            45,
+        )
+        assert choose(str(tmp / "my-newtons-cradle.toml")).parameters["angle"] == 45
+
+
+@pytest.mark.parametrize(("kind", "begins"), [("gif", b"GIF89a"), ("png", b"\x89PNG")])
+def test_a_film_of_this_run_comes_as_a_file(kind: str, begins: bytes) -> None:
+    made, page = make("head-on")
+    watch(made, 1.0)
+    told(page)
+    send(made, page, "film", kind=kind, width=200)
+    made._film._thread.join(60)
+    made.tick(0)
+    data = []
+    while (item := page.take()) is not None:
+        data.append(item)
+    files = [one[4:] for one in data if isinstance(one, bytes) and np.frombuffer(one[:4], "<f4")[0] == 6]
+    assert [one[: len(begins)] for one in files] == [begins]
+    assert any('"head-on.' in one for one in data if isinstance(one, str))
+
+
+def test_undo_and_redo_are_offered_in_words() -> None:
+    made, page = make("head-on")
+    send(made, page, "pause", on=True)
+    send(made, page, "place", name="left-puck", x=-1, y=0.5)
+    send(made, page, "change", name="left-puck", key="mass", value=2)
+    made.tick(0)
+    assert of(told(page), "status")[-1]["undo"] == "changing left-puck"
+    for _ in range(2):
+        send(made, page, "undo")
+        made.stage.finish()
+    made.tick(0)
+    status = of(told(page), "status")[-1]
+    assert (status["undo"], status["redo"]) == ("", "placing left-puck")
+    send(made, page, "undo")
+    assert of(told(page), "error")[-1]["message"] == "There is nothing to undo."
 
 
 def test_a_guess_given_on_the_command_line_is_not_asked_for_again() -> None:
     made, page = make("head-on", guess=1.0)
     assert told(page)[0]["status"]["stage"] == "run"
-    assert not made.world.paused
+    assert not made.stage.world.paused
 
 
 def test_a_probe_that_read_nothing_reaches_the_page_as_null() -> None:
     made, page = make("head-on", settings={"speed": 0.1})
-    made.world.throw(1, 0, 5, 0)
-    send(made, page, "guess", value=2)
+    made.stage.world.throw(1, 0, 5, 0)
     watch(made, 4)
     texts = [message for message in told(page) if message["type"] == "status"]
     assert texts[-1]["comparison"]["simulation"] is None
@@ -317,7 +468,23 @@ NUMBERS = st.one_of(
     st.sampled_from([0, 1, -1, 0.5, 1e-300, 1e300]),
 )
 VALUES = st.one_of(NUMBERS, st.text(max_size=20), st.booleans(), st.none(), st.lists(NUMBERS, max_size=3))
-NAMES = ["x", "y", "vx", "vy", "reach", "name", "shape", "key", "value", "on", "count", "extra"]
+NAMES = [
+    "x",
+    "y",
+    "vx",
+    "vy",
+    "reach",
+    "name",
+    "shape",
+    "key",
+    "value",
+    "on",
+    "kind",
+    "t",
+    "way",
+    "id",
+    "extra",
+]
 DOES = [
     "grab",
     "drag",
@@ -332,6 +499,8 @@ DOES = [
     "reset",
     "guess",
     "watch",
+    *("place", "aim", "change", "remove", "copy", "stop", "undo", "redo", "look", "play", "go", "cancel"),
+    *("scenes", "open", "parameter", "mine", "trace", "ghost"),
 ]
 WORDS = st.sampled_from(
     ["circle", "box", "gravity", "restitution", "step", "iterations", "left", "ball-1", "floor"]
@@ -369,26 +538,32 @@ def test_whatever_arrives_the_world_lives_on(messages: list[str | bytes]) -> Non
     made, page = make("head-on")
     for message in messages:
         told(page)
-        before = (made.world.ticks, dict(made.world.settings), made.world.state_hash(), made.world.held)
+        before = (
+            made.stage.world.ticks,
+            dict(made.stage.world.settings),
+            made.stage.world.state_hash(),
+            made.stage.world.held,
+        )
         made.receive(page, message)
         errors = of(told(page), "error")
         if errors:
             # What is answered with an error has changed nothing.
             assert (
-                made.world.ticks,
-                dict(made.world.settings),
-                made.world.state_hash(),
-                made.world.held,
+                made.stage.world.ticks,
+                dict(made.stage.world.settings),
+                made.stage.world.state_hash(),
+                made.stage.world.held,
             ) == before
             assert len(errors[0]["message"]) < 400
         made.tick(1 / 60)
     assert not page.lost
-    assert np.isfinite(made.world.state()).all()
+    assert np.isfinite(made.stage.world.state()).all()
+    made.stage.finish()
     send(made, page, "reset")
     send(made, page, "speed", value=1.0)
     send(made, page, "pause", on=False)
     made.tick(2 * SETTINGS["step"].high)  # whatever step it was told to take
-    assert made.world.ticks > 0
+    assert made.stage.world.ticks > 0
 
 
 @settings(max_examples=60)
@@ -405,15 +580,15 @@ def test_requests_beyond_the_rate_are_dropped_with_one_answer_and_a_flood_ends_t
     made, page = make("head-on", clock=clock)
     told(page)
     for _ in range(400):
-        send(made, page, "step")
-    assert made.world.ticks == 300
+        send(made, page, "step", kind="solver")
+    assert made.stage.world.ticks == 300
     assert [error["message"] for error in of(told(page), "error")] == [
         "Too many requests at once; some are dropped."
     ]
     clock.now += 1.0
     for _ in range(400):
-        send(made, page, "step")
-    assert made.world.ticks == 500
+        send(made, page, "step", kind="solver")
+    assert made.stage.world.ticks == 500
     for _ in range(2000):
         send(made, page, "step")
     assert page.lost
@@ -430,4 +605,4 @@ def test_no_number_of_a_page_makes_a_request_too_large_to_be_refused() -> None:
         made.receive(page, text)
     errors = of(told(page), "error")
     assert len(errors) == 3
-    assert math.isfinite(made.world.settings["gravity"])
+    assert math.isfinite(made.stage.world.settings["gravity"])

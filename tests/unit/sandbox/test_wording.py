@@ -144,7 +144,7 @@ def test_a_views_question_follows_what_is_set_in_it() -> None:
     experiment = Experiment(world, chosen, None, None)
     assert "0.004167 s" in experiment.report()["question"]
     world.set("step", 0.0004)
-    experiment.changed()
+    experiment.felt("set")
     assert "0.0004 s" in experiment.report()["question"]
     experiment.answer(0.04)
     world.run_until(chosen.scene.duration)

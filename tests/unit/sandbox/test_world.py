@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import math
 import random
@@ -15,8 +16,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from course.errors import UsageError
-from course.sandbox.scene.loading import choose
+from course.sandbox.scene.loading import choose, scene_ids
 from course.sandbox.scene.model import Body, Material, Repeat, Scene
+from course.sandbox.world.engine import Ledger
 from course.sandbox.world.world import MAX_BODIES, World
 
 if TYPE_CHECKING:
@@ -173,25 +175,71 @@ def test_a_body_at_rest_gains_and_loses_nothing() -> None:
 )
 def test_the_books_balance_and_nothing_but_the_solver_is_in_the_residual(name: str) -> None:
     world = World(choose(name).scene)
-    pushed_apart = 0.0
-    g = choose(name).scene.gravity
-    blocks = []
-    world.on_block.append(lambda block: blocks.append((block.before.copy(), block.states.copy())))
-    last = world.state()
     for _ in range(8):
         world.run_until(world.t + 0.25)
-    world.drain_events()
-    for before, states in blocks:
-        for k in range(len(states)):
-            # What a body moved beyond its velocity is overlap being pushed apart, against gravity.
-            extra = states[k, :, :2] - last[:, :2] - before[k, :, :2] * world.settings["step"]
-            pushed_apart -= float(world._accounts.ledger.mass @ (extra @ g))
-            last = states[k]
     receipt = world.receipt
     assert imbalance(world) == pytest.approx(0, abs=1e-9)
     assert receipt.contacts >= -1e-9
     assert receipt.friction >= -1e-9
-    assert receipt.residual == pytest.approx(receipt.integrator - pushed_apart, abs=1e-9)
+    assert receipt.residual == pytest.approx(receipt.integrator, abs=1e-9)
+
+
+def session(name: str, seed: int) -> float:
+    """Anything that hands do, at random: what no impulse and no step of the integrator accounts for.
+
+    As a share of the larger of what was given and the largest kinetic energy.
+    """
+    chance = random.Random(f"{name} {seed}")
+    world = World(choose(name).scene)
+    left, bottom, right, top = world.scene.view
+    most = 0.0
+    world.step(chance.randrange(200))
+    for _ in range(12):
+        moving = [part.name for part in world.parts if not part.fixed]
+        if not moving:
+            break
+        body = chance.choice(moving)
+        x, y = world.state()[world._space.index[body], :2]
+        move = chance.randrange(7)
+        if move == 0:
+            world.grab(x, y, 0.05)
+        elif move == 1:
+            world.drag(chance.uniform(left, right), chance.uniform(bottom, top))
+        elif move == 2:
+            world.release()
+        elif move == 3:
+            world.throw(x, y, chance.uniform(-3, 3), chance.uniform(-3, 3), 0.01)
+        elif move == 4:
+            key, high = chance.choice([("gravity", 20), ("restitution", 1), ("friction", 1), ("walls", 1)])
+            world.set(key, chance.randrange(2) if key == "walls" else chance.uniform(0, high))
+        elif move == 5:
+            with contextlib.suppress(UsageError):
+                world.place(body, chance.uniform(left, right), chance.uniform(bottom, top))
+        else:
+            world.change(body, chance.choice(["vx", "vy", "spin"]), chance.uniform(-3, 3))
+        for _ in range(chance.randrange(10)):  # no step at all between two moves is a pause
+            world.step(8)
+            most = max(most, world.receipt.kinetic)
+    receipt = world.receipt
+    return abs(receipt.residual - receipt.integrator) / max(abs(receipt.given), most, 1e-9)
+
+
+@pytest.mark.parametrize("name", scene_ids())
+def test_whatever_hands_do_every_joule_has_an_impulse_of_its_own(name: str) -> None:
+    assert max(session(name, seed) for seed in range(5)) < 0.01
+
+
+def test_a_hand_that_books_two_percent_too_much_is_found_out(monkeypatch) -> None:
+    work = Ledger.work
+    monkeypatch.setattr(Ledger, "work", lambda *given: 1.02 * work(*given))
+    assert max(session(name, seed) for name in ("head-on", "restitution-row") for seed in range(20)) > 0.01
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("name", scene_ids())
+def test_a_thousand_sessions_on_every_scene_leave_nothing_unaccounted_for(name: str) -> None:
+    worst = max(range(1000), key=lambda seed: session(name, seed))
+    assert session(name, worst) < 0.01, worst
 
 
 def test_impulses_read_after_the_step_are_those_that_callbacks_see_inside_it() -> None:
@@ -284,13 +332,14 @@ def test_a_throw_along_a_rod_is_lost_in_the_rod_and_not_by_the_solver(scene_name
     rod = (ends[2:] - ends[:2]) / np.hypot(*(ends[2:] - ends[:2]))
     mass, before = world.parts[row].mass, world.receipt
     world.throw(x, y, 5.0 * rod[0], 5.0 * rod[1])
-    assert world.receipt.rods == 0.0
+    assert world.receipt.rods == before.rods
     world.step(1)
     after = world.receipt
-    assert after.rods == pytest.approx(mass * 25 / 2, rel=1e-6)
+    assert after.rods - before.rods == pytest.approx(mass * 25 / 2, rel=2e-3)  # gravity pulls meanwhile
     assert abs(after.residual - before.residual) < 0.01 * after.rods
     assert imbalance(world) == pytest.approx(0, abs=1e-9)
-    assert world.history.rods[-1] in {0.0, after.rods}
+    world.run_until(world.t + 1 / 30)
+    assert world.history.rods[-1] == pytest.approx(world.receipt.rods, rel=1e-2)
 
 
 def test_a_hand_drags_a_body_to_where_it_is_and_a_moving_hand_throws() -> None:
@@ -305,6 +354,66 @@ def test_a_hand_drags_a_body_to_where_it_is_and_a_moving_hand_throws() -> None:
     world.release()
     assert world.held is None
     assert float(world.state()[0, 3]) > 1.0
+
+
+def where(world: World, name: str) -> tuple[float, float]:
+    x, y = world.state()[world._space.index[name], :2]
+    return float(x), float(y)
+
+
+def test_a_body_that_is_placed_hangs_on_its_rod_and_beside_its_neighbours() -> None:
+    world = World(choose("newtons-cradle").scene)
+    assert world.place("ball-1", -1.2, 0.5)
+    assert world.place("ball-2", -1.1, 0.4)
+    for name, pivot in (("ball-1", -0.402), ("ball-2", -0.201)):
+        x, y = where(world, name)
+        assert math.hypot(x - pivot, y - 1.0) == pytest.approx(1.0, abs=1e-4)
+    assert math.dist(where(world, "ball-1"), where(world, "ball-2")) > 0.1999
+    world.step(100)
+    receipt = world.receipt
+    assert receipt.residual == pytest.approx(receipt.integrator, abs=1e-9)
+
+
+def test_a_body_that_finds_no_room_stays_where_it_was() -> None:
+    block = {"shape": "box", "material": "m", "fixed": True, "size": (1.0, 1.0)}
+    walls = [Body(name=f"w-{i}", position=(x, 0.0), **block) for i, x in enumerate((1.0, 2.05))]
+    world = World(scene(*walls, puck("a", -1, 0)))
+    before = world.state_hash()
+    inputs: list = []
+    world.on_input.append(lambda *given: inputs.append(given))
+    assert not world.place("a", 1.525, 0.0)
+    assert (world.state_hash(), inputs) == (before, [])
+
+
+def test_bodies_are_copied_taken_away_changed_and_stopped_by_name() -> None:
+    world = World(choose("box-stack").scene)
+    assert world.copy("box-3") == "new-1"
+    world.remove("box-5")
+    assert {"new-1", "box-4"} < {part.name for part in world.parts}
+    assert "box-5" not in {part.name for part in world.parts}
+    world.change("box-3", "mass", 5.0)
+    world.change("box-3", "vx", 1.0)
+    assert (world.number_of("box-3", "mass"), world.number_of("box-3", "vx")) == (5.0, 1.0)
+    world.aim("box-4", 0.0, 2.0)
+    assert world.receipt.kinetic > 2.5
+    world.stop()
+    assert world.receipt.kinetic == 0.0
+    for act in (
+        lambda: world.remove("floor"),
+        lambda: world.change("box-3", "mass", 0.0),
+        lambda: world.copy("x"),
+    ):
+        with pytest.raises(UsageError):
+            act()
+
+
+def test_walls_keep_everything_in_sight() -> None:
+    world = World(scene(puck("a", 0, 3.0, vy=2.0)), {"walls": 1.0})
+    world.step(240 * 20)
+    assert max(abs(c) for c in where(world, "a")) < 5.0
+    assert world.receipt.kinetic == pytest.approx(6.5)
+    world.set("walls", 0)
+    assert [part.name for part in world.parts] == ["a"]
 
 
 def test_nothing_is_grabbed_where_nothing_movable_is() -> None:

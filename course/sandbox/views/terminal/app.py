@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+from threading import Thread
 from time import perf_counter
 from typing import Any, ClassVar
 
@@ -11,19 +13,26 @@ from textual.binding import Binding
 from textual.containers import Horizontal
 from textual.geometry import Size
 
-from course.errors import UsageError
+from course.errors import CourseError, UsageError
 from course.full_screen import FullScreenApp
-from course.sandbox.scene.loading import Chosen, Comparison
+from course.sandbox.scene.loading import choose, guess_of, own_copy, scenes
 from course.sandbox.scene.rules import SETTINGS
-from course.sandbox.views.story import Experiment, Narrator
-from course.sandbox.views.terminal.asking import Page, PageOverlay, QuestionOverlay, comparison, help_pages
-from course.sandbox.views.terminal.hand import Pointer, Stage
+from course.sandbox.views.stage import Desk, Stage
+from course.sandbox.views.story import Experiment
+from course.sandbox.views.terminal.asking import (
+    ChangeOverlay,
+    Gallery,
+    PageOverlay,
+    QuestionOverlay,
+    comparison,
+    help_pages,
+)
+from course.sandbox.views.terminal.hand import Pointer, Sight
 from course.sandbox.views.terminal.words import (
     KEYS,
     Canvas,
     Line,
     Lines,
-    Pacer,
     clean,
     head,
     keys_line,
@@ -32,10 +41,10 @@ from course.sandbox.views.terminal.words import (
     speed_in_words,
     wrapped,
 )
-from course.sandbox.world.world import World
+from course.sandbox.world.world import NUMBERS, World
 
-#: A run that is over sooner than this, in s, starts in slow motion, so that it can be seen.
-_BLINK, _SEEN = 0.5, 3.0
+#: Of a film, in pixels.
+_FILM_WIDTH = 640
 #: How often numbers and curves are written anew, in s: the eye reads no faster.
 _READ = 0.2
 #: Pictures a second for those who asked for little motion.
@@ -50,14 +59,12 @@ _COLOURS = {"ink": "#d5dae1", "paper": "#1b2028", "bar": "#2a323d"}
 
 
 class SandboxApp(FullScreenApp):
-    """A world, its picture, and everything that a user can do to it.
+    """A stage, its picture, and everything that a user can do to it.
 
     Args:
-        world: before its first step, with a receipt.
-        chosen: its scene, with the parameters that went into it.
+        stage: what is played; None to begin with the gallery.
+        desk: what may be asked of the program around this.
         fps: pictures a second.
-        guess: an answer to the scene's question; None to ask for one.
-        keep: called with each comparison that has a guess.
         clock: real time, in s.
     """
 
@@ -73,7 +80,29 @@ class SandboxApp(FullScreenApp):
         Binding("ctrl+c,ctrl+q", "quit", priority=True, show=False),
         Binding("q", "quit", show=False),
         Binding("space", "pause", show=False),
-        Binding("full_stop", "single", show=False),
+        Binding("full_stop", "step('picture')", show=False),
+        Binding("comma", "step('back')", show=False),
+        Binding("less_than_sign", "jump(-0.5)", show=False),
+        Binding("greater_than_sign", "jump(0.5)", show=False),
+        Binding("colon", "step('solver')", show=False),
+        Binding("x", "step('contact')", show=False),
+        Binding("j", "backwards", show=False),
+        Binding("k", "now", show=False),
+        Binding("u,ctrl+z", "undo", show=False),
+        Binding("U,ctrl+y", "redo", show=False),
+        Binding("v", "aim", show=False),
+        Binding("y", "near('copy')", show=False),
+        Binding("delete,backspace", "near('remove')", show=False),
+        Binding("s", "stop", show=False),
+        Binding("slash", "change", show=False),
+        Binding("o,escape", "scenes", show=False),
+        Binding("pageup", "zoom(1.25)", show=False),
+        Binding("pagedown", "zoom(0.8)", show=False),
+        Binding("home", "zoom(0)", show=False),
+        Binding("z", "follow", show=False),
+        Binding("t", "trace", show=False),
+        Binding("Z", "ghost", show=False),
+        Binding("ctrl+s", "film", show=False),
         Binding("r", "reset", show=False),
         Binding("minus,underscore", "speed(0.5)", show=False),
         Binding("plus,equals_sign", "speed(2.0)", show=False),
@@ -100,38 +129,60 @@ class SandboxApp(FullScreenApp):
 
     def __init__(
         self,
-        world: World,
-        chosen: Chosen,
+        stage: Stage | None = None,
+        desk: Desk | None = None,
         *,
         fps: float = 30.0,
-        guess: float | None = None,
-        keep: Callable[[Comparison], None] | None = None,
         clock: Callable[[], float] = perf_counter,
     ) -> None:
         super().__init__(clock)
-        self.world, self.chosen = world, chosen
-        self.experiment = Experiment(world, chosen, guess, keep)
-        self.pacer = Pacer(world, 0.5 / max(fps, 1.0), clock)
-        self.stage = Stage(world, colour=self.in_colour)
-        self.pointer = Pointer(world, self.stage, on_touch=self.experiment.touch)
+        self.desk = desk or Desk()
+        self._first = self._gallery_first = stage is None
+        self._played = set(self.desk.played)
+        self._budget = 0.5 / max(fps, 1.0)
+        self.put_on(stage or self._opened(scenes()[0].id))
         self.calm = self.animation_level != "full"
         self._fps = fps
         self._last = clock()
-        self._narrator = Narrator()
-        self._lines: list[str] = []
+        self._film: tuple[Thread, list[Any]] | None = None
         self._read_at = -1.0
         self._drawn_at = -1.0
         self._panel_wanted = True
         self._room = Size(80, 24)
-        self._stopped = False
         ink, paper, bar = (_COLOURS[name] if self.in_colour else None for name in ("ink", "paper", "bar"))
         self.canvas = Canvas(colour=self.in_colour, id="canvas")
         self.head = Lines(ink, bar, id="head")
         self.panel = Lines(ink, paper, id="panel")
         self.events = Lines(ink, paper, id="events")
         self.keys = Lines(ink, bar, id="keys")
-        if chosen.scene.duration < _BLINK:
-            world.speed = float(f"{chosen.scene.duration / _SEEN:.1g}")
+
+    def _opened(self, name: str) -> Stage:
+        chosen = choose(name)
+        return Stage(chosen, keep=self.desk.keep_of(chosen), clock=self._clock)
+
+    def put_on(self, stage: Stage) -> None:
+        """Play this from now on, in place."""
+        self.stage = stage
+        self.sight = Sight(stage, colour=self.in_colour)
+        self.pointer = Pointer(stage, self.sight)
+        self._lines: list[str] = []
+        self._anew = stage.anew
+        self._compared = ""
+        if not self._first:
+            self._played.add(stage.chosen.scene.id)
+            if self.desk.opened is not None:
+                self.desk.opened(stage.chosen.scene.id)
+        self._first = False
+
+    @property
+    def world(self) -> World:
+        """What is played."""
+        return self.stage.world
+
+    @property
+    def experiment(self) -> Experiment:
+        """The question of what is played."""
+        return self.stage.experiment
 
     # -- coming and going ------------------------------------------------------------------------
 
@@ -149,12 +200,12 @@ class SandboxApp(FullScreenApp):
         self.begin()
 
     def begin(self) -> None:
-        """Start the frames; first ask the scene's question, if it has one."""
+        """Start the frames."""
         self._last = self._clock()
         self.set_interval(1 / self._fps, self.tick)
         self.world.paused = self.calm
-        if self.experiment.stage == "ask":
-            self.ask()
+        if self._gallery_first:
+            self.action_scenes()
 
     def on_resize(self, event: Any) -> None:
         """Give each part its room."""
@@ -176,11 +227,8 @@ class SandboxApp(FullScreenApp):
         """One frame."""
         now = self._clock()
         dt, self._last = now - self._last, now
-        left = self.experiment.left()
-        until = None if left is None else self.chosen.scene.duration
         if len(self.screen_stack) == 1:
-            self.pacer.advance(dt, until)
-        self._hear(now)
+            self._hear(self.stage.tick(dt, self._budget), now)
         if not self.calm or now - self._drawn_at >= 1 / _CALM_FPS or self._drawn_at < 0:
             self._drawn_at = now
             self._draw(now)
@@ -188,31 +236,47 @@ class SandboxApp(FullScreenApp):
             self._read_at = now
             self._write()
 
-    def _hear(self, now: float) -> None:
-        """Take in the events."""
-        events = self.world.drain_events()
-        self.experiment.take(events)
-        if self.experiment.passed():
-            self.world.paused = self._stopped = True
-            self.compare()
-        told = self._narrator.tell(events, now)
+    def _hear(self, told: list[dict[str, Any]], now: float) -> None:
+        """Take in what happened."""
+        stage = self.stage
+        if stage.anew != self._anew:
+            self._anew, self._lines, told = stage.anew, [], stage.narrator.told()
+            self.sight.forget()
+            self.renew()
         self._lines = [*self._lines, *(clean(line["text"]) for line in told)][-400:]
         if not self.calm:
-            self.stage.flash(events, now)
+            self.sight.flash(stage.heard, now)
+        stage.heard = []
+        for text in stage.news:
+            self.say(text)
+        stage.news.clear()
+        result = self.experiment.report()["comparison"]
+        verdict = f"{result['verdict']} p: the numbers" if result else ""
+        if verdict and verdict != self._compared:
+            self.say(verdict)
+        self._compared = verdict
+        if self._film is not None and not self._film[0].is_alive():
+            (kept, self._film) = (self._film[1], None)
+            self._save(*kept)
 
     def _draw(self, now: float) -> None:
         width, height = self.canvas.size
         if width and height:
             self.canvas.show(
-                self.stage.draw(width, height, now, pointer=self.pointer.shown, aim=self.pointer.aim)
+                self.sight.draw(width, height, now, pointer=self.pointer.shown, aim=self.pointer.aim)
             )
-        self.head.show([head(self.world, self._state(), self.pacer.pace, self._room.width)])
+        self.head.show([head(self.world, self.stage.t, self._state(), self.stage.pace, self._room.width)])
 
     def _state(self) -> str:
         if self.pointer.aim is not None:
             return f"aiming: {self.pointer.aim_in_words()}"
-        if self._stopped and self.world.paused:
-            return "the run is over"
+        if self.stage.working is not None:
+            says, share = self.stage.working
+            return f"{says}: {100 * share:.0f} %, k stops it"
+        if self._film is not None:
+            return "the film is being made"
+        if self.stage.at is not None:
+            return f"of {self.world.t:.3f} s {('', '▶', '◀')[self.stage.way]}"
         return "paused" if self.world.paused else ""
 
     def _write(self) -> None:
@@ -220,7 +284,7 @@ class SandboxApp(FullScreenApp):
         if self.panel.display:
             width, height = self.panel.size
             rule = "│ " if width > 2 else ""
-            lines = panel(self.world, width - len(rule) - 1, height) if height else []
+            lines = panel(self.world, self._parameters(), width - len(rule) - 1, height) if height else []
             lines += [((" ", ""),)] * (height - len(lines))
             self.panel.show([((rule, "dim"), *line) for line in lines])
         self.events.show(self._told(self.events.size.width, self.events.size.height))
@@ -229,7 +293,8 @@ class SandboxApp(FullScreenApp):
         elif self.pointer.status():
             self.keys.show([((f" {self.pointer.status()}", "bold"),)])
         else:
-            self.keys.show([keys_line(self._room.width, paused=self.world.paused)])
+            paused = self.world.paused if self.stage.at is None else not self.stage.way
+            self.keys.show([keys_line(self._room.width, paused=paused, past=self.stage.at is not None)])
 
     def _told(self, width: int, height: int) -> list[Line]:
         """The latest events, whole ones, newest at the bottom."""
@@ -252,59 +317,116 @@ class SandboxApp(FullScreenApp):
         super().say(clean(message))
         self._read_at = -1.0
 
+    def _parameters(self) -> list[tuple[str, str]]:
+        """The scene's own numbers, in words."""
+        values = self.stage.chosen.parameters
+        units = (
+            (one.name, "" if one.unit == "1" else f" {one.unit}") for one in self.stage.chosen.scene.parameter
+        )
+        return [(clean(name), f"{values[name]:.4g}{clean(unit)}") for name, unit in units]
+
     # -- asking ----------------------------------------------------------------------------------
 
-    def ask(self) -> None:
-        """The scene's question; time stands still meanwhile."""
-        asked = self.chosen.scene.prediction
-        if asked is None:
-            return
-        self.world.paused = True
-
-        def answered(guess: float | None) -> None:
-            self.experiment.answer(guess)
-            self.world.paused = False
-            if guess is not None:
-                self.say(f"Your guess: {guess:g} {'' if asked.unit == '1' else asked.unit}")
-
-        self.push_screen(QuestionOverlay(self.experiment.question, asked.unit, calm=self.calm), answered)
-
-    def compare(self) -> None:
-        """Theory, guess and simulation side by side."""
-        result = self.experiment.report()["comparison"]
-        if result is None:
-            return
-
-        def read(key: str | None) -> None:
-            if key == "r":
-                self.action_reset()
-            elif key == "?":
-                self.action_help()
-
-        page = comparison(result, self.chosen.scene.after)
-        hint = "Enter: go on   r: once more   ?: keys"
-        self.push_screen(PageOverlay("Predicted, run, compared", page, keys=("r", "?"), hint=hint), read)
-
     def action_question(self) -> None:
-        """Show the question again, or its result."""
-        stage, asked = self.experiment.stage, self.chosen.scene.prediction
-        if stage == "ask":
-            self.ask()
-        elif stage == "done":
-            self.compare()
-        elif asked is None:
+        """The scene's question, or its answer; a guess starts the run that is compared."""
+        scene = self.stage.chosen.scene
+        result, asked = self.experiment.report()["comparison"], scene.prediction
+        if asked is None:
             self.say("This scene does not ask for a number.")
-        elif stage == "touched":
-            self.say("You changed this run, so there is nothing to compare with. r: start it again.")
+            return
+        if self.experiment.stage == "done" and result is not None:
+            page = comparison(result, scene.after)
+            hint = "Escape: go on   r: once more   p: guess"
+
+            def read(key: str | None) -> None:
+                if key == "r":
+                    self.action_reset()
+                elif key == "p":
+                    self._ask(asked.unit)
+
+            self.push_screen(PageOverlay("Predicted, run, compared", page, keys=("r", "p"), hint=hint), read)
         else:
-            guess = "no guess" if self.experiment.guess is None else f"your guess {self.experiment.guess:g}"
-            page: Page = [(clean(self.experiment.question), ""), "", f"{guess}, {clean(asked.unit)}", ""]
-            self.push_screen(PageOverlay("The question", page))
+            self._ask(asked.unit)
+
+    def _ask(self, unit: str) -> None:
+        def answered(guess: float | None) -> None:
+            if guess is not None:
+                self._attempt(lambda: self.stage.guess(guess))
+                self.say(f"Your guess: {guess:g} {'' if unit == '1' else unit}")
+
+        overlay = QuestionOverlay(self.experiment.question, unit, calm=self.calm)
+        self.push_screen(overlay, answered)
+
+    def action_scenes(self) -> None:
+        """All scenes; time stands meanwhile."""
+
+        def chosen(name: str | None) -> None:
+            if name is None:
+                return
+            self.put_on(self._opened(name))
+            self.world.paused = self.calm
+            self.renew()
+
+        if self.stage.at is None:
+            self.pointer.drop()
+        current, calm = self.stage.chosen.scene.id, self.calm
+        self.push_screen(
+            Gallery(scenes(), frozenset(self._played), current, colour=self.in_colour, calm=calm), chosen
+        )
+
+    def action_change(self) -> None:
+        """The scene's own numbers, and those of the body near the pointer."""
+        scene, near = self.stage.chosen.scene, self.pointer.near()
+        page: list[str | tuple[str, str]] = [("This scene's", "")]
+        for one, (name, text) in zip(scene.parameter, self._parameters(), strict=True):
+            page.append((name, f"{text} ({one.low:g} to {one.high:g}): {clean(one.meaning)}"))
+        page += [] if scene.parameter else ["It has none of its own."]
+        if near is not None:
+            page += ["", (f"Of {near}", "")]
+            page += [
+                (key, f"{self.world.number_of(near, key):.4g} {'' if unit == '1' else unit}")
+                for key, (unit, *_) in NUMBERS.items()
+            ]
+        page += ["", "mine: the scene as a file of your own.", ""]
+
+        def changed(line: str | None) -> None:
+            if line:
+                self._attempt(lambda: self._change(line, near))
+
+        self.push_screen(ChangeOverlay(page), changed)
+
+    def _change(self, line: str, near: str | None) -> str | None:
+        name, _, text = line.replace("=", " ").strip().rpartition(" ")
+        name = name.strip()
+        if line == "mine":
+            return self._make_mine()
+        value = guess_of(text, "")
+        if value is None:
+            raise UsageError("A name and a number, please: angle 45.")
+        if name in self.stage.chosen.parameters:
+            self.stage.set_parameter(name, value)
+        elif name in SETTINGS:
+            self.stage.act("set", name, value)
+        elif near is not None and name in NUMBERS:
+            self.stage.act("change", near, name, value)
+        else:
+            raise UsageError(f"There is no {name[:30]!r} to change here.")
+        return f"{name}: {value:g}"
+
+    def _make_mine(self) -> str:
+        if self.desk.save is None:
+            raise UsageError("Nothing can be saved from here.")
+        id_ = f"my-{self.stage.chosen.scene.id.removeprefix('my-')}"
+        path = self.desk.save(f"{id_}.toml", own_copy(self.stage.chosen, id_))
+        self.put_on(self._opened(path))
+        return f"Your own copy: {path}"
 
     def action_help(self) -> None:
         """All keys."""
         wheels = "left" in self.world.settings
-        self.push_screen(PageOverlay("Keys, and this scene", help_pages(self.chosen.scene, wheels=wheels)))
+        self.push_screen(
+            PageOverlay("Keys, and this scene", help_pages(self.stage.chosen.scene, wheels=wheels))
+        )
 
     def action_events(self) -> None:
         """The list of events."""
@@ -315,29 +437,112 @@ class SandboxApp(FullScreenApp):
 
     def action_pause(self) -> None:
         """Run or pause."""
-        self.world.paused = not self.world.paused
-        self._stopped = False
+        stage = self.stage
+        stage.run(on=stage.world.paused if stage.at is None else not stage.way)
         self.renew()
 
-    def action_single(self) -> None:
-        """One step, and pause."""
-        self.world.paused = True
-        self.world.step()
+    def action_step(self, kind: str) -> None:
+        """A picture on or back, to the next contact, or one step of the solver; and pause."""
+        stage = self.stage
+        if kind == "back" and stage.at is None:
+            self._attempt(lambda: stage.look(stage.t - 1 / 60))
+        else:
+            stage.step(kind)
         self.renew()
+
+    def action_jump(self, seconds: float) -> None:
+        """Along the run."""
+        self._attempt(lambda: self.stage.look(self.stage.t + seconds))
+        self.renew()
+
+    def action_backwards(self) -> None:
+        """Play backwards."""
+        self._attempt(lambda: self.stage.play_back(-1))
+
+    def action_now(self) -> None:
+        """Back to now, or stop what is being made again."""
+        if self.stage.working is not None:
+            self.stage.stop_work()
+        self.stage.present()
+        self.renew()
+
+    def action_undo(self) -> None:
+        """Back to before the last thing that was done."""
+        self._attempt(self.stage.undo)
+
+    def action_redo(self) -> None:
+        """Take back the last undo."""
+        self._attempt(self.stage.redo)
 
     def action_reset(self) -> None:
         """Begin again; settings stay."""
+        self.stage.present()
         self.pointer.drop()
-        self.world.reset()
-        self.experiment.again()
-        self.stage.forget()
-        self._narrator.forget()
-        self._lines = []
-        if self._stopped:
-            self.world.paused = self._stopped = False
+        self._attempt(lambda: self.stage.act("reset"))
         self.say("From the start.")
-        if self.experiment.stage == "ask":
-            self.ask()
+
+    def action_aim(self) -> None:
+        """Aim the body near the pointer, or let go."""
+        self._attempt(self.pointer.aim_at)
+
+    def action_near(self, what: str) -> None:
+        """Copy or take away the body near the pointer."""
+        name = self.pointer.near()
+        if name is None:
+            self.say("No body is near the pointer.")
+            return
+        self._attempt(lambda: self.stage.act(what, name))
+
+    def action_stop(self) -> None:
+        """Let everything stand still."""
+        self._attempt(lambda: self.stage.act("stop"))
+
+    def action_zoom(self, factor: float) -> None:
+        """Closer, farther, or all of it."""
+        self.sight.zoom(factor)
+        self.renew()
+
+    def action_follow(self) -> None:
+        """Follow the body near the pointer, or stand."""
+        self.sight.follow = None if self.sight.follow else self.pointer.near()
+        self.say(f"The view follows {self.sight.follow}." if self.sight.follow else "The view stands.")
+
+    def action_trace(self) -> None:
+        """Draw the path of the body near the pointer, or none."""
+        self.sight.trace = None if self.sight.trace else self.pointer.near()
+        self.say(f"The path of {self.sight.trace} is drawn." if self.sight.trace else "No path is drawn.")
+
+    def action_ghost(self) -> None:
+        """Show the run before as dots, or not."""
+        if self.stage.ghost is None:
+            self.say("There is no run before this one: start it again first (r).")
+            return
+        self.sight.ghost = not self.sight.ghost
+        self.say("The run before is shown as dots." if self.sight.ghost else "The run before is gone.")
+
+    def action_film(self) -> None:
+        """Save this run as a film."""
+        if self._film is not None or self.desk.save is None:
+            self.say("One film is being made already." if self._film else "Nothing can be saved from here.")
+            return
+        kept: list[Any] = [f"{self.stage.chosen.scene.id}.gif", b"", ""]
+        tape, scene = self.stage.tape.until(self.world.t), self.stage.chosen.scene
+
+        def make() -> None:
+            try:
+                kept[1] = tape.film(scene, "gif", _FILM_WIDTH, lambda _: not self._exit)
+            except CourseError as error:
+                kept[2] = error.message
+
+        self._film = Thread(target=make, daemon=True), kept
+        self._film[0].start()
+
+    def _save(self, name: str, data: bytes, failed: str) -> None:
+        if failed or self.desk.save is None:
+            self.say(failed)
+            return
+        save = self.desk.save
+        self._attempt(lambda: f"Saved: {save(name, data)}")
 
     def action_speed(self, factor: float) -> None:
         """Slower or faster."""
@@ -353,12 +558,11 @@ class SandboxApp(FullScreenApp):
         now = self.world.settings.get(key)
         if now is None:
             # Until then each body has its own; the first press starts from the value that most of them have.
-            now = self.stage.usual(key)
+            now = 0.0 if key == "walls" else self.sight.usual(key)
         value = now * spec.notch**way if spec.times else now + way * spec.notch
         value = float(round(value)) if spec.whole else round(value, 9)
         value = min(spec.high, max(spec.low, value))
-        self.world.set(key, value)
-        self.experiment.changed()
+        self._attempt(lambda: self.stage.act("set", key, value))
         self.say(f"{KEYS[key][2]}: {setting(key, value)} ({spec.meaning})")
 
     def action_spawn(self, shape: str) -> None:
@@ -366,18 +570,28 @@ class SandboxApp(FullScreenApp):
         self._attempt(lambda: self.pointer.spawn(shape))
 
     def action_take(self) -> None:
-        """Grab the body near the keyboard's pointer, or let it go."""
-        self._attempt(self.pointer.toggle)
+        """Grab the body near the keyboard's pointer, or let it go; of the past, go on from here."""
+        if self.stage.at is not None:
+            self._attempt(self.stage.go_on)
+        else:
+            self._attempt(self.pointer.toggle)
 
     def action_point(self, dx: int, dy: int) -> None:
-        """Move the keyboard's pointer by this many cells."""
-        self.pointer.move_by(dx, dy)
+        """Move the keyboard's pointer by this many cells; drive what has wheels."""
+        if "left" in self.world.settings and abs(dx) + abs(dy) == 1 and self.pointer.placing is None:
+            for key, turn in (("left", dx), ("right", -dx)):
+                value = round(min(5.0, max(-5.0, self.world.settings[key] + 0.1 * (turn - dy))), 9)
+                self._attempt(partial(self.stage.act, "set", key, value))
+            wheels = (f"{key} {self.world.settings[key]:.2g}" for key in ("left", "right"))
+            self.say(f"Wheels: {', '.join(wheels)} m/s.")
+        else:
+            self._attempt(lambda: self.pointer.move_by(dx, dy))
         self.renew()
 
     def action_names(self) -> None:
         """Label every body, or only the large ones."""
-        self.stage.names = not self.stage.names
-        self.say("Names on." if self.stage.names else "Names only where there is room.")
+        self.sight.names = not self.sight.names
+        self.say("Names on." if self.sight.names else "Names only where there is room.")
 
     def action_calm(self) -> None:
         """Switch between little motion and full motion."""
@@ -389,34 +603,38 @@ class SandboxApp(FullScreenApp):
         self._panel_wanted = not self._panel_wanted
         self.renew(layout=True)
 
-    def _attempt(self, deed: Callable[[], str | None]) -> None:
+    def _attempt(self, deed: Callable[[], Any]) -> None:
         try:
             message = deed()
-        except UsageError as error:
+        except CourseError as error:
             message = error.message
-        if message:
+        if isinstance(message, str) and " " in message:
             self.say(message)
 
     # -- the mouse -------------------------------------------------------------------------------
 
     def on_mouse_down(self, event: Any) -> None:
-        """Grab a body that is near, or add a new ball there."""
+        """Take a body that is near, or the picture; the other button aims, or adds a new ball."""
         place = self._cell(event)
         if place is None or len(self.screen_stack) > 1:
             return
-        if event.button == 1:
-            self.canvas.capture_mouse()
-            self._attempt(lambda: self.pointer.press(*place))
-        else:
-            self.pointer.at, self.pointer.by_keys = place, False
-            self._attempt(lambda: self.pointer.spawn("circle"))
+        self.canvas.capture_mouse()
+        self._attempt(lambda: self.pointer.press(*place, aims=event.button != 1))
+
+    def on_mouse_scroll_up(self) -> None:
+        """Closer."""
+        self.action_zoom(1.1)
+
+    def on_mouse_scroll_down(self) -> None:
+        """Farther."""
+        self.action_zoom(1 / 1.1)
 
     def on_mouse_move(self, event: Any) -> None:
         """Drag, or aim; without a button only remember where the pointer is."""
         place = self._cell(event)
         if self.pointer.pressed:
             region = self.canvas.region
-            self.pointer.drag(event.screen_x - region.x, event.screen_y - region.y)
+            self._attempt(lambda: self.pointer.drag(event.screen_x - region.x, event.screen_y - region.y))
         elif place is not None and len(self.screen_stack) == 1 and not self.pointer.by_keys:
             self.pointer.at = place
 

@@ -5,18 +5,23 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
+import numpy as np
 from rich.table import Table
 from rich.text import Text
 from textual.app import ComposeResult
 from textual.binding import Binding
-from textual.containers import VerticalScroll
-from textual.widgets import Input, Static
+from textual.containers import Container, Horizontal, Vertical, VerticalScroll
+from textual.widgets import Input, OptionList, Static
+from textual.widgets.option_list import Option
 
 from course.full_screen import Field, Overlay, TextOverlay
-from course.printable import command
-from course.sandbox.scene.loading import NO_GUESS, guess_of
+from course.sandbox.runs.tape import preview
+from course.sandbox.scene.loading import NO_GUESS, guess_of, unchanged
 from course.sandbox.scene.model import Scene
-from course.sandbox.views.terminal.words import KEYS, clean
+from course.sandbox.views.terminal.picture import Camera, Picture
+from course.sandbox.views.terminal.picture import Overlay as Drawn
+from course.sandbox.views.terminal.words import KEYS, Canvas, clean
+from course.sandbox.world.world import Snapshot
 
 #: A heading and paragraphs, or lines of two columns.
 Page = Sequence[str | tuple[str, str]]
@@ -38,7 +43,7 @@ class QuestionOverlay(Overlay[float]):
         """The question and a field for the answer."""
         with VerticalScroll(classes="box", can_focus=False) as box:
             box.border_title = "Before it runs: your guess"
-            box.border_subtitle = "Enter: run   Escape: run without a guess"
+            box.border_subtitle = "Enter: run from the start and compare   Escape: back"
             yield Static(Text(clean(self._question), style="bold"))
             entry = Field(placeholder=f"a number in {clean(self._unit)}", id="guess")
             entry.cursor_blink = not self._calm
@@ -59,6 +64,120 @@ class QuestionOverlay(Overlay[float]):
             self.query_one("#wrong", Static).update(NO_GUESS)
             return
         self.close(guess)
+
+
+class ChangeOverlay(Overlay[str]):
+    """Numbers to change, and a line to type one in. Dismissed with the line."""
+
+    def __init__(self, page: Page) -> None:
+        super().__init__()
+        self._page = page
+
+    def compose(self) -> ComposeResult:
+        """What there is, and a field."""
+        with VerticalScroll(classes="box", can_focus=False) as box:
+            box.border_title = "Change a number"
+            box.border_subtitle = "Enter: change it   Escape: back"
+            for piece in self._page:
+                yield Static(_shaped(piece))
+            yield Field(placeholder="name and number, for example: angle 45")
+
+    def on_mount(self) -> None:
+        """Focus the field."""
+        self.query_one(Input).focus()
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Take the line."""
+        self.close(event.value.strip() or None)
+
+
+class Gallery(Overlay[str]):
+    """Every scene, and how the one under the cursor moves. Dismissed with its id.
+
+    Args:
+        played: ids of those that were played.
+        current: id of the one that is played now.
+    """
+
+    DEFAULT_CSS = """
+    Gallery > .box { max-width: 100%; height: 100%; max-height: 100%; }
+    Gallery Horizontal { height: 100%; }
+    Gallery OptionList { width: 34; max-height: 100%; height: 100%; }
+    Gallery .beside { width: 1fr; padding: 0 0 0 1; }
+    Gallery Static { height: auto; max-height: 8; }
+    """
+    BINDINGS: ClassVar[list[Any]] = [Binding("q", "app.quit", show=False)]
+
+    def __init__(
+        self, found: Sequence[Scene], played: frozenset[str], current: str, *, colour: bool, calm: bool
+    ) -> None:
+        super().__init__()
+        self._found, self._played, self._current = found, played, current
+        self._colour, self._calm = colour, calm
+        self._loops: dict[str, tuple[Any, ...]] = {}
+        self._number = 0
+        self._picture: tuple[str, Camera, Picture] | None = None
+
+    def compose(self) -> ComposeResult:
+        """A list, a picture and what it is about."""
+        with Container(classes="box") as box:
+            box.border_title = "Scenes"
+            box.border_subtitle = "Enter: play   Escape: back   q: leave"
+            with Horizontal():
+                options = (
+                    Option(f"{'✓' if one.id in self._played else ' '} {clean(one.title)}", id=one.id)
+                    for one in self._found
+                )
+                yield OptionList(*options)
+                with Vertical(classes="beside"):
+                    yield Static("", id="about", markup=False)
+                    yield Canvas(colour=self._colour, id="loop")
+
+    def on_mount(self) -> None:
+        """Begin with the scene that is played now."""
+        chooser = self.query_one(OptionList)
+        chooser.highlighted = next((i for i, one in enumerate(self._found) if one.id == self._current), 0)
+        chooser.focus()
+        self.set_interval(1 / 4 if self._calm else 1 / 20, self.move)
+
+    def move(self) -> None:
+        """The next picture of the scene under the cursor."""
+        chooser, canvas = self.query_one(OptionList), self.query_one(Canvas)
+        scene = self._found[chooser.highlighted or 0]
+        done = "Played before. " if scene.id in self._played else ""
+        self.query_one("#about", Static).update(f"{done}{clean(scene.teaches)}")
+        width, height = canvas.size
+        if not width or not height:
+            return
+        if scene.id not in self._loops:
+            self._loops[scene.id] = preview(unchanged(scene))
+            self._number = 0
+        parts, places, joints = self._loops[scene.id]
+        camera = Camera.fit(scene.view, width, height)
+        if self._picture is None or self._picture[:2] != (scene.id, camera):
+            self._picture = scene.id, camera, Picture(parts, camera, self._colour)
+        at = 0 if self._calm else self._number % len(places)
+        self._number += 1
+        x, y, angle = np.nan_to_num(places[at].astype(float), nan=1e6).T
+        none = np.zeros(len(parts))
+        shot = Snapshot(
+            t=0.0,
+            tick=0,
+            version=0,
+            x=x,
+            y=y,
+            angle=angle,
+            vx=none,
+            vy=none,
+            spin=none,
+            joints=joints[at].astype(float),
+            hand=None,
+        )
+        canvas.show(self._picture[2].draw(shot, Drawn()))
+
+    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
+        """Play it."""
+        self.close(event.option.id)
 
 
 class PageOverlay(TextOverlay):
@@ -117,16 +236,6 @@ def comparison(result: dict[str, Any], after: str) -> Page:
     ]
 
 
-def _own_settings(scene: Scene) -> Page:
-    """How to start a scene with its own parameters, which have no keys."""
-    if not scene.parameter:
-        return ()
-    first, *more = (one.name for one in scene.parameter)
-    others = f"; also {', '.join(more)}" if more else ""
-    start = command("sandbox", "play", scene.id, "--set", f"{first}=NUMBER").strip("`")
-    return (("--set", f"for what has no key, when you start it: {start}{others}"),)
-
-
 def help_pages(scene: Scene, *, wheels: bool) -> Page:
     """All keys, what the mouse does, and what the scene is about."""
     keys = {key: value for key, value in KEYS.items() if wheels or key not in {"left", "right"}}
@@ -134,26 +243,48 @@ def help_pages(scene: Scene, *, wheels: bool) -> Page:
     return [
         ("Time", ""),
         ("space", "run, pause"),
-        (".", "one step, and pause"),
+        (", .", "a picture back, a picture on; at the past, too"),
+        ("< >", "half a second back, on"),
+        (":", "one step of the solver"),
+        ("x", "to the next contact"),
+        ("j", "play backwards"),
+        ("Enter", "of the past: go on from here"),
+        ("k", "back to now"),
         ("- +", "half as fast, twice as fast"),
         ("r", "reset: from the start, settings kept"),
+        ("u U", "undo, redo: back to before the last thing that was done"),
         "",
         ("Hands", ""),
         ("mouse", "press near a body and drag it; letting go while it moves throws it"),
-        ("", "while paused a drag aims: letting go throws the way it points"),
-        ("right button", "a new ball where the pointer is"),
+        ("", "while paused a drag places it; beside the bodies it moves the picture"),
+        (
+            "right button",
+            "a new ball where the pointer is; on a body it aims: letting go throws the way it points",
+        ),
         ("arrows", "a pointer for the keyboard; with Shift five cells at a time"),
-        ("Enter", "grab the body near the pointer, or let it go"),
+        *((("", "here they drive the wheels; with Shift they move the pointer"),) if wheels else ()),
+        ("Enter", "grab the body near the pointer, or let it go; while paused, carry it"),
+        ("v", "aim the body near the pointer, and again to let go"),
         ("c b", "a new ball, a new box at the pointer"),
+        ("y", "copy the body near the pointer"),
+        ("Delete", "take it away; Backspace does the same"),
+        ("s", "stop everything"),
+        ("", f"placing by eye is better done in the page: course sandbox play {scene.id} --web"),
         "",
         ("Settings", ""),
+        ("/", "the scene's own numbers, and those of the body near the pointer"),
         *offered,
-        *_own_settings(scene),
         "",
         ("Looking", ""),
+        ("o", "all scenes; Escape does the same"),
+        ("PgUp PgDn", "closer, farther; Home shows all of it"),
+        ("z", "follow the body near the pointer"),
+        ("t", "trace the body near the pointer"),
+        ("Z", "show the run before this one as dots"),
         ("n", "names on every body, however small"),
         ("l", "the list of events"),
-        ("p", "the question and its answer again"),
+        ("p", "predict: the question, and its answer"),
+        ("Ctrl+S", "save this run as a film (GIF)"),
         ("Tab", "hide or show the panel beside the picture"),
         ("m", "calm: four pictures a second, no flashes (always so with TEXTUAL_ANIMATIONS=none)"),
         ("q", "leave; Ctrl+C does the same"),

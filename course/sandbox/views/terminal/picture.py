@@ -212,12 +212,14 @@ class Overlay:
         pull: a line from something held or aimed to where it is pulled, in m: ax, ay, bx, by.
         sparks: contacts of the last moments.
         names: label bodies however small they are.
+        dots: places that are marked: a path, a run before; (k, 2), in m.
     """
 
     pointer: tuple[float, float] | None = None
     pull: tuple[float, float, float, float] | None = None
     sparks: tuple[Spark, ...] = ()
     names: bool = False
+    dots: Floats = field(default_factory=lambda: np.zeros((0, 2)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -290,6 +292,7 @@ class Picture:
             self._still = np.tile(_rgb(PAPER), (2 * camera.rows * camera.columns, 1))
             self._paint_groups(self._still, self._fixed, shot)
         pixels = self._still.copy()
+        pixels[self._dotted(over)] = _rgb(_ROD)
         for joint in shot.joints:
             self._line(pixels, joint, _rgb(_ROD))
         self._paint_groups(pixels, self._groups, shot)
@@ -332,6 +335,13 @@ class Picture:
         inside = (px >= 0) & (px < camera.columns) & (py >= 0) & (py < 2 * camera.rows)
         return np.asarray((py * camera.columns + px)[inside])
 
+    def _dotted(self, over: Overlay) -> NDArray[np.int64]:
+        """The pixels of the dots."""
+        camera = self.camera
+        x, y = camera.pixels(over.dots[:, 0], over.dots[:, 1])
+        inside = (x >= 0) & (x < camera.columns) & (y >= 0) & (y < 2 * camera.rows)
+        return np.asarray(y[inside].astype(np.int64) * camera.columns + x[inside].astype(np.int64))
+
     def _mark(self, pixels: Floats, shot: Snapshot) -> None:
         """A dark spot that shows how far a ball has turned, a light one at the front of what drives."""
         rows = self._marked
@@ -364,6 +374,7 @@ class Picture:
         camera = self.camera
         what = np.zeros(2 * camera.rows * camera.columns, dtype=np.int64)
         rods, lines, bursts = (len(self.parts) + i for i in (1, 2, 3))
+        what[self._dotted(over)] = bursts
         for joint in shot.joints:
             what[self._along(joint)] = rods
         for group in (*self._fixed, *self._groups):

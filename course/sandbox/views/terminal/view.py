@@ -4,32 +4,25 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable
 
 from course.errors import MissingCapabilityError
-from course.sandbox.scene.loading import Chosen, Comparison, as_it_is
-from course.sandbox.scene.model import Scene
-from course.sandbox.world.world import World
+from course.sandbox.scene.loading import Chosen
+from course.sandbox.views.stage import Desk, Stage
 
 
 def play(
-    world: World,
-    scene: Scene,
-    *,
-    fps: float = 30.0,
-    chosen: Chosen | None = None,
-    guess: float | None = None,
-    keep: Callable[[Comparison], None] | None = None,
-) -> None:
-    """Play with a world until its user leaves. The terminal is left as it was, whatever happens.
+    chosen: Chosen | None, desk: Desk | None = None, *, fps: float = 30.0, guess: float | None = None
+) -> bytes:
+    """Play until the user leaves. The terminal is left as it was, whatever happens.
 
     Args:
-        world: before its first step, with a receipt.
-        scene: of the world.
+        chosen: the scene with the parameters that go into it; None to begin with the gallery.
+        desk: what may be asked of the program around it.
         fps: pictures a second.
-        chosen: the scene with the parameters that went into it; with their defaults if left out.
-        guess: an answer to the scene's question that was given already; else the view asks for one.
-        keep: called with each comparison that has a guess.
+        guess: an answer to the scene's question.
+
+    Returns:
+        the recording of what was played last.
 
     Raises:
         MissingCapabilityError: this is no terminal, or one that cannot move its cursor.
@@ -37,7 +30,11 @@ def play(
     _need_terminal()
     from course.sandbox.views.terminal.app import SandboxApp
 
-    SandboxApp(world, chosen or as_it_is(scene), fps=fps, guess=guess, keep=keep).play()
+    desk = desk or Desk()
+    stage = None if chosen is None else Stage(chosen, guess=guess, keep=desk.keep_of(chosen))
+    app = SandboxApp(stage, desk, fps=fps)
+    app.play()
+    return app.stage.recording.encode()
 
 
 def _need_terminal() -> None:

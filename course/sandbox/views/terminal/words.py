@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Sequence
-from time import perf_counter
+from collections.abc import Sequence
 
 import numpy as np
 from rich.color import Color
@@ -20,53 +19,6 @@ from course.sandbox.views.terminal.picture import Cells
 from course.sandbox.world.accounts import History, Receipt
 from course.sandbox.world.engine import Floats
 from course.sandbox.world.world import World
-
-# ---
-# How much of a frame goes into stepping: keys and picture stay quick, however slow the physics is.
-
-
-#: Steps between looks at the clock.
-_CHUNK = 16
-#: The longest lag behind real time that is caught up, in s.
-_GAP = 0.1
-
-
-class Pacer:
-    """Lets a world follow real time as far as it can.
-
-    Args:
-        budget: of real time for the steps of one frame, in s.
-        clock: real time, in s.
-
-    Attributes:
-        pace: the share of the requested steps that was made lately, 0 to 1.
-    """
-
-    def __init__(self, world: World, budget: float, clock: Callable[[], float] = perf_counter) -> None:
-        self.pace = 1.0
-        self._world, self._budget, self._clock = world, budget, clock
-
-    def advance(self, dt: float, until: float | None = None) -> None:
-        """Step for this long, but no longer than a frame has time for.
-
-        Args:
-            dt: real time since the last frame, in s.
-            until: simulated time at which to stop, in s.
-        """
-        world = self._world
-        dt = min(dt, _GAP)
-        if world.paused or dt <= 0.0:
-            return
-        if until is not None:
-            dt = min(dt, max(0.0, until - world.t) / world.speed)
-        parts = max(1, math.ceil(dt * world.speed / world.settings["step"] / _CHUNK))
-        began, made = self._clock(), parts
-        for number in range(1, parts + 1):
-            world.advance(dt / parts)
-            if self._clock() - began > self._budget:
-                made = number
-                break
-        self.pace += 0.1 * (made / parts - self.pace)
 
 
 def speed_in_words(speed: float) -> str:
@@ -91,6 +43,7 @@ KEYS = {
     "friction": ("f", "F", "friction"),
     "step": ("h", "H", "step h"),
     "iterations": ("i", "I", "iterations"),
+    "walls": ("w", "W", "walls"),
     "left": ("a", "A", "left wheel"),
     "right": ("d", "D", "right wheel"),
 }
@@ -159,11 +112,11 @@ def wrapped(text: str, width: int) -> list[str]:
     return lines
 
 
-def head(world: World, state: str, pace: float, width: int) -> Line:
+def head(world: World, t: float, state: str, pace: float, width: int) -> Line:
     """The line above the picture."""
     # A short lag is not worth a word.
     slow = "" if world.paused or pace > 0.75 else f", but this machine manages {100 * pace:.0f} % of it"
-    right = f"{world.t:.3f} s  {state or speed_in_words(world.speed)}{slow} "
+    right = f"{t:.3f} s  {state or speed_in_words(world.speed)}{slow} "
     title = clean(world.scene.title)
     room = width - len(right) - 3
     if room < len(title):
@@ -172,15 +125,18 @@ def head(world: World, state: str, pace: float, width: int) -> Line:
     return ((f" {title}", "bold"), (" " * gap, ""), (right[: max(0, width - 2)], "bold" if state else ""))
 
 
-def keys_line(width: int, *, paused: bool) -> Line:
+def keys_line(width: int, *, paused: bool, past: bool) -> Line:
     """The line below everything: as many keys as there is room for."""
     offered = [
         ("space", "run" if paused else "pause"),
-        (".", "step"),
+        *((("Enter", "go on from here"), ("k", "now")) if past else (("o", "scenes"), ("p", "predict"))),
+        (", .", "back, on"),
         ("r", "reset"),
-        ("-+", "speed"),
+        ("u", "undo"),
         ("?", "all keys"),
         ("q", "leave"),
+        ("/", "numbers"),
+        ("-+", "speed"),
         ("c b", "new ball, box"),
         ("gG", "gravity"),
         ("eE", "restitution"),
@@ -200,14 +156,15 @@ def keys_line(width: int, *, paused: bool) -> Line:
     return tuple(pieces)
 
 
-def panel(world: World, width: int, height: int) -> list[Line]:
+def panel(world: World, parameters: Sequence[tuple[str, str]], width: int, height: int) -> list[Line]:
     """Energy, momentum and settings, for a column beside the picture.
 
     Args:
+        parameters: the scene's own, with their values.
         width, height: of the column, in cells.
     """
     history, receipt, momentum = world.history, world.receipt, world.momentum
-    settings = _settings(world, width)
+    settings = _settings(world, parameters, width)
     tall = max(1, min(4, (height - 5 - len(settings) - 3) // 8))
     lines = [*_energy(history, receipt, width, tall), *_momentum(history, momentum, width, tall)]
     # Where there is little room, blank lines go first, then a heading and angular momentum.
@@ -264,12 +221,15 @@ def _curve(
     return [*lines, ((f"{label:<{_NAME}}", ""), (drawn[-1], colour), (number, "bold"))]
 
 
-def _settings(world: World, width: int) -> list[Line]:
+def _settings(world: World, parameters: Sequence[tuple[str, str]], width: int) -> list[Line]:
     lines: list[Line] = [(("Settings, less and more", "bold"),)]
+    for name, text in parameters:
+        room = max(0, width - 4 - len(text))
+        lines.append((("/  ", "bold"), (f" {name:<{room}}"[: room + 1], ""), (text, "bold")))
     for key, (less, more, name) in KEYS.items():
         if key not in world.settings and key in {"left", "right"}:
             continue
-        value = world.settings.get(key)
+        value = world.settings.get(key, 0.0 if key == "walls" else None)
         text = "own" if value is None else setting(key, value)
         room = max(0, width - 4 - len(text))
         lines.append(((f"{less}{more} ", "bold"), (f" {name:<{room}}"[: room + 1], ""), (text, "bold")))
@@ -278,6 +238,8 @@ def _settings(world: World, width: int) -> list[Line]:
 
 def setting(key: str, value: float) -> str:
     """A setting with its unit, as short as it can be said."""
+    if key == "walls":
+        return "on" if value else "off"
     if key == "step":
         return f"{1000 * value:.3g} ms"
     unit = SETTINGS[key].unit

@@ -1,4 +1,4 @@
-"""One world and everybody who looks at it through a page.
+"""The stages that pages look at, and everybody who does.
 
 The state lives here, so a page can be reloaded at any time. Time passes only while the page is visible.
 """
@@ -6,139 +6,98 @@ The state lives here, so a page can be reloaded at any time. Time passes only wh
 from __future__ import annotations
 
 import asyncio
+import functools
 import math
+import operator
 from collections import deque
 from collections.abc import Callable
+from threading import Thread
 from time import perf_counter
-from typing import Annotated, Any, Literal, assert_never
+from typing import Annotated, Any, Literal
 
 import msgspec
 import numpy as np
 from msgspec import Meta
 
 from course.errors import CourseError, UsageError
-from course.sandbox.scene.loading import Chosen, Comparison
+from course.sandbox.runs.tape import Frame, Tape, preview
+from course.sandbox.scene.loading import choose, own_copy, scene_ids, scenes
 from course.sandbox.scene.model import Part
 from course.sandbox.scene.rules import SETTINGS
-from course.sandbox.views.story import Experiment, Narrator
+from course.sandbox.views.stage import BUDGET, Desk, Stage
 from course.sandbox.world.engine import Floats
-from course.sandbox.world.world import World
+from course.sandbox.world.world import NUMBERS
 
 # ---
 # Messages between a page and the world: small JSON requests one way, float32 frames the other.
 
 
+#: The modules of the page, each after those that it needs; a notebook takes them in as one.
+SCRIPTS = ("camera", "plots", "draw", "cards", "tools", "world")
 #: Bytes of one request. The longest that a page ever sends has about 150.
 MAX_REQUEST = 1024
 #: Requests a second that a page may keep up, and how many at once: a page sends one pointer position for
 #: each of its frames, and slider moves on top.
 _RATE, _BURST = 200.0, 300.0
-#: float32 numbers in front of the bodies; ``world.js`` reads them by the same names.
-FRAME_HEAD = 21
-#: Columns of the past: time, five energies, two momenta.
-_PAST = ("t", "kinetic", "potential", "contacts", "friction", "rods", "residual", "px", "py")
+#: Columns of the past that plots show: time, six energies, two momenta.
+_PAST = 9
 
-Number = float
-Name = Annotated[str, Meta(max_length=60)]
-
-
-class _Request(msgspec.Struct, forbid_unknown_fields=True, tag_field="do"):
-    """One request of a page; ``do`` says which."""
-
-
-class Grab(_Request, tag="grab"):
-    """Take what is nearest."""
-
-    x: Number
-    y: Number
-    reach: Number = 0.3
-
-
-class Drag(_Request, tag="drag"):
-    """Move the hand."""
-
-    x: Number
-    y: Number
-
-
-class Release(_Request, tag="release"):
-    """Let go."""
-
-
-class Throw(_Request, tag="throw"):
-    """Give what is nearest a velocity."""
-
-    x: Number
-    y: Number
-    vx: Number
-    vy: Number
-    reach: Number = 0.3
-
-
-class Push(_Request, tag="push"):
-    """Change the velocity of a body that is known by name, as keys do."""
-
-    name: Name
-    vx: Number
-    vy: Number
+_Name = Annotated[str, Meta(max_length=80)]
+_Key = Annotated[str, Meta(max_length=40)]
+_Reach = (float, 0.3)
+#: What a page may ask, by ``do``: its fields, each with its type and what it is if left out.
+REQUESTS: dict[str, dict[str, Any]] = {
+    # Hands: each is a method of the world, with the same arguments.
+    "grab": {"x": float, "y": float, "reach": _Reach},
+    "drag": {"x": float, "y": float},
+    "release": {},
+    "throw": {"x": float, "y": float, "vx": float, "vy": float, "reach": _Reach},
+    "spawn": {"shape": Literal["circle", "box"], "x": float, "y": float},
+    "place": {"name": _Name, "x": float, "y": float},
+    "aim": {"name": _Name, "vx": float, "vy": float},
+    "change": {"name": _Name, "key": _Key, "value": float},
+    "remove": {"name": _Name},
+    "copy": {"name": _Name},
+    "stop": {},
+    "set": {"key": _Key, "value": float},
+    "reset": {},
+    # To change the velocity of a body, as keys do.
+    "push": {"name": _Name, "vx": float, "vy": float},
+    # Time.
+    "pause": {"on": bool},
+    "speed": {"value": Annotated[float, Meta(ge=0.001, le=10.0)]},
+    "step": {"kind": (Literal["picture", "back", "contact", "solver"], "picture")},
+    "undo": {},
+    "redo": {},
+    "look": {"t": float | None},
+    "play": {"way": Annotated[int, Meta(ge=-1, le=1)]},
+    "go": {},
+    "cancel": {},
+    "ghost": {"on": bool},
+    "trace": {"name": _Name},
+    "film": {"kind": Literal["gif", "mp4", "png"], "width": (Annotated[int, Meta(ge=64, le=1920)], 960)},
+    # The scene: its question, its parameters, another one, one's own.
+    "guess": {"value": float | None},
+    "parameter": {"key": _Name, "value": float},
+    "scenes": {},
+    "open": {"id": _Name},
+    "mine": {},
+    # Whether the page is visible; the world waits while it is hidden.
+    "watch": {"on": bool},
+}
 
 
-class Spawn(_Request, tag="spawn"):
-    """A new body."""
-
-    shape: Literal["circle", "box"]
-    x: Number
-    y: Number
+def _struct(name: str, fields: dict[str, Any]) -> type[msgspec.Struct]:
+    shaped = [(field, *kind) if isinstance(kind, tuple) else (field, kind) for field, kind in fields.items()]
+    return msgspec.defstruct(name, shaped, tag_field="do", tag=name, forbid_unknown_fields=True)
 
 
-class Set(_Request, tag="set"):
-    """Change a setting."""
-
-    key: Annotated[str, Meta(max_length=40)]
-    value: Number
+_UNION: Any = functools.reduce(operator.or_, (_struct(*one) for one in REQUESTS.items()))
+_DECODER: msgspec.json.Decoder[msgspec.Struct] = msgspec.json.Decoder(_UNION)
 
 
-class Pause(_Request, tag="pause"):
-    """Stop time, or let it run."""
-
-    on: bool
-
-
-class Speed(_Request, tag="speed"):
-    """How many simulated seconds a second."""
-
-    value: Annotated[float, Meta(ge=0.001, le=10.0)]
-
-
-class Step(_Request, tag="step"):
-    """Single steps."""
-
-    count: Annotated[int, Meta(ge=1, le=50)] = 1
-
-
-class Reset(_Request, tag="reset"):
-    """The scene from its start."""
-
-
-class Guess(_Request, tag="guess"):
-    """The answer to the scene's question; None to go without."""
-
-    value: Number | None
-
-
-class Watch(_Request, tag="watch"):
-    """Whether the page is visible. The world waits while it is hidden."""
-
-    on: bool
-
-
-Request = Grab | Drag | Release | Throw | Push | Spawn | Set | Pause | Speed | Step | Reset | Guess | Watch
-
-_DECODER: msgspec.json.Decoder[Request] = msgspec.json.Decoder(Request)
-
-
-def read(data: str | bytes) -> Request:
-    """One request.
+def read(data: str | bytes) -> tuple[str, tuple[Any, ...]]:
+    """One request: what to do, and with which values.
 
     Raises:
         ValueError: it is too long or is none; the text says why, in one line.
@@ -147,7 +106,8 @@ def read(data: str | bytes) -> Request:
     if len(raw) > MAX_REQUEST:
         raise ValueError(f"A request has at most {MAX_REQUEST} bytes.")
     try:
-        return _DECODER.decode(raw)
+        request = _DECODER.decode(raw)
+        return type(request).__name__, msgspec.structs.astuple(request)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise ValueError(f"Not understood: {str(error)[:160]}") from error
 
@@ -179,51 +139,24 @@ class Allowance:
         return True
 
 
-def frame(world: World, pace: float) -> bytes:
-    """Where everything is, as little-endian float32.
-
-    ``FRAME_HEAD`` numbers: 1, version, t, pace, bodies, joints, whether a body is held, the four of
-    the hand, kinetic, potential, contacts, friction, rods, residual, momentum x and y, angular momentum, row
-    of the body that is held or -1. Then x, y, angle, vx, vy of each body, then the two ends of each joint.
-
-    Args:
-        pace: simulated seconds per second that were really made, as a part of those asked for.
-    """
-    shot, receipt, (px, py, angular) = world.snapshot(), world.receipt, world.momentum
-    held = world.held
-    row = next((i for i, part in enumerate(world.parts) if part.name == held), -1) if held else -1
-    head = [
-        *(1.0, shot.version, shot.t, pace, len(shot.x), len(shot.joints), shot.hand is not None),
-        *(shot.hand or (0.0, 0.0, 0.0, 0.0)),
-        *(
-            receipt.kinetic,
-            receipt.potential,
-            receipt.contacts,
-            receipt.friction,
-            receipt.rods,
-            receipt.residual,
-        ),
-        *(px, py, angular, row),
-    ]
-    bodies = np.stack([shot.x, shot.y, shot.angle, shot.vx, shot.vy], axis=1)
-    return _packed(np.concatenate([np.array(head), bodies.ravel(), shot.joints.ravel()]))
-
-
-def past(world: World, most: int = 900) -> bytes:
+def past(stage: Stage, most: int = 900) -> bytes:
     """The past, for plots in a page that opened later.
 
-    3, version, rows, columns, and then rows of t, kinetic, potential, contacts, friction, rods, residual, px
-    and py.
+    3, rows, columns, and then rows of t, kinetic, potential, contacts, friction, rods, residual, px
+    and py. A first number of 2 says that these rows come after what was sent before.
 
     Args:
         most: rows at most; the last ones, about 60 of them a second.
     """
-    history = world.history
-    table = np.stack([getattr(history, name)[-most:] for name in _PAST], axis=1)
-    return _packed(np.concatenate([np.array([3.0, world.version, *table.shape]), table.ravel()]))
+    return _rows(3.0, stage.world.samples(-math.inf)[-most:])
 
 
-def _packed(numbers: Floats) -> bytes:
+def _rows(kind: float, rows: list[list[float]]) -> bytes:
+    table = np.array(rows, dtype=np.float64).reshape(len(rows), -1)[:, :_PAST]
+    return _packed(np.concatenate([np.array([kind, len(rows), _PAST]), table.ravel()]))
+
+
+def _packed(numbers: Floats | Frame) -> bytes:
     # What does not fit a float32 becomes infinite, which a page does not draw.
     with np.errstate(over="ignore"):
         return numbers.astype("<f4").tobytes()
@@ -236,22 +169,19 @@ def finite(value: float | None) -> float | None:
 
 #: Pages that may look at one world at a time.
 MAX_PAGES = 8
-#: Frames a second, and how much of each may go into stepping; the rest is for drawing and for being quick.
-_FPS, _BUDGET = 60.0, 0.012
-#: Steps between looks at the clock.
-_CHUNK = 16
-#: The longest stretch of real time that is made up for, in s.
-_GAP = 0.1
+_FPS = 60.0
 #: Texts that may wait for a page that reads slowly; one that is further behind is let go.
 _WAITING = 400
+#: Rows for the plots that may wait: a minute of them.
+_MOST_ROWS = 3600
 #: Requests beyond the allowance, in one go, after which a page is let go.
 _PATIENCE = 2000
-#: A run that is over sooner than this, in s, starts in slow motion so that it can be seen.
-_BLINK = 0.5
+#: What the first number of a message says besides a frame (1) and the past (2, 3).
+_CARD, _PATH, _FILM = 4.0, 5.0, 6.0
 
 
 class Page:
-    """One page's end: texts in order, and only the newest of the frames.
+    """One page's end: texts in order, of each world only the newest frame, and all rows for the plots.
 
     Args:
         now: in s, on the session's clock.
@@ -266,7 +196,8 @@ class Page:
         self.lost = False
         self.allowance = Allowance(now)
         self._texts: deque[str | bytes] = deque()
-        self._frame: bytes | None = None
+        self._frames: dict[int, bytes] = {}
+        self._rows: list[list[float]] = []
         self._news = asyncio.Event()
 
     def tell(self, message: str | bytes) -> None:
@@ -282,17 +213,24 @@ class Page:
         self.lost = True
         self._news.set()
 
-    def show(self, data: bytes) -> None:
-        """A frame; one that was not fetched yet is forgotten."""
-        self._frame = data
+    def show(self, data: bytes, number: int = 0) -> None:
+        """A frame of a world; one that was not fetched yet is forgotten."""
+        self._frames[number] = data
         self._news.set()
 
     def take(self) -> str | bytes | None:
         """The next message to send; None if there is none."""
         if self._texts:
             return self._texts.popleft()
-        data, self._frame = self._frame, None
-        return data
+        if self._frames:
+            return self._frames.pop(next(iter(self._frames)))
+        rows, self._rows = self._rows, []
+        return _rows(2.0, rows) if rows else None
+
+    def add(self, rows: list[list[float]]) -> None:
+        """Rows for the plots, which go out together when the page has time for them."""
+        self._rows = [*self._rows, *rows][-_MOST_ROWS:]
+        self._news.set()
 
     async def fetch(self) -> str | bytes | None:
         """Wait for the next message to send; None if the page is closed."""
@@ -306,40 +244,68 @@ class Page:
 
 
 class Session:
-    """A world that pages look at.
+    """Stages that pages look at.
 
     Args:
-        world: before its first step, with a receipt.
-        chosen: its scene, with the parameters that went into it.
-        guess: an answer to the scene's question that was given elsewhere.
-        keep: called with each comparison that has a guess.
+        stage: what is played; the first scene, with the gallery open, if there is none.
+        desk: what may be asked of the program around it.
         clock: real time in s.
+
+    Attributes:
+        stages: what is played, each with a number of its own in its frames.
+        gallery: pages open with the gallery.
     """
 
     def __init__(
         self,
-        world: World,
-        chosen: Chosen,
+        stage: Stage | None = None,
+        desk: Desk | None = None,
         *,
-        guess: float | None = None,
-        keep: Callable[[Comparison], None] | None = None,
         clock: Callable[[], float] = perf_counter,
     ) -> None:
-        self.world = world
-        self.scene = chosen.scene
+        self.desk = desk or Desk()
+        self.gallery = stage is None
+        self.stages = [stage or self._opened(scenes()[0].id)]
+        self.stage.world.paused = self.gallery
+        if stage is not None and self.desk.opened is not None:
+            self.desk.opened(stage.chosen.scene.id)
         self.pages: list[Page] = []
-        self.experiment = Experiment(world, chosen, guess, keep)
         self._clock = clock
-        self._narrator = Narrator()
+        self._played = {*self.desk.played, *([] if stage is None else [stage.chosen.scene.id])}
         self._holder: Page | None = None
         self._wake = asyncio.Event()
         self._seen: tuple[Any, ...] = ()
         self._told: dict[str, Any] = {}
-        self._version = -1
-        self._pace = 1.0
-        if chosen.scene.duration < _BLINK:
-            world.speed = float(f"{chosen.scene.duration / 2:.1g}")
-        world.paused = self.experiment.stage == "ask"
+        self._version = self._cast_of_ghost = -1
+        self._anew = self.stage.anew
+        self._sent = -math.inf
+        self._marked = 0
+        self._ghost = False
+        self._cards: dict[str, tuple[str, bytes]] = {}
+        self._wanted: deque[tuple[Page, str]] = deque()
+        self._film: Filming | None = None
+
+    @property
+    def stage(self) -> Stage:
+        """What is played."""
+        return self.stages[0]
+
+    def _opened(self, name: str) -> Stage:
+        chosen = choose(name)
+        return Stage(chosen, keep=self.desk.keep_of(chosen))
+
+    def _put_on(self, stage: Stage) -> None:
+        """Play this from now on, in place."""
+        self._holder = None
+        self.gallery = False
+        self.stages[0] = stage
+        self._played.add(stage.chosen.scene.id)
+        if self.desk.opened is not None:
+            self.desk.opened(stage.chosen.scene.id)
+        self._ghost, self._cast_of_ghost, self._version, self._seen = False, -1, stage.world.version, ()
+        self._anew, self._sent, self._marked = stage.anew, stage.world.t, len(stage.tape.marks)
+        for page in self.pages:
+            self._introduce(page)
 
     # -- pages -----------------------------------------------------------------------------------
 
@@ -348,13 +314,16 @@ class Session:
         if len(self.pages) >= MAX_PAGES:
             return None
         page = Page(self._clock())
-        page.tell(_json(self._introduction()))
-        page.tell(_json(self._bodies()))
-        page.tell(past(self.world))
-        page.show(frame(self.world, self._pace))
+        self._introduce(page)
         self.pages.append(page)
         self._wake.set()
         return page
+
+    def _introduce(self, page: Page) -> None:
+        page.tell(_json(self._introduction()))
+        page.tell(_json(self._bodies()))
+        page.tell(past(self.stage))
+        page.show(_packed(self.stage.frame()))
 
     def leave(self, page: Page) -> None:
         """A page is gone; what it held is let go."""
@@ -366,82 +335,169 @@ class Session:
         """A request of a page: done, or answered with what is wrong with it. Never raises for its content."""
         if not page.allowance.take(self._clock()):
             if page.allowance.refused == 1:
-                page.tell(_json({"type": "error", "message": "Too many requests at once; some are dropped."}))
+                self._warn(page, "Too many requests at once; some are dropped.")
             elif page.allowance.refused > _PATIENCE:
                 page.let_go()
             return
         try:
-            self._do(page, read(data))
-        except UsageError as error:
-            page.tell(_json({"type": "error", "message": error.message}))
+            self._do(page, *read(data))
+        except CourseError as error:
+            self._warn(page, error.message)
         except ValueError as error:
-            page.tell(_json({"type": "error", "message": str(error)}))
+            self._warn(page, str(error))
         self._wake.set()
 
     def _drop(self, page: Page) -> None:
         if self._holder is page:
             self._holder = None
-            self.world.release()
+            if self.stage.world.held:
+                self.stage.act("release")
             self._wake.set()
 
     # -- requests --------------------------------------------------------------------------------
 
-    def _do(self, page: Page, request: Request) -> None:  # noqa: C901, PLR0912 - one line for each
-        world = self.world
-        match request:
-            case Grab(x, y, reach):
-                if world.grab(x, y, reach):
-                    self._holder = page
-                    self.experiment.touch()
-            case Drag(x, y):
-                if self._holder is page:
-                    world.drag(x, y)
-            case Release():
-                self._drop(page)
-            case Throw(x, y, vx, vy, reach):
-                if world.throw(x, y, vx, vy, reach):
-                    self.experiment.touch()
-            case Push(name, vx, vy):
-                self._push(name, vx, vy)
-            case Spawn(shape, x, y):
-                world.spawn(shape, x, y)
-                self.experiment.touch()
-            case Set(key, value):
-                world.set(key, value)
-                self.experiment.changed()
-            case Pause(on):
-                world.paused = on
-                if not on:
-                    self.experiment.answer(None)
-            case Speed(value):
-                world.speed = value
-            case Step(count):
-                self.experiment.answer(None)
-                world.paused = True
-                world.step(count)
-            case Reset():
-                self._holder = None
-                world.reset()
-                self.experiment.again()
-                self._narrator.forget()
-                self._tell({"type": "events", "events": [], "anew": True})
-            case Guess(value):
-                self.experiment.answer(value)
-                world.paused = False
-            case Watch(on):
-                page.watching = on
-            case _:
-                assert_never(request)
+    def _do(self, page: Page, what: str, given: tuple[Any, ...]) -> None:
+        if any(isinstance(one, float) and not math.isfinite(one) for one in given):
+            raise UsageError("A finite number, please.", code="bad_parameter")
+        own = getattr(self, f"_do_{what}", None)
+        if own is not None:
+            own(page, *given)
+        else:
+            self.stage.act(what, *given)
 
-    def _push(self, name: str, vx: float, vy: float) -> None:
-        world = self.world
-        row = next((i for i, part in enumerate(world.parts) if part.name == name), None)
-        if row is None or world.parts[row].fixed:
-            raise UsageError(f"There is no {name!r} that moves.", code="bad_parameter")
-        self.experiment.touch()
-        shot = world.snapshot()
-        x, y = float(shot.x[row]), float(shot.y[row])
-        world.throw(x, y, float(shot.vx[row]) + vx, float(shot.vy[row]) + vy, 0.0)
+    def _do_grab(self, page: Page, x: float, y: float, reach: float) -> None:
+        if self.stage.act("grab", x, y, reach):
+            self._holder = page
+
+    def _do_drag(self, page: Page, x: float, y: float) -> None:
+        if self._holder is page:
+            self.stage.act("drag", x, y)
+
+    def _do_release(self, page: Page) -> None:
+        self._drop(page)
+
+    def _do_push(self, _: Page, name: str, vx: float, vy: float) -> None:
+        world = self.stage.world
+        now = [world.number_of(name, key) if world.moves(name) else 0.0 for key in ("vx", "vy")]
+        self.stage.act("aim", name, now[0] + vx, now[1] + vy)
+
+    def _do_reset(self, _: Page) -> None:
+        self._holder = None
+        self.stage.present()
+        self.stage.act("reset")
+
+    def _do_pause(self, _: Page, on: bool) -> None:
+        self.stage.run(on=not on)
+
+    def _do_speed(self, _: Page, value: float) -> None:
+        self.stage.world.speed = value
+
+    def _do_step(self, _: Page, kind: str) -> None:
+        self.stage.step(kind)
+
+    def _do_undo(self, _: Page) -> None:
+        self.stage.undo()
+
+    def _do_redo(self, _: Page) -> None:
+        self.stage.redo()
+
+    def _do_look(self, _: Page, t: float | None) -> None:
+        self._holder = None
+        self.stage.look(t)
+
+    def _do_play(self, _: Page, way: int) -> None:
+        self.stage.play_back(way)
+
+    def _do_go(self, _: Page) -> None:
+        self.stage.go_on()
+
+    def _do_cancel(self, _: Page) -> None:
+        self.stage.stop_work()
+        if self._film is not None:
+            self._film.stopped = True
+
+    def _do_ghost(self, _: Page, on: bool) -> None:
+        if on and self.stage.ghost is None:
+            raise UsageError("There is no run before this one: start it again first.", code="no_ghost")
+        self._ghost, self._seen = on, ()
+
+    def _do_trace(self, page: Page, name: str) -> None:
+        rows = self.stage.tape.path(name)
+        page.tell(_packed(np.concatenate([np.array([_PATH, len(rows)]), rows.ravel()])))
+
+    def _do_film(self, page: Page, kind: str, width: int) -> None:
+        if self._film is not None:
+            raise UsageError("One film is being made already.", code="busy")
+        self._film = Filming(page, self.stage, kind, width)
+
+    def _do_guess(self, _: Page, value: float | None) -> None:
+        self.stage.guess(value)
+
+    def _do_parameter(self, _: Page, key: str, value: float) -> None:
+        if key not in self.stage.chosen.parameters:
+            raise UsageError(f"This scene has no {key!r}.", code="bad_parameter")
+        self.stage.present()
+        self.stage.set_parameter(key, value)
+
+    def _do_open(self, _: Page, name: str) -> None:
+        if name not in scene_ids():
+            raise UsageError(f"There is no scene called {name!r}.", code="scene_not_found")
+        self._put_on(self._opened(name))
+
+    def _do_watch(self, page: Page, on: bool) -> None:
+        page.watching = on
+
+    def _do_scenes(self, page: Page) -> None:
+        """Every scene, and then their previews, one after the other."""
+        stage = self.stage
+        if stage.at is None:
+            stage.run(on=False)
+        found = scenes()
+        page.tell(
+            _json(
+                {
+                    "type": "scenes",
+                    "scenes": [
+                        {"id": one.id, "title": one.title, "teaches": one.teaches, "view": one.view}
+                        | {"played": one.id in self._played}
+                        for one in found
+                    ],
+                }
+            )
+        )
+        self._wanted.extend((page, one.id) for one in found)
+
+    def _draw_card(self) -> None:
+        """The next preview that somebody waits for."""
+        page, name = self._wanted.popleft()
+        if name not in self._cards:
+            cast, places, joints = preview(choose(name))
+            head = np.array([_CARD, len(places), len(cast), joints.shape[1]])
+            numbers = np.concatenate([head, places.ravel(), joints.ravel()])
+            card = {"type": "card", "id": name, "bodies": [_body(part) for part in cast]}
+            self._cards[name] = _json(card), _packed(numbers)
+        if page in self.pages:
+            text, data = self._cards[name]
+            page.tell(text)
+            page.tell(data)
+
+    def _do_mine(self, page: Page) -> None:
+        stage = self.stage
+        if self.desk.save is None:
+            raise UsageError("Nothing can be saved from here.", code="no_save")
+        name = stage.chosen.scene.id.removeprefix("my-")
+        path = self.desk.save(f"my-{name}.toml", own_copy(stage.chosen, f"my-{name}"))
+        chosen = choose(path)
+        made = Stage(chosen, keep=self.desk.keep_of(chosen))
+        made.world.paused = stage.world.paused
+        self._put_on(made)
+        self._warn(
+            page, f"This is your own copy now: {path}. Change it in an editor; it plays like any scene."
+        )
+
+    @staticmethod
+    def _warn(page: Page, message: str) -> None:
+        page.tell(_json({"type": "error", "message": message}))
 
     # -- time ------------------------------------------------------------------------------------
 
@@ -464,59 +520,93 @@ class Session:
             await asyncio.sleep(max(due - self._clock(), 0.001))
 
     def _moves(self) -> bool:
-        return not self.world.paused
+        return not self.stage.still or bool(self._wanted) or self._film is not None
 
     def tick(self, real_dt: float) -> None:
         """Let real time pass, and show pages what became of it."""
-        self._advance(min(real_dt, _GAP))
-        events = self.world.drain_events()
-        self.experiment.take(events)
-        try:
-            if self.experiment.passed():
-                self.world.paused = True
-        except CourseError as error:
-            # The comparison stands, it only could not be kept.
-            self.world.paused = True
-            self._tell({"type": "error", "message": error.message})
-        lines = self._narrator.tell(events, self._clock())
-        if lines:
+        stage = self.stage
+        lines = stage.tick(real_dt, BUDGET)
+        if self._wanted:
+            self._draw_card()
+        if stage.anew != self._anew:
+            self._begin_anew()
+            lines = []
+        elif lines:
             self._tell({"type": "events", "events": lines})
-        if self.world.version != self._version:
-            self._version = self.world.version
+        for text in stage.news:
+            self._tell({"type": "error", "message": text})
+        stage.news.clear()
+        if stage.world.version != self._version:
+            self._version = stage.world.version
             self._tell(self._bodies())
+        self._tell_marks()
+        rows = stage.world.samples(self._sent) if stage.at is None and not stage.working else []
+        if rows:
+            self._sent = rows[-1][0]
+            for page in self.pages:
+                page.add(rows)
+        self._tell_film()
         status = self._status()
         if status != self._told:
             self._told = status
             self._tell(status)
-        seen = (self.world.ticks, self.world.version, self.world.held)
-        if seen != self._seen or not self._moves():
+        shown = stage.frame()
+        seen = (stage.world.ticks, shown[1], stage.world.held, stage.at, self._ghost)
+        if seen != self._seen or stage.still:
             self._seen = seen
-            data = frame(self.world, self._pace)
-            for page in self.pages:
-                if page.watching:
-                    page.show(data)
+            self._show(shown)
 
-    def _advance(self, dt: float) -> None:
-        """Step for this long, but not longer than a frame has time for."""
-        world = self.world
-        if world.paused or dt <= 0.0:
+    def _show(self, shown: Frame) -> None:
+        version = int(shown[1])
+        data = _packed(shown)
+        if version != self._version:  # bodies that were there at the time
+            self._version = version
+            self._tell(self._bodies(self.stage.parts(shown), version))
+        watching = [page for page in self.pages if page.watching]
+        for page in watching:
+            page.show(data)
+        ghost = self.stage.ghost
+        if not self._ghost or ghost is None:
             return
-        left = self.experiment.left()
-        stop = left is not None and dt * world.speed >= left
-        if stop and left is not None:
-            dt = left / world.speed
-        parts = max(1, math.ceil(dt * world.speed / world.settings["step"] / _CHUNK))
-        began, made = self._clock(), parts
-        for number in range(1, parts + 1):
-            world.advance(dt / parts)
-            if self._clock() - began > _BUDGET:
-                made = number
-                break
-        if stop and made == parts:
-            world.run_until(self.scene.duration)
-        self._pace += 0.1 * (made / parts - self._pace)
+        kept = ghost.frame_at(self.stage.t)
+        if int(kept[1]) != self._cast_of_ghost:
+            self._cast_of_ghost = int(kept[1])
+            self._tell(self._bodies(ghost.tape.casts[int(kept[1])], int(kept[1]), 1))
+        kept = kept.copy()
+        kept[21] = 1.0
+        for page in watching:
+            page.show(_packed(kept), 1)
 
-    # -- what is said ----------------------------------------------------------------------------
+    # -- what is said --------------------------------------------------------------------------------
+
+    def _begin_anew(self) -> None:
+        """The story does not go on from what was told: another run, or an earlier moment."""
+        stage = self.stage
+        self._anew, self._seen, self._cast_of_ghost = stage.anew, (), -1
+        self._tell({"type": "events", "events": stage.narrator.told(), "anew": True})
+        self._marked = -1
+        self._sent = stage.world.t
+        for page in self.pages:
+            page.tell(past(stage))
+
+    def _tell_marks(self) -> None:
+        marks, told = self.stage.tape.marks, self._marked
+        if len(marks) != told:
+            self._marked = len(marks)
+            self._tell({"type": "marks", "marks": marks[max(told, 0) :], "anew": told < 0})
+
+    def _tell_film(self) -> None:
+        film = self._film
+        if film is None or film.running:
+            return
+        self._film = None
+        if film.failed or film.page not in self.pages:
+            self._warn(film.page, film.failed)
+            return
+        name = f"{self.stage.chosen.scene.id}.{film.kind}"
+        film.page.tell(_json({"type": "file", "name": name}))
+        # Four bytes that say so, and then the file.
+        film.page.tell(np.array([_FILM], dtype="<f4").tobytes() + film.data)
 
     def _tell(self, message: dict[str, Any]) -> None:
         text = _json(message)
@@ -524,24 +614,38 @@ class Session:
             page.tell(text)
 
     def _status(self) -> dict[str, Any]:
-        world = self.world
+        stage, working = self.stage, self.stage.working
+        undo, redo = stage.undoable()
+        if working is None and self._film is not None:
+            working = "Making the film", self._film.share
         return {
             "type": "status",
-            "settings": dict(world.settings),
-            "paused": world.paused,
-            "speed": world.speed,
-            **self.experiment.report(),
+            "settings": dict(stage.world.settings),
+            "parameters": stage.chosen.parameters,
+            "paused": stage.world.paused if stage.at is None else stage.way == 0,
+            "speed": stage.world.speed,
+            "at": stage.at,
+            "now": None if stage.at is None else stage.world.t,
+            "undo": undo,
+            "redo": redo,
+            "ghost": None if stage.ghost is None else self._ghost,
+            "working": None if working is None else {"says": working[0], "share": round(working[1], 2)},
+            **stage.experiment.report(),
         }
 
-    def _bodies(self) -> dict[str, Any]:
+    def _bodies(
+        self, parts: tuple[Part, ...] | None = None, version: int | None = None, number: int = 0
+    ) -> dict[str, Any]:
         return {
             "type": "bodies",
-            "version": self.world.version,
-            "bodies": [_body(part) for part in self.world.parts],
+            "world": number,
+            "version": self.stage.world.version if version is None else version,
+            "bodies": [_body(part) for part in (self.stage.world.parts if parts is None else parts)],
         }
 
     def _introduction(self) -> dict[str, Any]:
-        scene, world = self.scene, self.world
+        stage = self.stage
+        scene, world = stage.chosen.scene, stage.world
         offered = {
             key: setting
             for key, setting in SETTINGS.items()
@@ -550,6 +654,9 @@ class Session:
         asked = scene.prediction
         return {
             "type": "scene",
+            "id": scene.id,
+            "own": stage.chosen.own,
+            "gallery": self.gallery,
             "title": scene.title,
             "teaches": scene.teaches,
             "note": " ".join(scene.note.split()),
@@ -557,9 +664,16 @@ class Session:
             "view": scene.view,
             "duration": scene.duration,
             "above": scene.floor is not None or not any(scene.gravity),
+            "parameters": [msgspec.to_builtins(one) for one in scene.parameter],
             "knobs": [msgspec.to_builtins(setting) for setting in offered.values()],
+            "numbers": [
+                {"name": name, "unit": unit, "low": low, "high": high}
+                for name, (unit, low, high) in NUMBERS.items()
+                if name != "spin"  # which no frame shows
+            ],
+            "marks": stage.tape.marks,
             "unit": asked.unit if asked else "",
-            "events": self._narrator.told(),
+            "events": stage.narrator.told(),
             "status": self._status(),
         }
 
@@ -573,8 +687,40 @@ def _body(part: Part) -> dict[str, Any]:
         "fixed": part.fixed,
         "colour": part.colour,
         "mass": finite(part.mass),
+        "restitution": part.restitution,
+        "friction": part.friction,
         "track": part.wheels.track if part.wheels else 0.0,
     }
+
+
+class Filming:
+    """A film in the making, beside the world.
+
+    Args:
+        page: which asked for it.
+    """
+
+    def __init__(self, page: Page, stage: Stage, kind: str, width: int) -> None:
+        self.page, self.kind, self.share, self.stopped = page, kind, 0.0, False
+        self.data, self.failed = b"", ""
+        tape = stage.tape.until(stage.t if kind == "png" else stage.world.t)
+        self._thread = Thread(target=self._make, args=(tape, stage, width), daemon=True)
+        self._thread.start()
+
+    @property
+    def running(self) -> bool:
+        """It is not ready yet."""
+        return self._thread.is_alive()
+
+    def _make(self, tape: Tape, stage: Stage, width: int) -> None:
+        try:
+            self.data = tape.film(stage.chosen.scene, self.kind, width, self._told)
+        except CourseError as error:
+            self.failed = f"{error.message} {error.help or ''}".strip()
+
+    def _told(self, share: float) -> bool:
+        self.share = share
+        return not self.stopped
 
 
 def _json(message: dict[str, Any]) -> str:

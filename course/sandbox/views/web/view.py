@@ -26,10 +26,9 @@ from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 from course.browser import invite
 from course.errors import UsageError
 from course.extras import require
-from course.sandbox.scene.loading import Chosen, Comparison, as_it_is
-from course.sandbox.scene.model import Scene
-from course.sandbox.views.web.session import Page, Session
-from course.sandbox.world.world import World
+from course.sandbox.scene.loading import Chosen
+from course.sandbox.views.stage import Desk, Stage
+from course.sandbox.views.web.session import SCRIPTS, Page, Session
 
 if TYPE_CHECKING:
     import uvicorn
@@ -40,27 +39,26 @@ _LOOPBACK = "127.0.0.1"
 
 
 def play(
-    world: World,
-    scene: Scene,
+    chosen: Chosen | None,
+    desk: Desk | None = None,
     *,
     port: int = 0,
     open_browser: bool = True,
     say: Callable[[str], None],
-    chosen: Chosen | None = None,
     guess: float | None = None,
-    keep: Callable[[Comparison], None] | None = None,
-) -> None:
-    """Serve a world until Ctrl+C.
+) -> bytes:
+    """Serve a scene until Ctrl+C.
 
     Args:
-        world: before its first step, with a receipt.
-        scene: of the world.
+        chosen: the scene with the parameters that go into it; None to begin with the gallery.
+        desk: what the page may ask of the program around it.
         port: 0 for any that is free.
         open_browser: show the page; else only say where it is.
         say: takes lines for the user.
-        chosen: the scene with the parameters that went into it; with their defaults if left out.
-        guess: an answer to the scene's question; the page asks for one if there is none.
-        keep: called with each comparison that has a guess.
+        guess: an answer to the scene's question.
+
+    Returns:
+        the recording of what was played last.
 
     Raises:
         MissingCapabilityError: the extra ``web`` is not installed.
@@ -71,7 +69,9 @@ def play(
 
     from course.sandbox.views.web.session import Session
 
-    session = Session(world, chosen or as_it_is(scene), guess=guess, keep=keep)
+    desk = desk or Desk()
+    stage = None if chosen is None else Stage(chosen, guess=guess, keep=desk.keep_of(chosen))
+    session = Session(stage, desk)
     failures: list[BaseException] = []
 
     def failed(error: BaseException) -> None:
@@ -90,6 +90,7 @@ def play(
             server.run(sockets=[listener])
     if failures:
         raise failures[0]
+    return session.stage.recording.encode()
 
 
 def _configured(app: ASGIApp) -> uvicorn.Config:
@@ -153,7 +154,7 @@ STATIC = Path(__file__).parent / "static"
 #: All files that can be fetched; a path is looked up here and never joined to a folder.
 _FILES = {
     "": ("index.html", "text/html"),
-    "world.js": ("world.js", "text/javascript"),
+    **{f"{name}.js": (f"{name}.js", "text/javascript") for name in SCRIPTS},
     "page.js": ("page.js", "text/javascript"),
     "style.css": ("style.css", "text/css"),
     "icon.svg": ("icon.svg", "image/svg+xml"),

@@ -11,6 +11,7 @@ const world = mount(document.getElementById("world"), {
   send(message) {
     if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
   },
+  keys: document,
   named(title) {
     document.title = `${title} · sandbox`;
   },

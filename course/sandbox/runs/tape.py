@@ -1,0 +1,236 @@
+"""The history of a run: frames of what became of a world, beside the recording of what was done to it.
+
+What was done is exact: from it any moment is made again, to the last bit. Frames are for the eye: they show
+any moment at once.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from course.errors import UsageError
+from course.sandbox.runs.recording import Film, ffmpeg
+from course.sandbox.scene.loading import Chosen
+from course.sandbox.scene.model import Part, Scene
+from course.sandbox.world.world import Snapshot, World
+
+#: Pictures a second of a film; a run that is over sooner than so many s is filmed in slow motion.
+FILM_FPS, _LEAST = 25.0, 2.0
+
+Frame: TypeAlias = NDArray[np.float32]
+
+#: Numbers in front of the bodies of a frame; ``camera.js`` has the same.
+HEAD = 24
+#: Of each body: x, y, angle, vx, vy.
+PER_BODY = 5
+#: Between two frames, in simulated s; of a run that is over in a moment, this part of it.
+_EVERY, _PART = 1 / 60, 1 / 240
+#: Bytes that frames may hold (there is a ghost as well), and frames that are kept whole: ten minutes of them.
+_BYTES, _WHOLE = 140_000_000, 36_000
+
+
+def frame(world: World, pace: float = 1.0, number: int = 0) -> Frame:
+    """Where everything is, (HEAD + 5 bodies + 4 joints,).
+
+    ``HEAD`` numbers: 1, version, t, pace, bodies, joints, whether a body is held, the four of the hand,
+    kinetic, potential, contacts, friction, rods, residual, momentum x and y, angular momentum, row of the
+    body that is held or -1, number of the world, start + given, and 1 if it is of the past. Then x, y, angle,
+    vx, vy of each body, then the two ends of each joint.
+
+    Args:
+        pace: simulated seconds per second that were really made, as a part of those asked for.
+        number: of the world, where there are several.
+    """
+    shot, receipt, (px, py, angular) = world.snapshot(), world.receipt, world.momentum
+    held = world.held
+    row = next((i for i, part in enumerate(world.parts) if part.name == held), -1) if held else -1
+    head = [1.0, shot.version, shot.t, pace, len(shot.x), len(shot.joints), shot.hand is not None]
+    head += [
+        *(shot.hand or (0.0,) * 4),
+        receipt.kinetic,
+        receipt.potential,
+        receipt.contacts,
+        receipt.friction,
+    ]
+    head += [receipt.rods, receipt.residual, px, py, angular, row, number, receipt.start + receipt.given, 0.0]
+    bodies = np.stack([shot.x, shot.y, shot.angle, shot.vx, shot.vy], axis=1)
+    # What does not fit a float32 becomes infinite, which nobody draws.
+    with np.errstate(over="ignore"):
+        return np.concatenate([np.array(head), bodies.ravel(), shot.joints.ravel()]).astype("<f4")
+
+
+def shot_of(kept: Frame) -> Snapshot:
+    """A frame as what is drawn."""
+    numbers = kept.astype(np.float64)
+    count, joints = int(kept[4]), int(kept[5])
+    x, y, angle, vx, vy = numbers[HEAD : HEAD + PER_BODY * count].reshape(-1, PER_BODY).T
+    ends = numbers[HEAD + PER_BODY * count :][: 4 * joints].reshape(-1, 4)
+    hand = (numbers[7], numbers[8], numbers[9], numbers[10]) if kept[6] else None
+    return Snapshot(
+        t=float(kept[2]),
+        tick=0,
+        version=int(kept[1]),
+        x=x,
+        y=y,
+        angle=angle,
+        vx=vx,
+        vy=vy,
+        spin=np.zeros(count),
+        joints=ends,
+        hand=hand,
+    )
+
+
+class Tape:
+    """Frames of a world's present run.
+
+    Args:
+        world: whose; from now on.
+
+    Attributes:
+        frames, times, ticks: the frames, with the simulated time in s and the step of each.
+        casts: the bodies, by the version that a frame names.
+        marks: times of the contacts that are worth a mark, in s.
+    """
+
+    def __init__(self, world: World) -> None:
+        self.frames: list[Frame] = []
+        self.times: list[float] = []
+        self.ticks: list[int] = []
+        self.casts: dict[int, tuple[Part, ...]] = {}
+        self.marks: list[float] = []
+        self._world = world
+        self._bytes = 0
+        self._rule: tuple[int, Callable[[], None]] = (0, self.take)
+        self.pace_itself()
+        self.take()
+
+    def __len__(self) -> int:
+        return len(self.frames)
+
+    def pace_itself(self) -> None:
+        """Take a frame every so many steps, as the step's size is now."""
+        world = self._world
+        self.end()
+        gap = min(_EVERY, world.scene.duration * _PART)
+        self._rule = max(1, round(gap / world.settings["step"])), self.take
+        world.on_tick.append(self._rule)
+
+    def end(self) -> None:
+        """Keep no more."""
+        if self._rule in self._world.on_tick:
+            self._world.on_tick.remove(self._rule)
+
+    def take(self) -> None:
+        """Keep the present moment; again at the same step replaces what was kept."""
+        world = self._world
+        if self.ticks and self.ticks[-1] == world.ticks:
+            self._bytes -= self.frames.pop().nbytes
+            self.times.pop()
+            self.ticks.pop()
+        kept = frame(world)
+        kept[23] = 1.0
+        self.frames.append(kept)
+        self.times.append(world.t)
+        self.ticks.append(world.ticks)
+        self.casts[world.version] = world.parts
+        self._bytes += kept.nbytes
+        if self._bytes > _BYTES or len(self.frames) > 2 * _WHOLE:
+            self._thin()
+
+    def at(self, t: float) -> int:
+        """The frame that shows this time, as an index: the last that is not after it."""
+        return max(0, bisect_right(self.times, t + 1e-9) - 1)
+
+    def path(self, name: str, most: int = 1500) -> Frame:
+        """Where a body was and when, (k, 3): t, x, y, in s and m; at most so many places."""
+        rows = {
+            version: row
+            for version, cast in self.casts.items()
+            for row, part in enumerate(cast)
+            if part.name == name
+        }
+        places = [
+            (one[2], *one[HEAD + PER_BODY * rows[int(one[1])] :][:2])
+            for one in self.frames[:: len(self.frames) // most + 1]
+            if int(one[1]) in rows
+        ]
+        return np.array(places, dtype="<f4").reshape(-1, 3)
+
+    def film(self, scene: Scene, kind: str, width: int, told: Callable[[float], bool]) -> bytes:
+        """This run as a film, or the moment of its last frame as a picture.
+
+        Args:
+            kind: "gif", "mp4" or "png".
+            told: is told how far it is, 0 to 1, and answers whether to go on.
+
+        Raises:
+            UsageError: it was stopped, or is too long.
+            MissingCapabilityError: this machine cannot make one.
+        """
+        reel = Film(scene, width)
+        if kind == "mp4":
+            ffmpeg()
+        if kind == "png":
+            return reel.png(self.casts[int(self.frames[-1][1])], shot_of(self.frames[-1]))
+        slow = max(1.0, _LEAST / max(self.times[-1], 1e-9))
+        count = int(self.times[-1] * slow * FILM_FPS) + 1
+        for number in range(count):
+            one = self.frames[self.at(number / FILM_FPS / slow)]
+            reel.take(self.casts[int(one[1])], shot_of(one))
+            if not told((number + 1) / (count + 1)):
+                raise UsageError("The film was stopped.", code="stopped")
+        return reel.made(kind, FILM_FPS)
+
+    def mark(self, t: float) -> bool:
+        """A contact; returns whether it is far enough from the last one to be a mark of its own."""
+        gap = max(0.004, (self.times[-1] if self.times else 0.0) / 2000)
+        if self.marks and t - self.marks[-1] < gap:
+            return False
+        self.marks.insert(bisect_left(self.marks, t), t)
+        return True
+
+    def _thin(self) -> None:
+        """Of the older half every other frame goes."""
+        half = len(self.frames) // 2 // 2 * 2
+        for kept in (self.frames, self.times, self.ticks):
+            del kept[1:half:2]
+        self._bytes = sum(one.nbytes for one in self.frames)
+
+    def until(self, t: float) -> Tape:
+        """A tape of the frames up to this time, which nothing is added to."""
+        kept: Tape = object.__new__(Tape)
+        count = self.at(t) + 1
+        kept.frames, kept.times, kept.ticks = self.frames[:count], self.times[:count], self.ticks[:count]
+        kept.casts, kept.marks = dict(self.casts), []
+        return kept
+
+
+#: Frames of a preview, and the simulated time they show at most, in s.
+_PREVIEW, _LOOP = 60, 3.0
+
+
+def preview(chosen: Chosen) -> tuple[tuple[Part, ...], Frame, Frame]:
+    """A scene for a card: its bodies; x, y and angle of each, (frames, n, 3); its joints, (frames, m, 4)."""
+    world = World(chosen.scene, chosen.settings, receipt=False)
+    length = min(chosen.scene.duration, _LOOP)
+    cast: dict[str, Part] = {}
+    shots: list[tuple[dict[str, int], Snapshot]] = []
+    for number in range(_PREVIEW):
+        world.run_until(number * length / _PREVIEW)
+        cast.update((part.name, part) for part in world.parts)
+        shots.append(({part.name: row for row, part in enumerate(world.parts)}, world.snapshot()))
+        world.drain_events()
+    places = np.full((_PREVIEW, len(cast), 3), np.nan, dtype="<f4")
+    joints = np.zeros((_PREVIEW, len(shots[0][1].joints), 4), dtype="<f4")
+    for number, (rows, shot) in enumerate(shots):
+        here = [i for i, name in enumerate(cast) if name in rows]
+        there = [rows[name] for name in cast if name in rows]
+        places[number, here] = np.stack([shot.x, shot.y, shot.angle], axis=1)[there]
+        joints[number, : len(shot.joints)] = shot.joints
+    return tuple(cast.values()), places, joints

@@ -1,0 +1,241 @@
+"""A scene that is played: its history, any moment of it again, undo and redo."""
+
+from __future__ import annotations
+
+import random
+
+import numpy as np
+import pytest
+
+from course.errors import UsageError
+from course.sandbox.runs import recording
+from course.sandbox.runs.tape import shot_of
+from course.sandbox.scene.loading import choose, scene_ids
+from course.sandbox.views.stage import Stage
+
+
+def make(name: str, **more) -> Stage:
+    return Stage(choose(name, more.pop("settings", None)), **more)
+
+
+def watch(stage: Stage, seconds: float) -> None:
+    for _ in range(round(seconds * 60)):
+        stage.tick(1 / 60, budget=60.0)
+
+
+def meddle(stage: Stage, chance: random.Random) -> None:
+    """Anything that hands can do."""
+    world = stage.world
+    left, bottom, right, top = world.scene.view
+    moving = [part.name for part in world.parts if not part.fixed]
+    x, y = chance.uniform(left, right), chance.uniform(bottom, top)
+    move = chance.randrange(8)
+    try:
+        if move == 0:
+            stage.act("spawn", chance.choice(["circle", "box"]), x, y)
+        elif move == 1:
+            key, high = chance.choice([("gravity", 20.0), ("restitution", 1.0), ("friction", 1.0)])
+            stage.act("set", key, chance.uniform(0, high))
+        elif move == 2:
+            stage.act("set", "walls", float(chance.randrange(2)))
+        elif move == 3 and moving:
+            stage.act("place", chance.choice(moving), x, y)
+        elif move == 4 and len(moving) > 2:
+            stage.act("remove", chance.choice(moving))
+        elif move == 5 and moving:
+            stage.act("copy", chance.choice(moving))
+        elif move == 6 and moving:
+            stage.act("aim", chance.choice(moving), chance.uniform(-2, 2), chance.uniform(-2, 2))
+        elif moving:
+            stage.act("change", chance.choice(moving), "mass", chance.uniform(0.5, 3))
+    except UsageError:
+        pass  # no room for a copy
+
+
+@pytest.mark.parametrize("name", scene_ids())
+def test_going_on_from_any_moment_gives_the_same_states_to_the_last_bit(name: str) -> None:
+    chance, stage = random.Random(name), make(name)
+    seen: dict[int, str] = {}
+    stage.world.on_tick.append((1, lambda world=stage.world: seen.update({world.ticks: world.state_hash()})))
+    watch(stage, 0.2)
+    x, y = (float(c) for c in stage.world.state()[0, :2])
+    stage.act("grab", x, y, 0.3)
+    stage.act("drag", x + 0.2, y + 0.2)
+    watch(stage, 0.2)
+    stage.act("release")
+    meddle(stage, chance)
+    watch(stage, 0.7)
+    middle = stage.world.t - 0.2 * stage.world.speed
+    stage.look(middle)
+    stage.go_on()
+    stage.finish()
+    assert not stage.world.paused
+    assert stage.world.state_hash() == seen[stage.world.ticks]
+    end = max(seen)
+    stage.world.step(end - stage.world.ticks)
+    assert stage.world.state_hash() == seen[end]
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_undo_and_redo_through_random_acts_return_to_the_same_bytes(seed: int) -> None:
+    through(seed, 40)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("name", ["head-on", "newtons-cradle", "dominoes", "robot-boxes"])
+def test_undo_and_redo_through_five_hundred_acts_return_to_the_same_bytes(name: str) -> None:
+    through(7, 500, name)
+
+
+def through(seed: int, acts: int, name: str = "") -> None:
+    chance = random.Random(seed)
+    stage = make(name or chance.choice(["head-on", "newtons-cradle", "box-stack"]))
+    stage.world.paused = True
+    states = []
+    for _ in range(acts):
+        before = len(stage._undos)
+        state = stage.world.state().tobytes(), dict(stage.world.settings)
+        meddle(stage, chance)
+        if len(stage._undos) > before:
+            states.append(state)
+        stage.world.step(chance.randrange(3))
+    states.append((stage.world.state().tobytes(), dict(stage.world.settings)))
+    assert len(states) == len(stage._undos) + 1 > acts / 4
+    for state in reversed(states[:-1]):
+        stage.undo()
+        stage.finish()
+        assert (stage.world.state().tobytes(), stage.world.settings) == state
+    with pytest.raises(UsageError, match="nothing to undo"):
+        stage.undo()
+    for state in states[1:]:
+        stage.redo()
+        stage.finish()
+        assert (stage.world.state().tobytes(), stage.world.settings) == state
+
+
+def test_what_is_played_is_a_recording_that_replays_after_undo_reset_and_going_on(tmp_path) -> None:
+    stage, chance = make("restitution-row"), random.Random(1)
+    for _ in range(3):
+        watch(stage, 0.4)
+        meddle(stage, chance)
+    stage.undo()
+    stage.finish()
+    stage.run(on=True)
+    watch(stage, 0.3)
+    stage.act("reset")
+    watch(stage, 0.5)
+    stage.look(0.25)
+    stage.go_on()
+    stage.finish()
+    watch(stage, 0.5)
+    file = tmp_path / "run.jsonl"
+    file.write_bytes(stage.recording.encode())
+    replayed = recording.replay(recording.read(file))
+    assert (replayed.same, replayed.checked) == (True, 1 + len(stage.recording.hashes))
+    assert stage.world.ticks > 240
+
+
+def test_any_moment_that_is_looked_at_is_the_one_that_was_seen() -> None:
+    stage = make("newtons-cradle")
+    seen = {}
+    for _ in range(60):
+        watch(stage, 1 / 60)
+        seen[stage.world.t] = stage.world.snapshot()
+    t = sorted(seen)[30]
+    stage.look(t)
+    kept = shot_of(stage.frame())
+    assert kept.t == pytest.approx(t, abs=1 / 60)
+    assert np.abs(kept.x - seen[t].x).max() < 0.03
+    assert stage.still
+    stage.play_back(-1)
+    watch(stage, 0.2)
+    assert stage.t == pytest.approx(t - 0.2, abs=0.02)
+    with pytest.raises(UsageError, match="You look at"):
+        stage.act("spawn", "circle", 0, 0)
+    stage.play_back(1)
+    watch(stage, 2.0)
+    assert stage.at is None, "played to its end, the past becomes the present, and time goes on"
+    assert stage.world.t > 1.0
+
+
+def test_the_run_before_is_a_ghost_and_so_is_what_was_left_behind() -> None:
+    stage = make("head-on")
+    watch(stage, 0.5)
+    assert stage.ghost is None
+    stage.act("reset")
+    assert stage.ghost.frame_at(0.25)[2] == pytest.approx(0.25, abs=0.02)
+    watch(stage, 0.2)
+    stage.look(0.1)
+    stage.go_on()
+    stage.finish()
+    assert stage.ghost.tape.times[-1] == pytest.approx(0.2, abs=0.02)
+
+
+def test_going_on_shows_how_far_it_is_and_can_be_stopped() -> None:
+    stage = make("galton-board")
+    watch(stage, 2.0)
+    before = stage.world.state_hash()
+    stage.clock = iter(float(n) for n in range(10**9)).__next__
+    stage.look(1.9)
+    stage.go_on()
+    shares = []
+    for _ in range(20):
+        stage.tick(1 / 60)
+        shares.append(stage.working[1])
+    assert 0 < shares[0] < shares[-1] < 1
+    with pytest.raises(UsageError, match="One moment"):
+        stage.act("reset")
+    stage.stop_work()
+    assert (stage.working, stage.world.state_hash(), stage.undoable()) == (None, before, ("", ""))
+
+
+def test_a_parameter_starts_the_scene_anew_keeps_the_settings_and_can_be_undone() -> None:
+    stage = make("newtons-cradle")
+    stage.act("set", "gravity", 3.0)
+    watch(stage, 0.2)
+    before = stage.world.state_hash()
+    stage.set_parameter("angle", 60.0)
+    assert (stage.world.t, stage.world.settings["gravity"], stage.chosen.parameters["angle"]) == (0, 3.0, 60)
+    assert stage.world.settings["step"] == stage.chosen.scene.step
+    stage.undo()
+    stage.finish()
+    assert (stage.world.state_hash(), stage.chosen.parameters["angle"]) == (before, 30)
+
+
+def test_no_run_ends_and_the_comparison_is_made_on_the_way() -> None:
+    kept = []
+    stage = make("head-on", keep=kept.append)
+    watch(stage, 0.5)
+    stage.guess(2.0)
+    assert stage.world.t == 0, "the run that is compared begins with the guess"
+    watch(stage, 4.0)
+    assert stage.world.t > 3.5
+    assert not stage.world.paused
+    assert [one.guess for one in kept] == [2.0]
+    stage.look(3.0)
+    stage.go_on()
+    stage.finish()
+    assert stage.experiment.stage == "done"
+    assert len(kept) == 1, "the same run is not kept twice"
+
+
+def test_a_step_is_a_picture_the_next_contact_or_the_solvers() -> None:
+    stage = make("newtons-cradle")
+    stage.step()
+    assert stage.world.t == pytest.approx(1 / 60, abs=1e-3)
+    stage.step("solver")
+    assert stage.world.t == pytest.approx(1 / 60 + 0.0005, abs=1e-3)
+    stage.step("contact")
+    assert any(event.kind == "contact" for event in stage.heard)
+    assert stage.world.paused
+
+
+def test_a_long_recording_thins_what_is_old_and_stays_small(monkeypatch) -> None:
+    monkeypatch.setattr("course.sandbox.runs.tape._BYTES", 60_000)
+    stage = make("head-on")
+    watch(stage, 20.0)
+    assert sum(kept.nbytes for kept in stage.tape.frames) < 60_000
+    gaps = np.diff(stage.tape.times)
+    assert gaps[0] > 1.9 * gaps[-1]
+    assert stage.tape.times[0] == 0
+    assert stage.tape.times == sorted(stage.tape.times)

@@ -22,7 +22,7 @@ from course.authoring.exercises.grading import (
     instructors,
     solutions_folder,
 )
-from course.authoring.exercises.proofs import Proof, Prover, audit_page, plan
+from course.authoring.exercises.proofs import Proof, Prover, plan
 from course.authoring.exercises.source import CheckSource, audit_style
 from course.authoring.lessons.lint import (
     LinkChecker,
@@ -193,8 +193,6 @@ def audit(
     read = [_read(catalog, exercise_id, findings, whole) for exercise_id in exercises]
     audit_style(catalog, whole, findings)
     candidates = [candidate for candidate in read if candidate is not None]
-    if candidates and len(candidates) == len(read):
-        _check_page(catalog, findings)
     graded, isolation = _grade(catalog, candidates, findings, on_progress, grade)
     return AuditReport(
         problems=findings.sorted(),
@@ -286,13 +284,6 @@ def _check_scene(path: Path, scene: Scene, findings: Findings) -> None:
         problem = f"theory gives {found.theory:g} {found.unit}, and the run {found.simulation:g}."
         fix = "Correct the formula or the probe, or let `agrees` say how far apart they may be, and why."
         findings.add(path, where, "scene", problem, fix)
-
-
-def _check_page(catalog: Catalog, findings: Findings) -> None:
-    try:
-        audit_page(catalog, findings)
-    except ContentError as error:  # in another exercise than the one that is checked
-        findings.add_error(error)
 
 
 def _read(catalog: Catalog, exercise_id: str, findings: Findings, whole: list[Exercise]) -> _Candidate | None:

@@ -4,14 +4,12 @@ Every submission is graded with all checks, as in a grading run. A wrong verdict
 file, and where possible the line, that an author would open first.
 """
 
-import ast
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from course.authoring.exercises.diagnosis import fate_of, read_confusion, tally
 from course.authoring.exercises.files import public_numbers
 from course.authoring.exercises.grading import accepted_files, compose, mutant_files, solution_path
 from course.authoring.exercises.mutants import judge, mutant_path
@@ -22,13 +20,11 @@ from course.catalog.models import Exercise, Hints, Mutant, fields_of
 from course.catalog.reading import Document, read_document, read_text
 from course.errors import ContentError
 from course.handed_in.attempts import numbers_of
-from course.printable import counted
 from course.progress.history import NO_MISTAKE
-from course.progress.workspace import write_atomically
 from course.scoring.failures import ON_THE_MODEL, OURS
 from course.scoring.graders import LEFT_OUT
 from course.scoring.judging.outcomes import NOT_JUDGED
-from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility, in_points
+from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility
 
 _INTEGER = re.compile(r"(?<![\w.])-?\d+(?![\w.]*\w)")
 #: Of an exercise of n functions: n + 1 unusual solutions that must pass, and this many wrong ones times n.
@@ -398,126 +394,3 @@ def _numbers(value: Any) -> Iterator[float]:
     elif isinstance(value, list | tuple):
         for item in value:
             yield from _numbers(item)
-
-
-# ---
-# The page of what a course's graders catch: every wrong solution with the check that finds it.
-#
-# The page repeats what ``mutants.toml`` declares; the audit proves it, by grading them all.
-
-
-_PAGE = "docs/graders.md"
-
-_HEAD = """\
-# What the graders catch
-
-Written by `course author build`; `course author check` proves every line of it:
-each accepted solution gets full marks, and each wrong one loses points of its own task only, to the check
-named, with the diagnosis named.
-"""
-
-
-def kill_table(catalog: Catalog) -> str:
-    """The page, as Markdown."""
-    return "\n".join([_HEAD, *(_section(catalog, exercise) for exercise in catalog.exercises())])
-
-
-def audit_page(catalog: Catalog, findings: Findings) -> None:
-    """Report a page that is out of date."""
-    page = _page(catalog)
-    if not page.is_file() or (text := page.read_text(encoding="utf-8")) == kill_table(catalog):
-        return
-    exercises = catalog.exercises()
-    stale = next((one for one in exercises if _section(catalog, one) not in text), exercises[0])
-    problem = (
-        f"it is not of the exercises, variants and mutants there are now, those of {stale.id} above all."
-    )
-    findings.add(page, None, "stale", problem, f"Run `course author build {stale.id}`.")
-
-
-def write_page(catalog: Catalog) -> Path | None:
-    """Write the page, where the course has one; None if it is up to date."""
-    page = _page(catalog)
-    text = kill_table(catalog)
-    if not page.is_file() or page.read_text(encoding="utf-8") == text:
-        return None
-    write_atomically(page, text.encode())
-    return page
-
-
-def _page(catalog: Catalog) -> Path:
-    return catalog.content.root / _PAGE
-
-
-def _section(catalog: Catalog, exercise: Exercise) -> str:
-    mutants = catalog.mutants(exercise)
-    accepted = accepted_files(catalog, exercise)
-    lines = [
-        f"## {exercise.title} (`{exercise.id}`)",
-        "",
-        f"{in_points(exercise.max_points)} in {counted(len(exercise.task), 'task')}, "
-        f"{exercise.hidden_points:g} of them on {counted(exercise.hidden_checks, 'hidden check')}. "
-        f"{counted(len(accepted), 'unusual solution')} {'is' if len(accepted) == 1 else 'are'} accepted, "
-        f"{counted(len(mutants), 'wrong one')} {'is' if len(mutants) == 1 else 'are'} caught.",
-        "",
-        "| What its author believes | Task | Caught by | Diagnosis | File |",
-        "|---|---|---|---|---|",
-    ]
-    for mutant in mutants:
-        cells = (
-            _cell(mutant.misconception),
-            f"`{mutant.task}`",
-            f"`{mutant.check}`",
-            f"`{mutant.diagnosis}`",
-            f"`{mutant.file}`",
-        )
-        lines.append(f"| {' | '.join(cells)} |")
-    lines += ["", "Accepted although unusual:", ""]
-    lines += [f"- `{path.name}`: {_cell(_about(path))}" for path in accepted]
-    lines += _confusion(catalog, exercise)
-    return "\n".join([*lines, ""])
-
-
-def _confusion(catalog: Catalog, exercise: Exercise) -> list[str]:
-    """The diagnoses of known wrong programs, by task, and each wrong diagnosis."""
-    table = read_confusion(catalog, exercise)
-    if table is None:
-        return []
-    lines = [
-        "",
-        "The diagnoses of known wrong programs, by `course author build --confusion`: of those above and",
-        "those in `hypotheses.py`, all that have one mistake, and as many with two as make 200 a task.",
-        "*Named*: a mistake that the program has.",
-        "*General*: what is broken, but not why. *Otherwise*: a mistake that it does not have.",
-        "",
-        "| Task | Mistakes | Where | Named | General | Otherwise | No check fails |",
-        "|---|---|---|---|---|---|---|",
-    ]
-    fate = fate_of(exercise)
-    wheres = {"public": "at home", "full": "in a run"}
-    for task in exercise.task:
-        for number in (1, 2):
-            for scope, where in wheres.items():
-                rows = tuple(r for r in table.rows[scope] if r.task == task.id and len(r.codes) == number)
-                if rows:
-                    t = tally(fate, rows)
-                    cells = (f"`{task.id}`", number, where, t.named, t.general, t.otherwise, t.survived)
-                    lines.append(f"| {' | '.join(map(str, cells))} |")
-    off = [
-        f"- `{row.task}`: {', '.join(f'`{code}`' for code in row.codes)} gets `{row.said}` ({where})"
-        for scope, where in wheres.items()
-        for row in table.rows[scope]
-        if fate(row) == "otherwise"
-    ]
-    return [*lines, "", *(["Diagnosed otherwise:", "", *off] if off else [])]
-
-
-def _about(path: Path) -> str:
-    """The first sentence of a variant's docstring or leading comment."""
-    text = path.read_text(encoding="utf-8")
-    about = ast.get_docstring(ast.parse(text)) or text.partition("\n")[0].lstrip("# ")
-    return about.partition("\n\n")[0]
-
-
-def _cell(text: str) -> str:
-    return " ".join(text.split()).replace("|", "\\|")

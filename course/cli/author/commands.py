@@ -3,6 +3,7 @@
 import hashlib
 import os
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -16,7 +17,6 @@ from course.authoring.exercises import diagnosis
 from course.authoring.exercises.files import find_blanks, write_points, write_times
 from course.authoring.exercises.grading import instructors, write_pack
 from course.authoring.exercises.mutants import MutantOutcome, run_mutants
-from course.authoring.exercises.proofs import write_page
 from course.authoring.report import AuditProblem, AuditReport, Findings
 from course.catalog.load import Catalog
 from course.catalog.locate import ENVIRONMENT_VARIABLE
@@ -451,9 +451,8 @@ def build(
     The points and counts in `exercise.toml`, which come from the checks' markers; `exercises/times.json`, how
     long slow public checks take, which decides when a loop counts as hung; `hypotheses.json`, the answers of
     every known wrong program to the exercise's questions, as fingerprints, so that a diagnosis works at home,
-    where there are no solutions; and docs/graders.md. `course author check` refuses files that are out of
-    date. With --confusion each wrong program is graded, at home and as in a grading run, and its diagnoses
-    are kept beside the solution for docs/graders.md.
+    where there are no solutions. `course author check` refuses files that are out of date. With --confusion
+    each wrong program is graded, at home and as in a grading run; its diagnoses are kept beside the solution.
     """
 
     console, catalog = current(), load_catalog()
@@ -476,8 +475,9 @@ def build(
                 with meter(console) as on_progress:
                     table = diagnosis.confusion_of(catalog, exercise, on_progress=on_progress)
                 written.append(shown(diagnosis.write_confusion(catalog, exercise, table), catalog))
-    if page := write_page(load_catalog()):  # with the points that were just written
-        written.append(shown(page, catalog))
+                told = diagnosis.tally(diagnosis.fate_of(exercise), table.rows["full"])
+                said = ", ".join(f"{name} {count}" for name, count in asdict(told).items())
+                console.line(f"{exercise.id}, in a grading run: {said}.")
     for file in written:
         console.line(f"Wrote {file}")
     if not written:

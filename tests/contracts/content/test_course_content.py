@@ -152,8 +152,3 @@ def test_two_changed_terms_that_make_one_known_mistake_are_that_mistake(catalog:
     ):
         program = next(item for item in hypotheses_of(catalog, exercise) if item[:2] == ("rk4_step", codes))
         assert as_one(exercise, program)[:2] == ("rk4_step", found)
-
-
-def test_there_is_a_page_of_what_graders_catch(catalog: Catalog) -> None:
-    """The audit says whether it is up to date, and nothing of a course without one."""
-    assert (catalog.content.root / "docs" / "graders.md").is_file()

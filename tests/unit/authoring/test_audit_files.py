@@ -12,7 +12,6 @@ import msgspec
 import pytest
 
 from course.authoring.audit import audit
-from course.authoring.exercises.proofs import write_page
 from course.authoring.report import AuditProblem, AuditReport
 from course.catalog.load import Catalog
 from course.errors import ContentError, MissingCapabilityError, NotFoundError
@@ -272,19 +271,6 @@ def test_one_diagnosis_for_every_mistake_is_named(mini: Path, run: Callable[...,
     path = mini / MUTANTS
     path.write_text(re.sub(r"diagnosis = .*", 'diagnosis = "WRONG"', path.read_text()))
     assert "tell no mistakes apart" in " ".join(p.message for p in run().problems if p.file == MUTANTS)
-
-
-def test_a_page_of_mutants_that_is_older_than_they_are_is_named_and_written(
-    mini: Path, run: Callable[..., AuditReport], only_problem: Callable[[], AuditProblem]
-) -> None:
-    page = mini / "docs" / "graders.md"
-    page.parent.mkdir()
-    page.write_text("# An older page\n")
-    assert (only_problem().file, only_problem().code) == ("docs/graders.md", "stale")
-    assert run("twice-as-much").ok
-    assert write_page(Catalog()) == page
-    assert run().ok
-    assert write_page(Catalog()) is None
 
 
 def test_what_ruff_says_is_said_by_the_rules_of_the_course(

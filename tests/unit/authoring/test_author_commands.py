@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 
-from course.authoring.exercises.proofs import kill_table
 from course.authoring.scaffold import new_exercise
 from course.catalog.load import Catalog
 from course.cli.frame.app import run
@@ -157,21 +156,6 @@ def test_nothing_is_left_of_content_that_could_not_be_written(
     assert {path for path in mini.rglob("*") if path.is_file()} == before
 
 
-def test_the_table_of_what_graders_catch_names_the_exercise_that_changed(
-    mini: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    page = mini / "docs" / "graders.md"
-    page.parent.mkdir()
-    page.write_text("")
-    assert run(["author", "build", "halving"]) == 0
-    capsys.readouterr()
-    entries = mini / "solutions" / "halving" / "mutants.toml"
-    entries.write_text(entries.read_text().replace("A result should be a whole number.", "Whole is right."))
-    _, body = answer(capsys, "author", "check", "halving")
-    (problem,) = body["problems"]
-    assert (problem["file"], problem["help"]) == ("docs/graders.md", "Run `course author build halving`.")
-
-
 def test_a_broken_syllabus_is_reported_and_not_a_crash(
     mini: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -297,10 +281,3 @@ def test_every_author_command_has_a_help_page_with_an_example(capsys: pytest.Cap
     ):
         assert run(["author", *line, "--help", "--plain"]) == 0
         assert "Example: course author" in capsys.readouterr().out
-
-
-def test_the_table_of_what_is_caught_has_a_heading_for_each_exercise(mini: Path) -> None:
-    text = kill_table(Catalog())
-    assert "| `halve` |" in text
-    assert "`SQUARES_INSTEAD`" in text
-    assert text.count("\n## ") == 2

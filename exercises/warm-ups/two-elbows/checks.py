@@ -13,6 +13,7 @@ def test_both_places(submission):
         ((10.0, 3.0, 5.0), [6.0, 14.0]),
         ((-2.0, 1.5, 2.5), [-4.0, 0.0]),
         ((0.7, -0.3, 0.5), [0.3, 1.1]),
+        ((2.0, 1.0, 3.0), [-0.828427124746, 4.82842712475]),
         ((1.25, 2.0, 2.0), [1.25, 1.25]),
         ((0.5, -0.25, 0.25), [0.5, 0.5]),
     ]
@@ -22,14 +23,14 @@ def test_both_places(submission):
             found is not None,
             "You found no place, though the rod reaches the point.",
             input=dict(zip(("x", "y", "length"), args, strict=True)),
-            help="A rod that is as long as the point is far from the rail, or longer, reaches it.",
+            help="A rod that is as long as the point is far from the rail reaches it. Return both places.",
         )
         kit.expect_array(
             found,
             expected,
             rel=1e-9,
             abs=1e-9,
-            source="closed form; absolute 1e-9 m where it is zero",
+            source="closed form, written down to twelve digits; absolute 1e-9 m where it is zero",
             quantity="places of the carriage",
             units="m",
             input=dict(zip(("x", "y", "length"), args, strict=True)),
@@ -53,7 +54,7 @@ def test_out_of_reach(submission):
             (found is not None) == reached,
             "You found no place, though the rod reaches the point."
             if reached
-            else "You found a place, though the rod is too short to reach the point.",
+            else "You do not give None, though the rod is too short to reach the point.",
             input=dict(zip(("x", "y", "length"), args, strict=True)),
             help="How far is the point from the rail, above or below? The rod must be as long as that.",
         )

@@ -4,5 +4,5 @@
 def way_out(x, y, width, height):
     along, across = width - abs(x), height - abs(y)
     if along < across:
-        return math.copysign(along, x), 0.0
-    return 0.0, math.copysign(across, y)
+        return (along if x > 0 else -along), 0.0
+    return 0.0, (across if y > 0 else -across)

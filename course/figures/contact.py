@@ -232,10 +232,10 @@ def corners() -> Figure:
     half = 0.5 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
     slant = np.array([1.0, 1.0]) / math.sqrt(2)
     across = np.array([1.0, -1.0]) / math.sqrt(2)
-    turned = half @ np.array([slant, -across]) + 0.95
+    turned = half @ np.array([slant, -across]) + 1.05
     for shape, color, name, place in (
         (half, "blue", "a", (-0.05, -0.1)),
-        (turned, "vermillion", "b", (0.9, 0.9)),
+        (turned, "vermillion", "b", (1.0, 1.0)),
     ):
         left.fill(*shape.T, facecolor="none", edgecolor=PALETTE[color], linewidth=1.6)
         left.text(*place, name, fontsize=9.5, fontweight="bold")
@@ -250,8 +250,8 @@ def corners() -> Figure:
             solid_capstyle="butt",
         )
     gap = ((half @ slant).max() + (turned @ slant).min()) / 2 * slant + 1.25 * across
-    note(left, "a gap between\nthe shadows", (float(gap[0]), float(gap[1])), (1.2, -1.3), PALETTE["black"])
-    left.set(xlim=(-0.9, 2.9), ylim=(-1.7, 1.8), aspect="equal")
+    note(left, "a gap between\nthe shadows", (float(gap[0]), float(gap[1])), (1.35, -1.45), PALETTE["black"])
+    left.set(xlim=(-0.9, 3.0), ylim=(-1.7, 1.9), xticks=range(3), yticks=range(-1, 2), aspect="equal")
     left.set_title("Apart in one direction")
     for tile, x in (("tile 1", -5.0), ("tile 2", 0.0)):
         right.fill([x, x + 5, x + 5, x], [-5, -5, 0, 0], facecolor="#E2E2E2", edgecolor=PALETTE["black"])
@@ -265,7 +265,7 @@ def corners() -> Figure:
         arrow = {"arrowstyle": "->", "color": PALETTE["vermillion"], "linewidth": 2.0}
         right.annotate("", xy=end, xytext=start, arrowprops=arrow)
         right.text(*place, text, color="#B34F00", fontsize=8.5, fontweight="bold")
-    right.set(xlim=(-5.2, 5.2), ylim=(-5.0, 4.5))
+    right.set(xlim=(-5.2, 5.2), ylim=(-5.0, 4.5), xticks=range(-4, 5, 2))
     right.set_title("Over a seam")
     for axes, unit in ((left, "m"), (right, "mm")):
         axes.set_xlabel(f"x ({unit})")

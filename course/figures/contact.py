@@ -220,6 +220,55 @@ def cone() -> Figure:
     return figure
 
 
+def corners() -> Figure:
+    """Two boxes whose shadows are apart in one direction; a box that the second of two tiles pushes back."""
+    figure, (left, right) = new_figure(3.2, 1, 2)
+    figure.subplots_adjust(wspace=0.28)
+    half = 0.5 * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+    slant = np.array([1.0, 1.0]) / math.sqrt(2)
+    across = np.array([1.0, -1.0]) / math.sqrt(2)
+    turned = half @ np.array([slant, -across]) + 1.05
+    for shape, color, name, place in (
+        (half, "blue", "a", (-0.05, -0.1)),
+        (turned, "vermillion", "b", (1.0, 1.0)),
+    ):
+        left.fill(*shape.T, facecolor="none", edgecolor=PALETTE[color], linewidth=1.6)
+        left.text(*place, name, fontsize=9.5, fontweight="bold")
+        low, high = shape.min(axis=0), shape.max(axis=0)
+        upright = np.array([low, (high[0], low[1]), high, (low[0], high[1])])
+        left.fill(*upright.T, facecolor="none", edgecolor=PALETTE["grey"], linewidth=0.8, linestyle=":")
+        shadow = np.array([(shape @ slant).min(), (shape @ slant).max()])
+        left.plot(
+            *(shadow[:, None] * slant + 1.25 * across).T,
+            color=PALETTE[color],
+            linewidth=4.0,
+            solid_capstyle="butt",
+        )
+    gap = ((half @ slant).max() + (turned @ slant).min()) / 2 * slant + 1.25 * across
+    note(left, "a gap between\nthe shadows", (float(gap[0]), float(gap[1])), (1.35, -1.45), PALETTE["black"])
+    left.set(xlim=(-0.9, 3.0), ylim=(-1.7, 1.9), xticks=range(3), yticks=range(-1, 2), aspect="equal")
+    left.set_title("Apart in one direction")
+    for tile, x in (("tile 1", -5.0), ("tile 2", 0.0)):
+        right.fill([x, x + 5, x + 5, x], [-5, -5, 0, 0], facecolor="#E2E2E2", edgecolor=PALETTE["black"])
+        right.text(x + 2.5, -4.4, tile, fontsize=8.5, ha="center")
+    right.fill([-9, 1, 1, -9], [-2, -2, 9, 9], facecolor="none", edgecolor=PALETTE["blue"], linewidth=1.6)
+    right.text(-4.8, 2.9, "box, moving right", color=PALETTE["blue"], fontsize=8.5, fontweight="bold")
+    for start, end, text, place in (
+        ((-2.5, -2.0), (-2.5, 0.9), "up 2 mm", (-2.2, 0.5)),
+        ((1.0, -1.0), (-1.4, -1.0), "back 1 mm", (1.2, -1.2)),
+    ):
+        arrow = {"arrowstyle": "->", "color": PALETTE["vermillion"], "linewidth": 2.0}
+        right.annotate("", xy=end, xytext=start, arrowprops=arrow)
+        right.text(*place, text, color="#B34F00", fontsize=8.5, fontweight="bold")
+    right.set(xlim=(-5.2, 5.2), ylim=(-5.0, 4.5), xticks=range(-4, 5, 2))
+    right.set_title("Over a seam")
+    for axes, unit in ((left, "m"), (right, "mm")):
+        axes.set_xlabel(f"x ({unit})")
+        axes.set_ylabel(f"y ({unit})")
+    title(figure, "One direction shows that boxes are apart; a seam sends them back")
+    return figure
+
+
 # ---
 # Figure of the lesson on how an engine works: a free body that turns over, and three ways to follow it.
 

@@ -235,6 +235,58 @@ def torques() -> Figure:
     return figure
 
 
+def felt(bend: ArrayLike) -> Array:
+    """Mass that a wall straight ahead of the arm feels, kg, at bends of the elbow (rad), shape (...)."""
+    bend = np.asarray(bend, dtype=float)
+    q = np.stack([-bend / 2, bend], axis=-1)
+    row = _ARM.jacobian(q)[..., :1, :]
+    turned = np.linalg.solve(_ARM.mass_matrix(q), np.swapaxes(row, -1, -2))
+    return np.asarray(1.0 / (row @ turned)[..., 0, 0])
+
+
+def wall() -> Figure:
+    """The arm before a wall, bent and nearly straight, and the mass that the wall feels."""
+    figure, (left, right) = new_figure(3.4, 1, 2)
+    figure.subplots_adjust(wspace=0.28)
+    for degrees, color, line, lift in (
+        (90, "blue", "-", 1.1),
+        (45, "green", "--", 0.0),
+        (10, "vermillion", "-.", -0.9),
+    ):
+        bend = math.radians(degrees)
+        pose = np.array([-bend / 2, bend])
+        back = 2.0 - float(_ARM.hand(pose)[0])
+        elbow, hand = _ARM.elbow(pose), _ARM.hand(pose)
+        left.plot(
+            np.array([0, elbow[0], hand[0]]) + back,
+            np.array([0, elbow[1], hand[1]]) + lift,
+            color=PALETTE[color],
+            linestyle=line,
+            marker="o",
+        )
+        left.plot(back, lift, color=PALETTE["black"], marker="s", markersize=7)
+        left.text(back, lift + 0.15, f"bent by {degrees}°", fontsize=8.5)
+    left.axvspan(2.0, 2.2, color="#C9C9C9")
+    left.text(1.97, 1.7, "wall", fontsize=8.5, ha="right")
+    left.set(xlim=(-0.4, 2.2), ylim=(-1.4, 2.0))
+    left.set_title("The arm meets a wall")
+    left.set_xlabel("x (m)")
+    left.set_ylabel("y (m)")
+    bends = np.radians(np.linspace(1.0, 150.0, 400))
+    right.plot(np.degrees(bends), felt(bends), color=PALETTE["blue"])
+    right.axhline(2.0, color=PALETTE["black"], linewidth=0.9, linestyle=":")
+    right.text(147, 2.35, "the arm weighs 2 kg", fontsize=8.5, ha="right")
+    ten = float(felt(math.radians(10.0)))
+    note(right, "10 kg\nat 10°", (10.0, ten), (30, 30), PALETTE["black"])
+    right.set(yscale="log", xlim=(0, 150), ylim=(0.3, 1500), xticks=range(0, 151, 30))
+    right.set_yticks([1, 10, 100, 1000], ["1", "10", "100", "1000"])
+    right.set_title("What the wall feels")
+    right.set_xlabel("bend of the elbow (degrees)")
+    right.set_ylabel("mass felt (kg)")
+    title(figure, "A bent arm gives way, a straight one hits with all it is bolted to")
+    return figure
+
+
 # ---
 # Figure of the summary: the same six mistakes in two questions about one robot.
 

@@ -1,0 +1,30 @@
+"""Checks of `push-a-wall`."""
+
+import pytest
+
+from course.scoring import kit
+
+
+@pytest.mark.task("felt_mass")
+@pytest.mark.points(1)
+def test_masses(submission):
+    """The rod along the rail, upright, and between"""
+    cases = [
+        ((3.0, 1.0, 2.0, 0.0), 4.0),
+        ((3.0, 1.0, 2.0, 1.5707963267948966), 1.0),
+        ((3.0, 1.0, 2.0, 0.5), 2.58283010797),
+        ((3.0, 1.0, 0.4, 0.5), 2.58283010797),
+        ((0.5, 2.0, 1.5, -1.0), 2.31125891244),
+    ]
+    for args, expected in cases:
+        kit.expect_close(
+            submission.call("felt_mass", *args),
+            expected,
+            rel=1e-9,
+            source="closed form, written down to twelve digits: only rounding is allowed",
+            quantity="mass felt",
+            units="kg",
+            input=dict(zip(("carriage", "tip", "length", "angle"), args, strict=True)),
+            message="That is not the mass that the wall feels.",
+            help="Work from the right: x with M x = Jᵀ, then J x, then one over it. The length must cancel.",
+        )

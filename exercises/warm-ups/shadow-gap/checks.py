@@ -1,0 +1,62 @@
+"""Checks of `shadow-gap`."""
+
+import pytest
+
+from course.scoring import kit
+
+SQUARE = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
+FAR = [(2.5, -0.5), (3.5, -0.5), (3.5, 0.5), (2.5, 0.5)]
+TURNED = [(0.95, 0.25), (1.65, 0.95), (0.95, 1.65), (0.25, 0.95)]
+WEDGE = [(-2.0, 0.25), (0.25, 0.0), (-0.5, 1.0)]
+LONG = [(-2.0, -1.0), (1.25, -1.0), (1.25, 1.0), (-2.0, 1.0)]
+
+
+def gap(submission, cases):
+    for args, expected in cases:
+        kit.expect_close(
+            submission.call("shadow_gap", *args),
+            expected,
+            rel=1e-9,
+            abs=1e-12,
+            source="closed form, written down to twelve digits: only rounding is allowed",
+            quantity="gap",
+            units="m",
+            input=dict(zip(("a", "b", "direction"), args, strict=True)),
+            message="The gap of the shadows is wrong.",
+            help="Mark on the line where each shadow begins and ends. Which ends face each other?",
+        )
+
+
+@pytest.mark.task("shadow_gap")
+@pytest.mark.points(1)
+def test_apart(submission):
+    """Shadows that are apart, in either order and for directions of any length"""
+    gap(
+        submission,
+        [
+            ((SQUARE, FAR, (1.0, 0.0)), 2.0),
+            ((FAR, SQUARE, (1.0, 0.0)), 2.0),
+            ((SQUARE, FAR, (5.0, 0.0)), 2.0),
+            ((SQUARE, FAR, (-0.5, 0.0)), 2.0),
+            ((SQUARE, TURNED, (1.0, 1.0)), 0.141421356237),
+        ],
+    )
+
+
+@pytest.mark.task("shadow_gap")
+@pytest.mark.points(1)
+def test_overlapping(submission):
+    """Shadows that overlap, cover each other or just touch"""
+    gap(
+        submission,
+        [
+            ((SQUARE, FAR, (0.0, 1.0)), -1.0),
+            ((SQUARE, TURNED, (1.0, 0.0)), -0.25),
+            ((TURNED, SQUARE, (2.0, 0.0)), -0.25),
+            ((SQUARE, WEDGE, (0.0, 3.0)), -0.5),
+            ((SQUARE, WEDGE, (1.0, 0.0)), -0.75),
+            ((FAR, SQUARE, (3.0, -4.0)), 0.4),
+            ((SQUARE, LONG, (1.0, 0.0)), -1.75),
+            ((SQUARE, [(0.5, 0.0), (1.5, 0.0), (1.0, 1.0)], (1.0, 0.0)), 0.0),
+        ],
+    )

@@ -1,0 +1,60 @@
+"""Checks of `two-elbows`."""
+
+import pytest
+
+from course.scoring import kit
+
+
+@pytest.mark.task("carriages")
+@pytest.mark.points(1)
+def test_both_places(submission):
+    """Points above and below the rail, and one that is just in reach"""
+    cases = [
+        ((10.0, 3.0, 5.0), [6.0, 14.0]),
+        ((-2.0, 1.5, 2.5), [-4.0, 0.0]),
+        ((0.7, -0.3, 0.5), [0.3, 1.1]),
+        ((2.0, 1.0, 3.0), [-0.828427124746, 4.82842712475]),
+        ((1.25, 2.0, 2.0), [1.25, 1.25]),
+        ((0.5, -0.25, 0.25), [0.5, 0.5]),
+    ]
+    for args, expected in cases:
+        found = submission.call("carriages", *args)
+        kit.expect_true(
+            found is not None,
+            "You found no place, though the rod reaches the point.",
+            input=dict(zip(("x", "y", "length"), args, strict=True)),
+            help="A rod that is as long as the point is far from the rail reaches it. Return both places.",
+        )
+        kit.expect_array(
+            found,
+            expected,
+            rel=1e-9,
+            abs=1e-9,
+            source="closed form, written down to twelve digits; absolute 1e-9 m where it is zero",
+            quantity="places of the carriage",
+            units="m",
+            input=dict(zip(("x", "y", "length"), args, strict=True)),
+            message="The carriage stands in the wrong place.",
+            help="Check it backwards: from each of your places, is the point one rod length away?",
+        )
+
+
+@pytest.mark.task("carriages")
+@pytest.mark.points(1)
+def test_out_of_reach(submission):
+    """Points too far above and too far below the rail, and one that is within reach"""
+    for args, reached in (
+        ((0.0, 2.5, 2.0), False),
+        ((4.0, -0.75, 0.5), False),
+        ((1.0, 1.0, 0.9999), False),
+        ((1.0, 1.0, 1.25), True),
+    ):
+        found = submission.call("carriages", *args)
+        kit.expect_true(
+            (found is not None) == reached,
+            "You found no place, though the rod reaches the point."
+            if reached
+            else "You do not give None, though the rod is too short to reach the point.",
+            input=dict(zip(("x", "y", "length"), args, strict=True)),
+            help="How far is the point from the rail, above or below? The rod must be as long as that.",
+        )

@@ -1,0 +1,11 @@
+"""What is not ahead is behind."""
+
+
+def shadow_gap(a, b, direction):
+    dx, dy = direction
+    size = math.hypot(dx, dy)
+    on_a = [(x * dx + y * dy) / size for x, y in a]
+    on_b = [(x * dx + y * dy) / size for x, y in b]
+    if max(on_a) < min(on_b):
+        return min(on_b) - max(on_a)
+    return min(on_a) - max(on_b)

@@ -1,0 +1,10 @@
+"""One overlap is enough."""
+
+
+def way_out(x, y, width, height):
+    along, across = width - abs(x), height - abs(y)
+    if along <= 0 and across <= 0:
+        return 0.0, 0.0
+    if along < across:
+        return (along if x > 0 else -along), 0.0
+    return 0.0, (across if y > 0 else -across)

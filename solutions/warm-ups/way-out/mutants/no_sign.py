@@ -1,0 +1,10 @@
+"""A depth has no sign."""
+
+
+def way_out(x, y, width, height):
+    along, across = width - abs(x), height - abs(y)
+    if along <= 0 or across <= 0:
+        return 0.0, 0.0
+    if along < across:
+        return along, 0.0
+    return 0.0, across

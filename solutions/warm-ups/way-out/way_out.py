@@ -1,0 +1,13 @@
+"""Which way out: the model solution."""
+
+import math
+
+
+def way_out(x, y, width, height):
+    """Shortest move of the second of two equal boxes that ends their overlap."""
+    along, across = width - abs(x), height - abs(y)
+    if along <= 0 or across <= 0:
+        return 0.0, 0.0
+    if along < across:
+        return math.copysign(along, x), 0.0
+    return 0.0, math.copysign(across, y)

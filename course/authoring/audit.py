@@ -156,7 +156,6 @@ def audit(
         on_progress: called at the start and after each submission with the number graded and the total.
         grade: gives the verdicts on submissions. It may leave some out: they are not counted, and fields
             that hints name are not looked for.
-        refused: tries the commands of lessons; None to leave that out.
         is_command: whether ``course`` followed by these words is a command, for docs/coverage.md; None to
             leave that page out.
 

@@ -84,7 +84,6 @@ class Coverage(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def parts(self) -> tuple[Part, ...]:
-        """All parts in order."""
         return tuple(part for section in self.section for part in section.parts)
 
 

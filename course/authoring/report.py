@@ -25,8 +25,6 @@ class AuditProblem:
         file: the file at fault, relative to the course's root where it lies below it.
         line: 1-based, or None where no single line is to blame.
         code: a stable name of the rule that is broken.
-        message: what is wrong.
-        fix: what to do about it.
     """
 
     file: str
@@ -51,7 +49,6 @@ class AuditReport:
         checks: number of checks, public and hidden.
         graded: number of submissions that were graded to find out.
         isolation: protection level they ran at; empty if none ran.
-        seconds: how long it took.
     """
 
     problems: tuple[AuditProblem, ...]
@@ -66,7 +63,6 @@ class AuditReport:
 
     @property
     def ok(self) -> bool:
-        """True if nothing is wrong."""
         return not self.problems
 
 

@@ -24,7 +24,6 @@ class Span:
 
     Attributes:
         style: "emphasis", "strong" or "code"; code holds exactly one Text.
-        children: what is set apart.
     """
 
     style: str
@@ -52,7 +51,6 @@ class Link:
 
     Attributes:
         target: ``https://…``, ``lesson:ID`` or ``exercise:ID`` with or without ``#heading``, or ``#heading``.
-        children: the words it hangs on.
     """
 
     target: str
@@ -174,7 +172,6 @@ class Figure:
     """A figure that ``course.figures`` draws.
 
     Attributes:
-        id: its name in the registry.
         alt: what the figure shows, for a reader who cannot see it.
         caption: what it shows, the finding first.
     """

@@ -11,6 +11,7 @@ import math
 import re
 import sys
 from collections.abc import Iterable
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
@@ -317,25 +318,19 @@ class Catalog:
 
     def __init__(self, content: Content | None = None) -> None:
         self.content = content or current_content()
-        self._syllabus: Syllabus | None = None
-        self._exercise_ids: tuple[str, ...] | None = None
-        self._warm_up_ids: tuple[str, ...] | None = None
-        self._lessons: dict[str, Lesson] = {}
-        self._exercises: dict[str, Exercise] = {}
+        self._lesson = cache(self.read_lesson)
+        self._exercise = cache(self.read_exercise)
         self._hints: dict[str, Hints] = {}
         self._mutants: dict[str, tuple[Mutant, ...]] = {}
-        self._times: Times | None = None
 
     # -- the course ------------------------------------------------------------------------------
 
-    @property
+    @cached_property
     def syllabus(self) -> Syllabus:
         """The course's own file."""
-        if self._syllabus is None:
-            document = read_document(self.content.syllabus, Syllabus)
-            check_syllabus(document)
-            self._syllabus = document.value
-        return self._syllabus
+        document = read_document(self.content.syllabus, Syllabus)
+        check_syllabus(document)
+        return document.value
 
     @property
     def course_id(self) -> str:
@@ -380,11 +375,6 @@ class Catalog:
             return self._lesson(ids[int(words) - 1])
         return self.lesson(words)
 
-    def _lesson(self, lesson_id: str) -> Lesson:
-        if lesson_id not in self._lessons:
-            self._lessons[lesson_id] = self.read_lesson(lesson_id)
-        return self._lessons[lesson_id]
-
     def read_lesson(self, lesson_id: str) -> Lesson:
         """The head of ``<id>.md``, whether or not the syllabus lists it; not kept."""
         path = self.content.lessons / f"{lesson_id}.md"
@@ -397,24 +387,28 @@ class Catalog:
 
     def exercise_ids(self) -> tuple[str, ...]:
         """Sorted by name; lists a folder and opens no file."""
-        if self._exercise_ids is None:
-            if not self.content.exercises.is_dir():
-                raise ContentError(
-                    self.content.exercises, None, "the folder is missing.", help="Install the course again."
-                )
-            self._exercise_ids = _declared_in(self.content.exercises)
         return self._exercise_ids
+
+    @cached_property
+    def _exercise_ids(self) -> tuple[str, ...]:
+        if not self.content.exercises.is_dir():
+            raise ContentError(
+                self.content.exercises, None, "the folder is missing.", help="Install the course again."
+            )
+        return _declared_in(self.content.exercises)
 
     def warm_up_ids(self) -> tuple[str, ...]:
         """Sorted by name; lists a folder and opens no file."""
-        if self._warm_up_ids is None:
-            folder = self.content.exercises / WARM_UPS
-            self._warm_up_ids = _declared_in(folder)
-            twice = sorted({*self._warm_up_ids} & {*self.exercise_ids()})
-            if twice:
-                problem, fix = "an exercise has this id, too.", "Rename one of the folders."
-                raise ContentError(folder / twice[0], None, problem, help=fix)
         return self._warm_up_ids
+
+    @cached_property
+    def _warm_up_ids(self) -> tuple[str, ...]:
+        folder = self.content.exercises / WARM_UPS
+        found = _declared_in(folder)
+        if twice := sorted({*found} & {*self.exercise_ids()}):
+            problem, fix = "an exercise has this id, too.", "Rename one of the folders."
+            raise ContentError(folder / twice[0], None, problem, help=fix)
+        return found
 
     def exercises(self) -> tuple[Exercise, ...]:
         """All exercises, in the order they are done."""
@@ -448,11 +442,6 @@ class Catalog:
                     return exercise
         return self.exercise(words)
 
-    def _exercise(self, exercise_id: str) -> Exercise:
-        if exercise_id not in self._exercises:
-            self._exercises[exercise_id] = self.read_exercise(exercise_id)
-        return self._exercises[exercise_id]
-
     def read_exercise(self, exercise_id: str) -> Exercise:
         """The declaration in the folder of this name; not kept."""
         folder = self.content.exercise_folder(exercise_id)
@@ -467,22 +456,19 @@ class Catalog:
         """What ``course author build`` measured, of all exercises."""
         return self.content.exercises / "times.json"
 
-    @property
+    @cached_property
     def times(self) -> Times:
         """How long slow checks take."""
-        if self._times is None:
-            try:
-                self._times = msgspec.json.decode(self.times_path.read_bytes(), type=Times)
-            except FileNotFoundError:
-                self._times = Times()
-            except (OSError, msgspec.DecodeError) as error:
-                problem = f"what was measured cannot be read: {error}."
-                fix = "Delete the file, then run `course author build`."
-                raise ContentError(self.times_path, None, problem, help=fix) from None
-        return self._times
+        try:
+            return msgspec.json.decode(self.times_path.read_bytes(), type=Times)
+        except FileNotFoundError:
+            return Times()
+        except (OSError, msgspec.DecodeError) as error:
+            problem = f"what was measured cannot be read: {error}."
+            fix = "Delete the file, then run `course author build`."
+            raise ContentError(self.times_path, None, problem, help=fix) from None
 
     def hints(self, exercise: Exercise) -> Hints:
-        """The hints of an exercise."""
         if exercise.id not in self._hints:
             self._hints[exercise.id] = self.hints_document(exercise).value
         return self._hints[exercise.id]

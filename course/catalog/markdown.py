@@ -30,7 +30,6 @@ _FORMAT_HELP = "docs/lesson-format.md lists what a lesson can hold."
 
 
 def read_blocks(path: Path) -> tuple[b.Block, ...]:
-    """The blocks of the lesson in a file."""
     head = split_front_matter(_text(path), path)
     return parse_lesson(head.body, path, first_line=head.body_line)
 

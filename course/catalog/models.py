@@ -31,7 +31,6 @@ class Task(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes:
         id: the name of the function the student writes.
-        title: what a person calls it.
         points: public and hidden points together.
         read: the section that explains it, as "lesson#section"; "" for the exercise's lesson as a whole.
         fault: the diagnosis of the function as it is handed out; "" where the student writes it.
@@ -60,7 +59,6 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         lesson: the lesson to read first.
         order: position in lists, 1 first: the order in which the lessons lead to them.
         number: the number it is known by outside of the course, such as a chapter's; 0 if it has none.
-        summary: one line for lists.
         task: the tasks, in the order a student does them.
         pass_mark: share of the maximum that passes.
         imports: top-level packages a submission may import beside the standard library.
@@ -286,8 +284,6 @@ class Objective(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes:
         title: after "You can …".
-        lessons, exercises: their ids.
-        quiz: ids of questions.
     """
 
     title: str

@@ -158,7 +158,6 @@ class Option(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One answer to choose from.
 
     Attributes:
-        right: True for the one that is right.
         misconception: of a wrong one, what a student who picks it believes: a key of the question's table.
         explanation: why it is right or wrong; shown after the attempt.
     """
@@ -194,7 +193,6 @@ class Question(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes:
         order: position in the quiz, 1 first.
-        title: what it is about, in a few words.
         misconceptions: common wrong beliefs, in students' words, by name.
         lesson: the place to read again, "lesson#section" or a lesson; may be empty.
     """

@@ -233,7 +233,7 @@ def read_document(
         raise ContentError(
             path,
             first_line - 1 + syntax_error_line(error, source),
-            f"this is not valid TOML: {_first_words(error)}.",
+            f"this is not valid TOML: {str(error).rsplit(' (at ', 1)[0]}.",  # the error gives the place
             help="Check quotes, brackets and commas here and on the line above.",
         ) from None
     lines = LineMap(source, first_line)
@@ -350,11 +350,6 @@ def _named(steps: tuple[str | int, ...]) -> str:
 
 def _in_words(kinds: str) -> str:
     return " or ".join(_WORDS.get(kind, kind) for kind in kinds.split(" | "))
-
-
-def _first_words(error: tomllib.TOMLDecodeError) -> str:
-    """The parser's complaint without its position, which the ContentError gives."""
-    return str(error).rsplit(" (at ", 1)[0]
 
 
 #: The mark that ``course author new`` leaves where an author has to write.

@@ -242,9 +242,7 @@ def update(ids: Ids = None, out: Out = None) -> int:
 
     console, catalog = current(), load_catalog()
     folder, layout = place(out)
-    there = [
-        notebook for notebook in generate(catalog, ids or [], layout) if (folder / notebook.path).exists()
-    ]
+    there = list(generate(catalog, ids or [], layout, there=folder))
     if not there:
         raise NotFoundError(
             f"There is no notebook of the course in {folder}.",

@@ -80,7 +80,6 @@ class Scene:
         friction, restitution: the coefficients that must act between any two surfaces. An adapter sets the
             values that its engine's rule for two materials turns into these.
         floor: there is a plane z = 0.
-        walls: fixed boxes.
         pivots: for a chain: body i hangs by a hinge about the y axis at ``pivots[i]`` on body i - 1, the
             first on the world. Bodies of a chain do not collide.
         dt: the step, s.
@@ -151,16 +150,9 @@ class Tuning:
 AS_IT_COMES = Tuning()
 
 
-@dataclass(frozen=True, slots=True)
-class Adapter:
-    """One engine.
-
-    Attributes:
-        build: puts a scene into the engine. Its options are empty for the engine as it comes, otherwise the
-            result of ``tuning``; it raises NotApplicableError if the engine cannot express the scene.
-    """
-
-    build: Callable[[Scene, Mapping[str, Any]], World]
+#: An engine: puts a scene into it. The options are empty for the engine as it comes, otherwise the result of
+#: ``tuning``; it raises NotApplicableError if it cannot express the scene.
+Adapter = Callable[[Scene, Mapping[str, Any]], World]
 
 
 def energy(scene: Scene, motion: Motion) -> float:
@@ -267,7 +259,6 @@ def options_of(engine: str) -> Options:
 
 @functools.cache
 def choices() -> dict[str, dict[str, Choice]]:
-    """The chosen settings, by engine and scenario."""
     path = files("course").joinpath("engines", "well_set.json")
     return msgspec.json.decode(path.read_bytes(), type=dict[str, dict[str, Choice]])
 

@@ -167,9 +167,6 @@ def compare(request: Request, progress: Progress = lambda _done, _total, _what: 
 
     Args:
         progress: called with measurements done, their total, and the last one's name.
-
-    Raises:
-        NotFoundError: no such engine or scenario.
     """
     infos = [get(name) for name in dict.fromkeys(request.engines or ENGINES)]
     scenarios = [get_scenario(name).id for name in dict.fromkeys(request.scenarios or SCENARIOS)]
@@ -190,7 +187,11 @@ def compare(request: Request, progress: Progress = lambda _done, _total, _what: 
         for job in jobs
     ]
     # Rows that cannot be measured here are shown from the reference, if it has them.
-    lacking = {(row.engine, row.scenario, row.setting, row.dt) for row in rows if _lacks(row)}
+    lacking = {
+        (row.engine, row.scenario, row.setting, row.dt)
+        for row in rows
+        if row.status in ("not_installed", "unavailable")
+    }
     shipped = reference.load()
     filled = [row for row in shipped.rows if (row.engine, row.scenario, row.setting, row.dt) in lacking]
     return Comparison(
@@ -200,10 +201,6 @@ def compare(request: Request, progress: Progress = lambda _done, _total, _what: 
         reference=msgspec.structs.replace(shipped, rows=()) if filled else None,
         quick=request.quick,
     )
-
-
-def _lacks(row: Row) -> bool:
-    return row.status in ("not_installed", "unavailable")
 
 
 def _steps(request: Request, scenario: str) -> tuple[float, ...]:
@@ -353,7 +350,6 @@ class EngineProcess:
     """One engine's process; a context manager. It starts with the first job, and again after it has died.
 
     Args:
-        engine: its id.
         command: run in place of the worker, for tests.
     """
 
@@ -374,7 +370,6 @@ class EngineProcess:
 
     @property
     def pid(self) -> int | None:
-        """The process's id, if there is one."""
         return self._process.pid if self._process else None
 
     def ask(self, job: Mapping[str, Any], seconds: float) -> dict[str, Any]:
@@ -467,7 +462,6 @@ class EngineProcess:
         return f"Its last words: {said[-1][:_LAST_WORDS]}" if said else ""
 
     def close(self) -> None:
-        """End the process, if there is one."""
         process, self._process = self._process, None
         if process is not None:
             process.kill()

@@ -30,7 +30,6 @@ def load() -> Reference:
 
 
 def row(engine: str, scenario: str, setting: Setting, dt: float = DT) -> Row:
-    """One measurement of the reference."""
     for one in load().rows:
         if (one.engine, one.scenario, one.setting) == (engine, scenario, setting) and math.isclose(
             one.dt, dt

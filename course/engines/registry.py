@@ -17,8 +17,6 @@ class EngineInfo:
 
     Attributes:
         id: for ``--engine``; the adapter is the module of this name in ``course.engines.adapters``.
-        name: on the screen.
-        package: the package to install for it.
         extra: the course's extra that brings it; empty for what the course needs anyway.
         licence: of the engine itself, an SPDX expression.
         about: the kind of engine, in half a line.
@@ -107,7 +105,6 @@ class Availability:
 
     @property
     def installed(self) -> bool:
-        """True if the package is there."""
         return self.version is not None
 
 
@@ -124,7 +121,6 @@ def availability(info: EngineInfo) -> Availability:
 
 
 def get(engine_id: str) -> EngineInfo:
-    """The engine of this id."""
     if engine_id in ENGINES:
         return ENGINES[engine_id]
     raise NotFoundError(

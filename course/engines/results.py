@@ -21,14 +21,7 @@ import msgspec
 
 
 class Machine(msgspec.Struct, frozen=True):
-    """The machine and the versions that a measurement depends on.
-
-    Attributes:
-        cpu: the processor's model.
-        system: operating system and architecture.
-        cores: how many processors this process may use.
-        python: its version.
-    """
+    """The machine and the versions that a measurement depends on."""
 
     cpu: str
     system: str
@@ -41,7 +34,6 @@ class Machine(msgspec.Struct, frozen=True):
 
 
 def this_machine() -> Machine:
-    """The machine that this runs on."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     version = ".".join(platform.python_version_tuple()[:2])
     return Machine(_cpu(), f"{platform.system()} {platform.machine()}", cores, version)
@@ -84,7 +76,6 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
     """One engine in one scenario.
 
     Attributes:
-        engine, scenario: ids.
         setting: ``default`` is the engine as it comes, ``tuned`` with options set for the scenario.
         dt: step, s.
         status: ``ok``, or why there is no value.
@@ -97,7 +88,6 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
         samples: the values of which ``value`` is the mean or the median, one for each phase of the step or
             each start; empty for a single run.
         repeats: how often it was measured; ``spread`` is the largest value less the smallest.
-        details: further results.
     """
 
     engine: str
@@ -119,7 +109,6 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def ok(self) -> bool:
-        """True if there is a value."""
         return self.status == OK
 
     @property
@@ -204,7 +193,6 @@ class Cache:
 
     Args:
         folder: made when it is needed.
-        machine: part of every key.
     """
 
     def __init__(self, folder: Path, machine: Machine) -> None:

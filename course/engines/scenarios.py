@@ -398,10 +398,8 @@ class Outcome:
     """The result of one run.
 
     Attributes:
-        value: the number that is compared.
         samples: ``value`` is their mean or median: one for each phase of the step, or each start; empty
             where there is one run.
-        details: further results.
     """
 
     value: float
@@ -414,12 +412,10 @@ class Scenario:
     """One test.
 
     Attributes:
-        id, title: its names.
         question: a question to answer before seeing the numbers.
         quantity: the meaning of ``value``.
         unit: of ``value`` and ``truth``; "%" and "mm" are meant for reading.
         truth: the right value; None where there is none (a speed), inf for "any speed".
-        source: where the truth comes from.
         digits: decimals worth showing.
         measure: given how to build a scene, the step (s) and whether it should be quick, gives an Outcome.
         planar: an engine in the plane can do it.
@@ -626,7 +622,6 @@ SCENARIOS: dict[str, Scenario] = {
 
 
 def get(scenario_id: str) -> Scenario:
-    """The scenario of this name."""
     if scenario_id in SCENARIOS:
         return SCENARIOS[scenario_id]
     raise NotFoundError(

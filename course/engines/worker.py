@@ -65,7 +65,7 @@ class EngineServer:
             return {"status": "ok", **known}
 
         def build(scene: Scene) -> World:
-            return self._adapter.build(scene, tuning.options)
+            return self._adapter(scene, tuning.options)
 
         if job["do"] == "boxes":
             from course.engines.scenarios import boxes_scene

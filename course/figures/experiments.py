@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
 from typing import Any
@@ -22,7 +23,7 @@ Array = NDArray[np.float64]
 
 
 # ---
-# Figures of the simulations that go beyond an introduction; ``basic`` calls them.
+# Each draws the result of one simulation.
 
 
 #: A curve that grows past this leaves the picture; matplotlib cannot scale to more. In shares.
@@ -207,96 +208,8 @@ def _beside_theory(axes: Axes, result: Result, name: str, formula: str) -> None:
 
 
 def render(result: Result, kind: str) -> bytes:
-    """The figure of a result as the bytes of a file; the same result gives the same bytes.
-
-    Args:
-        kind: "png", "svg" or "pdf".
-    """
+    """The figure of a result as the bytes of a file; the same result gives the same bytes."""
     return file_of(lambda: draw(result), kind)
-
-
-def draw(result: Result) -> Figure:
-    """The figure of a result; call it inside ``house_style``."""
-    drawers: dict[str, Callable[[Result], Figure]] = {
-        "free-fall": _free_fall,
-        "projectile": _projectile,
-        "collision": _collision,
-        "integrators": _integrators,
-        "rotation": _rotation,
-        "dynamics": _dynamics,
-        "chaos": _chaos,
-        "solver-iterations": _solver_iterations,
-        "substeps": _substeps,
-        "environment": _environment,
-        "contact-models": _contact_models,
-    }
-    if result.simulation not in drawers:
-        raise InternalError(f"The simulation {result.simulation} has no figure.")
-    figure = drawers[result.simulation](result)
-    title(figure, result.headline)
-    return figure
-
-
-def _of(name: str, *pairs: str) -> Figure:
-    from course.simulations.base import run
-    from course.simulations.registry import get
-
-    return draw(run(get(name), pairs))
-
-
-def free_fall() -> Figure:
-    """Height of a falling ball, and how far each method is off."""
-    return _of("free-fall")
-
-
-def projectile() -> Figure:
-    """A throw with air, beside the one without, which theory solves."""
-    return _of("projectile", "drag=0.02")
-
-
-def collision() -> Figure:
-    """Positions of two balls that meet head on."""
-    return _of("collision")
-
-
-def integrators() -> Figure:
-    """Errors of position and energy of four methods on one spring."""
-    return _of("integrators")
-
-
-def rotation() -> Figure:
-    """A body that turns over, and its energy by three methods."""
-    return _of("rotation")
-
-
-def dynamics() -> Figure:
-    """An arm with a load that is not in its plan."""
-    return _of("dynamics", "payload=0.01")
-
-
-def chaos() -> Figure:
-    """Two double pendulums that part."""
-    return _of("chaos")
-
-
-def solver_iterations() -> Figure:
-    """How the weight of a stack reaches the ground, iteration by iteration."""
-    return _of("solver-iterations")
-
-
-def substeps() -> Figure:
-    """Stretch of a chain for the same work spent in different ways."""
-    return _of("substeps")
-
-
-def environment() -> Figure:
-    """Stopping distance over friction, and rebound over restitution."""
-    return _of("environment")
-
-
-def contact_models() -> Figure:
-    """Rebound and kept energy over the phase of the step, for three ways to correct an overlap."""
-    return _of("contact-models")
 
 
 def _free_fall(result: Result) -> Figure:
@@ -401,3 +314,56 @@ def _integrators(result: Result) -> Figure:
 def _positive(values: Array) -> Array:
     """Values for a logarithmic axis: zeros and absurdly large ones are left out."""
     return np.where((values > 1e-17) & (values < 1e100), values, np.nan)
+
+
+#: By the id of its simulation.
+_DRAWERS: dict[str, Callable[[Result], Figure]] = {
+    "free-fall": _free_fall,
+    "projectile": _projectile,
+    "collision": _collision,
+    "integrators": _integrators,
+    "rotation": _rotation,
+    "dynamics": _dynamics,
+    "chaos": _chaos,
+    "solver-iterations": _solver_iterations,
+    "substeps": _substeps,
+    "environment": _environment,
+    "contact-models": _contact_models,
+}
+
+
+def draw(result: Result) -> Figure:
+    """The figure of a result; call it inside ``house_style``."""
+    if result.simulation not in _DRAWERS:
+        raise InternalError(f"The simulation {result.simulation} has no figure.")
+    figure = _DRAWERS[result.simulation](result)
+    title(figure, result.headline)
+    return figure
+
+
+# ---
+# The figures of lessons: each simulation as it comes, or as the lesson sets it.
+
+
+def _of(name: str, *pairs: str) -> Callable[[], Figure]:
+    @functools.wraps(_DRAWERS[name], updated=())
+    def build() -> Figure:
+        from course.simulations.base import run
+        from course.simulations.registry import get
+
+        return draw(run(get(name), pairs))
+
+    return build
+
+
+free_fall = _of("free-fall")
+projectile = _of("projectile", "drag=0.02")
+collision = _of("collision")
+integrators = _of("integrators")
+rotation = _of("rotation")
+dynamics = _of("dynamics", "payload=0.01")
+chaos = _of("chaos")
+solver_iterations = _of("solver-iterations")
+substeps = _of("substeps")
+environment = _of("environment")
+contact_models = _of("contact-models")

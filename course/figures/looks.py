@@ -6,6 +6,7 @@ business; what is written in it is kept as text.
 
 from __future__ import annotations
 
+import inspect
 import traceback
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -48,7 +49,7 @@ def faults(figure_id: str, kept: Path) -> Iterator[Fault]:
     module, function = FIGURES[figure_id]
     file = Path(__file__).with_name(f"{module}.py")
     try:
-        builder = getattr(import_module(f"course.figures.{module}"), function)
+        builder = inspect.unwrap(getattr(import_module(f"course.figures.{module}"), function))
         file, line = Path(builder.__code__.co_filename), builder.__code__.co_firstlineno
         figure = build(figure_id)
         with house_style():

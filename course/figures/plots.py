@@ -28,11 +28,7 @@ _LOOKS = (
 
 
 def render(plot: Plot, kind: str = "png") -> bytes:
-    """The figure as the bytes of a file; the same description gives the same bytes.
-
-    Args:
-        kind: "png", "svg" or "pdf".
-    """
+    """The figure as the bytes of a file; the same description gives the same bytes."""
     return file_of(lambda: draw(plot), kind)
 
 

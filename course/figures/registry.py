@@ -61,7 +61,6 @@ SCREEN_DPI = 180
 
 
 def figure_ids() -> tuple[str, ...]:
-    """Every figure there is, sorted."""
     return tuple(sorted(FIGURES))
 
 

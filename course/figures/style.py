@@ -117,7 +117,6 @@ def new_figure(height_in: float, rows: int = 1, columns: int = 1, **grid: Any) -
     every curve in the same place.
 
     Args:
-        height_in: height, inches.
         grid: passed on to matplotlib's ``subplots`` (sharex, sharey, ...).
     """
     figure = Figure(figsize=(WIDTH_IN, height_in))

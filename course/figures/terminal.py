@@ -295,7 +295,6 @@ def sixels(png: bytes, width: int) -> str:
     """The characters that make a terminal show a picture.
 
     Args:
-        png: the file's bytes.
         width: in pixels; the height follows.
     """
     with Image.open(io.BytesIO(png)) as opened:

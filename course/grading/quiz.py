@@ -52,7 +52,6 @@ class QuizScore:
     """The attempt that counts.
 
     Attributes:
-        seed: of that attempt.
         finished_at: by the student's clock; for display only.
         attempts: how many were handed in.
         repeated: how many of them did not count because an earlier one had the same seed.

@@ -64,6 +64,7 @@ _MEMORY = 1 << 30
 
 #: Reading or writing a name, or the name of an import, does not make another program.
 _SKIPPED = (ast.expr_context, ast.alias)
+_DOCUMENTED = (ast.Module, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 
 
 class Prints(msgspec.Struct, frozen=True):
@@ -72,7 +73,6 @@ class Prints(msgspec.Struct, frozen=True):
     Attributes:
         marks: hash -> the lines it was seen on, as (first, last) pairs, 1 first.
         whole: digest of the whole sequence of nodes; equal for sources that differ in names and layout only.
-        nodes: its length.
     """
 
     marks: dict[int, tuple[tuple[int, int], ...]]
@@ -129,8 +129,8 @@ def _walk(tree: ast.AST) -> Iterator[tuple[str, int]]:
         if not isinstance(node, ast.Module):
             yield _kind(node), line
         children = list(ast.iter_child_nodes(node))
-        if _has_docstring(node):
-            del children[_docstring_at(node, children)]
+        if isinstance(node, _DOCUMENTED) and ast.get_docstring(node, clean=False) is not None:
+            children.remove(node.body[0])
         waiting.extend((child, line) for child in reversed(children))
 
 
@@ -141,22 +141,6 @@ def _kind(node: ast.AST) -> str:
     if isinstance(node, ast.Attribute):
         return f"Attribute {node.attr}"  # mostly a library's name, which says what is done
     return type(node).__name__
-
-
-def _has_docstring(node: ast.AST) -> bool:
-    body = getattr(node, "body", None)
-    if not isinstance(node, ast.Module | ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef) or not body:
-        return False
-    first = body[0]
-    return (
-        isinstance(first, ast.Expr)
-        and isinstance(first.value, ast.Constant)
-        and isinstance(first.value.value, str)
-    )
-
-
-def _docstring_at(node: ast.AST, children: list[ast.AST]) -> int:
-    return children.index(node.body[0])  # type: ignore[attr-defined] # it was seen to have a docstring
 
 
 def _hash(kinds: list[str]) -> int:
@@ -306,7 +290,6 @@ class Similar:
     Attributes:
         pairs: the most alike first, at most ``MAX_PAIRS``.
         groups: the largest first, made from all pairs.
-        compared: number of submissions.
         unreadable: "student exercise" of each file that is not Python, or is too long to compare.
         left_out: pairs beyond ``MAX_PAIRS``.
     """
@@ -490,7 +473,6 @@ _BLANK = 2
 
 
 def page(found: Similar) -> str:
-    """The whole page."""
     style = Path(__file__).with_name("similar.css").read_text("utf-8")
     return render("similar", scripted=False, more_style=style, found=found, sides=_sides)
 

@@ -27,8 +27,6 @@ class Attempt:
     """One run of the public checks.
 
     Attributes:
-        source: the module that was checked.
-        seconds: how long it took.
         only: the one requested check or function; empty for all.
         printed: the module's output while it was loaded.
         curves: by id of a failed check, the student's curve and the right one.

@@ -198,7 +198,6 @@ def _without_magics(text: str) -> tuple[str, tuple[tuple[int, str], ...]]:
 
 
 def read_notebook(path: Path) -> bytes:
-    """A notebook's file."""
     try:
         if not path.is_file():
             raise UsageError(f"{path} is not a file.", help="Name a notebook.", code="not_a_file")

@@ -44,7 +44,6 @@ class NotebookSource(Places):
     """A notebook as a module.
 
     Attributes:
-        source: the module's text, UTF-8.
         notes: parts left out, and assumptions, a sentence each.
         starts: (line of the module, number of the cell), ascending: where each cell's lines begin.
         called: names of cells by their numbers, for those that are not called "cell 7".

@@ -83,7 +83,6 @@ def raised(value: Any, main: str, source: Sequence[str]) -> StudentFailure | Non
 
     Args:
         value: received over the wire, and not trusted.
-        main: name of the submission's file.
         source: its lines, which alone are quoted.
     """
     if not isinstance(value, dict):

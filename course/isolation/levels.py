@@ -44,10 +44,8 @@ class Limits:
     """The limits of one worker.
 
     Attributes:
-        cpu_s: seconds of CPU; the deadline ends a check long before.
         memory: bytes of address space.
         file_size: bytes per file, the captured output included.
-        descriptors: open files.
     """
 
     cpu_s: int = 90

@@ -142,12 +142,9 @@ def _install(package: str) -> str:
     managers = {"apt-get": "sudo apt-get install", "dnf": "sudo dnf install", "pacman": "sudo pacman -S"}
     for manager, command in {**managers, "zypper": "sudo zypper install", "apk": "doas apk add"}.items():
         if shutil.which(manager):
-            return f"{command} {package}".replace("sudo ", "" if _is_root() else "sudo ")
+            root = hasattr(os, "getuid") and os.getuid() == 0
+            return f"{command} {package}".replace("sudo ", "" if root else "sudo ")
     return f"the package {package}"
-
-
-def _is_root() -> bool:
-    return hasattr(os, "getuid") and os.getuid() == 0
 
 
 # ---

@@ -48,7 +48,6 @@ def where_it_hangs(handle: Handle, begun: bytes, main: str, source: bytes) -> St
         handle: the worker, which is to be ended afterwards.
         begun: what came from it and was not read yet.
         main: name of the submission's file.
-        source: what is in it.
     """
     if wire.LOOK is None:
         return None
@@ -187,7 +186,6 @@ class Connection:
     """One worker with one submission loaded.
 
     Args:
-        spawner: starts the worker.
         files: the submission: file name to content.
         main: the file whose functions are called.
         deadline: by which loading must be done.
@@ -318,13 +316,11 @@ class Connection:
         values, changed = self._batch(self._ask(Kind.EACH, [function, calls], function), 2)
         return self._batch(values, len(calls)), changed is not None
 
-    def fold(
-        self, function: str, state: Any, calls: list[list[Any]], carry: int | None, keep: list[str] | None
-    ) -> list[Any]:
+    def fold(self, function: str, state: Any, calls: list[list[Any]], keep: list[str] | None) -> list[Any]:
         """The states that ``function(state, *args)`` goes through; see ``loops.fold``."""
-        answer = self._ask(Kind.FOLD, [function, state, calls, carry, keep], function)
+        answer = self._ask(Kind.FOLD, [function, state, calls, keep], function)
         record, last = self._batch(answer, 2)
-        record = self._batch(record, len(calls) + (carry is None))
+        record = self._batch(record, len(calls) + 1)
         return [*record[:-1], last] if keep is not None else record
 
     def _batch(self, answer: Any, length: int) -> list[Any]:
@@ -333,11 +329,9 @@ class Connection:
         raise self._breach("a batch of another length")
 
     def output(self) -> str:
-        """The submission's output so far."""
         return printable(self._handle.output()) if self.alive else self._printed
 
     def close(self) -> None:
-        """End the worker."""
         self._finish()
 
     def _finish(self) -> Exit | None:
@@ -456,7 +450,6 @@ class Connection:
         self.deadline = deadline
 
     def _fault(self, value: dict[str, Any]) -> LoadFault:
-        """What a worker reports that it could not load."""
         failure = self._raised(value)
         line = claimed_line(value.get("at"), self._lines())
         failure.line = line or failure.line
@@ -470,7 +463,6 @@ class Connection:
         return self._files[self._main].decode("utf-8", "replace").splitlines()
 
     def _raised(self, value: Any) -> StudentFailure:
-        """The exception a worker reports."""
         return raised(value, self._main, self._lines()) or self._breach("an exception in another form")
 
     # -- frames ---------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
@@ -111,12 +111,15 @@ class Generated:
     data: bytes
 
 
-def generate(catalog: Catalog, ids: Sequence[str] = (), layout: Layout = FOLDERS) -> Iterator[Generated]:
+def generate(
+    catalog: Catalog, ids: Sequence[str] = (), layout: Layout = FOLDERS, *, there: Path | None = None
+) -> Iterator[Generated]:
     """The notebooks of a course.
 
     Args:
         ids: of lessons and exercises, "quiz" or "sandbox"; an id shared by a lesson and an exercise gives
             both; none gives everything.
+        there: only those that lie in this folder already.
 
     Raises:
         NotFoundError: there is nothing of that id.
@@ -127,7 +130,7 @@ def generate(catalog: Catalog, ids: Sequence[str] = (), layout: Layout = FOLDERS
         if not any(wanted == name for _, name in makers):
             raise _unknown(wanted, [name for _, name in makers])
     for (kind, name), (path, make) in makers.items():
-        if not ids or name in ids:
+        if (not ids or name in ids) and (there is None or (there / path).is_file()):
             yield Generated(kind, name, path, make())
 
 
@@ -196,6 +199,8 @@ def pieces(source: str, tasks: Collection[str]) -> tuple[str, list[Piece]]:
     start = (tree.body[0].end_lineno or 0) if about else 0
     for node in body:
         end = node.end_lineno or start
+        while end < len(lines) and lines[end].startswith((" ", "\t")):
+            end += 1  # a comment below the last statement of a function is the function's
         text = "\n".join(lines[start:end]).strip("\n")
         start = end
         name = node.name if isinstance(node, ast.FunctionDef) and node.name in tasks else ""
@@ -223,7 +228,8 @@ _HOW = """\
 
 Write each function in its cell, run the cell, then run the check below it. Only the cells with your functions
 are graded, and whatever other cells define that they use; plots, experiments and outputs are yours. After a
-check that failed, `%course_hint {exercise}` gives a hint. From a terminal, `course notebook check {file}`
+check that failed, `%course_hint {exercise}` gives a hint. If Jupyter does not know these words, run the next
+cell: that is needed once after every start of the kernel. From a terminal, `course notebook check {file}`
 checks the whole file."""
 _LAST = """\
 ## All of it
@@ -258,8 +264,8 @@ def exercise_cells(exercise: Exercise, source: str) -> list[Cell]:
     tasks = {task.id: task for task in exercise.task}
     about, parts = pieces(source, tasks)
     readme = _LINK.sub(_as_command, exercise.readme_path.read_text(encoding="utf-8"))
-    first, *rest = _sections(readme)
-    cells = [opening(first), *map(markdown, rest)]
+    first, above, last = _placed(_sections(readme), list(tasks))
+    cells = [opening(first), *map(markdown, above.pop("", ()))]
     file = exercise.stub_path.with_suffix(".ipynb").name
     cells.append(markdown(f"{_HOW.format(file=file, exercise=exercise.id)}\n\n{about}"))
     cells.append(code(_LOAD, role="tools", exercise=exercise.id))
@@ -267,6 +273,7 @@ def exercise_cells(exercise: Exercise, source: str) -> list[Cell]:
         if not part.task:
             cells.append(code(part.text, role=SETUP, exercise=exercise.id))
             continue
+        cells += map(markdown, above.get(part.task, ()))
         cells.append(markdown(_task_heading(tasks[part.task])))
         cells.append(code(part.text, role=SOLUTION, exercise=exercise.id, task=part.task))
         cells.append(
@@ -274,6 +281,7 @@ def exercise_cells(exercise: Exercise, source: str) -> list[Cell]:
                 f"%course_check {exercise.id} {part.task}", role="check", exercise=exercise.id, task=part.task
             )
         )
+    cells += map(markdown, last)
     cells.append(markdown(_LAST))
     cells.append(code(f"%course_check {exercise.id}", role="check", exercise=exercise.id))
     if has_report(exercise):
@@ -290,16 +298,34 @@ def _as_command(link: re.Match[str]) -> str:
 
 
 def _sections(readme: str) -> list[str]:
-    """A README, cut before each second-level heading; fenced blocks stay whole."""
+    """A README, cut before each heading; fenced blocks stay whole, and a heading has text below it."""
     found: list[list[str]] = [[]]
     fenced = False
     for line in readme.strip("\n").split("\n"):
         if re.match(r"\s*(```|~~~)", line):
             fenced = not fenced
-        if line.startswith("## ") and not fenced:
+        if line.startswith(("## ", "### ")) and not fenced and any(found[-1][1:]):
             found.append([])
         found[-1].append(line)
     return ["\n".join(lines) for lines in found if any(lines)]
+
+
+def _placed(sections: list[str], tasks: list[str]) -> tuple[str, dict[str, list[str]], list[str]]:
+    """The first section, those above each function ("" for above all), and what stands below the last.
+
+    A section stands above the first function that its heading names, or else its text. One that names most of
+    them, or none, follows the section before it; the last one says what is checked.
+    """
+    first, *between = sections
+    last = [between.pop()] if between and "checked" in between[-1].partition("\n")[0] else []
+    above: dict[str, list[str]] = {}
+    at = ""
+    for section in between:
+        heading = section.partition("\n")[0]
+        named = [task for task in tasks if f"`{task}" in heading] or [t for t in tasks if f"`{t}" in section]
+        at = named[0] if 0 < len(named) <= len(tasks) / 2 else at
+        above.setdefault(at, []).append(section)
+    return first, above, last
 
 
 def _task_heading(task: Task) -> str:
@@ -317,7 +343,7 @@ _ASKED = """\
 ### Warm-up: {title}
 
 *About {minutes}; it counts for nothing. The cell below is its file: change it and run it, and it is
-checked at once.*
+checked at once. If Jupyter does not know `%%course_check`, run the first cell of code above.*
 
 {text}"""
 
@@ -378,7 +404,7 @@ def lesson_cells(catalog: Catalog, lesson: Lesson, layout: Layout) -> list[Cell]
                 cells.append(code(source, role="hidden" if hidden else "lesson"))
             case b.Figure(id=name, alt=alt, caption=caption):
                 flush()
-                cells.append(code(f'figure("{name}")', role="figure"))
+                cells.append(code(f'figure("{name}", lesson="{lesson.id}")', role="figure"))
                 cells.append(markdown(f"*{lowering.inlines(caption)}*\n\n{_described(alt)}"))
             case b.Prediction(blocks=inner):
                 flush()
@@ -396,6 +422,7 @@ def lesson_cells(catalog: Catalog, lesson: Lesson, layout: Layout) -> list[Cell]
             case _:
                 text.append(lowering.block(block))  # it takes every other kind, and mypy says if not
     flush()
+    cells.append(code(_END.format(lesson=lesson.id), role="end"))
     return [_collapsed(cell) for cell in cells]
 
 
@@ -403,6 +430,10 @@ _PREDICT = '''my_prediction_{number} = """
 
 """  # write it down before you go on: a guess that is written is a guess that teaches
 predict("{lesson}", {number}, my_prediction_{number})'''
+_END = """# The end: run this cell, and the lesson counts as read.
+from course.notebooks.predicting import finish
+
+finish("{lesson}")"""
 _FOLDED = """\
 <details><summary>The answer: predict first</summary>
 

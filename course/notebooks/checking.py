@@ -27,6 +27,7 @@ from course.handed_in.notebook import SETUP, NotebookSource, notebook_source, so
 from course.notebooks.build import pieces
 from course.notebooks.show import ReportPage, image_of
 from course.printable import counted
+from course.progress.history import fingerprint
 from course.progress.workspace import Recorder, not_recorded
 from course.scoring.judging.submission import Submission
 from course.scoring.verdict import CheckResult, Verdict, format_points, in_points, numbers_of
@@ -422,10 +423,11 @@ def check(exercise_id: str, task: str | None, source: Source | None, shell: Any 
     if task is not None and not defines_all(made.source, known):
         # A function that was not run yet is not missing: the attempt is about this one alone.
         made = replace(made, verdict=_of_task(made.verdict, exercise, task), only=task)
+    stub = exercise.stub_path.read_bytes()
     return CheckTable(
         made.verdict,
         task,
-        _recorded(catalog, made),
+        "" if fingerprint(made.source) == fingerprint(stub) else _recorded(catalog, made),
         # A cell that was run has shown what it printed.
         printed=made.printed if source is not None else "",
         scored=not exercise.is_warm_up,

@@ -1,6 +1,6 @@
 """A lesson's blocks as Markdown that Jupyter shows without any extension.
 
-JupyterLab itself draws mermaid, mathematics, tables and alert boxes, offline. Everything else in a lesson is
+JupyterLab itself draws mermaid, mathematics, tables and quotes, offline. Everything else in a lesson is
 turned into one of these.
 """
 
@@ -12,17 +12,6 @@ from collections.abc import Callable
 from typing import assert_never
 
 from course.catalog import blocks as b
-
-#: JupyterLab's colour for each kind of box.
-_COLOURS = {
-    "myth": "danger",
-    "fact": "success",
-    "analogy": "info",
-    "answer": "success",
-    "remember": "warning",
-    "note": "info",
-    "predict": "info",
-}
 
 _SPECIAL = re.compile(r"([\\`*_\[\]<>$|])")
 
@@ -71,12 +60,9 @@ class Lowering:
         return "\n\n".join(self.block(block) for block in blocks)
 
     def boxed(self, kind: str, blocks: tuple[b.Block, ...]) -> str:
-        """A passage in a box with a heading."""
-        # Jupyter renders Markdown inside HTML only between empty lines.
-        return (
-            f'<div class="alert alert-block alert-{_COLOURS[kind]}">\n<b>{kind.capitalize()}.</b>\n\n'
-            f"{self.blocks(blocks)}\n\n</div>"
-        )
+        """A passage with a heading, set off as a quote: that can be read on the ground of every theme."""
+        text = f"**{kind.capitalize()}.**\n\n{self.blocks(blocks)}"
+        return "\n".join(f"> {line}".rstrip() for line in text.split("\n"))
 
     def inlines(self, inlines: b.Inlines) -> str:
         """Inline pieces as Markdown."""

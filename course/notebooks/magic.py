@@ -86,6 +86,8 @@ def _told(wrong: str, act: Callable[[], T]) -> T | None:
             return act()
     except CourseError as error:
         wrong = f"{error.message} {error.help}"
+    except KeyboardInterrupt:
+        wrong = "Interrupted; nothing was recorded."
     print(wrong)  # noqa: T201 - a cell's output is its screen
     return None
 

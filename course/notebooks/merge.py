@@ -2,12 +2,14 @@
 
 Every generated cell has its slot and the digest of its original text. A cell whose text no longer matches its
 digest was edited; one without a slot was added by the student. Edited and added cells stay where they are,
-with their outputs; all others are replaced by the newer notebook's. Where that is not safe, nothing is
-merged, and the reason is given.
+with their outputs; all others are replaced by the newer notebook's. A cell that the course changed, too,
+stands above the student's, but for a function or an answer: there the student's cell stays alone. Where that
+is not safe, nothing is merged, and the reason is given.
 """
 
 from __future__ import annotations
 
+import ast
 import json
 from dataclasses import dataclass
 from typing import Any
@@ -15,7 +17,8 @@ from typing import Any
 from course.notebooks.cells import digest, dumped
 
 RawCell = dict[str, Any]
-_TEXT = "text"
+#: What a student fills in: two of them would be one too many.
+_FILLED_IN = frozenset({"solution", "warm-up", "prediction"})
 
 
 class CannotMergeError(Exception):
@@ -41,7 +44,7 @@ def merged(old: bytes, new: bytes) -> bytes:
 
     Raises:
         CannotMergeError: the old one is another notebook or none, its cells stand in another order, or the
-            course changed a cell that contains the student's code.
+            course changed the parameters of a function that the student wrote.
     """
     before, after = _read(old), _read(new)
     about = before.get("metadata", {}).get("course")
@@ -81,6 +84,10 @@ class _Held:
         return str(self.tags.get("made", ""))
 
     @property
+    def is_code(self) -> bool:
+        return self.cell.get("cell_type") == "code"
+
+    @property
     def edited(self) -> bool:
         return digest(self.cell.get("cell_type", ""), self.source, self.tags) != self.made
 
@@ -97,7 +104,10 @@ def _woven(old: list[_Held], new: list[_Held]) -> list[RawCell]:
             anchor = cell.slot
         elif not cell.slot or cell.edited or cell.slot in kept:
             own.setdefault(anchor, []).append(cell)
-    _must_be_in_order(list(kept), [cell.slot for cell in new if cell.slot in kept])
+    _must_be_in_order(
+        [slot for slot, cell in kept.items() if cell.is_code],
+        [cell.slot for cell in new if cell.slot in kept and kept[cell.slot].is_code],
+    )
     cells = [cell.cell for cell in own.get("", [])]
     for cell in new:
         cells += _either(kept.get(cell.slot), cell)
@@ -115,12 +125,26 @@ def _either(old: _Held | None, new: _Held) -> list[RawCell]:
         return [{**old.cell, "metadata": {**old.cell["metadata"], "course": new.tags}} if same else new.cell]
     if old.made == new.made or old.source == new.source:
         return [old.cell]
-    if new.tags.get("role") == _TEXT:
-        return [
-            new.cell,
-            old.cell,
-        ]  # the second cell with the same slot counts as the student's own from now on
-    raise CannotMergeError(f"the course changed a cell that you changed too ({new.slot})")
+    if new.tags.get("role") not in _FILLED_IN or not new.is_code:
+        # The second cell with the same slot counts as the student's own from now on.
+        return [new.cell, old.cell]
+    mine, theirs = _parameters(old), _parameters(new)
+    if None not in (mine, theirs) and mine != theirs:
+        raise CannotMergeError(f"the course changed the parameters of a function that you wrote ({new.slot})")
+    return [{**old.cell, "metadata": {**old.cell["metadata"], "course": new.tags}}]
+
+
+def _parameters(cell: _Held) -> list[str] | None:
+    """Those of the function that a cell is for; None if it does not define it, or is no Python."""
+    try:
+        body = ast.parse(cell.source).body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+    for node in body:
+        if isinstance(node, ast.FunctionDef) and node.name == cell.tags.get("task"):
+            given = node.args
+            return [one.arg for one in (*given.posonlyargs, *given.args, *given.kwonlyargs)]
+    return None
 
 
 def _must_be_in_order(old: list[str], new: list[str]) -> None:

@@ -13,15 +13,16 @@ from course.progress.quiz import quiz_history
 from course.progress.workspace import Recorder
 from course.quizzing.bank import Result, fresh_seed
 from course.reading.parts import Question, Script, read_script
-from course.reading.record import InProgress
+from course.reading.record import JUDGEMENTS, InProgress
 
 
-def predict(lesson_id: str, number: int, text: str = "") -> Any:
+def predict(lesson_id: str, number: int, text: str = "", judged: str = "") -> Any:
     """A field to type a prediction in; where a cell cannot show one, the text in the call counts.
 
     Args:
         number: 1 for the first prediction of the lesson.
         text: the prediction, if it was written into the cell.
+        judged: how it did, by the student's own word: "right", "nearly" or "wrong".
 
     Raises:
         NotFoundError: there is no such lesson or prediction.
@@ -29,33 +30,83 @@ def predict(lesson_id: str, number: int, text: str = "") -> Any:
     asked = LessonPrediction(lesson_id, number)
     if text.strip():
         asked.say(text)
-    if asked.said is None and alive():
+    asked.judge(judged)
+    if not text.strip() and asked.waits and alive():
         from course.notebooks.widgets import Predict
 
         return Predict(asked)
     return asked
 
 
-class LessonPrediction:
+def finish(lesson_id: str) -> LessonEnd:
+    """The end of a lesson: it counts as read once each of its predictions was answered or skipped.
+
+    Raises:
+        NotFoundError: there is no such lesson.
+    """
+    return LessonEnd(lesson_id)
+
+
+class _Opened:
+    """A lesson in a kernel, with the record of the workspace that the kernel runs in."""
+
+    def __init__(self, lesson_id: str) -> None:
+        self._catalog = Catalog()
+        self._lesson = self._catalog.lesson(lesson_id)
+        self._script = read_script(self._lesson)
+        self._unread = ""
+        self._record = Recorder.of_kernel(self._catalog.course_id) or Recorder(None)
+        self._progress = InProgress(self._script, self._events(), self._record, self._catalog.version)
+
+    @property
+    def note(self) -> str:
+        """Another sentence to show: why something was not recorded, or could not be read."""
+        return (self._record.trouble if self._record.store is not None else "") or self._unread
+
+    def _events(self) -> tuple[Any, ...]:
+        if self._record.store is None:
+            return ()
+        try:
+            return self._record.store.events("", self._lesson.id)
+        except CourseError as error:
+            self._unread = f"{error.message} {error.help}"
+            return ()
+
+
+class LessonEnd(_Opened):
+    """What stands below the last cell of a lesson."""
+
+    def __init__(self, lesson_id: str) -> None:
+        super().__init__(lesson_id)
+        self._open = sum(self._progress.prediction(one) is None for one in self._script.questions)
+        if not self._open:
+            self._progress.reached_end()
+
+    def __repr__(self) -> str:
+        if self._open:
+            what = "One prediction of this lesson is" if self._open == 1 else f"{self._open} predictions are"
+            return (
+                f"{what} open: answer or skip {'it' if self._open == 1 else 'them'}, and run this cell again."
+            )
+        if self._record.store is None:
+            return "You have read it. It is recorded in a workspace only: course init my-course makes one."
+        return self.note or "You have read it, and it is recorded. What is next: course next"
+
+
+class LessonPrediction(_Opened):
     """A lesson's prediction, and the student's answer."""
 
     def __init__(self, lesson_id: str, number: int) -> None:
-        catalog = Catalog()
-        lesson = catalog.lesson(lesson_id)
-        script = read_script(lesson)
-        found = [one for one in script.questions if one.number == number]
+        super().__init__(lesson_id)
+        found = [one for one in self._script.questions if one.number == number]
         if not found:
             raise NotFoundError(
                 f"{lesson_id} has no prediction {number}.",
-                help=f"It has {len(script.questions)}.",
+                help=f"It has {len(self._script.questions)}.",
                 code="no_such_prediction",
             )
         self.question: Question = found[0]
-        self._unread = ""
-        self._answer = answer_of(catalog, lesson, script, self.question)
-        self._record = Recorder.of_kernel(catalog.course_id) or Recorder(None)
-        events = self._events(lesson)
-        self._progress: InProgress = InProgress(script, events, self._record, catalog.version)
+        self._answer = answer_of(self._catalog, self._lesson, self._script, self.question)
 
     @property
     def said(self) -> str | None:
@@ -67,32 +118,44 @@ class LessonPrediction:
         """Keep a prediction; an empty one is a skip. The first answer stays."""
         self._progress.predict(self.question, text)
 
+    def judge(self, word: str) -> None:
+        """Keep how the prediction did: "right", "nearly" or "wrong"; another word is none."""
+        for known in JUDGEMENTS:
+            if word == known:
+                self._progress.judge(self.question, known)
+
     @property
-    def note(self) -> str:
-        """Another sentence to show: why something was not recorded, or could not be read."""
-        return (self._record.trouble if self._record.store is not None else "") or self._unread
+    def judged(self) -> str:
+        """How it did; empty if it is not said yet."""
+        said = self._progress.prediction(self.question)
+        return (said.judged or "") if said is not None else ""
+
+    @property
+    def waits(self) -> bool:
+        """Whether something is still to be said: the prediction, or how it did."""
+        return self.said is None or bool(self.said and not self.judged)
 
     @property
     def opened(self) -> str:
         """The prediction and the answer, as Markdown."""
         said = self.said
         told = f"You predicted: {_quoted(said)}" if said else "You skipped this prediction."
+        told += f" By your own word: {self.judged}." if self.judged else ""
         return "\n\n".join(part for part in (told, self._answer, self.note) if part)
 
     def __repr__(self) -> str:
         return "Write your prediction between the quotation marks, and run this cell: the answer opens then."
 
     def _repr_markdown_(self) -> str:
-        return repr(self) if self.said is None else self.opened
-
-    def _events(self, lesson: Lesson) -> tuple[Any, ...]:
-        if self._record.store is None:
-            return ()
-        try:
-            return self._record.store.events("prediction", lesson.id)
-        except CourseError as error:
-            self._unread = f"{error.message} {error.help}"
-            return ()
+        if self.said is None:
+            return repr(self)
+        name = f"my_prediction_{self.question.number}"
+        more = f'predict("{self._lesson.id}", {self.question.number}, {name}, "nearly")'
+        return (
+            f"{self.opened}\n\nHow did it do? `{more}` says it; or right, or wrong."
+            if self.waits
+            else self.opened
+        )
 
 
 def answer_of(catalog: Catalog, lesson: Lesson, script: Script, question: Question) -> str:

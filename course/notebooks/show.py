@@ -5,7 +5,11 @@ from __future__ import annotations
 import base64
 from dataclasses import dataclass
 from html import escape
+from pathlib import Path
 
+from course.catalog.blocks import Figure, walk_blocks
+from course.catalog.load import Catalog
+from course.catalog.markdown import read_blocks
 from course.figures.described import Plot
 from course.scoring.failures import Report, Section
 
@@ -17,10 +21,12 @@ class Picture:
     Attributes:
         name: its id.
         data: the PNG.
+        alt: what it shows, in words.
     """
 
     name: str
     data: bytes
+    alt: str
 
     def __repr__(self) -> str:
         return f"<figure {self.name}>"
@@ -28,19 +34,25 @@ class Picture:
     def _repr_png_(self) -> bytes:
         return self.data
 
+    def _repr_html_(self) -> str:
+        return _image(self.data, self.alt)
 
-def figure(name: str) -> Picture:
+
+def figure(name: str, lesson: str = "") -> Picture:
     """A figure of a lesson, drawn by the course's own code.
 
     Args:
         name: its id, as in the lesson.
+        lesson: the one that says in words what it shows.
 
     Raises:
-        NotFoundError: there is no figure of that name.
+        NotFoundError: there is no figure of that name, or no such lesson.
     """
     from course.figures.registry import png
 
-    return Picture(name, png(name))
+    blocks = walk_blocks(read_blocks(Path(Catalog().lesson(lesson).path))) if lesson else ()
+    said = (block.alt for block in blocks if isinstance(block, Figure) and block.id == name)
+    return Picture(name, png(name), next(said, ""))
 
 
 # ---
@@ -88,6 +100,9 @@ def image_of(plot: Plot) -> str:
     """A figure as HTML, with its description as alternative text."""
     from course.figures.plots import render
 
-    picture = base64.b64encode(render(plot)).decode()
-    described = escape(plot.description or plot.title)
-    return f'<img alt="{described}" style="max-width:100%" src="data:image/png;base64,{picture}">'
+    return _image(render(plot), plot.description or plot.title)
+
+
+def _image(png: bytes, described: str) -> str:
+    data = base64.b64encode(png).decode()
+    return f'<img alt="{escape(described)}" style="max-width:100%" src="data:image/png;base64,{data}">'

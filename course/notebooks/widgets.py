@@ -81,10 +81,14 @@ class Predict(Form):
     def _hear(self, message: Any) -> None:
         match message:
             case {"kind": "hello"} if self.asked.said is not None:
-                self.send({"kind": "kept"})
+                self.send({"kind": "kept", "waits": self.asked.waits})
             case {"kind": "predict", "text": str(text)}:
                 self.asked.say(text)
-                self.send({"kind": "kept"})
+                self.send({"kind": "kept", "waits": self.asked.waits})
+                self._open()
+            case {"kind": "judge", "word": str(word)}:
+                self.asked.judge(word)
+                self.send({"kind": "kept", "waits": self.asked.waits})
                 self._open()
 
     def _below(self) -> dict[str, str]:

@@ -40,6 +40,13 @@ format_version = {format_version}
 id = "{course_id}"
 version = "{version}"
 """
+_NOT_FOR_GIT = """\
+# What git need not keep: your progress and old copies, what Python and Jupyter leave, what you hand in.
+.course/
+__pycache__/
+.ipynb_checkpoints/
+*-submission.zip
+"""
 #: Bytes of a file that was handed out; the largest has a thirtieth.
 _MOST_GIVEN = 1 << 18
 _VERSION_LINE = re.compile(r'^(version\s*=\s*)"[^"\n]*"', re.MULTILINE)
@@ -96,6 +103,8 @@ class Workspace:
             root.mkdir(parents=True, exist_ok=True)
             (root / ".course").mkdir(exist_ok=True)
             _write_new(root / MARKER, text.encode())
+            with contextlib.suppress(FileExistsError):
+                _write_new(root / ".gitignore", _NOT_FOR_GIT.encode())
         except FileExistsError:
             raise UsageError(f"{root} is in the way.", help="Name another folder.", code="exists") from None
         except OSError as error:

@@ -23,6 +23,7 @@ from typing import Any, NoReturn
 
 from course.catalog.reading import LineMap, syntax_error_line
 from course.errors import UsageError
+from course.printable import counted
 from course.quizzing.bank import Bank, PosedQuestion
 from course.strangers import read_bytes, toml
 
@@ -65,7 +66,8 @@ class AnswerFile:
         if missing:
             self.fail(
                 "answers",
-                f"{_count(len(missing), 'answer')} missing: {', '.join(missing)}.",
+                f"{counted(len(missing), 'answer')} {'is' if len(missing) == 1 else 'are'} missing:"
+                f" {', '.join(missing)}.",
                 f'Add a line {missing[0]} = "..." under [answers]; a guess counts like any answer.',
                 "answers_missing",
             )
@@ -110,7 +112,8 @@ class AnswerFile:
 
     def _unknown_option(self, name: str, given: str, posed: PosedQuestion, bank: Bank, seed: int) -> NoReturn:
         options = ", ".join(f"{choice.letter} ({choice.id})" for choice in posed.choices)
-        if any(given == option.id for variant in _variants(bank, name) for option in variant.option):
+        variants = next(d.value.variant for d in bank.documents if d.value.id == name)
+        if any(given == option.id for variant in variants for option in variant.option):
             self.fail(
                 name,
                 f"{given!r} answers {name} as another seed asks it, not as seed {seed} does.",
@@ -232,11 +235,3 @@ def _syntax(path: Path, line: int, problem: str) -> UsageError:
         help='Write: seed = 42, then [answers] with lines like why-simulate = "b".',
         code="answers_format",
     )
-
-
-def _variants(bank: Bank, name: str) -> Sequence[Any]:
-    return next(d.value.variant for d in bank.documents if d.value.id == name)
-
-
-def _count(number: int, what: str) -> str:
-    return f"1 {what} is" if number == 1 else f"{number} {what}s are"

@@ -98,11 +98,7 @@ class PosedQuestion:
 
 
 class Bank:
-    """The questions of one course, in their order.
-
-    Args:
-        documents: the files as ``read_questions`` gives them.
-    """
+    """The questions of one course, in their order."""
 
     def __init__(self, documents: Sequence[Document[Question]]) -> None:
         self.documents = tuple(documents)

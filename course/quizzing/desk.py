@@ -31,7 +31,6 @@ def begun(bank: Bank, seed: int, version: str, record: Record) -> Attempt:
     """Record the beginning of an attempt.
 
     Args:
-        version: of the course's content.
         record: takes an event: kind, subject, data.
     """
     attempt = quiz.Attempt(

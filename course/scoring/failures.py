@@ -34,7 +34,6 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
 
     Attributes:
         bare: message and advice of the check itself, without its probe's diagnosis.
-        guess: its probe's diagnosis.
         broke: where the probe raised, for the check's author; empty if it did not.
         comparison: along time, if there was one.
     """
@@ -246,7 +245,6 @@ class Section:
     Attributes:
         text: paragraphs, separated by empty lines; lines that begin with "- " are items.
         columns, rows: a table; every cell is text with its unit.
-        plot: a figure.
     """
 
     title: str

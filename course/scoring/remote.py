@@ -201,26 +201,19 @@ class RemoteSubmission:
         return self._told(name, values)
 
     def fold(
-        self,
-        name: str,
-        state: Any,
-        calls: Iterable[Sequence[Any]],
-        *,
-        carry: int | None = None,
-        keep: Sequence[str] | None = None,
+        self, name: str, state: Any, calls: Iterable[Sequence[Any]], *, keep: Sequence[str] | None = None
     ) -> list[Any]:
         """Pass a state through ``name(state, *args)``, once for each sequence of arguments.
 
         Args:
-            carry: which element of a returned pair is the next state; None if the whole value is.
             keep: the keys to report of states that are dicts; the last state is complete.
 
         Returns:
-            The n + 1 states, the given one first; with ``carry``, the n complete returned values.
+            The n + 1 states, the given one first.
         """
         kept = None if keep is None else list(keep)
         with self._asking(name) as worker:
-            states = worker.fold(name, state, [list(args) for args in calls], carry, kept)
+            states = worker.fold(name, state, [list(args) for args in calls], kept)
         return self._told(name, states)
 
     def _kept(self, name: str, args: Sequence[Any]) -> tuple[Any, ...] | None:

@@ -252,11 +252,7 @@ def finite(value: Any) -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class Places:
-    """Lines of a file. A notebook has cells, and its own class for them.
-
-    Attributes:
-        module: name of the file whose functions are checked.
-    """
+    """Lines of a file. A notebook has cells, and its own class for them."""
 
     module: str = ""
 
@@ -358,8 +354,6 @@ def numbers_of(check: CheckResult) -> list[tuple[str, str]]:
         place = check.first_divergence
         when = f"step {place.step}, t = {format_value(place.t)} s"
         rows.append(("differs", f"{place.quantity}, first at {when}"))
-    if check.diagnosis:
-        rows.append(("diagnosis", check.diagnosis))
     return rows
 
 

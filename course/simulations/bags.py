@@ -337,7 +337,6 @@ _FOR_EVER = (9223372036, 854775807)
 
 
 def available() -> bool:
-    """Whether the extra is installed."""
     return extras.available("ros")
 
 
@@ -424,7 +423,6 @@ def read_bag(path: Path) -> tuple[Stream, ...]:
 
 
 def _rosbag2() -> Any:
-    """The module that writes and reads bags."""
     return extras.load("ros")
 
 

@@ -33,7 +33,6 @@ class Parameter:
         unit: "" for words, "1" for pure numbers.
         low, high: the range, both ends allowed. ``above``: the lower end itself is not.
         choices: the words that are allowed, for a parameter that is a word.
-        meaning: one line.
     """
 
     name: str
@@ -60,7 +59,6 @@ def step(default: float = 0.01, high: float = 1.0) -> Parameter:
 
 
 def duration(default: float, high: float = 1000.0) -> Parameter:
-    """How long to simulate."""
     return Parameter(
         "duration", default, "s", "how long to simulate; a whole number of steps", low=1e-5, high=high
     )
@@ -81,7 +79,6 @@ class Row:
     """One number that was measured, beside what theory says.
 
     Attributes:
-        quantity: its meaning, in a few words.
         simulated: measured in the simulation; NaN if it did not happen.
         unit: "1" for a pure number.
         theory: None where nothing is known in closed form, NaN if theory too says that it does not happen.
@@ -120,9 +117,7 @@ class Result:
     """The results of one run.
 
     Attributes:
-        simulation: its id.
         settings: every parameter with the value it had.
-        rows: measured beside theory.
         headline: the finding in at most 78 characters, for the head of a figure.
         finding: the finding in a sentence or two.
         columns: for ``--csv``: series of one length, the first one being the axis.
@@ -136,11 +131,9 @@ class Result:
     columns: tuple[Column, ...] = field(repr=False)
 
     def column(self, name: str) -> Array:
-        """The values of one column."""
         return next(column.values for column in self.columns if column.name == name)
 
     def row(self, quantity: str) -> Row:
-        """One row by its quantity."""
         return next(row for row in self.rows if row.quantity == quantity)
 
 
@@ -149,7 +142,6 @@ class Simulation:
     """A simulation that can be listed and run.
 
     Attributes:
-        id, title: ...
         question: what to predict before running it.
         teaches: its subject: a kind of simulation, or a factor of its accuracy.
         parameters: those that can be set.
@@ -165,11 +157,9 @@ class Simulation:
     run: Callable[[Mapping[str, Any]], Result]
 
     def parameter(self, name: str) -> Parameter | None:
-        """A parameter by name."""
         return next((parameter for parameter in self.parameters if parameter.name == name), None)
 
     def defaults(self) -> dict[str, Value]:
-        """Every parameter at its default."""
         return {parameter.name: parameter.default for parameter in self.parameters}
 
 

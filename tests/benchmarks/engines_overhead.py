@@ -73,7 +73,7 @@ def measure(engine: str, pairs: int) -> float:
     from course.engines.scenarios import boxes_scene
 
     adapter = load(engine)
-    world = adapter.build(boxes_scene(DT), {})
+    world = adapter(boxes_scene(DT), {})
     loop = own_loop(engine, world)
     loop(240)
 

@@ -188,7 +188,7 @@ def test_a_lesson_opens_with_figures_diagrams_and_mathematics(open_notebook: Any
             diagrams: document.querySelectorAll('.jp-RenderedMermaid img, .jp-RenderedMermaid svg').length,
             formulas: document.querySelectorAll('mjx-container').length,
             wrong: document.querySelectorAll('mjx-merror, .jp-RenderedMermaid.jp-mod-warning').length,
-            boxes: document.querySelectorAll('.alert').length,
+            boxes: document.querySelectorAll('blockquote').length,
             text: document.querySelector('.jp-Notebook').innerText,
         })"""
     )
@@ -212,13 +212,13 @@ def test_a_prediction_opens_its_answer(open_notebook: Any, notebooks: Path) -> N
     cell = page.locator(".jp-CodeCell", has_text="my_prediction_1").first
     field = cell.locator("textarea[aria-label='Your prediction']")
     field.wait_for()
-    assert cell.locator(".jp-OutputArea .alert-success").count() == 0
+    assert cell.locator(".jp-OutputArea blockquote").count() == 0
     field.fill("It grows without end")
     cell.get_by_role("button", name="Keep it and open the answer").click()
-    cell.locator(".jp-OutputArea .alert-success").wait_for()
+    cell.locator(".jp-OutputArea blockquote").wait_for()
     assert "It grows without end" in cell.locator(".jp-OutputArea").first.inner_text()
     cell.locator("textarea:disabled").wait_for()
-    shot(page, "prediction", ".jp-OutputArea .alert-success")
+    shot(page, "prediction", ".jp-OutputArea blockquote")
 
 
 @pytest.mark.soak

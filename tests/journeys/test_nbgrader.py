@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 
 from course.catalog.load import Catalog
+from course.handed_in.notebook import notebook_source
 from course.notebooks.build import pieces
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission
@@ -66,7 +67,13 @@ def test_nbgrader_makes_validates_and_grades_the_assignment(tmp_path: Path) -> N
 
     wrong = texts | {"rk4_step": texts["rk4_step"].replace("h / 6", "h / 5")}
     del wrong["integrate"]
-    for student, functions in (("ada", texts), ("bob", wrong)):
+    odd = {
+        "syntax": texts | {"rk4_step": "def rk4_step(:\n"},
+        "asks": texts | {"rk4_step": texts["rk4_step"] + "\nname = input('Who? ')"},
+        "copy": texts
+        | {"max_stable_step": texts["max_stable_step"] + "\n\n\ndef rk4_step(*_):\n    return 0"},
+    }
+    for student, functions in (("ada", texts), ("bob", wrong), *odd.items()):
         folder = tmp_path / "submitted" / student / "integrators"
         folder.mkdir(parents=True)
         (folder / "integrators.ipynb").write_bytes(filled(release, functions))
@@ -81,9 +88,14 @@ def test_nbgrader_makes_validates_and_grades_the_assignment(tmp_path: Path) -> N
     scores = recorded(tmp_path)
     with GradingSession(exercise, catalog) as session:
         full = session.grade(Submission({"integrators.py": solution.encode()}))
-    assert full.all_pass
-    assert scores["ada"] == pytest.approx(full.max_score)
-    assert 0 < scores["bob"] < scores["ada"]
+        assert full.all_pass
+        assert scores["ada"] == pytest.approx(full.max_score) == scores["asks"]
+        assert 0 < scores["bob"] < scores["ada"]
+        assert scores["syntax"] == pytest.approx(scores["copy"])
+        for student in odd:
+            handed_in = (tmp_path / "submitted" / student / "integrators" / "integrators.ipynb").read_bytes()
+            ours = session.grade(notebook_source(handed_in, exercise).submission(exercise))
+            assert scores[student] == pytest.approx(ours.score), student
 
 
 def recorded(site: Path) -> dict[str, float]:

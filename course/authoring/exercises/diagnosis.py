@@ -124,7 +124,6 @@ def digest(catalog: Catalog, exercise: Exercise) -> str:
 
 
 def table_of(catalog: Catalog, exercise: Exercise) -> Table:
-    """Compute the table of an exercise."""
     with _blamed(companion_path(exercise.id, "questions")):
         return _table_of(catalog, exercise)
 

@@ -47,7 +47,6 @@ def instructors(catalog: Catalog) -> tuple[Path, Path]:
 
 
 def solutions_folder(catalog: Catalog, exercise: Exercise) -> Path:
-    """Where the solutions of an exercise lie."""
     return instructors(catalog)[0] / exercise.place
 
 
@@ -57,7 +56,6 @@ def exercise_graders(catalog: Catalog, exercise: Exercise) -> Path:
 
 
 def solution_path(catalog: Catalog, exercise: Exercise) -> Path:
-    """The model solution."""
     return solutions_folder(catalog, exercise) / exercise.module
 
 
@@ -319,12 +317,11 @@ class LocalSubmission:
             raise overwritten(name)
         return [_plain(value) for value in values]
 
-    def fold(self, name: str, state: Any, calls: Any, *, carry: int | None = None, keep: Any = None) -> Any:
-        """Pass a state through the student's function."""
+    def fold(self, name: str, state: Any, calls: Any, *, keep: Any = None) -> Any:
         function = self._function(name)
         escaped: list[BaseException] = []
         given = [[_given(arg, escaped) for arg in args] for args in calls]
-        values, last = self._loop(lambda: loops.fold(function, _plain(state), given, carry, keep), escaped)
+        values, last = self._loop(lambda: loops.fold(function, _plain(state), given, keep), escaped)
         return [_plain(value) for value in (values if keep is None else [*values[:-1], last])]
 
     def ref(self, name: str) -> Any:

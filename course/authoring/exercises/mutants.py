@@ -36,7 +36,6 @@ class MutantOutcome:
         caught_by: ids of the checks that did not pass, in order.
         diagnosis: the diagnosis of the check it names; None if that check passed.
         message, help: what the student would read there.
-        lost: points lost.
         faults: empty if everything is as declared.
     """
 
@@ -50,7 +49,6 @@ class MutantOutcome:
 
 
 def mutant_path(catalog: Catalog, exercise: Exercise, mutant: Mutant) -> Path:
-    """The file of a mutant."""
     return solutions_folder(catalog, exercise) / "mutants" / mutant.file
 
 

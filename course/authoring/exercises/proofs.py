@@ -47,8 +47,6 @@ class Proof:
 
     Attributes:
         role: "stub", "solution", "accepted" or "mutant".
-        path: the file it is about.
-        source: the submission.
         mutant, entry_lines: the entry in mutants.toml and the lines of its keys.
     """
 

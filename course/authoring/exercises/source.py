@@ -48,7 +48,6 @@ class CheckSource:
         title: first line of its docstring; empty if there is none.
         task, points: what its markers say; None where a marker is missing or is not written as a plain value.
         requires: ids of the checks it depends on.
-        hidden: True for a grader, False for a public check.
         indirect: names of markers whose values are known only when the file runs.
     """
 
@@ -64,7 +63,6 @@ class CheckSource:
 
 
 def parse(path: Path) -> ast.Module:
-    """The syntax tree of a Python file."""
     text = read_text(path)
     try:
         return ast.parse(text, filename=str(path))
@@ -106,7 +104,6 @@ def foreign_imports(tree: ast.Module, allowed: tuple[str, ...]) -> Iterator[tupl
 
 
 def checks_in(path: Path, tree: ast.Module, *, hidden: bool) -> tuple[CheckSource, ...]:
-    """The checks of a file, in order."""
     return tuple(
         _check(node, path, hidden=hidden)
         for node in tree.body

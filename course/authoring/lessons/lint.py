@@ -52,8 +52,6 @@ class Finding:
 
     Attributes:
         line: line of the file, counted from 1; 0 when something is missing altogether.
-        problem: what is wrong.
-        fix: what to do about it.
     """
 
     line: int
@@ -67,7 +65,6 @@ def rules_broken(
     """Everything wrong with a lesson, in the order of its lines.
 
     Args:
-        blocks: the lesson.
         figures: the ids of those it may show.
         whole: it is to have all that docs/lesson-format.md says every lesson has.
     """

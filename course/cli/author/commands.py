@@ -228,7 +228,6 @@ def load_catalog() -> Catalog:
 
 
 def shown(path: Path, catalog: Catalog) -> str:
-    """A path relative to the checkout."""
     root = catalog.content.root
     return path.relative_to(root).as_posix() if path.is_relative_to(root) else str(path)
 

@@ -126,10 +126,6 @@ def _until_fixed(text: str) -> str:
     return text.partition("3. What the mistake hid")[0].rstrip()
 
 
-def _diagnosis_source() -> bytes:
-    return _until_fixed(_run("demo", "--plain")).encode()
-
-
 def _diagnosis() -> bytes:
     """The screen as SVG; the same output gives the same bytes."""
     import io
@@ -172,6 +168,6 @@ def _film() -> bytes:
 
 #: Each picture: what it is made from, and how.
 PICTURES: dict[str, tuple[Callable[[], bytes], Callable[[], bytes]]] = {
-    "diagnosis.svg": (_diagnosis_source, _diagnosis),
+    "diagnosis.svg": (lambda: _until_fixed(_run("demo", "--plain")).encode(), _diagnosis),
     "sandbox.gif": (_film_source, _film),
 }

@@ -22,7 +22,6 @@ _STATUS = {
 
 
 def show(console: Console, comparison: Comparison, findings: Sequence[str]) -> None:
-    """A whole comparison, for a person."""
     best = best_rows(comparison.rows)
     for scenario in SCENARIOS.values():
         rows = [row for row in comparison.rows if row.scenario == scenario.id]

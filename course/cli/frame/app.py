@@ -37,7 +37,6 @@ _GARBAGE = 50_000
 
 
 def main() -> NoReturn:
-    """The ``course`` command."""
     gc.set_threshold(_GARBAGE, 20, 20)
     _end_as_after_ctrl_c()
     if "_COURSE_COMPLETE" in os.environ:

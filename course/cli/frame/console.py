@@ -108,7 +108,6 @@ def bare(piece: Piece) -> str:
 
 
 def rich_text(pieces: Sequence[Piece]) -> Text:
-    """Pieces as one Rich text."""
     from rich.text import Text
 
     text = Text()
@@ -156,13 +155,7 @@ class Settings:
 
 
 class Console:
-    """Prints in the shape that this run asks for.
-
-    Args:
-        settings: the global options.
-        stdout, stderr: where to; the process's own by default.
-        environ: the environment; the process's own by default.
-    """
+    """Prints in the shape that this run asks for."""
 
     def __init__(
         self,
@@ -237,12 +230,10 @@ class Console:
 
     @property
     def terminal_width(self) -> int:
-        """Columns of the terminal, or the value of COLUMNS."""
         return shutil.get_terminal_size().columns
 
     @property
     def height(self) -> int:
-        """Lines of the terminal, or the value of LINES."""
         return shutil.get_terminal_size().lines
 
     def _is_fancy(self) -> bool:
@@ -540,7 +531,6 @@ class Console:
             status.stop()
 
     def flush(self) -> None:
-        """Flush everything."""
         self._out.flush()
         self._err.flush()
 
@@ -556,7 +546,6 @@ def install(console: Console) -> Console:
 
 
 def current() -> Console:
-    """The console of this run."""
     return _installed if _installed is not None else install(Console())
 
 

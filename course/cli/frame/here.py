@@ -54,7 +54,6 @@ class Here:
 
     @cached_property
     def course(self) -> CourseRef:
-        """The course's id and version, for replies."""
         return self.catalog.ref
 
     def exercise(self, wanted: str | None) -> Exercise:
@@ -155,7 +154,6 @@ class Here:
         return exercise.stub_path.read_bytes() if given is None else given
 
     def history(self, exercise: Exercise) -> History:
-        """The recorded history of an exercise."""
         return history_of(self.workspace.store.events(subject=exercise.id))
 
     def standing(self) -> Standing:
@@ -199,7 +197,6 @@ class Here:
 
 
 def cwd() -> Path:
-    """The current folder."""
     try:
         return Path.cwd()
     except OSError:
@@ -209,7 +206,6 @@ def cwd() -> Path:
 
 
 def load_catalog() -> Catalog:
-    """The course in use."""
     from course.catalog.load import Catalog
 
     return Catalog()

@@ -22,7 +22,6 @@ class Line:
     """A command line taken apart.
 
     Attributes:
-        settings: the global options.
         rest: everything else, in order.
         version: ``--version`` was given.
         problem: what is wrong with the global options; empty if nothing is. It is reported later, by the

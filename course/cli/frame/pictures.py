@@ -106,8 +106,6 @@ class InlinePicture:
     """A PNG that Rich can print.
 
     Args:
-        png: the file's bytes.
-        protocol: how to send it.
         columns: width on the screen; the height follows.
         letter: pixels in a column's width, which only sixels need.
     """
@@ -190,12 +188,7 @@ _LEAST = 12  # columns that are left for it, however far in the line begins
 
 
 class Code:
-    """Code to be printed with Rich.
-
-    Args:
-        source: the code.
-        language: a name that Pygments knows.
-    """
+    """Code to be printed with Rich."""
 
     def __init__(self, source: str, language: str = "python") -> None:
         self._source = source.rstrip("\n").expandtabs(4)

@@ -37,7 +37,6 @@ class Entry:
         module, name: where it is: a function, or ``app``, a group of commands.
         panel: the heading it is listed under.
         summary: one line for lists.
-        example: a line to copy.
     """
 
     module: str

@@ -30,7 +30,20 @@ from course.cli.grade.options import (
     show_roster,
 )
 from course.cli.grade.options import points as _points
-from course.cli.grade.replies import AssignedOne, LateOne, UnsettledOne
+from course.cli.grade.replies import (
+    AssignedOne,
+    FoundFile,
+    GradeAssign,
+    GradeLate,
+    GradeLog,
+    GradeRerun,
+    GradeSalvage,
+    GradeSimilar,
+    LateOne,
+    SimilarGroup,
+    SimilarPair,
+    UnsettledOne,
+)
 from course.cli.grade.running import checks_gave
 from course.errors import InternalError, UsageError
 from course.grading.exports.grades import grade_line, utc, write_bytes
@@ -39,7 +52,7 @@ from course.grading.gradebook.records import Decision, SubmittedAt
 from course.grading.gradebook.salvage import Salvaged, back_up
 from course.grading.gradebook.salvage import salvage as rescue
 from course.grading.results import effective as overriding
-from course.grading.results.effective import Effective, Results, ScoreChange
+from course.grading.results.effective import Effective, Recording, Results, ScoreChange, recorded
 from course.grading.results.late import (
     Worksheet,
     in_days,
@@ -50,9 +63,14 @@ from course.grading.results.late import (
 )
 from course.grading.results.merge import merged
 from course.grading.results.roster import Roster, read_roster
+from course.grading.running import assign as assigning
 from course.grading.running.assign import Assigned, Unsettled
-from course.grading.running.rerun import Regraded
-from course.grading.similar import Similar, page
+from course.grading.running.batch import grade_all
+from course.grading.running.folder import export_all, open_results, previewed
+from course.grading.running.rerun import Regraded, RerunOptions
+from course.grading.running.rerun import rerun as regrade
+from course.grading.similar import Similar, compare, page
+from course.isolation.launch import private_folder, remove_tree
 from course.printable import command, counted, one_line
 from course.scoring.verdict import format_points, in_points
 
@@ -78,12 +96,6 @@ def rerun(
     whose score changes, by how much and because of which check. The submissions are in the gradebook; old
     results stay beside the new ones, and overrides still count.
     """
-    from course.cli.grade.replies import GradeRerun
-    from course.grading.running.batch import grade_all
-    from course.grading.running.folder import open_results
-    from course.grading.running.rerun import RerunOptions
-    from course.grading.running.rerun import rerun as regrade
-
     console = current()
     level, at_least = levels(isolation)
     options = RerunOptions(dry_run, everything, level, at_least, timeout, against, reason)
@@ -134,8 +146,6 @@ def override(
     It counts in place of the graders' score in every export and report, whatever is graded later, and no late
     penalty touches it.
     """
-    from course.grading.running.folder import open_results, previewed
-
     if (score is None) != lift:
         raise UsageError(
             "Give either --score and --reason, or --lift.", help="See `course grade override -h`."
@@ -185,10 +195,6 @@ def late(
     The policy is kept in the gradebook and applied at every export; the scores of the checks never change.
     Without options it shows the present policy.
     """
-    from course.cli.grade.replies import GradeLate
-    from course.grading.results.effective import Recording, recorded
-    from course.grading.running.folder import open_results, previewed
-
     if policy is not None and clear:
         raise UsageError("--policy and --clear do not go together.", help="Give one of them.")
     console = current()
@@ -300,8 +306,6 @@ def _everybody(results: Results) -> set[str]:
 
 
 def _late_one(item: Effective) -> LateOne:
-    from course.cli.grade.replies import LateOne
-
     return filled(LateOne, item, submitted_at=utc(item.submitted_at) or None)
 
 
@@ -342,10 +346,6 @@ def similar(
     Writes a page that shows them side by side. Everything happens on this machine. Names, comments and
     layout do not count, and neither does the stub. Similarity is a reason to talk with students, not a proof.
     """
-    from course.cli.grade.replies import GradeSimilar, SimilarGroup, SimilarPair
-    from course.grading.running.folder import open_results
-    from course.grading.similar import compare
-
     console = current()
     catalog = load_catalog()
     with open_results(out) as results, console.working("Comparing"):
@@ -415,11 +415,6 @@ def assign(
     Without STUDENT it lists the students without a submission, the files there are for each, the functions
     that each file defines, and the proposed match. No file is renamed; who decided, when and why is kept.
     """
-    from course.cli.grade.replies import GradeAssign
-    from course.grading.running import assign as assigning
-    from course.grading.running.batch import grade_all
-    from course.grading.running.folder import open_results, previewed
-
     if (student is None) != (file is None) or (student is not None and accept_names):
         raise UsageError(
             "Give STUDENT and FILE, or --accept-names, or neither for a list.",
@@ -459,8 +454,6 @@ def assign(
 
 
 def _assigned_one(item: Assigned) -> AssignedOne:
-    from course.cli.grade.replies import AssignedOne
-
     one, before = item.assignment, item.before
     return filled(
         AssignedOne,
@@ -474,8 +467,6 @@ def _assigned_one(item: Assigned) -> AssignedOne:
 
 
 def _unsettled_one(item: Unsettled) -> UnsettledOne:
-    from course.cli.grade.replies import FoundFile, UnsettledOne
-
     files = tuple(filled(FoundFile, one, file=one.name) for one in item.found.candidates)
     return filled(UnsettledOne, item, reason=item.found.reason, files=files)
 
@@ -529,9 +520,6 @@ def log(
     exercise: Annotated[str | None, argument("EXERCISE", complete=exercise_ids)] = None,
 ) -> int:
     """List every run and every change of a grade: who, when, why, and what it was before."""
-    from course.cli.grade.replies import GradeLog
-    from course.grading.running.folder import open_results
-
     console = current()
     with open_results(out) as results:
         results.verify()
@@ -568,10 +556,6 @@ def salvage(
     Everything goes into a new folder; the damaged file and its backups stay unchanged. The exit code is 0
     if nothing is known to be lost, else 6 with a list; `course grade run --resume` grades what is missing.
     """
-    from course.cli.grade.replies import GradeSalvage
-    from course.grading.running.folder import export_all
-    from course.isolation.launch import private_folder, remove_tree
-
     console = current()
     if to.exists():
         raise UsageError(
@@ -603,8 +587,6 @@ def salvage(
 
 
 def _show_salvaged(console: Console, told: Salvaged, to: Path, *, dry_run: bool) -> None:
-    from course.grading.running.folder import open_results
-
     for name in ("results", "submissions", "overrides", "journal", "snapshots"):
         backed = told.from_backup[name]
         words = f"{told.rows[name]}" + (f", {backed} of them from a backup" if backed else "")

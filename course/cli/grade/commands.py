@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 from pathlib import Path
 from typing import Annotated
 
@@ -12,6 +13,7 @@ from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import filled
 from course.cli.grade.changing import assign, late, log, override, rerun, salvage, similar
 from course.cli.grade.options import Exercises, Missing, moved_scores, one_of, show_roster
+from course.cli.grade.replies import GradeExport
 from course.cli.grade.running import explain, run
 from course.errors import CourseError, UsageError
 from course.grading.container import write_autograder
@@ -22,6 +24,7 @@ from course.grading.exports.selection import ExportOptions, Written, select
 from course.grading.results.effective import Results, counting, moved
 from course.grading.results.merge import Merged, merged
 from course.grading.results.roster import Roster, read_roster
+from course.grading.running.folder import open_results, remember
 from course.printable import command, one_line
 from course.scoring.verdict import LARGEST_SEED
 
@@ -102,8 +105,6 @@ def _from_gradebook(
     options: ExportOptions,
 ) -> tuple[Written | None, Merged]:
     """Write it, and say first what the roster changes; nothing is written if it was printed."""
-    from course.grading.running.folder import open_results, remember
-
     with open_results(out) as opened:
         found, results = Merged(opened.roster or Roster(())), opened
         if people is not None:
@@ -155,10 +156,6 @@ def _assignments(given: list[str]) -> dict[str, str]:
 def _autograder(
     out: Path | None, output: Path | None, exercises: tuple[str, ...], seed: int | None, timeout: float
 ) -> Written:
-    import secrets
-
-    from course.grading.running.folder import open_results
-
     catalog = load_catalog()
     chosen = tuple(catalog.exercise(name) for name in exercises) or catalog.exercises()
     if out is not None and seed is None:
@@ -174,8 +171,6 @@ def _autograder(
 
 def _show(console: Console, name: str, written: Written, out: Path | None, found: Merged) -> None:
     if console.json:
-        from course.cli.grade.replies import GradeExport
-
         paths = tuple(map(str, written.paths))
         console.emit(filled(GradeExport, written, found, format=name, paths=paths))
         return

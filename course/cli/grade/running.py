@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from course import extras
 from course.catalog.load import Catalog
@@ -32,6 +32,7 @@ from course.cli.grade.options import (
     show_change,
     show_roster,
 )
+from course.cli.grade.replies import GradeSummary
 from course.cli.work.verdict import show_everything
 from course.errors import INTERRUPTED, CourseError, NotFoundError, UsageError
 from course.grading.exports.grades import grade_line
@@ -39,13 +40,13 @@ from course.grading.gradebook.records import Decision, Result
 from course.grading.results.effective import MISSING, NOT_YET, Effective
 from course.grading.results.late import in_days
 from course.grading.results.roster import read_roster
-from course.grading.running.rerun import Change
+from course.grading.running.batch import grade_all
+from course.grading.running.folder import open_results
+from course.grading.running.rerun import Change, RerunOptions, rerun
+from course.grading.running.run import GradeAll, RunOptions, Summary, Ungraded, grade_class
 from course.printable import command, one_line
 from course.scoring.judging.submission import Terms
 from course.scoring.verdict import LARGEST_SEED, format_points, in_points
-
-if TYPE_CHECKING:
-    from course.grading.running.run import GradeAll, RunOptions, Summary, Ungraded
 
 _MOST_TROUBLED = 20
 
@@ -75,8 +76,6 @@ def run(
     every submission was graded, whatever the scores; 6 if some could not be graded, and then each of these is
     listed with the reason.
     """
-    from course.grading.running.run import RunOptions, grade_class
-
     console = current()
     _only_one_way(jobs, local_cluster, scheduler)
     level, at_least = levels(isolation)
@@ -118,9 +117,6 @@ def _would_change(
     console: Console, summary: Summary, out: Path, catalog: Catalog, terms: Terms, grade: GradeAll
 ) -> tuple[Change, ...]:
     """The students who would get another score from the present graders, which a resumed run does not use."""
-    from course.grading.running.folder import open_results
-    from course.grading.running.rerun import RerunOptions, rerun
-
     if not summary.edited:
         return ()
     options = RerunOptions(dry_run=True, level=terms.level, at_least=terms.at_least)
@@ -158,8 +154,6 @@ def _only_one_way(jobs: int, local_cluster: int | None, scheduler: str | None) -
 
 def _graders(jobs: int, local_cluster: int | None, scheduler: str | None) -> AbstractContextManager[GradeAll]:
     """The graders: processes on this machine, or a cluster."""
-    from course.grading.running.batch import grade_all
-
     if local_cluster is None and scheduler is None:
         return nullcontext(partial(grade_all, graders=jobs))
     cluster: AbstractContextManager[GradeAll] = (
@@ -195,8 +189,6 @@ def explain(
     exercise: Annotated[str, argument("EXERCISE", complete=exercise_ids)],
 ) -> int:
     """Show everything about one result, expected values included: for the instructor, not the student."""
-    from course.grading.running.folder import open_results
-
     catalog = load_catalog()
     with open_results(out) as results:
         results.verify()
@@ -284,8 +276,6 @@ def _show_summary(
     console: Console, summary: Summary, out: Path, options: RunOptions, changes: tuple[Change, ...]
 ) -> None:
     if console.json:
-        from course.cli.grade.replies import GradeSummary
-
         console.emit_line(
             filled(
                 GradeSummary,

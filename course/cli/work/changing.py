@@ -5,6 +5,7 @@ Every replaced file is copied to ``.course/backups`` first, and the copy's path 
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,13 +14,16 @@ from typing import Annotated
 from course.catalog.models import Exercise
 from course.cli.frame.completion import ExerciseName, OneExercise, exercise_ids
 from course.cli.frame.console import Console, current
-from course.cli.frame.here import Here
+from course.cli.frame.here import Here, write
 from course.cli.frame.options import argument, option
 from course.cli.frame.replies import Backup, FileReply, NextStep
 from course.cli.work.checking import report_source_file
 from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.replies import Change, Diff, Reset, Start, Update
 from course.errors import NotFoundError, UsageError
+from course.handed_in.cells import read_notebook
+from course.notebooks.build import WORKSPACE, Generated, generate
+from course.notebooks.merge import CannotMergeError, is_untouched, merged
 from course.progress.workspace import same_text, write_atomically
 
 
@@ -103,7 +107,8 @@ def update(
     """Bring newer course content in.
 
     For exercises you started: a file that you never edited is replaced (a copy is kept). A file that you
-    edited stays, and the newer one is put beside it as NAME.new.
+    edited stays, and the newer one is put beside it as NAME.new. In a notebook the newer text is put around
+    your work.
     """
 
     console, here = current(), Here.load()
@@ -111,7 +116,7 @@ def update(
     changes = tuple(_updates(here, dry_run=dry_run))
     for change in changes:
         console.line(_sentence(here, change, dry_run=dry_run))
-    if not any(change.action in {"replace", "beside"} for change in changes):
+    if not any(change.action in {"replace", "beside", "merge"} for change in changes):
         console.line("Everything here is up to date with the installed course.")
     elif dry_run:
         console.note("Nothing was changed. To do it: course update")
@@ -137,6 +142,21 @@ def _updates(here: Here, *, dry_run: bool) -> Iterator[Change]:
     for exercise in (*here.started(), *here.warm_ups_started()):
         for source in exercise.given:
             yield _update_file(here, exercise, source.name, source.read_bytes(), dry_run=dry_run)
+    for notebook in generate(here.catalog, layout=WORKSPACE, there=here.workspace.root):
+        yield _update_notebook(here, notebook, dry_run=dry_run)
+
+
+def _update_notebook(here: Here, notebook: Generated, *, dry_run: bool) -> Change:
+    """The same for a notebook, in which newer text is put around the student's work."""
+    path, new, action = here.workspace.root / notebook.path, notebook.data, "beside"
+    mine = read_notebook(path)
+    with contextlib.suppress(CannotMergeError):
+        new = merged(mine, notebook.data)
+        action = "current" if new == mine else "replace" if is_untouched(mine) else "merge"
+    to = path.with_name(f"{path.stem}.new.ipynb") if action == "beside" else path
+    kept = None if dry_run or action == "current" else write(to, new, why="update").backup
+    beside = str(to) if action == "beside" else None
+    return Change(path=str(path), action=action, new=beside, backup=kept.backup if kept else None)
 
 
 def _update_file(here: Here, exercise: Exercise, name: str, new: bytes, *, dry_run: bool) -> Change:
@@ -176,6 +196,8 @@ def _sentence(here: Here, change: Change, *, dry_run: bool) -> str:
     if change.action == "replace":
         verb = "would be replaced" if dry_run else "was replaced"
         return f"{name}: {verb} by the newer one; you had not edited it.{kept}"
+    if change.action == "merge":
+        return f"{name}: newer text {'would be' if dry_run else 'was'} put around your work.{kept}"
     if change.action == "beside":
         verb = "would be put" if dry_run else "is"
         beside = here.workspace.shown(Path(change.new or ""))

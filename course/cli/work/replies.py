@@ -157,8 +157,9 @@ class Reset(Envelope, tag="course.reset/1", frozen=True, kw_only=True):
 class Change(msgspec.Struct, frozen=True):
     """The action of ``update`` on one file.
 
-    ``action`` is "replace" (it was never edited), "beside" (it was: the new one is at ``new``), "current"
-    (already so) or "missing" (removed by the student, and left so).
+    ``action`` is "replace" (it was never edited), "beside" (it was: the new one is at ``new``), "merge" (a
+    notebook: newer text was put around the student's work), "current" (already so) or "missing" (removed by
+    the student, and left so).
     """
 
     path: str

@@ -303,8 +303,11 @@ class _Page:
             row = max(self._console.width, _USUAL) - _BESIDE  # a narrow window must not hide two numbers
             if self._brief and not self._verbose and len(text) > _SHORT * row:
                 self._shortened = True
-            elif label != "diagnosis" or check.help not in self._said:
+            else:
                 self._console.item(label, text, style="dim", indent=_DETAIL_INDENT, width=_LABEL_WIDTH)
+        if check.diagnosis and self._verbose:  # the name of a mistake tells its student nothing
+            place = {"indent": _DETAIL_INDENT, "width": _LABEL_WIDTH}
+            self._console.item("diagnosis", check.diagnosis, style="dim", **place)
         self._said.add(check.help)
         self._printed(check)
         if check.traceback and self._verbose:
@@ -440,7 +443,7 @@ def _words(check: CheckResult) -> Iterator[str]:
     yield check.message or f"This check ended in: {check.status}."
     if check.help:
         yield check.help
-    yield from (f"{label}: {text}" for label, text in numbers_of(check) if label != "diagnosis")
+    yield from (f"{label}: {text}" for label, text in numbers_of(check))
 
 
 def unread_line(source: bytes | str) -> int:

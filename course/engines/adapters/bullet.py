@@ -15,7 +15,7 @@ import numpy as np
 from panda3d import bullet
 from panda3d.core import BitMask32, ConfigVariableBool, ConfigVariableInt, NodePath, Point3, Vec3
 
-from course.engines.base import Adapter, Body, Motion, Scene
+from course.engines.base import Body, Motion, Scene
 
 #: The package's own default.
 _ITERATIONS = 10
@@ -91,20 +91,17 @@ class BulletWorld:
         self.world.attach(joint)
 
     def step(self, n: int = 1) -> None:
-        """See ``World``."""
         advance, dt = self.world.doPhysics, self._dt
         for _ in range(n):
             advance(dt, 0, dt)
 
     def motion(self) -> Motion:
-        """See ``World``."""
         x = [tuple(node.getTransform().getPos()) for node in self.bodies]
         v = [tuple(node.getLinearVelocity()) for node in self.bodies]
         w = [tuple(node.getAngularVelocity()) for node in self.bodies]
         return Motion(np.array(x, dtype=float), np.array(v, dtype=float), np.array(w, dtype=float))
 
     def contacts(self) -> tuple[int, float]:
-        """See ``World``."""
         depths = [
             -point.getDistance()
             for manifold in self.world.getManifolds()
@@ -114,4 +111,4 @@ class BulletWorld:
         return len(depths), max(depths, default=0.0)
 
 
-ADAPTER = Adapter(BulletWorld)
+ADAPTER = BulletWorld

@@ -13,7 +13,7 @@ from typing import Any
 import dartpy as dart
 import numpy as np
 
-from course.engines.base import Adapter, Body, Motion, Scene
+from course.engines.base import Body, Motion, Scene
 
 
 class DartWorld:
@@ -96,20 +96,17 @@ class DartWorld:
         return links
 
     def step(self, n: int = 1) -> None:
-        """See ``World``."""
         step = self.world.step
         for _ in range(n):
             step()
 
     def motion(self) -> Motion:
-        """See ``World``."""
         x = np.array([node.getCOM() for node in self.bodies]).reshape(-1, 3)
         v = np.array([node.getCOMLinearVelocity() for node in self.bodies]).reshape(-1, 3)
         w = np.array([node.getAngularVelocity() for node in self.bodies]).reshape(-1, 3)
         return Motion(x, v, w)
 
     def contacts(self) -> tuple[int, float]:
-        """See ``World``."""
         found = self.world.getLastCollisionResult().getContacts()
         depths = [contact.penetrationDepth for contact in found]
         return len(depths), max(depths, default=0.0)
@@ -119,4 +116,4 @@ def _inertia(body: Body) -> Any:
     return dart.dynamics.Inertia(body.mass, np.zeros(3), np.eye(3) * body.inertia)
 
 
-ADAPTER = Adapter(DartWorld)
+ADAPTER = DartWorld

@@ -15,7 +15,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from course.engines.base import Adapter, Motion, Scene
+from course.engines.base import Motion, Scene
 
 
 class MujocoWorld:
@@ -31,11 +31,9 @@ class MujocoWorld:
         mujoco.mj_forward(self.model, self.data)
 
     def step(self, n: int = 1) -> None:
-        """See ``World``."""
         mujoco.mj_step(self.model, self.data, n)
 
     def motion(self) -> Motion:
-        """See ``World``."""
         model, data = self.model, self.data
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
@@ -46,7 +44,6 @@ class MujocoWorld:
         return Motion(data.xipos[1:].copy(), twist[:, 3:], twist[:, :3])
 
     def contacts(self) -> tuple[int, float]:
-        """See ``World``."""
         depths = [-float(contact.dist) for contact in self.data.contact if contact.dist <= 0.0]
         return len(depths), max(depths, default=0.0)
 
@@ -130,4 +127,4 @@ def _join(values: Any) -> str:
     return " ".join(repr(float(value)) for value in values)
 
 
-ADAPTER = Adapter(MujocoWorld)
+ADAPTER = MujocoWorld

@@ -16,7 +16,7 @@ import numpy as np
 from panda3d import ode
 from panda3d.core import Quat, Vec4
 
-from course.engines.base import Adapter, Body, Motion, Scene
+from course.engines.base import Body, Motion, Scene
 
 #: The maximum number of points between two bodies; two cubes face to face have at most eight.
 _POINTS = 8
@@ -88,7 +88,6 @@ class OdeWorld:
         return joint
 
     def step(self, n: int = 1) -> None:
-        """See ``World``."""
         collide, advance, dt = self.space.autoCollide, self._advance, self._dt
         empty = self._joints_of_contacts.empty
         for _ in range(n):
@@ -97,7 +96,6 @@ class OdeWorld:
             empty()
 
     def motion(self) -> Motion:
-        """See ``World``."""
         x, v, w = (
             np.array([tuple(read(body)) for body in self.bodies], dtype=float)
             for read in (ode.OdeBody.getPosition, ode.OdeBody.getLinearVel, ode.OdeBody.getAngularVel)
@@ -116,4 +114,4 @@ class OdeWorld:
         return len(depths), max(depths, default=0.0)
 
 
-ADAPTER = Adapter(OdeWorld)
+ADAPTER = OdeWorld

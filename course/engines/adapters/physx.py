@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from course.engines.base import Adapter, Body, Motion, Scene
+from course.engines.base import Body, Motion, Scene
 
 with warnings.catch_warnings():
     # It looks for Vulkan, which draws; nothing is drawn here.
@@ -115,20 +115,17 @@ class PhysxWorld:
         return entity
 
     def step(self, n: int = 1) -> None:
-        """See ``World``."""
         step = self.system.step
         for _ in range(n):
             step()
 
     def motion(self) -> Motion:
-        """See ``World``."""
         x = np.array([body.entity_pose.p for body in self.bodies], dtype=float)
         v = np.array([body.linear_velocity for body in self.bodies], dtype=float)
         w = np.array([body.angular_velocity for body in self.bodies], dtype=float)
         return Motion(x, v, w)
 
     def contacts(self) -> tuple[int, float]:
-        """See ``World``."""
         depths = [
             -point.separation
             for contact in self.system.get_contacts()
@@ -142,4 +139,4 @@ class PhysxWorld:
 _FLOOR = sapien.Pose(q=[0.7071067811865476, 0.0, -0.7071067811865476, 0.0])
 
 
-ADAPTER = Adapter(PhysxWorld)
+ADAPTER = PhysxWorld

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pybullet as p
 
-from course.engines.base import Adapter, Body, Motion, Scene
+from course.engines.base import Body, Motion, Scene
 
 
 class PybulletWorld:
@@ -114,13 +114,11 @@ class PybulletWorld:
         return [(made, link) for link in range(n)]
 
     def step(self, n: int = 1) -> None:
-        """See ``World``."""
         step, server = p.stepSimulation, self._server
         for _ in range(n):
             step(physicsClientId=server)
 
     def motion(self) -> Motion:
-        """See ``World``."""
         x, v, w = [], [], []
         for body, link in self.parts:
             if link < 0:
@@ -141,7 +139,6 @@ class PybulletWorld:
         return Motion(np.array(x), np.array(v), np.array(w))
 
     def contacts(self) -> tuple[int, float]:
-        """See ``World``."""
         points = p.getContactPoints(physicsClientId=self._server) or ()
         depths = [-point[8] for point in points if point[8] <= 0.0]
         return len(depths), max(depths, default=0.0)
@@ -151,4 +148,4 @@ class PybulletWorld:
             p.disconnect(self._server)
 
 
-ADAPTER = Adapter(PybulletWorld)
+ADAPTER = PybulletWorld

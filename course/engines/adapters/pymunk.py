@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from course.engines.base import Adapter, Body, Motion, NotApplicableError, Scene, Wall
+from course.engines.base import Body, Motion, NotApplicableError, Scene, Wall
 
 
 class PymunkWorld:
@@ -70,20 +70,17 @@ class PymunkWorld:
         self.space.add(shape)
 
     def step(self, n: int = 1) -> None:
-        """See ``World``."""
         step, dt = self.space.step, self._dt
         for _ in range(n):
             step(dt)
 
     def motion(self) -> Motion:
-        """See ``World``."""
         x = np.array([(b.position.x, 0.0, b.position.y) for b in self.bodies])
         v = np.array([(b.velocity.x, 0.0, b.velocity.y) for b in self.bodies])
         w = np.array([(0.0, -b.angular_velocity, 0.0) for b in self.bodies])
         return Motion(x, v, w)
 
     def contacts(self) -> tuple[int, float]:
-        """See ``World``."""
         points: dict[Any, float] = {}
 
         def note(arbiter: pymunk.Arbiter) -> None:
@@ -96,4 +93,4 @@ class PymunkWorld:
         return len(touching), max(touching, default=0.0)
 
 
-ADAPTER = Adapter(PymunkWorld)
+ADAPTER = PymunkWorld

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import rapier3d as rapier
 
-from course.engines.base import Adapter, Body, Motion, Scene
+from course.engines.base import Body, Motion, Scene
 
 
 class RapierWorld:
@@ -79,13 +79,11 @@ class RapierWorld:
             parent, base = handle, body.position
 
     def step(self, n: int = 1) -> None:
-        """See ``World``."""
         step = self.world.step
         for _ in range(n):
             step()
 
     def motion(self) -> Motion:
-        """See ``World``."""
         get = self.world.rigid_bodies.get
         bodies = [get(handle) for handle in self.handles]
         x, v, w = (
@@ -99,7 +97,6 @@ class RapierWorld:
         return Motion(x, v, w)
 
     def contacts(self) -> tuple[int, float]:
-        """See ``World``."""
         depths = [
             -point.dist
             for pair in self.world.narrow_phase.contact_pairs()
@@ -110,4 +107,4 @@ class RapierWorld:
         return len(depths), max(depths, default=0.0)
 
 
-ADAPTER = Adapter(RapierWorld)
+ADAPTER = RapierWorld

@@ -371,7 +371,6 @@ class DaskWorkers:
     """The workers of a Dask cluster, as the coordinator sees them.
 
     Args:
-        client: of ``distributed``.
         task: the function to run there, bytes to bytes; known there by the same name.
     """
 

@@ -80,7 +80,6 @@ def grade_on(
     """Verdicts on all entries that have a submission or a problem, in the order they arrive.
 
     Args:
-        workers: who grades.
         version: the version of an exercise's graders, by its id, which the workers' graders must have too.
         graders: the snapshot that ``terms`` names, packed; it is sent to a worker that lacks it.
         patience_s: wall seconds to wait for a worker when there is none.

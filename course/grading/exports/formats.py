@@ -54,7 +54,6 @@ _IMPOSSIBLE = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff
 
 
 def write_junit(path: Path, results: Results, options: ExportOptions) -> Written:
-    """One file for the class."""
     selection = select(results, options)
     with replacing(path) as handle:
         handle.write(b'<?xml version="1.0" encoding="utf-8"?>\n')
@@ -73,7 +72,6 @@ def _attribute(text: str) -> bytes:
 
 
 def suite(effective: Effective) -> ET.Element:
-    """The suite of one student and exercise."""
     verdict = effective.verdict
     checks = checks_for_student(verdict)
     cases = [_case(effective, check) for check in checks]

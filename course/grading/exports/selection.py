@@ -47,7 +47,6 @@ class Needs:
 
     Attributes:
         columns: of our own roster, one of which has to have it.
-        platform: its name.
         give: where to get the key, as the beginning of a sentence.
     """
 
@@ -67,8 +66,6 @@ class Written:
     """The result of an export.
 
     Attributes:
-        paths: the files.
-        rows: results in them.
         unmatched: students left out.
         without_grade: "student exercise" of results without a score because the grader failed.
         kept: rows of a platform's file that have a grade or feedback of a teacher's, with it.

@@ -151,7 +151,6 @@ def _varint(data: bytes, at: int) -> tuple[int, int]:
 
 
 def _record(body: bytes) -> tuple[Cell, ...]:
-    """The values of a row."""
     end, at = _varint(body, 0)
     if end > len(body):
         raise _DamagedError

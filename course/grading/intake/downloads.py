@@ -92,7 +92,6 @@ class Place:
     """Where a student's files are: a folder of their own, or some of the files in a shared one.
 
     Attributes:
-        root: the folder.
         files: name the student gave -> path, where the folder is shared; None for a folder of one's own.
     """
 

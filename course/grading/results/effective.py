@@ -56,7 +56,6 @@ class Effective:
         result: the newest grading, with its verdict.
         score: in points; None if it is missing or not graded yet, or if a fault of ours kept it from being
             graded.
-        max_score: points of the exercise.
         passed: whether ``score`` reaches the exercise's pass mark.
         penalty: points taken off for lateness; 0 under an override.
         late: seconds after the deadline; None if in time, or if the time is not known.
@@ -118,8 +117,6 @@ class Results:
         roster: a class list; None takes the gradebook's own.
 
     Attributes:
-        folder: of the grading run.
-        course: its id and version.
         seed: of the run's hidden inputs.
         policy: the late policy in force, if any.
         waiting: students whose work a run has still to look at.
@@ -163,13 +160,11 @@ class Results:
         return cls(Gradebook(out / "gradebook.sqlite"))
 
     def take_in(self, times: Iterable[SubmittedAt]) -> None:
-        """Add times of submission."""
         for time in times:
             place = self._times.setdefault((time.student, time.exercise), [])
             place.append((time.submission_sha256, time.source, time.at))
 
     def exercises(self) -> tuple[GradedExercise, ...]:
-        """The graded exercises, in the order of the course."""
         return tuple(self._exercises.values())
 
     def students(self) -> list[str]:
@@ -462,7 +457,7 @@ def override(results: Results, student: str, exercise: str, score: float, reason
         )
     before = _told(next(results.all(student, exercise), None))
     results.book.add_override(Override(student, exercise, float(score), reason), before)
-    return _now_counts(results, student, exercise)
+    return next(type(results)(results.book).all(student, exercise))
 
 
 def lift(results: Results, student: str, exercise: str, reason: str) -> Effective | None:
@@ -485,15 +480,10 @@ def lift(results: Results, student: str, exercise: str, reason: str) -> Effectiv
 
 
 def _told(counts: Effective | None) -> str:
-    """The score that counted, for the journal."""
     if counts is None or counts.score is None:
         return "no score"
     by = f"by hand: {counts.override.reason}" if counts.override else counts.verdict.state
     return f"{format_points(counts.score)}, {by}"
-
-
-def _now_counts(results: Results, student: str, exercise: str) -> Effective:
-    return next(type(results)(results.book).all(student, exercise))
 
 
 def _maximum(results: Results, student: str, exercise: str) -> float:

@@ -194,12 +194,10 @@ class Roster:
         return one_line(" ".join(told))
 
     def dump(self) -> str:
-        """The roster as text for the gradebook."""
         return msgspec.json.encode(self.people).decode()
 
     @classmethod
     def load(cls, text: str) -> Roster:
-        """A roster as ``dump`` gave it."""
         return cls(msgspec.json.decode(text, type=tuple[Person, ...]))
 
 
@@ -214,12 +212,8 @@ def _key(column: str, value: str) -> str:
     """A cell for comparison."""
     if column == "name":
         return _folded(value)
-    return value.casefold() if column in {"email", "login"} else _composed(value)
-
-
-def _composed(name: str) -> str:
-    """A student's id in one Unicode spelling: macOS decomposes names."""
-    return unicodedata.normalize("NFC", name)
+    # Of ids one Unicode spelling: macOS decomposes names.
+    return value.casefold() if column in {"email", "login"} else unicodedata.normalize("NFC", value)
 
 
 def _folded(name: str) -> str:
@@ -252,7 +246,6 @@ def read_roster(path: Path) -> Roster:
 
 
 def read_text(path: Path) -> str:
-    """The text of a CSV file."""
     try:
         return decoded(read_bytes(path))
     except OSError as error:

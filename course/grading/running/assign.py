@@ -199,7 +199,6 @@ def assign(
 
     Args:
         results: over a gradebook opened for writing.
-        reason: why these files are the students'.
         level, at_least: as in ``Terms``.
         accepted: as in ``RerunOptions``.
 

@@ -57,7 +57,6 @@ def grade_all(entries: Iterable[Entry], terms: Terms, *, graders: int = 1) -> It
 
     Args:
         terms: which snapshot judges, and how; it must be unpacked here.
-        graders: processes.
 
     Raises:
         CourseError: no grader can work here at all (protection level, content).
@@ -88,11 +87,7 @@ def start_grader(config: Config) -> subprocess.Popen[bytes]:
 
 
 class WarmGrader:
-    """A grader process, started when there is something to grade and replaced when it dies.
-
-    Args:
-        config: how to grade.
-    """
+    """A grader process, started when there is something to grade and replaced when it dies."""
 
     def __init__(self, config: Config) -> None:
         self.config = config
@@ -120,13 +115,10 @@ class WarmGrader:
             if self._said(process) is not None:
                 return process
             self.close()
-        raise self._cannot_start()
+        raise InternalError("A grader process cannot start; what it printed is above.")
 
     def _start(self) -> subprocess.Popen[bytes]:
         return start_grader(self.config)
-
-    def _cannot_start(self) -> InternalError:
-        return InternalError("A grader process cannot start; what it printed is above.")
 
     def _said(self, process: subprocess.Popen[bytes], job: Job | None = None) -> bytes | None:
         """What a process says to a job, or first of all; None once it is dead.
@@ -227,7 +219,6 @@ class Graders:
             self._idle.append(grader)
 
     def close(self) -> None:
-        """End the processes."""
         for grader in self._graders:
             if grader in self._idle:
                 self._threads.submit(grader.close, 5.0)

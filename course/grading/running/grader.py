@@ -157,7 +157,6 @@ class _Grader:
         return mine
 
     def _session(self, exercise: Exercise) -> GradingSession:
-        """The session of an exercise."""
         from course.scoring.judging.session import GradingSession
 
         if exercise.id in self._broken:

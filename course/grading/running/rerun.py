@@ -44,7 +44,6 @@ class RerunOptions:
         timeout: seconds of CPU time per check; None takes the first run's.
         against: the graders to use, as the number of a run or the beginning of a snapshot's digest; empty
             takes those of the course as it is now.
-        reason: why, for the record.
         accepted: digest of graders in the gradebook that may run though they are not this checkout's.
     """
 
@@ -124,7 +123,6 @@ def rerun(
     Args:
         results: over a gradebook opened for writing, unless it is a dry run.
         report: called with the number of submissions regraded so far.
-        grade: turns entries into verdicts.
 
     Raises:
         MissingCapabilityError: there are no hidden graders here, or no sufficient protection.

@@ -73,7 +73,6 @@ class Summary:
         pass_marks: of the exercises with results: the points that pass, and all points.
         unsettled: entries that could not be graded and have no score by hand.
         edited: exercises scored by other graders than the present ones: a resumed run keeps its own.
-        elapsed_s: wall seconds.
         write_s: of these, spent on writing the gradebook.
     """
 
@@ -410,7 +409,6 @@ class _Run:
 
 
 def _bank(catalog: Catalog) -> Bank:
-    """The questions of the quiz."""
     try:
         return Bank(read_questions(catalog.content.quiz))
     except ContentError as error:
@@ -446,7 +444,6 @@ def graded_exercises(exercises: Sequence[Exercise], bank: Bank | None) -> list[G
 
 
 def _exercises(catalog: Catalog, wanted: tuple[str, ...]) -> tuple[Exercise, ...]:
-    """The exercises to grade."""
     chosen = catalog.exercises() if not wanted else ()
     chosen += tuple(catalog.exercise(name) for name in dict.fromkeys(wanted) if name != QUIZ)
     for exercise in chosen:

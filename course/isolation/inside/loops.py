@@ -66,26 +66,20 @@ def each(function: Any, calls: Iterable[list[Any]]) -> list[Any]:
     return [record, next(changed, None)]
 
 
-def fold(
-    function: Any, state: Any, calls: Iterable[list[Any]], carry: int | None, keep: list[str] | None = None
-) -> list[Any]:
+def fold(function: Any, state: Any, calls: Iterable[list[Any]], keep: list[str] | None = None) -> list[Any]:
     """Pass the state through ``function(state, *args)``, once for each list of arguments.
 
     Args:
-        carry: which element of a returned sequence is the next state; None if the whole value is.
         keep: of states that are dicts, the keys to record.
 
     Returns:
-        The states, the first one included; with ``carry``, the returned values, whole. And with ``keep``,
-        the last of them whole, else None.
+        The states, the first one included. And with ``keep``, the last of them whole, else None.
     """
-    record = [] if carry is not None else [_snapshot(_part(state, keep))]
-    value = state
+    record = [_snapshot(_part(state, keep))]
     for args in calls:
-        value = function(state, *args)
-        record.append(_snapshot(_part(value, keep)))
-        state = value if carry is None else value[carry]
-    return [record, None if keep is None else _snapshot(value)]
+        state = function(state, *args)
+        record.append(_snapshot(_part(state, keep)))
+    return [record, None if keep is None else _snapshot(state)]
 
 
 def _part(value: Any, keep: list[str] | None) -> Any:

@@ -69,7 +69,6 @@ class Worker:
     """Answers one grader over one socket until the socket closes.
 
     Args:
-        sock: connected stream socket.
         imports: top-level packages the submission may import beside the standard library.
     """
 

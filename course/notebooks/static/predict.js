@@ -1,4 +1,5 @@
-// A field for a prediction, and two buttons. The answer is not in this page until one of them is pressed.
+// A field for a prediction, and two buttons. The answer is not in this page until one of them is pressed. Then
+// three more ask how the prediction did.
 
 export default {
   render({ model, el }) {
@@ -20,11 +21,18 @@ export default {
     };
     const keep = button("Keep it and open the answer", () => (field.value.trim() ? say(field.value) : field.focus()));
     const skip = button("Skip", () => say(""));
+    const compare = document.createElement("div");
+    compare.hidden = true;
+    compare.append("Compare it with the answer below. You were: ");
+    for (const [word, words] of [["right", "right"], ["nearly", "nearly right"], ["wrong", "wrong"]])
+      compare.append(button(words, () => model.send({ kind: "judge", word })));
     const hear = (message) => {
-      if (message.kind === "kept") for (const part of [field, keep, skip]) part.disabled = true;
+      if (message.kind !== "kept") return;
+      for (const part of [field, keep, skip]) part.disabled = true;
+      compare.hidden = !message.waits;
     };
     model.on("msg:custom", hear);
-    el.replaceChildren(field, keep, skip);
+    el.replaceChildren(field, keep, skip, compare);
     model.send({ kind: "hello" });
     return () => model.off("msg:custom", hear);
   },

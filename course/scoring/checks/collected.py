@@ -169,9 +169,6 @@ class CollectedChecks:
     Args:
         files: check files with the visibility of what is in them, public first.
         draws: public checks draw their inputs too, as in a grading run.
-
-    Raises:
-        ContentError: a file cannot be imported, or a check lacks its marks.
     """
 
     def __init__(self, files: list[tuple[Path, Visibility]], *, draws: bool = False) -> None:
@@ -328,11 +325,7 @@ MARKERS = (
 
 
 class CheckPlugin:
-    """Passes the current submission to the checks and records how each check ended.
-
-    Args:
-        draws: public checks are to draw their inputs, as in a grading run.
-    """
+    """Passes the current submission to the checks and records how each check ended."""
 
     def __init__(self, *, draws: bool = False) -> None:
         self.draws = draws

@@ -116,7 +116,6 @@ class Failure:
     """One failed check of a task.
 
     Attributes:
-        check: its id.
         guess: the probe's diagnosis; None if it has none.
         finite: False if a compared value was nan or infinite.
     """
@@ -268,7 +267,6 @@ class Table(msgspec.Struct, frozen=True, kw_only=True):
     """``hypotheses.json``.
 
     Attributes:
-        format_version: of this file.
         made_from: digest of what it was computed from.
         within: relative tolerance of the tasks whose answers are stored directly.
         rows: by task; programs with one mistake come first.

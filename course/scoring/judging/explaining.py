@@ -27,7 +27,7 @@ from course.scoring.explain import (
     story_of,
 )
 from course.scoring.explain.fingerprint import calls_between, in_range, may_remember, numbers_of, read
-from course.scoring.explain.story import TABLE, WORDS, Row, is_right, matching
+from course.scoring.explain.story import TABLE, WORDS, is_right, matching
 from course.scoring.failures import CheckFailed
 from course.scoring.remote import Heard, RemoteSubmission
 from course.scoring.verdict import CheckResult, Finding, Status
@@ -121,10 +121,9 @@ class Explainer:
         failures = [
             Failure(check, failure.guess, _finite(failure.finding)) for check, failure in failed.items()
         ]
-        return story_of(failures, self._fits(name, sums) if sums else (), self._words, kept=kept)
-
-    def _fits(self, name: str, sums: tuple[float, ...]) -> tuple[Row, ...]:
-        return () if is_right(self._table, name, sums) else matching(self._table, name, sums)
+        wrong = sums and not is_right(self._table, name, sums)
+        fits = matching(self._table, name, sums) if sums and wrong else ()
+        return story_of(failures, fits, self._words, kept=kept)
 
 
 def _kept(past: list[Past], task: str, again: Again) -> bool:

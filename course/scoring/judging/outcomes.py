@@ -146,7 +146,8 @@ def _left_out(fault: LoadFault, faults: Sequence[LoadFault], places: Places) -> 
 
 def _reason(fault: LoadFault, faults: Sequence[LoadFault], places: Places) -> str:
     failure = fault.failure
-    said = f": {_brief(failure)}" if failure.message else ""
+    brief = failure.message.partition("\\n")[0].rstrip(" .:")  # of several lines the first
+    said = f": {brief}" if failure.message else ""
     if fault.stage == "syntax" and fault.code.startswith(_MERGE):
         return ". It is the mark of a merge: keep one of the two versions, and delete the marks."
     if fault.stage == "syntax":
@@ -166,11 +167,6 @@ def _line_needed(failure: StudentFailure, faults: Sequence[LoadFault]) -> int | 
 
 def _after(sentence: str) -> str:
     return f" {sentence}" if sentence else ""
-
-
-def _brief(failure: StudentFailure) -> str:
-    """An exception's own words, of several lines the first."""
-    return failure.message.partition("\\n")[0].rstrip(" .:")
 
 
 def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:

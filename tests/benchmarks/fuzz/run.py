@@ -144,7 +144,7 @@ def frames(chance: inputs.Chance, folder: Path) -> str:
         lambda: connection.inspect("f", lent),
         lambda: connection.march("f", [[lent, [0.0], [0.0], 0.0, 0.1, 3]]),
         lambda: connection.each("g", [[lent], [2.0]]),
-        lambda: connection.fold("g", 0.0, [[lent]], None, None),
+        lambda: connection.fold("g", 0.0, [[lent]], None),
     )
     try:
         chance.choice(calls)()

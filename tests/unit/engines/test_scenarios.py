@@ -38,7 +38,7 @@ def written(path):
 
 def pymunk(scenario, setting="default", dt=DT, quick=True):
     options = tuning("pymunk", scenario).options if setting == "tuned" else {}
-    return get(scenario).run(lambda scene: ADAPTER.build(scene, options), dt, quick)
+    return get(scenario).run(lambda scene: ADAPTER(scene, options), dt, quick)
 
 
 def still(scene, t):
@@ -310,6 +310,6 @@ def test_a_hundred_boxes_are_a_hundred_and_fit_the_plane():
     scene = scenarios.boxes_scene(DT)
     assert len(scene.bodies) == 100
     assert {body.position[1] for body in scene.bodies} == {0.0}
-    world = ADAPTER.build(scene, {})
+    world = ADAPTER(scene, {})
     world.step(60)
     assert world.contacts()[0] >= 200

@@ -46,7 +46,7 @@ class Engine:
 
 
 def desk(engine, tuned=AS_IT_COMES):
-    return EngineServer(engine, lambda _scenario: tuned)
+    return EngineServer(engine.build, lambda _scenario: tuned)
 
 
 def test_a_measurement_holds_value_and_details():

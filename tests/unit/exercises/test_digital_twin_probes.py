@@ -51,7 +51,7 @@ class Fake:
     def call_inspect(self, name, *args):
         return kit.Inspected(self.call(name, *args), list(args), False)
 
-    def fold(self, name, state, calls, *, carry=None, keep=None):
+    def fold(self, name, state, calls, *, keep=None):
         states = [state]
         for args in calls:
             states.append(self.call(name, states[-1], *args))

@@ -389,23 +389,19 @@ def test_a_batch_of_calls_ends_at_the_first_that_fails(load: Any) -> None:
 
 
 def test_a_state_is_handed_on(load: Any) -> None:
-    connection = load(
-        "def f(state, x):\n    state['seen'] = state['seen'] + [x]\n    return state\n"
-        "def pair(state, x):\n    return 10 * state, state + x\n"
-    )
-    assert connection.fold("f", {"seen": []}, [[1], [2]], None, None) == [
+    connection = load("def f(state, x):\n    state['seen'] = state['seen'] + [x]\n    return state\n")
+    assert connection.fold("f", {"seen": []}, [[1], [2]], None) == [
         {"seen": []},
         {"seen": [1]},
         {"seen": [1, 2]},
     ]
-    assert connection.fold("pair", 1, [[1], [2]], 1, None) == [[10, 2], [20, 4]]
     grows = "def g(state, x):\n    return {'sum': state['sum'] + x, 'all': state['all'] + [x]}\n"
-    assert load(grows).fold("g", {"sum": 0, "all": []}, [[1], [2]], None, ["sum", "none"]) == [
+    assert load(grows).fold("g", {"sum": 0, "all": []}, [[1], [2]], ["sum", "none"]) == [
         {"sum": 0},
         {"sum": 1},
         {"sum": 3, "all": [1, 2]},
     ]
-    assert load("def g(state, x):\n    return 7\n").fold("g", {"sum": 0}, [[1]], None, ["sum"])[1] == 7
+    assert load("def g(state, x):\n    return 7\n").fold("g", {"sum": 0}, [[1]], ["sum"])[1] == 7
 
 
 def test_methods_are_functions_of_the_graders(load: Any) -> None:

@@ -58,6 +58,20 @@ def attempts(workspace: Workspace) -> list[dict[str, Any]]:
     return found
 
 
+def test_what_nobody_edited_is_checked_and_not_recorded(here: Workspace) -> None:
+    stub = (MINI_COURSE / "exercises" / "doubling" / "doubling.py").read_text()
+    assert not magic.check_cell(stub, "doubling").passed
+    assert attempts(here) == []
+
+
+def test_an_interrupted_check_is_one_sentence(monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
+    def stopped() -> None:
+        raise KeyboardInterrupt
+
+    assert magic._told("", stopped) is None
+    assert capsys.readouterr().out == "Interrupted; nothing was recorded.\n"
+
+
 @pytest.mark.parametrize("second", [DOUBLINGS, STUB, "def doublings(x, n):\n    return 1 / 0"])
 def test_a_check_in_a_notebook_is_recorded_as_the_same_check_in_a_terminal(
     here: Workspace, second: str

@@ -83,6 +83,13 @@ def test_what_nobody_edited_becomes_what_it_is_now() -> None:
     assert "later" in sources(merged(ran, new))[3]
 
 
+def test_a_function_that_was_written_stays_alone_where_the_course_changed_its_docstring() -> None:
+    new = generated(stub=STUB.replace("raise", '"""Newer words."""\n    raise'))
+    cells = sources(merged(worked(generated()), new))
+    assert [text for text in cells if text.startswith("def force")] == [MINE, MINE], "and the copy"
+    assert merged(merged(worked(generated()), new), new) == merged(worked(generated()), new)
+
+
 def test_a_text_that_both_changed_is_there_twice() -> None:
     old = changed(generated(), lambda cells: cells[0].update(source="# My springs"))
     assert sources(merged(old, generated(head="# Springs!")))[:2] == ["# Springs!", "# My springs"]
@@ -92,7 +99,7 @@ def test_a_text_that_both_changed_is_there_twice() -> None:
 @pytest.mark.parametrize(
     ("old", "why"),
     [
-        (worked(generated()), "changed a cell that you changed too"),
+        (worked(generated()), "changed the parameters of a function that you wrote"),
         (changed(worked(generated()), lambda cells: cells.reverse()), "another order"),
         (document([], kind="lesson", id="springs", version="1"), "does not say that it is this notebook"),
         (b"not a notebook", "cannot be read"),

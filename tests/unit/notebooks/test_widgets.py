@@ -15,7 +15,7 @@ pytest.importorskip("anywidget")
 from course.catalog.load import Catalog
 from course.cli.frame import app
 from course.errors import NotFoundError
-from course.notebooks.predicting import LessonPrediction, OngoingAttempt, predict, take
+from course.notebooks.predicting import LessonPrediction, OngoingAttempt, finish, predict, take
 from course.notebooks.sandbox import Film, play
 from course.notebooks.widgets import Predict, QuizForm, Sandbox
 from course.progress.workspace import Workspace
@@ -118,7 +118,37 @@ def test_a_prediction_is_kept_as_the_reader_keeps_it_and_opens_the_answer(worksp
 
     again = predict("accuracy", 1)  # in a notebook that is opened again, and in the reader
     assert again.said == "it *grows*"
-    assert again._repr_markdown_() == text
+    assert again._repr_markdown_().startswith(text)
+
+
+def test_a_prediction_is_compared_once_its_answer_is_open(workspace: Workspace) -> None:
+    async def cell() -> list[Any]:
+        widget = predict("accuracy", 1)
+        told: list[Any] = []
+        widget._open = lambda *, update=True: None
+        widget.send = lambda message, buffers=None: told.append(message)
+        said_by_a_page(widget, {"kind": "predict", "text": "it grows"}, {"kind": "judge", "word": "best"})
+        said_by_a_page(widget, {"kind": "judge", "word": "nearly"}, {"kind": "hello"})
+        await asyncio.sleep(0.05)
+        return told
+
+    assert [one["waits"] for one in asyncio.run(cell())] == [True, True, False, False]
+    assert predict("accuracy", 2, "it falls", "wrong").judged == "wrong"
+    judged = [event.data.get("judged") for event in workspace.store.events("prediction", "accuracy")]
+    assert judged == [None, "nearly", None, "wrong"]
+    shown = predict("accuracy", 1)._repr_markdown_()
+    assert "By your own word: nearly." in shown
+    assert "How did it do?" not in shown
+
+
+def test_a_lesson_counts_as_read_once_its_end_is_run_and_no_prediction_is_open(workspace: Workspace) -> None:
+    lesson = read_script(Catalog().lesson("accuracy"))
+    assert repr(finish("accuracy")).startswith(f"{len(lesson.questions)} predictions are open")
+    assert workspace.store.events("lesson") == ()
+    for question in lesson.questions:
+        LessonPrediction("accuracy", question.number).say("")
+    assert "and it is recorded" in repr(finish("accuracy"))
+    assert [event.subject for event in workspace.store.events("lesson")] == ["accuracy"]
 
 
 def test_without_widgets_the_text_in_the_cell_is_the_prediction(workspace: Workspace) -> None:

@@ -418,8 +418,7 @@ def _said(reply: dict[str, Any], name: str) -> Iterator[Text]:
         if text:
             yield Text(text)
     for label, text in numbers_of(first):
-        if label != "diagnosis":
-            yield Text(f"{label}: {text}", style="dim")
+        yield Text(f"{label}: {text}", style="dim")
     yield from _printed("Your code printed:", first.stdout)
     passing = sum(check.status == "pass" for check in checks)
     some = f"{passing} of {len(checks)} checks pass.  " if len(checks) > 1 else ""

@@ -147,7 +147,6 @@ def render(template: str, **words: Any) -> str:
 
 
 def macro(template: str, name: str, *arguments: Any, **more: Any) -> Markup:
-    """The result of one macro of a template."""
     found = getattr(_environment().get_template(f"{template}.html.j2").module, name)
     return Markup(found(*arguments, **more))
 
@@ -315,7 +314,6 @@ def _facts(tally: Tally) -> list[tuple[int, str, str]]:
 
 
 def _middle(scores: Sequence[float]) -> tuple[str, str]:
-    """Median and mean."""
     return (format_points(median(scores)), format_points(mean(scores))) if scores else ("–", "–")
 
 
@@ -366,7 +364,6 @@ def index_row(
     found: Mapping[str, Effective],
     exercises: Sequence[str],
 ) -> IndexRow:
-    """One student."""
     scores = tuple(_score(found.get(exercise)) for exercise in exercises)
     return IndexRow(student, place, href, results.person(student), scores)
 
@@ -395,7 +392,6 @@ def _score(effective: Effective | None) -> tuple[float | None, str] | None:
 def index_page(
     results: Results, rows: Sequence[IndexRow], exercises: Sequence[GradedExercise], report: str
 ) -> str:
-    """The whole page."""
     return render(
         "students",
         scripted=True,
@@ -471,7 +467,6 @@ class _Shown:
 
 
 def student_page(results: Results, student: str, found: Sequence[Effective]) -> str:
-    """The page about all of one student's work."""
     person = results.person(student)
     called = person.name if person and person.name else student
     shown = [_shown_result(results, item) for item in found]
@@ -519,7 +514,7 @@ def _share_of(check: CheckResult) -> str:
 
 
 def _numbers(check: CheckResult) -> list[tuple[str, str]]:
-    """The measured and the expected value, and the likely mistake."""
+    """The measured and the expected value."""
     return [(label, shortened(value, _LONGEST_VALUE)) for label, value in numbers_of(check)]
 
 

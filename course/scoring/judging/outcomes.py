@@ -172,15 +172,14 @@ def _after(sentence: str) -> str:
 def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
     """The finding for a file that is not valid Python."""
     failure = refused.failure
-    if "UnicodeError" in failure.bases:
-        message = f"{where}: Python cannot read this file: {failure.message}."
-        return message, "Save it as UTF-8, or declare its encoding in the first line."
-    if not failure.line:
-        # A MemoryError, which is what deep nesting ends in, says nothing.
-        reason = failure.message or "it is nested more deeply than Python can read"
-        message = f"{where} is not Python source: {reason}."
+    # A MemoryError, which is what deep nesting ends in, says nothing.
+    reason = failure.message or "it is nested more deeply than Python can read"
+    encoded = "UnicodeError" in failure.bases or "missing encoding" in reason or "codec can't" in reason
+    if encoded or not failure.line:
+        said = "it is saved in another encoding than UTF-8, or it is no text" if encoded else reason
+        message = f"{where} is not Python source: {said}."
         stub = "`course reset` puts the stub back, and keeps a copy."
-        if "encoding" not in reason:
+        if not encoded and "encoding" not in reason:
             return message, f"Was something else saved under its name? {stub}"
         # Python says the same of a letter in another encoding, which is likelier, and of what is no text.
         letters = "Save it as UTF-8, or declare its encoding in the first line."

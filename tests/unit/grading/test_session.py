@@ -276,9 +276,10 @@ def test_a_file_that_is_no_text_is_told_so_and_not_of_a_line(session: GradingSes
 
 
 def test_a_file_in_another_encoding_is_told_to_be_saved_as_utf_8(session: GradingSession) -> None:
-    for source in (b"# \xe9\nx = 1\n", b"x = 1\n\ny = 2  # \xe9\n"):
+    for source in (b"# \xe9\nx = 1\n", b"x = 1\n\ny = 2  # \xe9\n", "x = 1\n".encode("utf-16")):
         error = grade(session, source).error
         assert error is not None
+        assert "another encoding than UTF-8" in error.message
         assert error.help.startswith("Save it as UTF-8")
 
 

@@ -202,10 +202,11 @@ class _Loop:
         stays = self.alone
         if not self.alone:
             self._open(task)
-            if watcher.is_begun:  # back to one that is done: not on at once
-                stays = is_done(self.here.standing(), task)
-            else:
-                watcher.wait()
+        begun = watcher.is_begun()
+        if not self.alone and begun:  # back to one that is done: not on at once
+            stays = is_done(self.here.standing(), task)
+        elif not self.alone:
+            watcher.wait()
         session: GradingSession | None = None
         try:
             with contextlib.ExitStack() as kept:
@@ -373,6 +374,7 @@ class Watcher:
     _name: str = ""
     _seen: Signature | None = None
     _gone: bool = False
+    _left: bool = False
     _made: Attempt | None = None
     _focus: str = ""
     _printed: str = ""
@@ -444,11 +446,11 @@ class Watcher:
         """The function to read about: the one that is shown, or the first that fails."""
         return self._focus or next(iter(self._failing()), "")
 
-    @property
     def is_begun(self) -> bool:
-        """Whether there is something to check: the file was edited, or checked before."""
+        """Whether there is something to check: the file that counts was edited."""
         try:
             work = chosen_work(self.here, self.exercise, self.named)
+            self._name = work.name
             return work.notebook is not None or self.here.workspace.is_edited(
                 self.exercise.place, work.name, work.data
             )
@@ -468,7 +470,7 @@ class Watcher:
             with self._at_work(session) as superseded:
                 made = attempts.attempt_in(session, work.submission, noticed)
                 self._printed = made.printed
-            if self._leaves:
+            if self._left:
                 return False
             if superseded.is_set():
                 self.console.note("Saved again meanwhile: this run is dropped.")
@@ -494,10 +496,6 @@ class Watcher:
         self._remember(verdict.state, verdict.score, verdict.max_score, verdict.passed, noticed)
         self._flush_warnings()
         return False
-
-    @property
-    def _leaves(self) -> bool:
-        return self.pressed is not None and self.pressed.leave
 
     def _show(self, made: Attempt) -> None:
         show_loading(self.console, self._printed, whole=self.verbose)
@@ -542,7 +540,8 @@ class Watcher:
                 signature = _signature(self.paths)
                 if signature and not _has_empty(signature) and signature != self._seen:
                     superseded.set()
-                if superseded.is_set() or self._leaves:
+                self._left = self._left or (self.pressed is not None and self.pressed.leave)
+                if superseded.is_set() or self._left:
                     session.drop()
                 elif status is not None and time.perf_counter() - begin > PATIENCE:
                     which = session.running or f"Checking {self.exercise.id}"

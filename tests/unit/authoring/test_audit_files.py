@@ -425,6 +425,15 @@ def test_two_exercises_that_share_a_number_or_a_file_are_named(
     assert "exercise doubling has the module doubling.py too." in [p.message for p in run("halving").problems]
 
 
+def test_exercises_that_are_not_in_the_order_of_the_lessons_are_named(
+    mini: Path, run: Callable[..., AuditReport]
+) -> None:
+    edit(mini / "exercises/doubling/exercise.toml", "order = 1", "order = 3")
+    assert "exercise halving has a lower order, 2, and its lesson comes later." in [
+        problem.message for problem in run("doubling").problems
+    ]
+
+
 def test_an_exercise_and_a_warm_up_of_one_id_are_refused_by_every_command(mini: Path) -> None:
     shutil.copytree(mini / "exercises/doubling", mini / "exercises/warm-ups/doubling")
     with pytest.raises(ContentError, match=r"warm-ups/doubling: an exercise has this id, too"):

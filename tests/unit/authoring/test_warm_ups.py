@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -110,6 +111,23 @@ def test_the_audit_sees_what_a_warm_up_lacks(
     (tripling / file).write_text(text.replace(old, new))
     read_words.cache_clear()
     assert any(said in message for message in problems()), problems()
+
+
+def test_warm_ups_that_are_not_in_the_order_of_their_sections_are_named(mini: Path, tripling: Path) -> None:
+    lesson = mini / "lessons/half-as-much.md"
+    lesson.write_text(lesson.read_text() + "\n## And on\n\nOnce more.\n")
+    other = tripling.with_name("quadrupling")
+    shutil.copytree(tripling, other)
+    declared = (other / "exercise.toml").read_text().replace('"tripling"', '"quadrupling"')
+    first = re.search(r"^order = (\d+)", declared, re.MULTILINE)
+    assert first is not None
+    path = tripling / "exercise.toml"
+    path.write_text(path.read_text().replace(first[0], "order = 9"))
+    for section, wrong in (("and-on", True), ("the-way-back", False), ("", True)):
+        text = declared.replace('after = "the-way-back"', f'after = "{section}"')
+        (other / "exercise.toml").write_text(text if section else text.replace('after = ""\n', ""))
+        said = f"warm-up quadrupling has a lower order, {first[1]}, and its section comes later."
+        assert (said in problems()) is wrong
 
 
 @pytest.mark.parametrize(

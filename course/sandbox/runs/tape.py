@@ -147,6 +147,10 @@ class Tape:
         """The frame that shows this time, as an index: the last that is not after it."""
         return max(0, bisect_right(self.times, t + 1e-9) - 1)
 
+    def frame_at(self, t: float) -> Frame:
+        """Where everything was at this time."""
+        return self.frames[self.at(t)]
+
     def path(self, name: str, most: int = 1500) -> Frame:
         """Where a body was and when, (k, 3): t, x, y, in s and m; at most so many places."""
         rows = {

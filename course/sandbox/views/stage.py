@@ -88,17 +88,6 @@ class _Work:
     stage: dict[str, Any] = field(default_factory=dict)
 
 
-@dataclass
-class Ghost:
-    """The run before this one."""
-
-    tape: Tape
-
-    def frame_at(self, t: float) -> Frame:
-        """Where everything was at this time of its run."""
-        return self.tape.frames[self.tape.at(t)]
-
-
 class Stage:
     """A scene that is played.
 
@@ -112,7 +101,7 @@ class Stage:
     Attributes:
         at: the time of this run that is looked at, in s; None for the present.
         way: 1 and -1 play what is kept, forwards or backwards; 0 stands.
-        ghost: the run before, if there was one.
+        ghost: the tape of the run before, if there was one.
         pace: the share of the requested steps that was made lately, 0 to 1.
         news: sentences for whoever plays; a view takes them out.
         heard: the events of the last tick.
@@ -131,7 +120,7 @@ class Stage:
         self.chosen = chosen
         self.keep = keep
         self.clock = clock
-        self.ghost: Ghost | None = None
+        self.ghost: Tape | None = None
         self.pace = 1.0
         self.anew = 0
         self.news: list[str] = []
@@ -196,7 +185,7 @@ class Stage:
         self._must_be_now()
         before = self._now(_in_words(what, arguments))
         if what == "reset":
-            self.ghost = Ghost(self.tape) if len(self.tape) > 1 else self.ghost
+            self.ghost = self.tape if len(self.tape) > 1 else self.ghost
         count = len(self.recording.inputs)
         result = getattr(self.world, what)(*arguments)
         if what == "reset":
@@ -312,7 +301,7 @@ class Stage:
         )
         before = self._now(f"{name} {self.chosen.parameters[name]:g}")
         self._remember("parameter", (name,), before)
-        self.ghost = Ghost(self.tape) if len(self.tape) > 1 else self.ghost
+        self.ghost = self.tape if len(self.tape) > 1 else self.ghost
         world = World(chosen.scene, chosen.settings)
         world.paused, world.speed, world.version = self.world.paused, self.world.speed, self.world.version + 1
         self.chosen, self.world = chosen, world
@@ -465,7 +454,7 @@ class Stage:
         def done() -> None:
             old, world = self.world, made["world"]
             if ghost:
-                self.ghost = Ghost(self.tape)
+                self.ghost = self.tape
             self.chosen, self.world, self.recording = there.chosen, world, made["recording"]
             self.tape, self.experiment, self.narrator = made["tape"], made["experiment"], made["narrator"]
             self.experiment.keep_with(self.keep)

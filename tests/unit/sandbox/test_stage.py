@@ -168,7 +168,7 @@ def test_the_run_before_is_a_ghost_and_so_is_what_was_left_behind() -> None:
     stage.look(0.1)
     stage.go_on()
     stage.finish()
-    assert stage.ghost.tape.times[-1] == pytest.approx(0.2, abs=0.02)
+    assert stage.ghost.times[-1] == pytest.approx(0.2, abs=0.02)
 
 
 def test_going_on_shows_how_far_it_is_and_can_be_stopped() -> None:

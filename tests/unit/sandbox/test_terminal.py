@@ -271,6 +271,7 @@ def test_a_line_changes_a_parameter_a_setting_or_a_body_and_makes_the_scene_ones
 
         await say("speed 5")
         assert app.stage.chosen.parameters["speed"] == 5
+        assert "5 m/s" in app.panel.text
         assert app.world.t < 0.1
         await say("gravity = 2")
         assert app.world.settings["gravity"] == 2

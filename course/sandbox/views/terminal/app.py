@@ -320,10 +320,8 @@ class SandboxApp(FullScreenApp):
     def _parameters(self) -> list[tuple[str, str]]:
         """The scene's own numbers, in words."""
         values = self.stage.chosen.parameters
-        units = (
-            (one.name, "" if one.unit == "1" else f" {one.unit}") for one in self.stage.chosen.scene.parameter
-        )
-        return [(clean(name), f"{values[name]:.4g}{clean(unit)}") for name, unit in units]
+        units = {one.name: one.unit.removesuffix("1") for one in self.stage.chosen.scene.parameter}
+        return [(clean(name), clean(f"{values[name]:.4g} {unit}")) for name, unit in units.items()]
 
     # -- asking ----------------------------------------------------------------------------------
 

@@ -294,7 +294,7 @@ class Sight:
             found.append(path[path[:, 0] <= stage.t + 1e-6, 1:].astype(float))
         if self.ghost and stage.ghost is not None:
             kept = stage.ghost.frame_at(stage.t)
-            shot, cast = shot_of(kept), stage.ghost.tape.casts[int(kept[1])]
+            shot, cast = shot_of(kept), stage.ghost.casts[int(kept[1])]
             free = [not part.fixed for part in cast]
             found.append(np.stack([shot.x, shot.y], axis=1)[free])
         return np.concatenate(found)

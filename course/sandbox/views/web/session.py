@@ -87,6 +87,10 @@ REQUESTS: dict[str, dict[str, Any]] = {
 }
 
 
+#: Of these, what a stage does itself.
+_STAGES = {name: name for name in ("step", "undo", "redo", "guess")} | {"play": "play_back", "go": "go_on"}
+
+
 def _struct(name: str, fields: dict[str, Any]) -> type[msgspec.Struct]:
     shaped = [(field, *kind) if isinstance(kind, tuple) else (field, kind) for field, kind in fields.items()]
     return msgspec.defstruct(name, shaped, tag_field="do", tag=name, forbid_unknown_fields=True)
@@ -362,6 +366,8 @@ class Session:
         own = getattr(self, f"_do_{what}", None)
         if own is not None:
             own(page, *given)
+        elif what in _STAGES:
+            getattr(self.stage, _STAGES[what])(*given)
         else:
             self.stage.act(what, *given)
 
@@ -392,24 +398,9 @@ class Session:
     def _do_speed(self, _: Page, value: float) -> None:
         self.stage.world.speed = value
 
-    def _do_step(self, _: Page, kind: str) -> None:
-        self.stage.step(kind)
-
-    def _do_undo(self, _: Page) -> None:
-        self.stage.undo()
-
-    def _do_redo(self, _: Page) -> None:
-        self.stage.redo()
-
     def _do_look(self, _: Page, t: float | None) -> None:
         self._holder = None
         self.stage.look(t)
-
-    def _do_play(self, _: Page, way: int) -> None:
-        self.stage.play_back(way)
-
-    def _do_go(self, _: Page) -> None:
-        self.stage.go_on()
 
     def _do_cancel(self, _: Page) -> None:
         self.stage.stop_work()
@@ -429,9 +420,6 @@ class Session:
         if self._film is not None:
             raise UsageError("One film is being made already.", code="busy")
         self._film = Filming(page, self.stage, kind, width)
-
-    def _do_guess(self, _: Page, value: float | None) -> None:
-        self.stage.guess(value)
 
     def _do_parameter(self, _: Page, key: str, value: float) -> None:
         if key not in self.stage.chosen.parameters:
@@ -571,7 +559,7 @@ class Session:
         kept = ghost.frame_at(self.stage.t)
         if int(kept[1]) != self._cast_of_ghost:
             self._cast_of_ghost = int(kept[1])
-            self._tell(self._bodies(ghost.tape.casts[int(kept[1])], int(kept[1]), 1))
+            self._tell(self._bodies(ghost.casts[int(kept[1])], int(kept[1]), 1))
         kept = kept.copy()
         kept[21] = 1.0
         for page in watching:

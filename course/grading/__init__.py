@@ -9,5 +9,4 @@ container   the same graders in Gradescope
 similar     submissions that are alike, and the page that shows them
 quiz        the quiz records of a submission, scored again
 cluster     the same run on many machines (optional)
-kit         the name under which checks import ``course.scoring.kit``
 """

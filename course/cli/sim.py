@@ -219,9 +219,8 @@ def run(
             )
         return _run_all(console, plot, csv)
     if name is None:
-        raise UsageError(
-            "Which simulation?", help="Name one, or give --all; `course sim list` shows them.", code="no_name"
-        )
+        there = f"There are {', '.join(SIMULATIONS)}. `course sim list` says what each shows; --all runs the introduction's four."
+        raise UsageError("Which simulation?", help=there, code="no_name")
     reply = _run_one(console, name, pairs, plot, csv)
     console.emit(reply)
     return 0

@@ -219,9 +219,9 @@ def run(
             )
         return _run_all(console, plot, csv)
     if name is None:
-        raise UsageError(
-            "Which simulation?", help="Name one, or give --all; `course sim list` shows them.", code="no_name"
-        )
+        there = f"There are {', '.join(SIMULATIONS)}."
+        more = "`course sim list` says what each shows; --all runs the introduction's four."
+        raise UsageError("Which simulation?", help=f"{there} {more}", code="no_name")
     reply = _run_one(console, name, pairs, plot, csv)
     console.emit(reply)
     return 0

@@ -120,6 +120,7 @@ def test_no_name_is_a_usage_error_that_says_what_to_do(course):
     ran = course("sim", "run")
     assert ran.code == 2
     assert "course sim list" in ran.err
+    assert "free-fall, projectile" in ran.err, "what there is to choose from"
 
 
 # -- files -------------------------------------------------------------------------------------------------

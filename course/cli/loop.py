@@ -18,13 +18,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 from course.catalog.models import Exercise
 from course.cli.frame.app import again
-from course.cli.frame.completion import ExerciseName, Verbose
+from course.cli.frame.completion import Verbose, exercise_ids
 from course.cli.frame.console import PATIENCE, Console, current
 from course.cli.frame.here import Here
+from course.cli.frame.options import argument
 from course.cli.frame.replies import ErrorBody, ErrorReply, NextStep
 from course.cli.home.advice import hint_is_due, is_done, next_in_course, next_step, next_task, why
 from course.cli.home.replies import Go
@@ -120,7 +121,10 @@ Signature = tuple[tuple[int, int, int], ...]
 
 
 def watch(
-    exercise: ExerciseName = None,
+    exercise: Annotated[
+        str | None,
+        argument("EXERCISE", "Its id, its number, or its file; task after task if left out.", exercise_ids),
+    ] = None,
     verbose: Verbose = False,
 ) -> int:
     """Check again on every save.

@@ -290,6 +290,18 @@ def test_with_no_task_left_nothing_is_handed_in_unasked(course, workspace, press
     assert not list(workspace.glob("*.zip"))
 
 
+def test_after_the_last_task_each_further_step_is_asked_about(course, workspace, monkeypatch):
+    ran, asked, steps = [], [], iter(["course quiz take", "course submit", "course submit"])
+    monkeypatch.setattr(loop, "next_task", lambda *_: None)
+    monkeypatch.setattr(loop, "next_in_course", lambda *_: next(steps))
+    monkeypatch.setattr(loop, "again", lambda words: ran.append((words, loop.current().led)) or 0)
+    monkeypatch.setattr(Console, "interactive", property(lambda _: True))
+    monkeypatch.setattr(Console, "go_on", lambda _, where: not asked.append(where))
+    said = course("go").out
+    assert ran == [(["quiz", "take"], True), (["submit"], True)], "what is next is said once, by the loop"
+    assert len(asked) == said.count("Next: ") == 2
+
+
 def test_a_named_watch_works_where_the_record_cannot_be_read(course, workspace, pressed):
     (workspace / ".course" / "progress.sqlite").write_bytes(b"not a database, not at all, no" * 10)
     pressed("q")

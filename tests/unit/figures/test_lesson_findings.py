@@ -10,6 +10,7 @@ from course.engines.registry import ENGINES
 from course.figures import contact, engines, robots, sim_to_real
 from course.figures.style import house_style
 from course.physics.contact.models import Constraint
+from course.physics.dynamics import TwoLinkArm
 
 
 def test_the_title_of_the_settings_counts_errors_that_are_there() -> None:
@@ -94,3 +95,27 @@ def test_the_two_questions_have_different_worst_mistakes() -> None:
     assert max(bounce, key=lambda name: bounce[name]) == "step of 10 ms"
     assert bounce["delay of 50 ms left out"] == bounce["friction 10 % too high"] == 0.0
     assert list(stop) == list(robots.MISTAKES) == list(bounce)
+
+
+def test_the_wall_feels_the_mass_that_a_newton_at_the_hand_accelerates() -> None:
+    arm = TwoLinkArm()
+    for degrees in (1.0, 10.0, 90.0, 150.0):
+        bend = np.radians(degrees)
+        q = np.array([-bend / 2, bend])
+        pushed = arm.jacobian(q).T @ np.array([1.0, 0.0])
+        gained = arm.forward(q, np.zeros(2), pushed) - arm.forward(q, np.zeros(2), np.zeros(2))
+        assert float(robots.felt(bend)) == pytest.approx(1.0 / (arm.jacobian(q) @ gained)[0], rel=1e-6)
+    assert float(robots.felt(np.radians(1.0))) > 900.0
+    assert float(robots.felt(np.radians(30.0))) < 2.0
+
+
+def test_the_shadows_of_the_two_boxes_are_apart_and_their_upright_outlines_are_not() -> None:
+    with house_style():
+        left = contact.corners().axes[0]
+    ends = [np.column_stack(line.get_data()) @ np.array([1.0, 1.0]) / np.sqrt(2.0) for line in left.lines]
+    assert len(ends) == 2
+    assert ends[1].min() - ends[0].max() == pytest.approx(1.05 * np.sqrt(2.0) - 0.5 - 0.5 * np.sqrt(2.0))
+    shape, upright, other, upright_too = (patch.get_xy() for patch in left.patches)
+    assert shape.max(axis=0) == pytest.approx(upright.max(axis=0))
+    assert other.min(axis=0) == pytest.approx(upright_too.min(axis=0))
+    assert (upright_too.min(axis=0) < upright.max(axis=0)).all()

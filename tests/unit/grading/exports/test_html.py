@@ -148,7 +148,7 @@ def test_what_is_handed_out_has_nothing_hidden(out: Path) -> None:
     half = read_page(out / found[safe_cell("+1")]).text
     assert "It is not twice the number." in half
     assert "Add it to itself." in half
-    assert "SQUARES" in half
+    assert "SQUARES" not in half, "a code is for instructors"
     assert "hidden check" in half
     broken = read_page(out / found["broken"]).text
     assert "ZeroDivisionError" not in broken

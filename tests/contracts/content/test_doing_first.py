@@ -1,10 +1,10 @@
 """Doing comes first: what a reader meets at the start of every lesson.
 
-The limits are words, as the reader counts them for the time that is left (`Script.weights`: text, code and output).
-At 150 to 250 words a minute, 250 words are one to two minutes, and 600 are three to four. A new student who
-began the course as README says fixed the first mistake of the demo within a minute, after 150 words, and had then
-to read 815 words before the first question that wanted an answer. A question in the first two minutes, its run in
-the next, and a task within four is what the demo showed to be possible.
+The limits are words as the reader counts them for the time that is left (`Script.weights`: text, code and
+output). At 150 words a minute 250 words take less than two minutes, and 600 take four. A new student, timed,
+mended the demo's first mistake within a minute, after 150 words, did the first warm-up in three and a half, and
+then read 815 words before the first question of a lesson. So: a question within two minutes, its run right after
+it, and a task within four.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ TO_THE_QUESTION, TO_ITS_RUN, TO_A_TASK = 250, 200, 600
 
 @dataclass(frozen=True)
 class Start:
-    """Words before the question that the first cell answers, from there to the cell, and before the first task."""
+    """Words before the question that the first cell answers, from it to the cell, and before a task."""
 
     question: int
     run: int

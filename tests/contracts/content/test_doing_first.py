@@ -2,9 +2,9 @@
 
 The limits are words as the reader counts them for the time that is left (`Script.weights`: text, code and
 output). At 150 words a minute 250 words take less than two minutes, and 600 take four. A new student, timed,
-mended the demo's first mistake within a minute, after 150 words, did the first warm-up in three and a half, and
-then read 815 words before the first question of a lesson. So: a question within two minutes, its run right after
-it, and a task within four.
+mended the demo's first mistake within a minute, after 150 words, did the first warm-up in three and a half
+minutes, and then read 815 words before the first question of a lesson. So: a question within two minutes, its
+run right after it, and a task within four.
 """
 
 from __future__ import annotations

@@ -611,7 +611,7 @@ def test_a_block_that_is_laid_out_again_below_leaves_the_screen_as_it_was_cut(ca
         await pilot.pause()
         assert page.end() == cut
 
-    reading(catalog, look, size=(40, 20), section="swap-two-lines")
+    reading(catalog, look, size=(40, 20), section="worked-example-one-step-by-hand")
 
 
 def test_a_line_of_keys_that_is_too_long_ends_with_how_to_see_all() -> None:

@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated
 
-from course.cli.frame.completion import exercise_ids, student_ids
+from course.cli.frame.completion import exercise_ids, graded_ids, student_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
 from course.cli.frame.options import argument, option
@@ -119,7 +119,7 @@ def _show_rerun(console: Console, done: Regraded, *, dry_run: bool) -> None:
 def override(
     out: Out,
     student: Annotated[str, argument("STUDENT", complete=student_ids)],
-    exercise: Annotated[str, argument("EXERCISE", complete=exercise_ids)],
+    exercise: Annotated[str, argument("EXERCISE", complete=graded_ids)],
     score: Annotated[float | None, option("--score X", "The points that count.")] = None,
     reason: Annotated[str, option("--reason TEXT", "Shown with the score, to the student too.")] = "",
     lift: Annotated[bool, option("--lift", "Remove the override again.")] = False,
@@ -204,7 +204,8 @@ def late(
                 book.add_times(known, replace=True)
         results = Results(book)
         found = [_late_one(item) for item in results.all() if item.late is not None or item.flagged_late]
-        unknown_time = sum(item.submitted_at is None for item in results.all()) if results.policy else 0
+        handed_in = [item for item in results.all() if item.result.number] if results.policy else []
+        unknown_time = sum(item.submitted_at is None for item in handed_in)
         unknown = _unknown(results, known)
     if console.json:
         console.emit(
@@ -317,8 +318,9 @@ def _show_late(
         count = sum(item.late is not None for item in found)
         console.line((f"{count} {'is' if count == 1 else 'are'} late.", "bold"))
         if unknown_time:
+            has, counts = ("has", "it counts") if unknown_time == 1 else ("have", "they count")
             console.note(
-                f"{unknown_time} have no trusted submission time; they count as on time. --times takes a"
+                f"{unknown_time} {has} no trusted submission time; {counts} as on time. --times takes a"
                 " list, or Moodle's grading worksheet."
             )
     for name in unknown:

@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated
 
-from course.cli.frame.completion import exercise_ids, student_ids
+from course.cli.frame.completion import exercise_ids, graded_ids, student_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
 from course.cli.frame.options import argument, option
@@ -24,6 +24,8 @@ from course.printable import command, one_line
 from course.scoring.verdict import format_points
 
 _SHOWN = 200
+#: Reasons whose words are the list of files again.
+_ABOUT_FILES = frozenset({"no_file", "ambiguous_files"})
 
 
 def assign(
@@ -127,9 +129,8 @@ def _show_assigned(console: Console, done: list[Assigned], *, dry_run: bool) -> 
 def _show_unsettled(console: Console, left: list[Unsettled], out: Path) -> None:
     for item in left[:_SHOWN]:
         about = f"{one_line(item.student)} {item.exercise}"
-        told = (
-            item.found.reason if item.found.candidates else f"{item.found.reason}: {one_line(item.message)}"
-        )
+        listed = item.found.candidates and item.found.reason in _ABOUT_FILES
+        told = item.found.reason if listed else f"{item.found.reason}: {one_line(item.message)}"
         console.item(about, told)
         for one in item.found.candidates:
             defines = f"defines {', '.join(one.defines)}" if one.defines else "defines none of the functions"
@@ -158,7 +159,7 @@ def _show_unsettled(console: Console, left: list[Unsettled], out: Path) -> None:
 def log(
     out: Out,
     student: Annotated[str | None, argument("STUDENT", complete=student_ids)] = None,
-    exercise: Annotated[str | None, argument("EXERCISE", complete=exercise_ids)] = None,
+    exercise: Annotated[str | None, argument("EXERCISE", complete=graded_ids)] = None,
 ) -> int:
     """List every run and every change of a grade: who, when, why, and what it was before."""
     from course.cli.grade.replies import GradeLog

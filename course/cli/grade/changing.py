@@ -105,9 +105,9 @@ def _show_rerun(console: Console, done: Regraded, *, dry_run: bool) -> None:
     would = "would change" if dry_run else "changed"
     console.line((f"{done.regraded} graded again; {len(done.changes)} {would}.", "bold"))
     if done.up_to_date:
-        console.note(f"{done.up_to_date} were graded by the same graders already; --all grades them again.")
+        console.note(f"Graded by the same graders already: {done.up_to_date}; --all grades them again.")
     if done.kept:
-        console.note(f"{done.kept} had nothing to grade, and stay unchanged.")
+        console.note(f"Nothing to grade, and unchanged: {done.kept}.")
     if done.faults:
         console.line(f"{done.faults} failed because of a fault of the grader and are marked for regrading.")
     if dry_run and done.changes:

@@ -6,9 +6,12 @@ What is wrong is raised as the errors that readers of files know anyway (``OSErr
 
 from __future__ import annotations
 
+import contextlib
 import errno
+import io
 import re
 import stat
+import tokenize
 import tomllib
 from typing import TYPE_CHECKING, Any
 
@@ -55,6 +58,32 @@ def read_bytes(path: Path, most: int = MOST) -> bytes:
     if size > most:
         raise OSError(errno.EFBIG, f"it is larger than {most >> 20} MB", str(path))
     return data
+
+
+def decoded(raw: bytes) -> str:
+    """Text as a program of Windows may have saved it: UTF-8, UTF-16 with its mark, or the western code page.
+
+    Raises:
+        UnicodeError: it is not text.
+    """
+    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return raw.decode("utf-16")
+    with contextlib.suppress(UnicodeDecodeError):
+        return raw.decode("utf-8-sig")
+    if b"\0" in raw:
+        raise UnicodeError
+    return raw.decode("cp1252")
+
+
+def in_utf8(source: bytes) -> bytes:
+    """Python's source in UTF-8 where it is UTF-16 or Windows' western code page without saying so."""
+    with contextlib.suppress(SyntaxError, UnicodeDecodeError, LookupError):
+        source.decode(tokenize.detect_encoding(io.BytesIO(source).readline)[0])
+        if b"\0" not in source:
+            return source
+    with contextlib.suppress(UnicodeError):
+        return decoded(source).encode("utf-8")
+    return source
 
 
 def toml(text: str) -> dict[str, Any]:

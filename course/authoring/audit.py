@@ -51,6 +51,7 @@ from course.sandbox.scene.loading import (
     scene_path,
     unchanged,
     unsaid,
+    values_of,
 )
 from course.sandbox.scene.model import Scene
 
@@ -276,9 +277,12 @@ def _check_scene(path: Path, scene: Scene, findings: Findings) -> None:
         problem = "it asks for no number before the run."
         findings.add(path, where, "scene", problem, "Add [prediction]: docs/sandbox.md describes it.")
         return
-    for words in unsaid(scene):
-        problem = f"another {words} changes the answer, and neither `question` nor `why`."
-        findings.add(path, where, "scene", problem, "Write the number as a formula: {height} m.")
+    for name in unsaid(scene):
+        problem = f"with another {name} the answer is another, and `question` and `why` stay the same."
+        wanted = "g" if name == "gravity" else name.replace("-", "_")
+        known = [one for one in values_of(unchanged(scene)) if one.rpartition(".")[2] == wanted]
+        fix = f"Write in one of them a formula in braces with {' or '.join(known[:3])}."
+        findings.add(path, where, "scene", problem, fix)
     found = run(unchanged(scene)).comparison
     if found is not None and not found.agree:
         problem = f"theory gives {found.theory:g} {found.unit}, and the run {found.simulation:g}."

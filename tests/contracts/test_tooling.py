@@ -31,3 +31,21 @@ def _run(*command: str, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
 def test_the_repository_passes(command: tuple[str, ...]) -> None:
     done = _run(*command)
     assert done.returncode == 0, f"{done.stdout[-4000:]}\n{done.stderr[-1000:]}"
+
+
+@pytest.mark.parametrize(
+    "script",
+    [
+        path.relative_to(ROOT).as_posix()
+        for path in sorted((ROOT / "tests" / "benchmarks").rglob("*.py"))
+        if "\nfrom tests." in path.read_text("utf-8")
+    ],
+)
+def test_a_script_starts_beside_a_package_that_installs_tests_of_its_own(script: str, tmp_path: Path) -> None:
+    """As the engine `dartpy` does: its `tests` stood in for ours, which was no package."""
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "tests" / "__init__.py").touch()
+    begun = f"import sys; sys.path.append({str(tmp_path)!r}); sys.argv[1:] = ['--help']"
+    run = f"{begun}; import runpy; runpy.run_path({script!r}, run_name='__main__')"
+    done = _run("-P", "-c", run)
+    assert done.returncode == 0, done.stderr[-1000:]

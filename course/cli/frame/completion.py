@@ -123,6 +123,11 @@ def student_ids(ctx: Any, incomplete: str) -> list[str]:
     return _beginning(incomplete, map(str, found))
 
 
+def graded_ids(ctx: Any, incomplete: str) -> list[str]:
+    """Exercises of the grading run on the line, the quiz among them."""
+    return _beginning(incomplete, map(str, _in_gradebook(ctx, "SELECT id FROM exercises")))
+
+
 def run_numbers(ctx: Any, incomplete: str) -> list[str]:
     """Runs that the gradebook on the line has had, by their numbers."""
     return _beginning(incomplete, map(str, _in_gradebook(ctx, "SELECT number FROM runs")))

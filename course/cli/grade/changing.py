@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated
 
-from course.cli.frame.completion import exercise_ids, student_ids
+from course.cli.frame.completion import exercise_ids, graded_ids, student_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
 from course.cli.frame.options import argument, option
@@ -119,9 +119,9 @@ def _show_rerun(console: Console, done: Regraded, *, dry_run: bool) -> None:
     would = "would change" if dry_run else "changed"
     console.line((f"{done.regraded} graded again; {len(done.changes)} {would}.", "bold"))
     if done.up_to_date:
-        console.note(f"{done.up_to_date} were graded by the same graders already; --all grades them again.")
+        console.note(f"Graded by the same graders already: {done.up_to_date}; --all grades them again.")
     if done.kept:
-        console.note(f"{done.kept} had nothing to grade, and stay unchanged.")
+        console.note(f"Nothing to grade, and unchanged: {done.kept}.")
     if done.faults:
         console.line(f"{done.faults} failed because of a fault of the grader and are marked for regrading.")
     if dry_run and done.changes:
@@ -133,7 +133,7 @@ def _show_rerun(console: Console, done: Regraded, *, dry_run: bool) -> None:
 def override(
     out: Out,
     student: Annotated[str, argument("STUDENT", complete=student_ids)],
-    exercise: Annotated[str, argument("EXERCISE", complete=exercise_ids)],
+    exercise: Annotated[str, argument("EXERCISE", complete=graded_ids)],
     score: Annotated[float | None, option("--score X", "The points that count.")] = None,
     reason: Annotated[str, option("--reason TEXT", "Shown with the score, to the student too.")] = "",
     lift: Annotated[bool, option("--lift", "Remove the override again.")] = False,
@@ -212,7 +212,8 @@ def late(
                 book.add_times(known, replace=True)
         results = Results(book)
         found = [_late_one(item) for item in results.all() if item.late is not None or item.flagged_late]
-        unknown_time = sum(item.submitted_at is None for item in results.all()) if results.policy else 0
+        handed_in = [item for item in results.all() if item.result.number] if results.policy else []
+        unknown_time = sum(item.submitted_at is None for item in handed_in)
         unknown = _unknown(results, known)
     if console.json:
         console.emit(
@@ -323,8 +324,9 @@ def _show_late(
         count = sum(item.late is not None for item in found)
         console.line((f"{count} {'is' if count == 1 else 'are'} late.", "bold"))
         if unknown_time:
+            has, counts = ("has", "it counts") if unknown_time == 1 else ("have", "they count")
             console.note(
-                f"{unknown_time} have no trusted submission time; they count as on time. --times takes a"
+                f"{unknown_time} {has} no trusted submission time; {counts} as on time. --times takes a"
                 " list, or Moodle's grading worksheet."
             )
     for name in unknown:
@@ -390,6 +392,8 @@ def _show_similar(console: Console, found: Similar) -> None:
 
 
 _LISTED = 200
+#: Reasons whose words are the list of files again.
+_ABOUT_FILES = frozenset({"no_file", "ambiguous_files"})
 
 
 def assign(
@@ -484,9 +488,8 @@ def _show_assigned(console: Console, done: list[Assigned], *, dry_run: bool) -> 
 def _show_unsettled(console: Console, left: list[Unsettled], out: Path) -> None:
     for item in left[:_LISTED]:
         about = f"{one_line(item.student)} {item.exercise}"
-        told = (
-            item.found.reason if item.found.candidates else f"{item.found.reason}: {one_line(item.message)}"
-        )
+        listed = item.found.candidates and item.found.reason in _ABOUT_FILES
+        told = item.found.reason if listed else f"{item.found.reason}: {one_line(item.message)}"
         console.item(about, told)
         for one in item.found.candidates:
             defines = f"defines {', '.join(one.defines)}" if one.defines else "defines none of the functions"
@@ -515,7 +518,7 @@ def _show_unsettled(console: Console, left: list[Unsettled], out: Path) -> None:
 def log(
     out: Out,
     student: Annotated[str | None, argument("STUDENT", complete=student_ids)] = None,
-    exercise: Annotated[str | None, argument("EXERCISE", complete=exercise_ids)] = None,
+    exercise: Annotated[str | None, argument("EXERCISE", complete=graded_ids)] = None,
 ) -> int:
     """List every run and every change of a grade: who, when, why, and what it was before."""
     console = current()

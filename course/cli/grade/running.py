@@ -12,7 +12,7 @@ from typing import Annotated, Any
 from course import extras
 from course.catalog.load import Catalog
 from course.catalog.models import CourseRef
-from course.cli.frame.completion import exercise_ids, student_ids, submitted_ids
+from course.cli.frame.completion import exercise_ids, graded_ids, student_ids, submitted_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
 from course.cli.frame.options import argument, option
@@ -186,7 +186,7 @@ def _show_people(console: Console, summary: Summary) -> None:
 def explain(
     out: Out,
     student: Annotated[str, argument("STUDENT", complete=student_ids)],
-    exercise: Annotated[str, argument("EXERCISE", complete=exercise_ids)],
+    exercise: Annotated[str, argument("EXERCISE", complete=graded_ids)],
 ) -> int:
     """Show everything about one result, expected values included: for the instructor, not the student."""
     catalog = load_catalog()
@@ -406,7 +406,8 @@ def _show_result(
         console.item(decision.kind, one_line(words), width=10)
     if verdict.error is not None:
         console.item("reason", f"{verdict.error.code}: {one_line(verdict.error.message)}", width=10)
-        console.item("advice", verdict.error.help, width=10)
+        if verdict.error.help:
+            console.item("advice", verdict.error.help, width=10)
     console.blank()
     known = catalog.exercise_ids()
     if verdict.checks and verdict.exercise in known:

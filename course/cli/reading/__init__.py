@@ -1,1 +1,1 @@
-"""``course lessons`` and ``course lesson``: the list of lessons, and reading one."""
+"""``course lessons``, ``lesson`` and ``warmup``: what there is to read and to practise, and reading one."""

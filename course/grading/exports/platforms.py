@@ -232,8 +232,8 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
         written.kept = kept
         rows_have = "1 row has" if len(kept) == 1 else f"{len(kept)} rows have"
         written.notes.append(
-            f"{rows_have} a grade or feedback already and stayed as they were: {some(kept)}. --overwrite"
-            " writes ours in their place."
+            f"{rows_have} a grade or feedback already, and nothing was changed there: {some(kept)}."
+            " --overwrite writes ours in their place."
         )
     if locked:
         written.notes.append(

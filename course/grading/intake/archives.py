@@ -46,6 +46,7 @@ from course.handed_in.notebook import notebook_source
 from course.isolation.inside import statements
 from course.printable import one_line
 from course.scoring.verdict import Problem
+from course.strangers import in_utf8
 
 T = TypeVar("T")
 Members = dict[str, zipfile.ZipInfo]
@@ -575,8 +576,7 @@ _IS_CODE = frozenset({"", "a text", "a notebook"})
 
 def _defined(name: str, content: bytes, functions: tuple[str, ...]) -> tuple[tuple[str, ...], int]:
     """The functions among these that a file's top level defines, and how much code was parsed for that."""
-    if content[:2] in {b"\xff\xfe", b"\xfe\xff"}:
-        content = content.decode("utf-16", "replace").encode()  # as ``assign`` reads it
+    content = in_utf8(content)  # as ``assign`` reads it
     if not any(function.encode() in content for function in functions):
         return (), 0  # parsing takes a hundred times as long as looking
     pieces: list[str | bytes] = [content]

@@ -19,11 +19,9 @@ from __future__ import annotations
 import contextlib
 import difflib
 import hashlib
-import io
 import os
 import re
 import stat
-import tokenize
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -36,12 +34,12 @@ from course.errors import InternalError, UngradableError
 from course.grading.gradebook.records import SubmittedAt
 from course.grading.intake.archives import ArchiveContent, RefusedError, reader
 from course.grading.intake.downloads import Place, Student, is_clutter, is_notebook, kind_of, plain
-from course.grading.results.roster import decoded
 from course.handed_in.limits import HANDED_IN, MANIFEST, MAX_FILE, MAX_NOTEBOOK
 from course.handed_in.notebook import RECORD
 from course.printable import one_line
 from course.scoring.judging.submission import Submission
 from course.scoring.verdict import Problem, Verdict
+from course.strangers import in_utf8
 
 
 @dataclass(frozen=True)
@@ -201,8 +199,8 @@ _PERMISSIONS = "Check the permissions of the file and of the folders above it."
 _LONGEST = 200
 
 
-#: Problems that a file under another name, or a choice between files, would solve.
-_FOR_TRIAGE = {"no_file", "ambiguous_files", "refused_archive"}
+#: Problems that a file under another name, in another encoding, or a choice between files, would solve.
+_FOR_TRIAGE = {"no_file", "ambiguous_files", "refused_archive", "syntax_error"}
 
 
 def _no_file(exercise: Exercise, found: tuple[Candidate, ...], typed: tuple[str, ...]) -> Problem:
@@ -337,27 +335,26 @@ def submission_from(exercise: Exercise, path: Path, member: str = "") -> Submiss
             "no_code", message, "Name a .py file or a notebook; a path into an archive has a slash."
         )
     return _submission(
-        exercise, "named.ipynb" if notebook else "named.py", content if notebook else _utf8(content)
+        exercise, "named.ipynb" if notebook else "named.py", content if notebook else in_utf8(content)
     )
 
 
-def _utf8(source: bytes) -> bytes:
-    """Source as Python reads it, where it is UTF-16 or Windows' western code page without saying so."""
-    with contextlib.suppress(SyntaxError, UnicodeDecodeError, LookupError):
-        source.decode(tokenize.detect_encoding(io.BytesIO(source).readline)[0])
-        if b"\0" not in source:
-            return source
-    with contextlib.suppress(UnicodeError):
-        return decoded(source).encode("utf-8")
-    return source
-
-
 def _submission(exercise: Exercise, name: str, content: bytes) -> Submission:
-    """A file as a submission; a notebook becomes the module that it makes up."""
+    """A file as a submission; a notebook becomes the module that it makes up.
+
+    Raises:
+        RefusedError: it is empty, in an encoding that Python does not expect, or a notebook that cannot be
+            graded.
+    """
     shown = name.rpartition("/")[2]
     if not content.strip():
         raise RefusedError("empty_file", f"{shown} is empty.", "Was it saved before it was handed in?")
     if not name.casefold().endswith(".ipynb") and not is_notebook(content):
+        if in_utf8(content) != content:
+            saved = "UTF-16" if content[:2] in {b"\xff\xfe", b"\xfe\xff"} else "Windows' western code page"
+            message = f"{shown} is saved in {saved} and does not say so, and Python cannot read it."
+            advice = "Save it as UTF-8, or declare its encoding in the first line."
+            raise RefusedError("syntax_error", message, advice)
         return Submission({exercise.module: content})
     source, record = reader.notebook(content, exercise, shown)
     if len(source) > MAX_FILE:

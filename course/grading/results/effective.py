@@ -421,6 +421,17 @@ def counted(counts: Effective | None, file: str = "") -> str:
     return msgspec.json.encode(told | ({"file": file} if file else {})).decode()
 
 
+class _Submission(msgspec.Struct, frozen=True):
+    submission: str = ""
+
+
+def submission_in(told: str) -> str:
+    """The digest of the submission in what ``counted`` told; "" where it told of none."""
+    with contextlib.suppress(msgspec.MsgspecError, RecursionError):
+        return msgspec.json.decode(told, type=_Submission).submission
+    return ""
+
+
 # ---
 # A score set by an instructor, with a reason: it replaces the graders', now and after any regrading.
 

@@ -39,8 +39,8 @@ import msgspec
 
 from course.errors import MissingCapabilityError, UsageError
 from course.grading.gradebook.records import SubmittedAt
-from course.grading.results.roster import decoded, in_english, moodle_key
-from course.strangers import read_bytes, toml
+from course.grading.results.roster import in_english, moodle_key
+from course.strangers import decoded, read_bytes, toml
 
 FORMAT_VERSION = 1
 _DAY_S = 86_400.0

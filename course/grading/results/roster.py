@@ -18,7 +18,6 @@ are listed.
 
 from __future__ import annotations
 
-import contextlib
 import csv
 import io
 import re
@@ -32,7 +31,7 @@ import msgspec
 from course.errors import UsageError
 from course.grading.gradebook.records import PlatformIdentity
 from course.printable import one_line
-from course.strangers import read_bytes
+from course.strangers import decoded, read_bytes
 
 COLUMNS = (
     "student", "name", "email", "login", "canvas_id", "sis_user_id", "section", "moodle_key",
@@ -252,17 +251,6 @@ def read_text(path: Path) -> str:
         raise _wrong(path, f"it cannot be read ({error.strerror})") from None
     except UnicodeError:
         raise _wrong(path, "it is not text; save it as 'CSV UTF-8'") from None
-
-
-def decoded(raw: bytes) -> str:
-    """The text of a CSV file: UTF-8, UTF-16 with its mark, or Windows' western code page, as Excel has it."""
-    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return raw.decode("utf-16")
-    with contextlib.suppress(UnicodeDecodeError):
-        return raw.decode("utf-8-sig")
-    if b"\0" in raw:
-        raise UnicodeError
-    return raw.decode("cp1252")
 
 
 def in_english(headings: list[str]) -> list[str]:

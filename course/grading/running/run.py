@@ -23,7 +23,7 @@ from course.grading.intake.downloads import ClassList, Student, class_list
 from course.grading.intake.students import Entry, read_quiz, read_student, witnesses
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version, record_sha256
-from course.grading.results.effective import Effective, Results, ScoreChange, replacing
+from course.grading.results.effective import Effective, Results, ScoreChange, replacing, submission_in
 from course.grading.results.merge import Merged
 from course.grading.results.roster import Roster
 from course.grading.running.batch import Graded, grade_all
@@ -276,7 +276,7 @@ class _Run:
         self._open: Counter[str] = Counter()
         self._scored: deque[tuple[Result, dict[str, bytes]]] = deque()
         self._found = set(book.found())
-        self._assigned = {(it.student, it.exercise) for it in book.journal() if it.kind == "assign"}
+        self._assigned = _assigned(book)
         before = book.waiting()
         self._note_facts()
         self.view = Results(book)
@@ -339,10 +339,17 @@ class _Run:
             self.one_less(student.name)
 
     def _is_done(self, entry: Entry) -> bool:
-        """Whether it was graded before, or an assigned file still takes the place of a missing one."""
-        if entry.submission is None and (entry.student, entry.exercise.id) in self._assigned:
-            return True
-        return self._confirmed(self._key(entry))
+        """Whether it was graded before, or an assigned file still takes its place."""
+        return self._is_replaced(entry) or self._confirmed(self._key(entry))
+
+    def _is_replaced(self, entry: Entry) -> bool:
+        """Whether an instructor has assigned a file since this work, or its lack, was there."""
+        about = entry.student, entry.exercise.id
+        if entry.submission is None or about not in self._assigned:
+            return about in self._assigned
+        before, assigned = self._assigned[about]
+        counts = next(self._book.results(*about), None) if before == entry.sha256 else None
+        return counts is not None and counts.key.submission_sha256 == assigned
 
     def _confirmed(self, key: Key) -> bool:
         return self._book.confirm(key, self.replacing(key))
@@ -353,7 +360,7 @@ class _Run:
 
     def _note_found(self, entry: Entry) -> None:
         about = (entry.student, entry.exercise.id)
-        if about in self._assigned and entry.submission is None:
+        if self._is_replaced(entry):
             return
         if entry.found is not None:
             self._book.set_found(*about, msgspec.json.encode(entry.found).decode())
@@ -404,6 +411,17 @@ class _Run:
         if self._times:
             self._book.add_times(self._times)
         self._times.clear()
+
+
+def _assigned(book: Gradebook) -> dict[tuple[str, str], tuple[str, str]]:
+    """The submission that an assigned file took the place of, and the file, by student and exercise."""
+    found: dict[tuple[str, str], tuple[str, str]] = {}
+    for one in book.journal():
+        if one.kind == "assign":
+            about, before = (one.student, one.exercise), submission_in(one.before)
+            first, last = found.get(about, (before, before))  # a second assignment replaces the first
+            found[about] = (first if last == before else before), submission_in(one.after)
+    return found
 
 
 def _bank(catalog: Catalog) -> Bank:

@@ -114,6 +114,22 @@ def test_a_scene_whose_run_gives_another_number_than_its_theory_is_named(
     assert problem["message"] == "theory gives 17 m/s, and the run 2."
 
 
+def test_a_scene_whose_words_leave_out_what_its_answer_depends_on_is_told_the_names_for_it(
+    mini: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (mini / "scenes").mkdir()
+    text = (FOLDER / "free-fall.toml").read_text("utf-8").replace('"free-fall"', '"fall"')
+    plain = re.sub(r"^(question|why) = .*$", r'\1 = "How fast?"', text, flags=re.MULTILINE)
+    plain = re.sub(r"^theory = .*$", 'theory = "g * stone.restitution"', plain, flags=re.MULTILINE)
+    (mini / "scenes" / "fall.toml").write_text(plain, "utf-8")
+    _, body = answer(capsys, "author", "check", "fall")
+    told = {
+        one["message"].split()[2]: one["help"] for one in body["problems"] if "with another" in one["message"]
+    }
+    assert told["gravity"] == "Write in one of them a formula in braces with g."
+    assert told["restitution"] == "Write in one of them a formula in braces with stone.restitution."
+
+
 def test_a_scene_called_as_one_of_the_programs_own_is_named(
     mini: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

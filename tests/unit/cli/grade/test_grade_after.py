@@ -56,6 +56,19 @@ def test_an_override_is_in_every_file_at_once_and_can_be_lifted(course, out: Pat
     assert (ran.code, ran.json["score"], ran.json["override"]) == (0, 5.0, None)
 
 
+def test_what_is_missing_is_said_in_full_and_nothing_is_said_where_there_is_nothing(
+    course, out: Path
+) -> None:
+    for words in (("explain", "out", "ada"), ("override", "out", "ada", "--score", "1")):
+        assert "There are doubling, halving." in course("grade", *words).err
+    with (out.parent / "more.csv").open("w", encoding="utf-8") as file:
+        file.write(ROSTER + "eve,Eve,,13,,\n")
+    assert course("grade", "late", "out", "--roster", "more.csv").code == 0
+    told = course("grade", "explain", "out", "eve", "doubling").out
+    assert "reason: not_submitted: Nothing was handed in." in told
+    assert "advice" not in told
+
+
 @pytest.mark.parametrize(
     ("words", "code", "error"),
     [
@@ -98,6 +111,9 @@ def test_a_late_policy_is_put_in_force_shown_and_taken_out(course, out: Path) ->
     assert "2 have no trusted submission time" in ran.out
     assert "no student nobody" in ran.err
     assert grades(out / "grades.csv")["ada"]["score"] == "8"
+    (out.parent / "all.csv").write_text(ROSTER + "eve,Eve,,13,,\n", "utf-8")
+    told = course("grade", "late", "out", "--roster", "all.csv", "--dry-run").out
+    assert "2 have no trusted submission time" in told, "eve handed in nothing"
     ran = course("grade", "late", "out", "--roster", "roster.csv", "--dry-run")
     assert "1 is late." in ran.out
     ran = course("grade", "late", "out", "--roster", "roster.csv", "--json")

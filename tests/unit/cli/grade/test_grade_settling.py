@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from course.grading.gradebook.book import Gradebook
 from course.grading.intake.students import Entry
 from course.grading.running import batch
 from course.grading.running.batch import Graded
@@ -81,6 +82,36 @@ def test_what_is_unsettled_is_listed_previewed_and_settled(course, here: Path) -
         (("cy", "nowhere.py", "--reason", "x"), "file_not_found"),
     ):  # fmt: skip
         assert course("grade", "assign", "out", *words, "--json").json["error"]["code"] == code
+
+
+def test_an_assigned_file_counts_until_another_file_with_the_right_name_arrives(course, here: Path) -> None:
+    """Ada's own file was there when the instructor chose another: reading it again is no arrival."""
+    again = ("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--resume")
+
+    def resumed() -> int:
+        return int(json.loads(course(*again, "--json").out.splitlines()[-1])["already_graded"])
+
+    def counts() -> str:
+        with Gradebook(here / "out" / "gradebook.sqlite") as book:
+            (one,) = book.results("ada", "doubling")
+        return one.key.submission_sha256
+
+    own = counts()
+    chosen = []
+    for name in ("first.py", "second.py"):
+        (here / name).write_text(f"{SOURCE}# {name}\n")
+        words = ("ada", name, "--exercise", "doubling", "--reason", "by mail")
+        assert course("grade", "assign", "out", *words).code == 0
+        chosen.append(counts())
+        assert resumed() == 3
+        assert counts() == chosen[-1]
+    file = here / "class" / "ada" / "doubling.py"
+    file.write_text(SOURCE + "# later\n")
+    resumed()
+    assert counts() not in {own, *chosen}
+    file.write_text(SOURCE)
+    resumed()
+    assert counts() == own, "changed back, after another had counted"
 
 
 def test_every_zero_that_stops_an_export_is_listed_with_a_way_to_settle_it(
@@ -223,3 +254,19 @@ def test_work_in_an_undeclared_encoding_is_settled_by_its_own_name(
     ran = course("grade", "assign", "out", "bob", "hw.py", "--reason", "by mail")
     assert ran.code == 0, ran.err
     assert [source.decode() for source in graded[-1:]] == ["# ça va – très bien\n" + SOURCE]
+
+
+@pytest.mark.parametrize(
+    ("encoding", "named"), [("cp1252", "Windows' western code page"), ("utf-16", "UTF-16")]
+)
+def test_a_right_name_in_an_undeclared_encoding_is_named_and_proposed(
+    course, here: Path, encoding: str, named: str
+) -> None:
+    (here / "class" / "ada" / "doubling.py").write_bytes(("# ça va – très bien\n" + SOURCE).encode(encoding))
+    ran = course("grade", "run", "class", "--out", "new", "--exercise", "doubling")
+    assert f"ada doubling: syntax_error: doubling.py is saved in {named}" in " ".join(ran.out.split())
+    listed = course("grade", "assign", "new").out
+    assert f"ada doubling: syntax_error: doubling.py is saved in {named}" in " ".join(listed.split())
+    assert "doubling.py: defines double, doublings; proposed" in listed
+    ran = course("grade", "assign", "new", "--accept-names")
+    assert "ada doubling: ungradable -> graded, 10 of 10; from doubling.py" in ran.out

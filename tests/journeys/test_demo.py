@@ -62,7 +62,7 @@ def test_a_right_line_fixes_the_mistake_in_any_spelling(typing, line):
         ("x + h * v", "The position never changes"),
         ("x = x + h * w", "It raises NameError: name 'w' is not defined"),
         ("while True: pass", "when the time was up"),
-        ("x = x + h * v\udcff", "Python cannot read this file"),
+        ("x = x + h * v\udcff", "is not Python source"),
     ],
 )
 def test_a_wrong_line_is_told_its_own_finding_and_asked_for_again(typing, line, finding, monkeypatch):

@@ -25,11 +25,13 @@ import msgspec
 from course.errors import CourseError, IntegrityError
 from course.grading.gradebook.file import (
     SEAL,
+    TABLES,
     begin_writing,
     create,
     explained,
     open_file,
     release,
+    rescue,
     row_into,
     seal,
     unseal,
@@ -250,11 +252,21 @@ class Gradebook:
         yield from self._results(f" WHERE {newest}", arguments)
 
     def verify(self) -> None:
-        """Look at every page and every decision."""
+        """Look at every page, every decision, and all that opening leaves unread because it is large.
+
+        Raises:
+            IntegrityError: the file is damaged.
+        """
         with explained(self.path):
             told = self._db.execute("PRAGMA quick_check(1)").fetchone()[0]
             if told != "ok":
                 raise sqlite3.DatabaseError(told)
+            with_digests = self._db.execute("PRAGMA user_version").fetchone()[0] >= 4
+            for name, (about, words) in _LARGE.items() if with_digests else ():
+                other = f"row_sha256 != row_digest('{name}', {', '.join(TABLES[name])})"
+                row = self._db.execute(f"SELECT {about} FROM {name} WHERE {other} LIMIT 1").fetchone()
+                if row is not None:
+                    raise _failed_checksum(words.format(*row), self.path)
         self.overrides()
 
     def history(self, student: str, exercise: str) -> list[Result]:
@@ -447,11 +459,16 @@ def _about(student: str | None, exercise: str | None) -> tuple[str, tuple[str, .
 _create = create  # under its own name it is an argument above
 
 
+#: Tables with contents that the seal does not cover: what names a row of them, and how it is called.
+_LARGE = {
+    "results": ("student, exercise", "The result of {!r} for {}"),
+    "submissions": ("sha256", "The submission {:.12}"),
+    "snapshots": ("sha256", "The snapshot {:.12} of the graders"),
+}
+
+
 def _failed_checksum(what: str, path: Path) -> IntegrityError:
-    return IntegrityError(
-        f"{what} in {path} fails its checksum.",
-        help="Restore the gradebook from a backup, or grade into a new folder.",
-    )
+    return IntegrityError(f"{what} in {path} fails its checksum.", help=rescue(path))
 
 
 def _sha256(body: bytes | str) -> str:

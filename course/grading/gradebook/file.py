@@ -168,7 +168,7 @@ def row_into(table: str, how: str = "INSERT") -> str:
     return f"{how} INTO {table} VALUES ({cells}, row_digest('{table}', {cells}))"
 
 
-def _rescue(path: Path) -> str:
+def rescue(path: Path) -> str:
     out = path.parent
     salvage = command("grade", "salvage", out, "--to", f"{out}-salvaged")
     return (
@@ -192,7 +192,7 @@ def explained(path: Path) -> Iterator[None]:
     except (sqlite3.DatabaseError, msgspec.MsgspecError, RecursionError, UnicodeDecodeError) as error:
         raise IntegrityError(
             f"{path} is damaged: {one_line(str(error))[:_MOST_SAID]}.",
-            help=_rescue(path),
+            help=rescue(path),
         ) from None
 
 
@@ -208,7 +208,7 @@ def _operational(path: Path, error: sqlite3.OperationalError) -> CourseError:
         )
     # SQLITE_ERROR: a table or a column that our statements name is not there.
     if kind in {sqlite3.SQLITE_ERROR, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}:
-        return IntegrityError(f"{path} is damaged: {error}.", help=_rescue(path))
+        return IntegrityError(f"{path} is damaged: {error}.", help=rescue(path))
     if kind == sqlite3.SQLITE_FULL:
         message, fix = f"The disk is full: {path} cannot grow.", "Make room, then go on with --resume."
         code = "disk_full"
@@ -316,7 +316,7 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
     sealed = _SEALED if version < 4 else _SEALED_SINCE_4 if version < 5 else _SEALED_NOW
     if kept is not None and kept[0] != _digest(db, sealed):
         raise IntegrityError(
-            f"{path} is damaged: its content is not what the course wrote.", help=_rescue(path)
+            f"{path} is damaged: its content is not what the course wrote.", help=rescue(path)
         )
     if version < FORMAT_VERSION and writing:
         _keep(db, path, version)

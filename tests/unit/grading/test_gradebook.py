@@ -313,6 +313,30 @@ def test_what_changed_since_it_was_closed_is_damage(tmp_path: Path, change: str)
             Gradebook(path, writing=writing)
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        "UPDATE results SET verdict = CAST(verdict || 'x' AS BLOB)",
+        "UPDATE submissions SET files = CAST(files || 'x' AS BLOB)",
+        "UPDATE snapshots SET packed = CAST(packed || 'x' AS BLOB)",
+    ],
+)
+def test_what_is_too_large_to_be_read_at_every_opening_is_read_by_who_looks_at_everything(
+    tmp_path: Path, change: str
+) -> None:
+    path = tmp_path / "g.sqlite"
+    full(path)
+    with Gradebook(path, writing=True) as book:
+        book.keep_snapshot("5" * 64, b"graders")
+    with Gradebook(path) as book:
+        book.verify()
+    with contextlib.closing(sqlite3.connect(path)) as db:
+        assert db.execute(change).rowcount == 1
+        db.commit()
+    with Gradebook(path) as book, pytest.raises(IntegrityError, match="fails its checksum"):
+        book.verify()
+
+
 def before_4(db: sqlite3.Connection) -> None:
     """Make of a gradebook what the format before had: rows without digests, and four tables fewer."""
     for table in ("meta", "runs", "exercises", "students", "submissions", "times", "overrides", "results"):

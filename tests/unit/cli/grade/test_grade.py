@@ -155,3 +155,16 @@ def test_nobody_adds_lines_of_their_own_to_what_the_instructor_reads(tmp_path: P
         assert not set("\u202e\u2066\r") & set(said), said
     assert "bob\\n" in ran.stdout
     assert any("raised ValueError" in done.stdout for done in told)
+
+
+def test_one_students_folder_is_not_taken_for_a_class_of_exercises(tmp_path: Path) -> None:
+    hers = tmp_path / "class" / "ada"
+    (hers / "doubling").mkdir(parents=True)
+    (hers / "doubling" / "doubling.py").write_bytes(
+        (MINI / "solutions" / "doubling" / "doubling.py").read_bytes()
+    )
+    words = ("grade", "run", hers, "--out", tmp_path / "out", "--isolation", "process")
+    refused = course(*words, "--json")
+    assert (refused.returncode, (tmp_path / "out").exists()) == (2, False)
+    assert json.loads(refused.stdout.splitlines()[-1])["error"]["code"] == "one_students_folder"
+    assert course(*words, "--layout", "folders").returncode == 0, "a student may be called so"

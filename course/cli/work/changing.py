@@ -9,7 +9,7 @@ import contextlib
 import difflib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from course.catalog.models import Exercise
 from course.cli.frame.completion import ExerciseName, OneExercise, exercise_ids
@@ -22,9 +22,11 @@ from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.replies import Change, Diff, Reset, Start, Update
 from course.errors import NotFoundError, UsageError
 from course.handed_in.cells import read_notebook
-from course.notebooks.build import WORKSPACE, Generated, generate
 from course.notebooks.merge import CannotMergeError, is_untouched, merged
 from course.progress.workspace import same_text, write_atomically
+
+if TYPE_CHECKING:  # what generates notebooks needs NumPy
+    from course.notebooks.build import Generated
 
 
 def diff(exercise: ExerciseName = None) -> int:
@@ -142,6 +144,8 @@ def _updates(here: Here, *, dry_run: bool) -> Iterator[Change]:
     for exercise in (*here.started(), *here.warm_ups_started()):
         for source in exercise.given:
             yield _update_file(here, exercise, source.name, source.read_bytes(), dry_run=dry_run)
+    from course.notebooks.build import WORKSPACE, generate  # a lesson opens without it
+
     for notebook in generate(here.catalog, layout=WORKSPACE, there=here.workspace.root):
         yield _update_notebook(here, notebook, dry_run=dry_run)
 

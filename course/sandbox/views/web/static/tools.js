@@ -86,6 +86,21 @@ export class Tools {
     return Math.hypot(tx - x, ty - y) <= Math.max(reach, 12 / this.camera.scale);
   }
 
+  /** A tap opens the body's numbers, unless they would lie on what a hand takes hold of. */
+  tap(card) {
+    const { view } = this;
+    const row = view.rowOf(view.chosen);
+    const body = view.bodies.find((b) => b.name === view.chosen);
+    if (!row || !body) return;
+    card.open = true;
+    const { left, top, right, bottom } = card.getBoundingClientRect();
+    const [x0, y0] = this.camera.place({ clientX: left, clientY: bottom });
+    const [x1, y1] = this.camera.place({ clientX: right, clientY: top });
+    const under = ([x, y]) => x > x0 && x < x1 && y > y0 && y < y1;
+    const tip = this.tip(body, row[0], row[1], row[3] / view.gain, row[4] / view.gain);
+    card.open = !(under(tip) || under(row));
+  }
+
   down(event) {
     const { view } = this;
     this.fingers.set(event.pointerId, event);
@@ -164,7 +179,7 @@ export class Tools {
         view.send({ do: "aim", name: pointer.name, vx, vy });
       }
     } else if (!pointer.pan && !pointer.offset) view.send({ do: "release" });
-    if (meant && !pointer.moved && pointer.name) view.body.element.open = true; // a tap
+    if (meant && !pointer.moved && pointer.name) this.tap(view.body.element);
     view.pointer = null;
     view.changed = true;
   }

@@ -20,7 +20,7 @@ from course.grading.gradebook.salvage import Salvaged, back_up
 from course.grading.gradebook.salvage import salvage as rescue
 from course.grading.results.effective import Results
 from course.grading.running.assign import Assigned, Unsettled
-from course.printable import command, one_line
+from course.printable import command, counted, one_line
 from course.scoring.verdict import format_points
 
 _SHOWN = 200
@@ -61,9 +61,10 @@ def assign(
         )
     console = current()
     done: list[Assigned] = []
+    waiting = 0
     if student is None and not accept_names:
         with open_results(out) as results:
-            left = assigning.unsettled(results)
+            left, waiting = assigning.unsettled(results), len(results.book.waiting())
     else:
         level, at_least = levels(isolation)
         reason = reason or ("the match that was proposed" if accept_names else "")
@@ -89,6 +90,8 @@ def assign(
     else:
         _show_assigned(console, done, dry_run=dry_run)
         _show_unsettled(console, left, out)
+        if waiting:
+            console.note(f"Not graded yet: {counted(waiting, 'student')}. The run goes on with --resume.")
     return 0
 
 

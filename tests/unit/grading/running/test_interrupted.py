@@ -108,13 +108,15 @@ def test_every_page_and_table_says_so(stopped: Path) -> None:
     assert "student-003 / " not in (stopped / "junit.xml").read_text("utf-8")
 
 
-def test_explain_and_the_log_say_so(stopped: Path) -> None:
+def test_explain_the_log_and_the_list_of_what_is_to_settle_say_so(stopped: Path) -> None:
     shown = in_process("grade", "explain", stopped, "student-003", "doubling")
     assert shown.returncode == 0
     assert "not_graded_yet" in shown.stdout
     assert "--resume" in shown.stdout
     assert not [words for words in UNTRUE if words in shown.stdout]
     assert not [words for words in UNTRUE if words in in_process("grade", "log", stopped).stdout]
+    listed = in_process("grade", "assign", stopped).stdout
+    assert "Not graded yet: 3 students. The run goes on with --resume." in listed, "0 to settle is not all"
 
 
 def test_resuming_grades_them_and_the_log_holds_nothing_of_it(

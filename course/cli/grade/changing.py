@@ -424,9 +424,10 @@ def assign(
         )
     console = current()
     done: list[Assigned] = []
+    waiting = 0
     if student is None and not accept_names:
         with open_results(out) as results:
-            left = assigning.unsettled(results)
+            left, waiting = assigning.unsettled(results), len(results.book.waiting())
     else:
         level, at_least = levels(isolation)
         reason = reason or ("the match that was proposed" if accept_names else "")
@@ -452,6 +453,8 @@ def assign(
     else:
         _show_assigned(console, done, dry_run=dry_run)
         _show_unsettled(console, left, out)
+        if waiting:
+            console.note(f"Not graded yet: {counted(waiting, 'student')}. The run goes on with --resume.")
     return 0
 
 

@@ -529,7 +529,7 @@ def log(
         results.verify()
         student = None if student is None else results.called(student)
         runs = results.book.runs()
-        decisions = results.book.journal(student, exercise)
+        decisions = results.decisions(student, exercise)
     if console.json:
         console.emit(GradeLog(runs=tuple(runs), changes=tuple(decisions)))
         return 0

@@ -196,7 +196,7 @@ def explain(
         found = next(results.all(student, exercise), None)
         empty = found is None and next(results.all(), None) is None
         history = results.book.history(student, exercise)
-        decisions = [one for one in results.book.journal(student, exercise) if one.student]
+        decisions = [one for one in results.decisions(student, exercise) if one.student]
         whose = results.named(student)
     if found is None:
         raise NotFoundError(

@@ -141,7 +141,7 @@ class Results:
         self._exercises = {exercise.id: exercise for exercise in book.exercises()}
         self._overrides: dict[tuple[str, str], Override] = {}
         for override in book.overrides():
-            self._overrides[override.student, override.exercise] = override
+            self._overrides[self._owner(override.student), override.exercise] = override
         self._times: dict[tuple[str, str], list[tuple[str, str, float | None]]] = {}
         self.take_in(book.times())
 
@@ -159,8 +159,27 @@ class Results:
 
     def take_in(self, times: Iterable[SubmittedAt]) -> None:
         for time in times:
-            place = self._times.setdefault((time.student, time.exercise), [])
+            place = self._times.setdefault((self._owner(time.student), time.exercise), [])
             place.append((time.submission_sha256, time.source, time.at))
+
+    def _owner(self, name: str) -> str:
+        """The student's name: what was decided under the roster's, before a folder came, is the folder's."""
+        return name if name in self._with_folder else self._arrived.get(name, name)
+
+    @cached_property
+    def _with_folder(self) -> set[str]:
+        return {*self.book.student_ids(), *self.waiting}
+
+    @cached_property
+    def _arrived(self) -> dict[str, str]:
+        found = self.roster.match(self._with_folder, self.downloads)[0] if self.roster else {}
+        return {person.student: student for student, person in found.items()}
+
+    def decisions(self, student: str | None, exercise: str | None) -> list[Decision]:
+        """The journal about a student, with what was decided under the roster's name before a folder came."""
+        person = self.person(student) if student is not None else None
+        earlier = self.book.journal(person.student, exercise) if person and person.student != student else []
+        return [one for one in earlier if one.student] + self.book.journal(student, exercise)
 
     def exercises(self) -> tuple[GradedExercise, ...]:
         return tuple(self._exercises.values())

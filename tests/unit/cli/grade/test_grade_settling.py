@@ -270,3 +270,31 @@ def test_a_right_name_in_an_undeclared_encoding_is_named_and_proposed(
     assert "doubling.py: defines double, doublings; proposed" in listed
     ran = course("grade", "assign", "new", "--accept-names")
     assert "ada doubling: ungradable -> graded, 10 of 10; from doubling.py" in ran.out
+
+
+def test_what_was_decided_before_a_folder_came_stays_with_its_student(course, here: Path) -> None:
+    """Until then a student is called as Canvas' roster has it; the score by hand stayed with that name."""
+    sheet = 'Student,ID,SIS User ID,SIS Login ID,Section\n"L, Ada",1,ada,al,A\n"N, Dan",4,dan,dn,A\n'
+    (here / "canvas.csv").write_text(sheet, "utf-8")
+    (here / "late.toml").write_text(
+        'format_version = 1\npercent_per_day = 10\n[[deadline]]\nexercise = "*"\ndue = 2026-12-01T00:00:00Z\n'
+    )
+    again = ("grade", "run", "class", "--out", "new", "--exercise", "doubling", "--roster", "canvas.csv")
+    course(*again)
+    ran = course("grade", "override", "new", "dan", "doubling", "--score", "3", "--reason", "oral")
+    called = ran.out.split(" doubling")[0]
+    assert called != "dan"
+    times = f"student,exercise,submitted_at\n{called},doubling,2026-12-03T00:00:00Z\n"
+    (here / "times.csv").write_text(times, "utf-8")
+    assert course("grade", "late", "new", "--policy", "late.toml", "--times", "times.csv").code == 0
+    shutil.copytree(here / "class" / "ada", here / "class" / "dan")
+    course(*again, "--resume")
+    rows = [row for row in (here / "new" / "grades.csv").read_text("utf-8").splitlines() if "Dan" in row]
+    assert [row.split(",")[:3] for row in rows] == [['"dan"', '"doubling"', '"3"']]
+    assert "oral" in course("grade", "explain", "new", "dan", "doubling").out
+    log = course("grade", "log", "new", "dan", "--json").json["changes"]
+    assert [one["kind"] for one in log if one["student"]] == ["override", "resume"]
+    course("grade", "override", "new", "dan", "doubling", "--lift")
+    assert "score: 8 of 10, passed" in course("grade", "explain", "new", "dan", "doubling").out, (
+        "two days late"
+    )

@@ -344,7 +344,7 @@ def write_gradescope(folder: Path, results: Results, options: ExportOptions) -> 
         name = f"{len(rows) + 1:05}.json"
         body = results_body([effective])
         write_bytes(folder / name, msgspec.json.format(msgspec.json.encode(body), indent=1))
-        person = selection.people.get(effective.student)
+        person = selection.people.get(effective.student) or results.person(effective.student)
         about = [person.name, person.email] if person else ["", ""]
         rows.append([name, effective.student, *about, effective.exercise, number(effective.score)])
     index = folder / "index.csv"

@@ -193,8 +193,13 @@ class Results:
 
         Anything else is given back as it is, for whoever asks to refuse.
         """
-        if self.roster is None or name in self.students():
+        students = self.students()
+        if name in students:
             return name
+        if self.roster is None:
+            people = {student: self.person(student) for student in students}
+            so = [student for student, one in people.items() if one and name in {one.name, one.email}]
+            return so[0] if len(so) == 1 else name
         meant = {person.student for person in self.roster.rows(name)}
         found = self.roster.match(self.present(), self.downloads)[0]
         ids = {student for student, person in found.items() if person.student in meant}
@@ -235,8 +240,12 @@ class Results:
         return self._exercises[exercise].title if exercise in self._exercises else exercise
 
     def person(self, student: str) -> Person | None:
-        """The roster's row about a student, if there is one."""
-        return self.roster.find(student, self.downloads.get(student)) if self.roster else None
+        """The roster's row about a student, or, without a roster, what Gradescope's download says."""
+        known = self.downloads.get(student)
+        if self.roster is not None:
+            return self.roster.find(student, known)
+        said = known is not None and known.source == "gradescope"
+        return Person(student, known.name, known.email, sis_user_id=known.sid) if known and said else None
 
     def all(self, student: str | None = None, exercise: str | None = None) -> Iterator[Effective]:
         """Every student and exercise, ordered by both; students without a grade come at the end."""

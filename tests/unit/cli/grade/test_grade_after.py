@@ -185,6 +185,18 @@ def test_a_student_from_a_download_is_found_by_the_platforms_number(course, out:
     assert (ran.json["unmatched"], ran.json["without_grade"]) == (["bob", "cy"], ["dan doubling"])
 
 
+def test_gradescopes_download_says_names_where_there_is_no_roster(course, out: Path) -> None:
+    with Gradebook(out / "gradebook.sqlite", writing=True) as book:
+        book.set_students({"ada": PlatformIdentity("gradescope", "1", "Ada L", "a@x.org", "ada")})
+    assert course("grade", "explain", "out", "Ada L", "doubling").out.startswith(
+        "ada (Ada L), doubling: graded"
+    )
+    course("grade", "export", "out", "--format", "gradescope", "--accept-zeros")
+    index = (out / "gradescope" / "index.csv").read_text("utf-8-sig")
+    assert '"ada","Ada L","a@x.org","doubling"' in index
+    assert '"bob","","","doubling"' in index
+
+
 def test_an_autograder_needs_no_gradebook(course, tmp_path: Path) -> None:
     ran = course(
         "grade", "export", "--format", "gradescope-autograder", "--exercise", "doubling", "--seed", "3"

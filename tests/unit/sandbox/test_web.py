@@ -252,6 +252,7 @@ def receive(socket) -> dict | np.ndarray:
 def test_a_page_is_told_everything_it_needs_to_draw() -> None:
     made = session()
     made.stage.world.throw(3, 1, 3.0, -4.0, reach=5.0)
+    made.stage.world.paused = True  # the frame is compared with the world a moment later
     with (
         TestClient(make_app(made, PORT, TOKEN), base_url=BASE) as client,
         client.websocket_connect(SOCKET, headers=OWN) as open_socket,

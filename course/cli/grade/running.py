@@ -84,6 +84,12 @@ def run(
     catalog.content.instructors()  # before a roster is read, and perhaps corrected, for nothing
     people = read_roster(roster) if roster else None
     options = RunOptions(tuple(exercise or ()), tuple(only or ()), terms, seed, resume, layout, people)
+    folders = {path.name for path in submissions.glob("*/")}
+    if layout == "auto" and folders and folders <= set(catalog.exercise_ids()):
+        console.warn(
+            f"Each folder in {submissions} is taken for a student, and all are called as exercises. If they are"
+            " one student's, name the folder above them."
+        )
     progress = _progress(console, catalog.ref)
 
     def grading(accepted: str) -> tuple[Summary, tuple[Change, ...]]:

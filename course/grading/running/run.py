@@ -192,7 +192,7 @@ def grade_class(
     """
     catalog.content.instructors()
     _exercises(catalog, options.exercises)
-    members = _members(folder, options, catalog)
+    members = _members(folder, options)
     if among_graders(folder, catalog.content):
         raise UsageError(
             f"{folder} lies among the course's own exercises and graders.",
@@ -473,16 +473,8 @@ def _exercises(catalog: Catalog, wanted: tuple[str, ...]) -> tuple[Exercise, ...
     return chosen
 
 
-def _members(folder: Path, options: RunOptions, catalog: Catalog) -> ClassList:
+def _members(folder: Path, options: RunOptions) -> ClassList:
     found = class_list(folder, options.layout)
-    named = {student.name for student in found.students}
-    if options.layout == "auto" and named and named <= set(catalog.exercise_ids()):
-        raise UsageError(
-            f"{folder} looks like one student's work: its folders are called {', '.join(sorted(named))}.",
-            help="Name the folder above it (--only takes one student), or add --layout folders if students"
-            " are called so.",
-            code="one_students_folder",
-        )
     if options.only:
         unknown = sorted(set(options.only) - {student.name for student in found.students})
         if unknown:

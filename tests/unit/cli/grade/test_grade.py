@@ -157,14 +157,18 @@ def test_nobody_adds_lines_of_their_own_to_what_the_instructor_reads(tmp_path: P
     assert any("raised ValueError" in done.stdout for done in told)
 
 
-def test_one_students_folder_is_not_taken_for_a_class_of_exercises(tmp_path: Path) -> None:
-    hers = tmp_path / "class" / "ada"
-    (hers / "doubling").mkdir(parents=True)
-    (hers / "doubling" / "doubling.py").write_bytes(
-        (MINI / "solutions" / "doubling" / "doubling.py").read_bytes()
+def test_students_who_are_called_as_exercises_are_graded_and_it_is_said(tmp_path: Path) -> None:
+    for name in ("doubling", "halving"):
+        folder = tmp_path / "class" / name
+        folder.mkdir(parents=True)
+        (folder / f"{name}.py").write_bytes((MINI / "solutions" / name / f"{name}.py").read_bytes())
+    ran = course(
+        "grade", "run", tmp_path / "class", "--out", tmp_path / "out", "--isolation", "process", "--json"
     )
-    words = ("grade", "run", hers, "--out", tmp_path / "out", "--isolation", "process")
-    refused = course(*words, "--json")
-    assert (refused.returncode, (tmp_path / "out").exists()) == (2, False)
-    assert json.loads(refused.stdout.splitlines()[-1])["error"]["code"] == "one_students_folder"
-    assert course(*words, "--layout", "folders").returncode == 0, "a student may be called so"
+    assert ran.returncode == 0, ran.stderr
+    assert "taken for a student" in ran.stderr
+    table = csv.DictReader((tmp_path / "out" / "grades.csv").read_text("utf-8-sig").splitlines())
+    assert {row["student"]: row["score"] == row["max_score"] for row in table} == {
+        "doubling": True,
+        "halving": True,
+    }

@@ -87,8 +87,8 @@ def run(
     folders = {path.name for path in submissions.glob("*/")}
     if layout == "auto" and folders and folders <= set(catalog.exercise_ids()):
         console.warn(
-            f"Each folder in {submissions} is taken for a student, and all are called as exercises. If they are"
-            " one student's, name the folder above them."
+            f"Each folder in {submissions} is taken for a student, and all are called as exercises. If they"
+            " are one student's, name the folder above them."
         )
     progress = _progress(console, catalog.ref)
 

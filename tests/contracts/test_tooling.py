@@ -49,3 +49,28 @@ def test_a_script_starts_beside_a_package_that_installs_tests_of_its_own(script:
     run = f"{begun}; import runpy; runpy.run_path({script!r}, run_name='__main__')"
     done = _run("-P", "-c", run)
     assert done.returncode == 0, done.stderr[-1000:]
+
+
+_WITHOUT_EXTRAS = """
+import sys
+
+EXTRAS = {
+    "mujoco", "panda3d", "rapier3d", "sapien", "pybullet", "dartpy", "jupyterlab", "nbclient", "ipykernel",
+    "anywidget", "distributed", "cryptography", "yaml", "rosbags", "starlette", "uvicorn", "websockets",
+}
+
+class Absent:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in EXTRAS:
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+sys.meta_path.insert(0, Absent())
+import pytest
+sys.exit(pytest.main(["--collect-only", "-q", "-n0", "-p", "no:cacheprovider", "tests"]))
+"""
+
+
+def test_tests_are_collected_without_any_extra() -> None:
+    """As the README's second command has it; CI installs them all, and would hide such an import."""
+    done = _run("-c", _WITHOUT_EXTRAS)
+    assert done.returncode == 0, f"{done.stdout[-2000:]}\n{done.stderr[-1000:]}"

@@ -69,6 +69,7 @@ def test_in_a_terminal_or_with_web_all_scenes_open(tmp_path: Path, monkeypatch: 
         return play
 
     monkeypatch.setattr(opened, "_view", view)
+    monkeypatch.setattr(opened, "require", lambda *_: None)  # no page is opened
     sandbox("--web", "--no-browser", cwd=tmp_path)
     monkeypatch.setattr(Console, "interactive", property(lambda _: True))
     monkeypatch.setenv("FORCE_COLOR", "1")

@@ -24,7 +24,6 @@ from course.handed_in.notebook import notebook_source
 from course.notebooks.build import FOLDERS, WORKSPACE, Generated, exercise_cells, generate, pieces
 from course.notebooks.lowering import Lowering
 from course.notebooks.quiz import SEED, marked
-from course.notebooks.widgets import style
 from course.quizzing.bank import Bank
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -237,6 +236,9 @@ def test_three_processes_with_different_hash_seeds_write_the_same_bytes(everythi
 
 
 def test_the_world_in_a_cell_is_laid_out_by_the_cell_and_not_by_the_window() -> None:
+    pytest.importorskip("anywidget", reason="the extra `notebook` is not installed")
+    from course.notebooks.widgets import style
+
     css = style()
     assert "@media (max-width" not in css
     assert css.count("@container (max-width: 720px)") == 2

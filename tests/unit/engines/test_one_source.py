@@ -107,7 +107,6 @@ HOLDS = {
     (_LESSON, "2 m/s"): lambda: _default("physx", "bounce_threshold") == "2 m/s",
     (_LESSON, "10 %"): lambda: drawn.LARGE == 10.0,
     (_LESSON, "67 ms"): lambda: round(_row("rapier", "long-step").value) == 67,
-    (_LESSON, "hundredths of a millimetre"): lambda: 0.005 < _row("physx", "stack").highest < 0.05,
     (_CONTACT, "0.37 millimetres"): lambda: round(_rests_mm(), 2) == 0.37,
     (_QUIZ, "0.5 %"): lambda: round(_row("mujoco", "free-fall").value, 2) == 0.5,
     ("exercises/engine-comparison/README.md", "0.25 m"): lambda: SCENARIOS["bounce"].truth == 0.25,

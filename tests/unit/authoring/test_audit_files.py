@@ -395,6 +395,21 @@ def test_a_course_with_objectives_has_whole_lessons(mini: Path, run: Callable[..
     assert "a lesson has at least 2 warm-ups, and half-as-much has fewer." in said
 
 
+def test_minutes_that_do_not_fit_the_text_of_a_lesson_are_named(
+    mini: Path, run: Callable[..., AuditReport]
+) -> None:
+    syllabus, lesson = mini / SYLLABUS, mini / "lessons" / "half-as-much.md"
+    syllabus.write_text(syllabus.read_text() + OBJECTIVE)
+    asked = "\n> **Predict.** What is half of six? Of seven?\n\n> **Answer.** Three.\n"
+    cell = "\n```python\n" + "x = 1\n" * 100 + "```\n"
+    lesson.write_text(lesson.read_text() + "word " * 1200 + "\n" + 2 * asked + cell)  # 12, 3 and 10 minutes
+    said = [p for p in run("half-as-much").problems if "minutes" in p.message]
+    assert [p.where for p in said] == [f"lessons/half-as-much.md:{line_of(lesson, 'minutes = 2')}"]
+    assert said[0].message == "`minutes` is 2; by its words, predictions and code it takes about 25."
+    lesson.write_text(lesson.read_text().replace("minutes = 2", "minutes = 30"))
+    assert not [p for p in run("half-as-much").problems if "minutes" in p.message]
+
+
 def test_a_command_of_a_lesson_that_fails_is_named(mini: Path) -> None:
     lesson = mini / LESSON
     lesson.write_text(lesson.read_text() + "\n```console\n$ course lessons\n$ course lesson no\n```\n")

@@ -33,9 +33,9 @@ from course.ids import LessonId
 MAX_COLUMNS = 58
 #: Of each lesson.
 LEAST_WARM_UPS = 2
-#: Reading a lesson: words and lines of code a minute, minutes for a prediction. Fluent readers take 238 words of
-#: non-fiction a minute (Brysbaert, Journal of Memory and Language 109, 2019); a physicist who stops at formulas
-#: and tries the cells, less than half. A head is rounded to five minutes, and may be that far off.
+#: Reading a lesson: words and lines of code a minute, minutes for a prediction. Fluent readers take 238 words
+#: of non-fiction a minute (Brysbaert, Journal of Memory and Language 109, 2019); who stops at formulas and
+#: tries the cells, less than half. A head is rounded to five minutes, and may be that far off.
 WORDS_A_MINUTE, LINES_A_MINUTE, FOR_A_PREDICTION = 100, 10, 1.5
 OFF_BY = 5
 #: Whole numbers up to here are words ("four methods, 12 of them"), not measurements.

@@ -12,7 +12,6 @@ import signal
 import subprocess
 import sys
 import time
-from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -87,7 +86,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if hasattr(config, "workerinput"):
         items.sort(key=lambda item: item.path)  # keeps the order within a file
     if config.args_source is pytest.Config.ArgsSource.TESTPATHS and os.environ.get("COURSE_TURNS") != "all":
-        later = _not_today(items)
+        from tests.turns import of_other_days
+
+        later = of_other_days(items, time.gmtime().tm_yday)
         config.hook.pytest_deselected(items=later)
         items[:] = [item for item in items if item not in set(later)]
     if slice_ := os.environ.get("COURSE_SOAK"):
@@ -97,18 +98,6 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         later = [item for item in items if item.get_closest_marker("soak") and _unit(item) not in mine]
         config.hook.pytest_deselected(items=later)
         items[:] = [item for item in items if item not in set(later)]
-
-
-def _not_today(items: list[pytest.Item]) -> list[pytest.Item]:
-    """Of each file's tests that come in turn (``turns``), those of other days."""
-    later, places = [], Counter[tuple[Path, int]]()
-    for item in items:
-        if marker := item.get_closest_marker("turns"):
-            of = marker.args[0]
-            places[item.path, of] += 1
-            if (places[item.path, of] + time.gmtime().tm_yday) % of:
-                later.append(item)
-    return later
 
 
 #: All of the long tests within three weeks, one slice a day.

@@ -51,6 +51,7 @@ def test_the_miniature_course_is_right(run: Callable[..., AuditReport]) -> None:
     assert (report.checks, report.graded, report.isolation) == (6, 22, "L3")
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("file", "old", "new", "at", "code", "says"),
     [
@@ -194,6 +195,7 @@ def test_each_fault_is_found_at_its_line(
         assert (found[0].file, found[0].line) == (file, line_of(mini / file, at))
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("file", "code", "says"),
     [
@@ -310,6 +312,7 @@ def test_a_mutant_that_is_not_listed_is_named(mini: Path, only_problem: Callable
     assert only_problem().file == "solutions/doubling/mutants/extra.py"
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("text", "line", "says"),
     [
@@ -353,6 +356,7 @@ def test_an_unknown_id_is_not_found(run: Callable[..., AuditReport]) -> None:
         run("thirds")
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize("folder", ["solutions", "graders"])
 def test_a_student_cannot_audit(mini: Path, folder: str) -> None:
     (mini / folder).rename(mini / "gone")

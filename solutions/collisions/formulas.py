@@ -295,6 +295,11 @@ _BY_ONE = (
 )
 
 
+def _without_masses(share, **terms):
+    """Each velocity changes by a part of (1 + e) s, whatever the masses are."""
+    return _impact(give=lambda ma, mb: share, kick=lambda j, m, other: j, **terms)
+
+
 def _one_after_the_other(ma, mb, va, vb, n, e, mu=0.0):
     """The impulse on b is computed with a's new velocity."""
     va, vb, n = _array(va), _array(vb), _array(n)
@@ -687,6 +692,8 @@ TERMS = {
                 ("ROOT_TERM_WRONG", lambda room, speed2: math.sqrt(room * speed2)),
                 ("ROOT_TERM_WRONG", lambda room, speed2: math.sqrt(room) / speed2),
                 ("ROOT_TERM_WRONG", lambda room, speed2: room / speed2),
+                ("ROOT_TERM_WRONG", lambda room, speed2: room),
+                ("ROOT_TERM_WRONG", lambda room, speed2: 2 * room),
             ),
             "closing_of": (
                 ("MOTION_NOT_RELATIVE", lambda va, vb: -vb),
@@ -719,6 +726,9 @@ OTHERS = {
         (("NORMAL_REVERSED",), _plane(gap=lambda x, p, n: -float((x - p) @ n), normal=lambda n: -n)),
     ],
     "impulse_1d": [
+        (("IMPULSE_AS_VELOCITY",), lambda ma, mb, *rest: _line()(ma, mb, *rest) / ma),
+        (("IMPULSE_AS_VELOCITY",), lambda ma, mb, *rest: _line()(ma, mb, *rest) / mb),
+        (("IMPULSE_AS_VELOCITY",), lambda ma, mb, *rest: _line()(ma, mb, *rest) * _give(ma, mb)),
         (("ONLY_HEAD_ON",), _strikes_if(lambda va, vb: va > 0 > vb)),
         (("ONLY_HEAD_ON",), _strikes_if(lambda va, vb: va * vb <= 0)),
         *((("APPROACH_BY_ONE_BODY",), _approach_by(meets)) for meets in _BY_ONE),
@@ -729,6 +739,7 @@ OTHERS = {
         (("SPEEDS_NOT_RELATIVE",), _speed_of(lambda va, vb: abs(va) + abs(vb))),
     ],
     "resolve": [
+        *((("MASSES_IGNORED",), _without_masses(share)) for share in (1.0, 2.0)),
         (("ONLY_HEAD_ON",), _from_both_sides(_impact())),
         *((("APPROACH_BY_ONE_BODY",), _approach_in_space(meets)) for meets in _BY_ONE),
         (("IMPULSE_COMPUTED_TWICE",), _one_after_the_other),
@@ -741,6 +752,7 @@ OTHERS = {
     ],
     "resolve_with_friction": [
         (("APPROACH_REVERSED",), _reversed(_impact(friction=_coulomb))),
+        *((("MASSES_IGNORED",), _without_masses(share, friction=_coulomb)) for share in (1.0, 2.0)),
         (("ONLY_HEAD_ON",), _from_both_sides(_impact(friction=_coulomb))),
         *((("APPROACH_BY_ONE_BODY",), _approach_in_space(meets, friction=_coulomb)) for meets in _BY_ONE),
         (("FRICTION_WITHOUT_REBOUND",), _friction_without_rebound),

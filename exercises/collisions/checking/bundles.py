@@ -30,8 +30,8 @@ _NAMES = {
     DROP: ("z0", "v0", "radius", "restitution", "g", "t_end", "h"),
 }
 
-ROUNDING = "rounding: correct solutions were seen to use less than a hundredth of it"
-INSTANT = "the contract's 1e-9 s for the instant of each contact, times the speeds; and rounding"
+ROUNDING = "rounding"
+INSTANT = "the README's 1e-9 s for the instant of each contact, times the speeds; and rounding"
 
 # -- what is asked, and what should come back -------------------------------------------------------------
 
@@ -88,9 +88,35 @@ def shown(task, args):
 
 def answers(submission, task, calls):
     """What the task returns for each of ``calls``: in one piece, as the formulas do, and as its parts."""
-    values = submission.call_each(task, calls)
+    try:
+        values = submission.call_each(task, calls)
+    except kit.StudentFailure as failure:
+        if failure.kind == "error":
+            _tell_dimension(submission, task, calls, failure)
+        raise
     parts = [_parts(task, args, value) for args, value in zip(calls, values, strict=True)]
     return [found[0] if len(found) == 1 else found for found in parts], parts
+
+
+def _tell_dimension(submission, task, calls, failure):
+    """Where calls in the plane work and those in other dimensions do not, say so."""
+    flat, others = [], []
+    for args in calls:
+        sizes = {len(arg) for arg in args if isinstance(arg, np.ndarray)}
+        if sizes:
+            (flat if sizes == {2} else others).append(args)
+    if not flat or kit.attempt(lambda: submission.call_each(task, flat)) is None:
+        return
+    for args in others:
+        if kit.attempt(lambda args=args: submission.call_each(task, [args])) is None:
+            d = next(len(arg) for arg in args if isinstance(arg, np.ndarray))
+            kit.fail(
+                f"In {d}-D your code raises {failure.type}; in 2-D it works.",
+                input=shown(task, args),
+                expected="a result",
+                actual=failure.type,
+                diagnose=named("PLANE_ONLY"),
+            )
 
 
 def _parts(task, args, value):
@@ -238,7 +264,7 @@ def samples(value, t_end, h, names, given, width=None):
         t,
         h * np.arange(n + 1),
         abs=1e-9,
-        source="the contract's 1e-9 s",
+        source="the README's 1e-9 s",
         quantity="t",
         units="s",
         input=given,

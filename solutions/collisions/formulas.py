@@ -58,8 +58,8 @@ FACTORS = (
     ("RESTITUTION_HALVED", lambda e: 1 + e / 2),
     ("IMPULSE_HALVED", lambda e: (1 + e) / 2),
     ("RESTITUTION_AS_ENERGY", lambda e: 1 + math.sqrt(e)),
-    ("RESTITUTION_IGNORED", lambda e: 2.0),
     ("RESTITUTION_IGNORED", lambda e: 1.0),
+    ("RESTITUTION_IGNORED", lambda e: 2.0),
     ("ONLY_THE_REBOUND", lambda e: e),
     ("RESTITUTION_SIGN_FLIPPED", lambda e: 1 - e),
 )
@@ -395,6 +395,21 @@ def _mixed(twice, four, over):
     return time_of_impact
 
 
+def _without_root(share):
+    """What stands under the square root is used as it is, times ``share``."""
+
+    def time_of_impact(xa, va, ra, xb, vb, rb, dt):
+        x, v = _array(xb) - _array(xa), _array(vb) - _array(va)
+        a, b, c = float(v @ v), float(x @ v), float(x @ x) - (ra + rb) ** 2
+        if b >= 0 or c <= 0:
+            return 0.0 if b < 0 else None
+        room = b * b - a * c
+        t = (-b - share * room) / a
+        return t if room >= 0 and t <= dt else None
+
+    return time_of_impact
+
+
 def _at_the_end_only(exact):
     """Looks at both ends of the step and nowhere between."""
     true = _moment()
@@ -505,6 +520,7 @@ _FRICTIONS = {
         ("FRICTION_SPINS", lambda p, s, v, g, mu: -min(mu * p, v / g / 3) * _unit(s)),
         ("FRICTION_STOPS_TWICE_THE_SLIP", lambda p, s, v, g, mu: -min(mu * p, 2 * v / g) * _unit(s)),
         ("FRICTION_ALL_OR_NOTHING", lambda p, s, v, g, mu: -s / g if mu * p >= v / g else 0.0 * s),
+        ("FRICTION_NOT_UNIT", lambda p, s, v, g, mu: -min(mu * p, v / g) * s),
         ("FRICTION_WITHOUT_BLOW", lambda p, s, v, g, mu: -min(mu, v / g) * _unit(s)),
     ),
     "friction_shares": tuple(
@@ -692,8 +708,6 @@ TERMS = {
                 ("ROOT_TERM_WRONG", lambda room, speed2: math.sqrt(room * speed2)),
                 ("ROOT_TERM_WRONG", lambda room, speed2: math.sqrt(room) / speed2),
                 ("ROOT_TERM_WRONG", lambda room, speed2: room / speed2),
-                ("ROOT_TERM_WRONG", lambda room, speed2: room),
-                ("ROOT_TERM_WRONG", lambda room, speed2: 2 * room),
             ),
             "closing_of": (
                 ("MOTION_NOT_RELATIVE", lambda va, vb: -vb),
@@ -776,6 +790,7 @@ OTHERS = {
             (("QUADRATIC_MIXED",), _mixed(*form))
             for form in ((1, 4, 2), (1, 1, 2), (1, 4, 1), (2, 1, 1), (2, 1, 2))
         ),
+        *((("ROOT_TERM_WRONG",), _without_root(share)) for share in (1.0, 2.0)),
         (("MISSES_COUNT_AS_HITS",), _head_on_always),
         (("MISSES_COUNT_AS_HITS",), _gap_over_speed),
         (("IMPACT_IN_THE_PAST",), _moment(past=True, overlap="ignored")),

@@ -99,24 +99,23 @@ def answers(submission, task, calls):
 
 
 def _tell_dimension(submission, task, calls, failure):
-    """Where calls in the plane work and those in other dimensions do not, say so."""
-    flat, others = [], []
+    """Where calls work with vectors of one length and fail with those of another, say so."""
+    by_size = {}
     for args in calls:
-        sizes = {len(arg) for arg in args if isinstance(arg, np.ndarray)}
-        if sizes:
-            (flat if sizes == {2} else others).append(args)
-    if not flat or kit.attempt(lambda: submission.call_each(task, flat)) is None:
-        return
-    for args in others:
-        if kit.attempt(lambda args=args: submission.call_each(task, [args])) is None:
-            d = next(len(arg) for arg in args if isinstance(arg, np.ndarray))
-            kit.fail(
-                f"In {d}-D your code raises {failure.type}; in 2-D it works.",
-                input=shown(task, args),
-                expected="a result",
-                actual=failure.type,
-                diagnose=named("PLANE_ONLY"),
-            )
+        if sizes := {len(arg) for arg in args if isinstance(arg, np.ndarray)}:
+            by_size.setdefault(sizes.pop(), []).append(args)
+    works = {
+        d: kit.attempt(lambda some=some: submission.call_each(task, some)) for d, some in by_size.items()
+    }
+    good, bad = ([d for d, found in works.items() if (found is None) == is_bad] for is_bad in (False, True))
+    if good and bad:
+        kit.fail(
+            f"In {bad[0]}-D your code raises {failure.type}; in {good[0]}-D it works.",
+            input=shown(task, by_size[bad[0]][0]),
+            expected="a result",
+            actual=failure.type,
+            diagnose=named("ONE_DIMENSION_ONLY"),
+        )
 
 
 def _parts(task, args, value):

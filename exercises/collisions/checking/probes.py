@@ -55,6 +55,10 @@ def _of_contact(task, calls, values, truth):  # noqa: PLR0911 - one return per m
     close = [np.allclose([*v[1], v[2]], [*right[1], right[2]], rtol=1e-6, atol=1e-6) for _, v, right in wrong]
     if all(close) and 2 * len(wrong) > len(values):
         return "PRECISION_LOST"
+    if all(_same((right[1], abs(right[2])), (value[1], value[2])) for _, value, right in wrong) and any(
+        value[2] > 0 > right[2] for _, value, right in wrong
+    ):
+        return "DEPTH_UNSIGNED"
     if all(not math.isclose(float(np.sqrt(value[1] @ value[1])), 1.0, rel_tol=1e-9) for _, value, _ in wrong):
         return "NORMAL_NOT_UNIT"
     if all(_same((-right[1], right[2]), value[1:]) for _, value, right in wrong) and len(wrong) < len(values):

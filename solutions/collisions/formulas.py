@@ -300,6 +300,11 @@ def _without_masses(share, **terms):
     return _impact(give=lambda ma, mb: share, kick=lambda j, m, other: j, **terms)
 
 
+def _without_parentheses(power):
+    """(1 + e) s / (1 / ma) + 1 / mb, or with power -1 (1 + e) s / 1 / ma + 1 / mb."""
+    return lambda ma, mb, va, vb, e: (1 + e) * (va - vb) * ma**power + 1 / mb if va > vb else 0.0
+
+
 def _one_after_the_other(ma, mb, va, vb, n, e, mu=0.0):
     """The impulse on b is computed with a's new velocity."""
     va, vb, n = _array(va), _array(vb), _array(n)
@@ -743,6 +748,7 @@ OTHERS = {
         (("IMPULSE_AS_VELOCITY",), lambda ma, mb, *rest: _line()(ma, mb, *rest) / ma),
         (("IMPULSE_AS_VELOCITY",), lambda ma, mb, *rest: _line()(ma, mb, *rest) / mb),
         (("IMPULSE_AS_VELOCITY",), lambda ma, mb, *rest: _line()(ma, mb, *rest) * _give(ma, mb)),
+        *((("PARENTHESES_MISSING",), _without_parentheses(first)) for first in (1, -1)),
         (("ONLY_HEAD_ON",), _strikes_if(lambda va, vb: va > 0 > vb)),
         (("ONLY_HEAD_ON",), _strikes_if(lambda va, vb: va * vb <= 0)),
         *((("APPROACH_BY_ONE_BODY",), _approach_by(meets)) for meets in _BY_ONE),

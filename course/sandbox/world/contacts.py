@@ -25,7 +25,7 @@ def contact_events(block: Block, parts: Sequence[Part], ledger: Ledger) -> list[
     if not len(found):
         return []
     k, a, b = contacts.row[found], contacts.a[found], contacts.b[found]
-    normal, point = contacts.normal[found], contacts.point[found]
+    normal, point = contacts.normal[:, found].T, contacts.point[:, found].T
     swap = np.array([_goes_second(parts[i], parts[j]) for i, j in zip(a.tolist(), b.tolist(), strict=True)])
     a, b = np.where(swap, b, a), np.where(swap, a, b)
     normal = np.where(swap[:, None], -normal, normal)
@@ -49,7 +49,7 @@ def contact_events(block: Block, parts: Sequence[Part], ledger: Ledger) -> list[
         -(came[:, 0] * nx + came[:, 1] * ny),
         left[:, 0] * nx + left[:, 1] * ny,
         np.abs(came[:, 1] * nx - came[:, 0] * ny),
-        np.hypot(*contacts.impulse[found].T),
+        np.hypot(*contacts.impulse[:, found]),
         *energies,
     )
     events = [_event(block, parts, row) for row in zip(*(column.tolist() for column in columns), strict=True)]

@@ -38,17 +38,18 @@ COLUMNS = ("x", "y", "angle", "vx", "vy", "spin")
 
 @dataclass(frozen=True, slots=True)
 class Contacts:
-    """All contacts of some steps, a row each.
+    """All contacts of some steps.
 
     Attributes:
-        row: which step of the block, 0 first.
-        a, b: indices of the bodies.
-        first: 1 where the two did not touch in the step before.
-        impulse: on ``a``, in N s, (n, 2).
-        normal: from ``a`` to ``b``, (n, 2).
-        point, other: where it acts on ``a`` and where on ``b``, in m, (n, 2); they differ by how deep the
+        row: which step of the block, 0 first, (n,).
+        a, b: indices of the bodies, (n,).
+        first: 1 where the two did not touch in the step before, (n,).
+        impulse: on ``a``, in N s, (2, n).
+        normal: from ``a`` to ``b``, (2, n).
+        point, other: where it acts on ``a`` and where on ``b``, in m, (2, n); they differ by how deep the
             bodies are in each other. Of a contact along an edge it is the middle.
-        half: half of the length of a contact along an edge, in m, (n,); 0 for a contact at a point.
+        half: half of the length of a contact along an edge, in m, (n,), 0 for a contact at a point; None
+            where there is no edge at all.
     """
 
     row: Ints
@@ -59,7 +60,7 @@ class Contacts:
     normal: Floats
     point: Floats
     other: Floats
-    half: Floats
+    half: Floats | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,26 +145,23 @@ class Ledger:
             tied: the joints, if there are any.
         """
         before, after = block.before, block.states[:, :, 3:]
-        mean = (before + after) / 2
-        contacts, friction = self._of_contacts(block, mean)
+        mean, half = (before + after) / 2, block.contacts.half
+        pushed, lost, friction = self._of_contacts(block, mean)
         rods = np.zeros(len(mean))
-        if tied is not None:
-            # What nobody has been found for yet is the joints'.
-            left = (after - before) * self._inertias - self._weight_force.reshape(-1, 3) * step
-            left -= np.stack([self._impulses(block, axis) for axis in range(3)], axis=2)
+        if tied is not None or half is not None:
+            # What nobody has been found for yet is the joints', or turns a body along an edge.
+            left = (after - before) * self._inertias - self._weight_force.reshape(-1, 3) * step - pushed
             if given is not None:
                 left -= given
-            pulled = tied.impulses(block.states, left, self._inertias)
-            rods = -(pulled * mean).sum(axis=(1, 2))
-            turning = left[:, :, 2] - pulled[:, :, 2]
-        elif block.contacts.half.any():
-            turning = (after[:, :, 2] - before[:, :, 2]) * self.inertia - self._impulses(block, 2)
-            if given is not None:
-                turning -= given[:, :, 2]
-        if block.contacts.half.any():
-            # How an edge's impulse is spread along it shows in how the body turns, and nowhere else.
-            most = self._levers(block)
-            contacts -= (np.clip(turning, -most, most) * mean[:, :, 2]).sum(axis=1)
+            if tied is not None:
+                pulled = tied.impulses(block.states, left, self._inertias)
+                rods = -(pulled * mean).sum(axis=(1, 2))
+                left -= pulled
+            if half is not None:
+                # How an edge's impulse is spread along it shows in how the body turns, and nowhere else.
+                most = self._levers(block, half)
+                lost -= (np.clip(left[:, :, 2], -most, most) * mean[:, :, 2]).sum(axis=1)
+        contacts = lost - friction
         self.contacts += float(contacts.sum())
         self.friction += float(friction.sum())
         self.rods += float(rods.sum())
@@ -173,26 +171,13 @@ class Ledger:
         self.integrator += float(jumps.ravel() @ self._weight_force.reshape(-1, 3)[:, :2].ravel())
         return Losses(contacts, friction, rods)
 
-    def _impulses(self, block: Block, axis: int) -> Floats:
-        """What contacts did to each body in each step along x, along y or turning (axis 2), (k, n)."""
-        c, (count, bodies) = block.contacts, block.states.shape[:2]
-        total = np.zeros(count * bodies)
-        for index, point, sign in ((c.a, c.point, 1.0), (c.b, c.other, -1.0)):
-            row = c.row * bodies + index
-            part = c.impulse[:, axis % 2]
-            if axis == 2:
-                arm = point - block.states.reshape(-1, 6)[:, :2].take(row, axis=0)
-                part = arm[:, 0] * c.impulse[:, 1] - arm[:, 1] * c.impulse[:, 0]
-            total += sign * np.bincount(row, weights=part, minlength=count * bodies)
-        return total.reshape(count, bodies)
-
-    def _levers(self, block: Block) -> Floats:
+    def _levers(self, block: Block, half: Floats) -> Floats:
         """The most that edges can turn each body beyond that, (k, n), in N m s."""
         c, (count, bodies) = block.contacts, block.states.shape[:2]
-        most = np.hypot(c.impulse[:, 0], c.impulse[:, 1]) * c.half
-        rows = np.concatenate([c.row * bodies + c.a, c.row * bodies + c.b])
-        summed = np.bincount(rows, weights=np.tile(most, 2), minlength=count * bodies)
-        return summed.astype(np.float64).reshape(count, bodies) * (1 + 1e-9)
+        most = np.hypot(*c.impulse) * half
+        summed = np.bincount(c.row * bodies + c.a, most, count * bodies)
+        summed += np.bincount(c.row * bodies + c.b, most, count * bodies)
+        return summed.reshape(count, bodies) * (1 + 1e-9)
 
     def energies(self, velocities: Floats) -> Floats:
         """Kinetic energies of several states, (k,), in J; velocities (k, n, 3)."""
@@ -218,33 +203,30 @@ class Ledger:
         work: Floats = ((block.before + block.states[:, :, 3:]) * impulses).sum(axis=(1, 2)) / 2
         return work
 
-    def _of_contacts(self, block: Block, mean: Floats) -> tuple[Floats, Floats]:
-        """Energy that impulses took along normals and along surfaces, by step.
+    def _of_contacts(self, block: Block, mean: Floats) -> tuple[Floats, Floats, Floats]:
+        """What contacts did to each body in each step, (k, n, 3), in N s and N m s; what they took in each
+        step, and how much of it along surfaces, (k,), in J.
 
-        The velocity of a body's point p is ``(vx + w y - w py, vy - w x + w px)``: what does not depend on p
-        is computed once per body, and only three numbers per body are looked up for each contact.
+        The velocity of a body's point p is ``(vx + w y - w py, vy - w x + w px)``, and the torque of an
+        impulse ``p x J - x x J``: what does not depend on p is computed once per body.
         """
-        c, count = block.contacts, len(mean)
+        c, (count, bodies) = block.contacts, mean.shape[:2]
         if not len(c.row):
-            return np.zeros(count), np.zeros(count)
-        spin = mean[:, :, 2]
-        field = np.stack(
-            [mean[:, :, 0] + spin * block.states[:, :, 1], mean[:, :, 1] - spin * block.states[:, :, 0], spin]
-        ).reshape(3, -1)
-        start = c.row * mean.shape[1]
-        a, b = start + c.a, start + c.b
-        va, vb = field.take(a, axis=1), field.take(b, axis=1)
-        # Columns once, side by side: reading them out of wide rows again and again costs more.
-        px, py = c.point.T.copy()
-        qx, qy = c.other.T.copy()
-        nx, ny = c.normal.T.copy()
-        jx, jy = c.impulse.T.copy()
-        vx = vb[0] - va[0] - vb[2] * qy + va[2] * py
-        vy = vb[1] - va[1] + vb[2] * qx - va[2] * px
-        along = (jy * nx - jx * ny) * (vy * nx - vx * ny)
-        friction: Floats = np.bincount(c.row, weights=along, minlength=count).astype(np.float64)
-        across = (jx * nx + jy * ny) * (vx * nx + vy * ny)
-        return np.bincount(c.row, weights=across, minlength=count).astype(np.float64), friction
+            return np.zeros(mean.shape), np.zeros(count), np.zeros(count)
+        a, b = c.row * bodies + c.a, c.row * bodies + c.b
+        (jx, jy), (nx, ny), (px, py), (qx, qy) = c.impulse, c.normal, c.point, c.other
+        pairs = ((jx, jx), (jy, jy), (px * jy - py * jx, qx * jy - qy * jx))
+        sums = [np.bincount(a, on, count * bodies) - np.bincount(b, back, count * bodies) for on, back in pairs]
+        pushed = np.stack(sums, axis=1).reshape(mean.shape)
+        x, y, spin = block.states[:, :, 0], block.states[:, :, 1], mean[:, :, 2]
+        pushed[:, :, 2] -= x * pushed[:, :, 1] - y * pushed[:, :, 0]
+        vx, vy, spin = (mean[:, :, 0] + spin * y).ravel(), (mean[:, :, 1] - spin * x).ravel(), spin.ravel()
+        slip = (vy.take(b) - vy.take(a)) * nx
+        slip -= (vx.take(b) - vx.take(a)) * ny
+        slip += spin.take(b) * (qx * nx + qy * ny)
+        slip -= spin.take(a) * (px * nx + py * ny)
+        slip *= jy * nx - jx * ny
+        return pushed, -(pushed * mean).sum(axis=(1, 2)), np.bincount(c.row, slip, count)
 
 
 @dataclass(frozen=True, slots=True)
@@ -672,20 +654,23 @@ class Recorder:
         states = np.frombuffer(self._states.float_buf(), dtype=np.float64).reshape(count, -1, 6)
         ends = np.array(self._ends) // (8 * _WHOLE)
         whole = np.frombuffer(self._contacts.int_buf(), dtype=np.uint64).reshape(-1, _WHOLE)
-        numbers = np.frombuffer(self._contacts.float_buf(), dtype=np.float64).reshape(-1, _NUMBERS)
-        to_middle = (numbers[:, 8:12] - numbers[:, 4:8]) * ((whole[:, 3] == 2) / 2)[:, None]
-        points = numbers[:, 4:8] + to_middle
-        bodies = [self._space.indices(whole[:, i]) for i in (0, 1)]
+        # Columns side by side: reading them out of wide rows again and again costs more.
+        numbers = np.frombuffer(self._contacts.float_buf(), dtype=np.float64).reshape(-1, _NUMBERS).T.copy()
+        edges, half = whole[:, 3] == 2, None
+        if edges.any():
+            to_middle = (numbers[8:12] - numbers[4:8]) * (edges / 2)
+            numbers[4:8] += to_middle
+            half = np.hypot(to_middle[0], to_middle[1])
         contacts = Contacts(
             row=np.repeat(np.arange(count), np.diff(ends, prepend=0)),
-            a=bodies[0],
-            b=bodies[1],
+            a=self._space.indices(whole[:, 0]),
+            b=self._space.indices(whole[:, 1]),
             first=whole[:, 2],
-            impulse=numbers[:, 0:2],
-            normal=numbers[:, 2:4],
-            point=points[:, :2],
-            other=points[:, 2:],
-            half=np.hypot(to_middle[:, 0], to_middle[:, 1]),
+            impulse=numbers[0:2],
+            normal=numbers[2:4],
+            point=numbers[4:6],
+            other=numbers[6:8],
+            half=half,
         )
         self._states.clear()
         self._contacts.clear()

@@ -191,8 +191,8 @@ class Receipt(msgspec.Struct, frozen=True, kw_only=True):
     integrator: float
 
 
-#: Steps that are booked together. More would save nothing, because the arrays would not fit the cache.
-BLOCK = 32
+#: States of bodies that are booked together, and steps: more would not fit the cache.
+_STATES, _STEPS = 3200, 256
 #: How often the history is sampled, in s of simulated time, and how many samples are kept.
 _SAMPLE = 1 / 60
 _KEPT = 3600
@@ -306,6 +306,11 @@ class Accounts:
         return rows[::-1]
 
     # -- booking ---------------------------------------------------------------------------------
+
+    @property
+    def full(self) -> bool:
+        """It is time to ``close``."""
+        return len(self.recorder) >= min(_STEPS, _STATES // len(self.base) + 1)
 
     def close(self) -> Block | None:
         """Book the steps that were only copied so far, and give them back; None if there were none."""

@@ -175,9 +175,9 @@ class Ledger:
         """The most that edges can turn each body beyond that, (k, n), in N m s."""
         c, (count, bodies) = block.contacts, block.states.shape[:2]
         most = np.hypot(*c.impulse) * half
-        summed = np.bincount(c.row * bodies + c.a, most, count * bodies)
-        summed += np.bincount(c.row * bodies + c.b, most, count * bodies)
-        return summed.reshape(count, bodies) * (1 + 1e-9)
+        summed = [_by_place(c.row * bodies + body, most, count * bodies) for body in (c.a, c.b)]
+        levers: Floats = (summed[0] + summed[1]).reshape(count, bodies) * (1 + 1e-9)
+        return levers
 
     def energies(self, velocities: Floats) -> Floats:
         """Kinetic energies of several states, (k,), in J; velocities (k, n, 3)."""
@@ -216,7 +216,9 @@ class Ledger:
         a, b = c.row * bodies + c.a, c.row * bodies + c.b
         (jx, jy), (nx, ny), (px, py), (qx, qy) = c.impulse, c.normal, c.point, c.other
         pairs = ((jx, jx), (jy, jy), (px * jy - py * jx, qx * jy - qy * jx))
-        sums = [np.bincount(a, on, count * bodies) - np.bincount(b, back, count * bodies) for on, back in pairs]
+        sums: list[Floats] = [
+            _by_place(a, on, count * bodies) - _by_place(b, back, count * bodies) for on, back in pairs
+        ]
         pushed = np.stack(sums, axis=1).reshape(mean.shape)
         x, y, spin = block.states[:, :, 0], block.states[:, :, 1], mean[:, :, 2]
         pushed[:, :, 2] -= x * pushed[:, :, 1] - y * pushed[:, :, 0]
@@ -226,7 +228,12 @@ class Ledger:
         slip += spin.take(b) * (qx * nx + qy * ny)
         slip -= spin.take(a) * (px * nx + py * ny)
         slip *= jy * nx - jx * ny
-        return pushed, -(pushed * mean).sum(axis=(1, 2)), np.bincount(c.row, slip, count)
+        return pushed, -(pushed * mean).sum(axis=(1, 2)), _by_place(c.row, slip, count)
+
+
+def _by_place(places: Ints, amounts: Floats, count: int) -> Floats:
+    """Sums of the amounts that belong to the same place, (count,)."""
+    return np.bincount(places, amounts, count).astype(np.float64, copy=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,15 +250,16 @@ class Ties:
     """The joints of a space: which bodies they hold, and where.
 
     Attributes:
-        a, b: indices of the bodies, (m,).
-        anchors: in the frames of ``a`` and ``b``, (2, m, 2), in m.
-        rod: (m,); a joint that is no rod keeps both directions.
+        bodies: indices of the two that each holds, (2, m).
+        anchors: in the frames of the two, (2, m, 2), in m.
+        of, axis: of each condition, which joint it is of, (c,), and the direction that it keeps, (c, 2); 0, 0
+            for a rod, which keeps its own.
     """
 
-    a: Ints
-    b: Ints
+    bodies: Ints
     anchors: Floats
-    rod: NDArray[np.bool_]
+    of: Ints
+    axis: Floats
 
     def impulses(self, states: Floats, left: Floats, inertias: Floats) -> Floats:
         """The impulses with which joints account best for what is left of the momenta.
@@ -271,36 +279,32 @@ class Ties:
         np.divide(1.0, inertias, out=inverse, where=inertias > 0)
         weighted = rows * inverse.ravel()
         system = weighted @ rows.transpose(0, 2, 1)
+        # Joints that keep the same direction twice share it.
+        system += np.eye(len(self.of)) * (_SOFT * np.abs(system).max() + np.finfo(float).tiny)
         wanted = weighted @ left.reshape(len(left), -1, 1)
-        pulled: Floats = (
-            rows.transpose(0, 2, 1) @ (np.linalg.pinv(system, hermitian=True) @ wanted)
-        ).reshape(left.shape)
+        pulled: Floats = (rows.transpose(0, 2, 1) @ np.linalg.solve(system, wanted)).reshape(left.shape)
         return pulled
 
     def _conditions(self, states: Floats) -> Floats:
         """(k, c, 3 n): a row for each direction that a joint keeps."""
         count, bodies = states.shape[:2]
-        places, arms = [], []
-        for index, anchor in zip((self.a, self.b), self.anchors, strict=True):
-            cos, sin = np.cos(states[:, index, 2]), np.sin(states[:, index, 2])
-            arm = np.stack(
-                [cos * anchor[:, 0] - sin * anchor[:, 1], sin * anchor[:, 0] + cos * anchor[:, 1]], axis=2
-            )
-            arms.append(arm)
-            places.append(states[:, index, :2] + arm)
-        along = places[1] - places[0]
+        angle = states[:, self.bodies, 2]
+        (x, y), cos, sin = self.anchors.transpose(2, 0, 1), np.cos(angle), np.sin(angle)
+        arms = np.stack([cos * x - sin * y, sin * x + cos * y], axis=3)
+        ends = states[:, self.bodies, :2] + arms
+        along = ends[:, 1] - ends[:, 0]
         size = np.hypot(along[..., 0], along[..., 1])[..., None]
         along = np.divide(along, size, out=np.zeros_like(along), where=size > 0)
-        rows = np.zeros((count, 2 * len(self.a), bodies, 3))
-        for j, (a, b, rod) in enumerate(zip(self.a, self.b, self.rod, strict=True)):
-            for d in range(1 if rod else 2):
-                n = along[:, j] if rod else np.broadcast_to(np.eye(2)[d], (count, 2))
-                for body, arm, sign in ((a, arms[0][:, j], -1.0), (b, arms[1][:, j], 1.0)):
-                    turn = arm[:, 0] * n[:, 1] - arm[:, 1] * n[:, 0]
-                    rows[:, 2 * j + d, body] += sign * np.column_stack([n, turn])
-        return rows.reshape(count, 2 * len(self.a), -1)
+        kept = np.where((self.axis != 0.0).any(axis=1, keepdims=True), self.axis, along[:, self.of])
+        rows, number = np.zeros((count, len(self.of), bodies, 3)), np.arange(len(self.of))
+        for body, arm, sign in zip(self.bodies, arms.swapaxes(0, 1), (-1.0, 1.0), strict=True):
+            turn = arm[:, self.of, 0] * kept[..., 1] - arm[:, self.of, 1] * kept[..., 0]
+            rows[:, number, body[self.of]] += sign * np.concatenate([kept, turn[..., None]], axis=2)
+        return rows.reshape(count, len(self.of), -1)
 
 
+#: How much joints that keep the same direction give way to each other, as a part of what they hold.
+_SOFT = 1e-12
 #: How often a body that is placed is moved until it fits, and how well it has to, in m.
 _TRIES, _NEAR = 80, 1e-4
 #: Ids of bodies are addresses.
@@ -589,14 +593,19 @@ class Space:
         """What the joints hold, by the rows of every state; None if there are none."""
         if not self.joints:
             return None
-        rows = [
-            [self.index[self._bodies[j.a.id][0].name], self.index[self._bodies[j.b.id][0].name]]
-            for j in self.joints
+        bodies = [[self.index[self._bodies[end.id][0].name] for end in (j.a, j.b)] for j in self.joints]
+        anchors = np.array([[tuple(j.anchor_a), tuple(j.anchor_b)] for j in self.joints], dtype=float)
+        kept = [
+            (number, axis)
+            for number, joint in enumerate(self.joints)
+            for axis in ([(0, 0)] if isinstance(joint, pymunk.PinJoint) else [(1, 0), (0, 1)])
         ]
-        anchors = [[tuple(j.anchor_a), tuple(j.anchor_b)] for j in self.joints]
-        a, b = np.array(rows).T
-        rod = np.array([isinstance(j, pymunk.PinJoint) for j in self.joints])
-        return Ties(a=a, b=b, anchors=np.array(anchors, dtype=float).transpose(1, 0, 2), rod=rod)
+        return Ties(
+            bodies=np.array(bodies).T,
+            anchors=anchors.transpose(1, 0, 2),
+            of=np.array([number for number, _ in kept]),
+            axis=np.array([axis for _, axis in kept], dtype=float),
+        )
 
     # -- everything at once ----------------------------------------------------------------------
 

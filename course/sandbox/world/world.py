@@ -19,7 +19,7 @@ import numpy as np
 from course.errors import UsageError
 from course.sandbox.scene.model import Material, Part, Scene, layout, spawned, wall
 from course.sandbox.scene.rules import SETTINGS, checked, number
-from course.sandbox.world.accounts import BLOCK, Accounts, Clock, Event, Hand, History, Receipt
+from course.sandbox.world.accounts import Accounts, Clock, Event, Hand, History, Receipt
 from course.sandbox.world.contacts import ContactCollector, contact_events
 from course.sandbox.world.engine import Block, Floats, Space
 
@@ -323,7 +323,7 @@ class World:
             self.ticks += 1
             if self._with_receipt:
                 recorder.take()
-                if len(recorder) >= BLOCK:
+                if self._accounts.full:
                     self._settle()
             if self.ticks % _TIDY == 0:
                 self._tidy()
@@ -637,9 +637,10 @@ class World:
 
     def _tidy(self) -> None:
         """Report bodies that came to rest, and remove those that left."""
-        self._settle()
         state, parts = self._space.state(), self.parts
         gone, resting = self._watch.look(parts, state)
+        if gone or resting:
+            self._settle()
         for kind, rows in (("rest", resting), ("gone", gone)):
             for i in rows:
                 x, y = float(state[i, 0]), float(state[i, 1])

@@ -6,6 +6,7 @@ any moment at once.
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable
 from typing import TypeAlias
@@ -14,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from course.errors import UsageError
-from course.sandbox.runs.recording import Film, ffmpeg
+from course.sandbox.runs.recording import Film, Recording, ffmpeg
 from course.sandbox.scene.loading import Chosen
 from course.sandbox.scene.model import Part, Scene
 from course.sandbox.world.world import Snapshot, World
@@ -91,14 +92,18 @@ class Tape:
 
     Args:
         world: whose; from now on.
+        recording: what is done to it.
 
     Attributes:
-        frames, times, ticks: the frames, with the simulated time in s and the step of each.
+        frames, times, ticks, sums: the frames, with the simulated time in s, the step and the sums of the
+            account of each.
         casts: the bodies, by the version that a frame names.
         marks: times of the contacts that are worth a mark, in s.
     """
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: World, recording: Recording) -> None:
+        self.recording = recording
+        self.sums: list[tuple[float, ...]] = []
         self.frames: list[Frame] = []
         self.times: list[float] = []
         self.ticks: list[int] = []
@@ -131,15 +136,16 @@ class Tape:
         world = self._world
         if self.ticks and self.ticks[-1] == world.ticks:
             self._bytes -= self.frames.pop().nbytes
-            self.times.pop()
-            self.ticks.pop()
-        kept = frame(world)
-        kept[23] = 1.0
-        self.frames.append(kept)
+            for kept in (self.times, self.ticks, self.sums):
+                kept.pop()
+        shown = frame(world)
+        shown[23] = 1.0
+        self.frames.append(shown)
+        self.sums.append(world.sums)
         self.times.append(world.t)
         self.ticks.append(world.ticks)
         self.casts[world.version] = world.parts
-        self._bytes += kept.nbytes
+        self._bytes += shown.nbytes
         if self._bytes > _BYTES or len(self.frames) > 2 * _WHOLE:
             self._thin()
 
@@ -202,9 +208,43 @@ class Tape:
     def _thin(self) -> None:
         """Of the older half every other frame goes."""
         half = len(self.frames) // 2 // 2 * 2
-        for kept in (self.frames, self.times, self.ticks):
+        for kept in (self.frames, self.times, self.ticks, self.sums):
             del kept[1:half:2]
         self._bytes = sum(one.nbytes for one in self.frames)
+
+    def shared(self, there: Recording, count: int, before: float) -> int:
+        """The last frame that shows what the first inputs of another recording lead to as well, as an index.
+
+        Args:
+            there: the other one, and how many of its inputs count.
+            before: the latest time, in s.
+        """
+        inputs, run = there.inputs[:count], there.run_at(count)[0]
+        began, mine = inputs[run - 1].tick if run else 0, self.recording.inputs
+        if self.ticks[0] != began or self.recording.head != there.head:
+            return 0
+        same = next((i for i, pair in enumerate(zip(inputs, mine, strict=False)) if pair[0] != pair[1]), None)
+        same = min(len(inputs), len(mine)) if same is None else same
+        ends = [one.tick for rest in (inputs[same:], mine[same:]) for one in rest[:1]]
+        index, acts = self.at(before), {one.tick for one in inputs}
+        while index > 0 and (self.ticks[index] >= min(ends, default=math.inf) or self.ticks[index] in acts):
+            index -= 1
+        return index
+
+    def take_over(self, other: Tape, index: int) -> None:
+        """Have the frames of another tape up to this one for those after one's own, and go on."""
+        since = bisect_right(other.ticks, self.ticks[-1])
+        for own, more in zip(
+            (self.frames, self.times, self.ticks, self.sums),
+            (other.frames, other.times, other.ticks, other.sums),
+            strict=True,
+        ):
+            own.extend(more[since : index + 1])
+        self.casts = other.casts | self.casts
+        marks = other.marks
+        self.marks += marks[bisect_right(marks, other.times[since - 1]) : bisect_right(marks, self.times[-1])]
+        self._bytes = sum(one.nbytes for one in self.frames)
+        self.pace_itself()
 
     def until(self, t: float) -> Tape:
         """A tape of the frames up to this time, which nothing is added to."""

@@ -32,6 +32,9 @@ BUDGET = 0.012
 _PICTURE, _AHEAD = 1 / 60, 10.0
 #: Changes of one setting within this simulated time, in s, are undone together.
 _TOGETHER = 0.5
+#: The last stretch of a run that is made again with its account and its story; what is on a tape before, is
+#: taken from there, in s.
+_TOLD = 15.0
 #: Moments that can be gone back to.
 _UNDOS = 1000
 #: What does not change the world's future by itself, or belongs to what came before.
@@ -134,7 +137,7 @@ class Stage:
         self._last: tuple[str, Any, float] = ("", None, -math.inf)
         self.world = world or World(chosen.scene, chosen.settings)
         self.recording = Recording(self.world)
-        self.tape = Tape(self.world)
+        self.tape = Tape(self.world, self.recording)
         self.experiment = Experiment(self.world, chosen, guess, keep)
         self.narrator = Narrator()
         if chosen.scene.duration < _BLINK:
@@ -306,7 +309,7 @@ class Stage:
         world.paused, world.speed, world.version = self.world.paused, self.world.speed, self.world.version + 1
         self.chosen, self.world = chosen, world
         self.recording = Recording(world)
-        self.tape = Tape(world)
+        self.tape = Tape(world, self.recording)
         guess = self.experiment.guess
         self.experiment = Experiment(world, chosen, guess, self.keep)
         self.narrator.forget()
@@ -443,12 +446,29 @@ class Stage:
 
         def ready(world: World, recording: Recording) -> None:
             experiment = Experiment(world, there.chosen, self.experiment.guess, None)
-            made.update(world=world, recording=recording, tape=Tape(world), experiment=experiment)
+            made.update(world=world, recording=recording, tape=Tape(world, recording), experiment=experiment)
             world.on_input.append(lambda _, what, __: experiment.felt(what))
 
+        known, index = max(
+            ((tape, tape.shared(there.recording, there.count, there.t - _TOLD)) for tape in self._tapes()),
+            key=lambda pair: pair[0].times[pair[1]],
+        )
+        halt = known.ticks[index] if index else 0
+
         def steps() -> Iterator[float]:
-            for share in there.recording.replayed(there.count, there.tick, self.world.version + 1, ready):
+            version, skipping = self.world.version + 1, False
+            for share in there.recording.replayed(there.count, there.tick, version, ready, halt):
                 self._retell(made)
+                world = made["world"]
+                if skipping and world.ticks == halt:
+                    world.resume(known.sums[index])
+                    made["tape"].take_over(known, index)
+                    made["narrator"].forget()
+                    skipping = False
+                elif world.ticks < halt and not skipping and made["experiment"].left() is None:
+                    world.skip()
+                    made["tape"].end()
+                    skipping = True
                 yield share
 
         def done() -> None:
@@ -499,9 +519,12 @@ class Stage:
         while self._work is not None:
             self._work_on(math.inf)
 
+    def _tapes(self) -> list[Tape]:
+        return [self.tape, *([self.ghost] if self.ghost else [])]
+
     def _fresh_tape(self) -> Tape:
         self.tape.end()
-        return Tape(self.world)
+        return Tape(self.world, self.recording)
 
 
 def _in_words(what: str, arguments: tuple[Any, ...]) -> str:

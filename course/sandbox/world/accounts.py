@@ -354,6 +354,13 @@ class Accounts:
         changes = (np.cumsum([given, lost.contacts, lost.friction + rubbed, lost.rods], axis=1).T + had)[rows]
         self._remember(block.times[rows], block.states[rows], changes)
 
+    def resume(self, sums: tuple[float, ...]) -> None:
+        """Go on with these sums after steps of which nothing was kept."""
+        self._pushes.clear()
+        self._held.clear()
+        self._history.clear()
+        self.ledger.sums, self.base = sums, self.space.state()
+
     def gave(self) -> None:
         """Something was changed from outside since ``base``: book the energy it brought as given."""
         had = self._energy()

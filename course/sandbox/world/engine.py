@@ -102,6 +102,15 @@ class Ledger:
         self.start = 0.0
         self.adopt(parts, gravity)
 
+    @property
+    def sums(self) -> tuple[float, ...]:
+        """All that was booked so far, in J."""
+        return self.contacts, self.friction, self.rods, self.integrator, self.given
+
+    @sums.setter
+    def sums(self, booked: tuple[float, ...]) -> None:
+        self.contacts, self.friction, self.rods, self.integrator, self.given = booked
+
     def adopt(self, parts: Sequence[Part], gravity: tuple[float, float]) -> None:
         """Switch to another set of bodies, or another gravity; the sums stay."""
         finite = [p.moment if np.isfinite(p.moment) else 0.0 for p in parts]
@@ -669,7 +678,7 @@ class Recorder:
         if edges.any():
             to_middle = (numbers[8:12] - numbers[4:8]) * (edges / 2)
             numbers[4:8] += to_middle
-            half = np.hypot(to_middle[0], to_middle[1])
+            half = np.maximum(np.hypot(*to_middle[:2]), np.hypot(*to_middle[2:]))
         contacts = Contacts(
             row=np.repeat(np.arange(count), np.diff(ends, prepend=0)),
             a=self._space.indices(whole[:, 0]),

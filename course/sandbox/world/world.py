@@ -269,6 +269,22 @@ class World:
         return self._accounts.receipt()
 
     @property
+    def sums(self) -> tuple[float, ...]:
+        """What the account holds now, for ``resume``."""
+        self._settle()
+        return self._accounts.ledger.sums
+
+    def skip(self) -> None:
+        """From here on, keep no account: steps are the same ones, and quicker."""
+        self._settle()
+        self._with_receipt = False
+
+    def resume(self, sums: tuple[float, ...]) -> None:
+        """Keep the account again, with what it held at this moment when the same steps were made before."""
+        self._accounts.resume(sums)
+        self._with_receipt = True
+
+    @property
     def momentum(self) -> tuple[float, float, float]:
         """Along x and y in kg m/s, and angular about the origin in kg m²/s."""
         return self._accounts.ledger.momentum(self._space.state())

@@ -310,7 +310,7 @@ class Accounts:
     @property
     def full(self) -> bool:
         """It is time to ``close``."""
-        return len(self.recorder) >= min(_STEPS, _STATES // len(self.base) + 1)
+        return len(self.recorder) >= min(_STEPS, _STATES // (len(self.base) + 1) + 1)
 
     def close(self) -> Block | None:
         """Book the steps that were only copied so far, and give them back; None if there were none."""
@@ -346,7 +346,8 @@ class Accounts:
         """Book a block and what was pushed during it, and sample it for the history."""
         ledger = self.ledger
         had = ledger.given, ledger.contacts, ledger.friction, ledger.rods
-        lost = ledger.settle(block, self.clock.size, by_hand, self._ties)
+        resized = block.first_step == self.clock.at + 1 > 1
+        lost = ledger.settle(block, self.clock.size, by_hand, self._ties, resized=resized)
         ledger.given += float(given.sum())
         ledger.friction += float(rubbed.sum())
         every = max(1, round(_SAMPLE / self.clock.size))

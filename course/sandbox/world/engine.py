@@ -143,7 +143,13 @@ class Ledger:
     # -- of many steps ---------------------------------------------------------------------------
 
     def settle(
-        self, block: Block, step: float, given: Floats | None = None, tied: Ties | None = None
+        self,
+        block: Block,
+        step: float,
+        given: Floats | None = None,
+        tied: Ties | None = None,
+        *,
+        resized: bool = False,
     ) -> Losses:
         """Book the losses of a block, each from the impulses of its own kind.
 
@@ -152,12 +158,14 @@ class Ledger:
             step: their size, in s.
             given: the impulses of a hand, (k, n, 3), in N s and N m s.
             tied: the joints, if there are any.
+            resized: the step before the block had another size. Contacts then begin with the impulses of
+                that step times the ratio of the sizes, and the engine tells them without that factor.
         """
         before, after = block.before, block.states[:, :, 3:]
         mean, half = (before + after) / 2, block.contacts.half
         pushed, lost, friction = self._of_contacts(block, mean)
         rods = np.zeros(len(mean))
-        if tied is not None or half is not None:
+        if tied is not None or half is not None or resized:
             # What nobody has been found for yet is the joints', or turns a body along an edge.
             left = (after - before) * self._inertias - self._weight_force.reshape(-1, 3) * step - pushed
             if given is not None:
@@ -169,7 +177,11 @@ class Ledger:
             if half is not None:
                 # How an edge's impulse is spread along it shows in how the body turns, and nowhere else.
                 most = self._levers(block, half)
-                lost -= (np.clip(left[:, :, 2], -most, most) * mean[:, :, 2]).sum(axis=1)
+                turned = np.clip(left[:, :, 2], -most, most)
+                left[:, :, 2] -= turned
+                lost -= (turned * mean[:, :, 2]).sum(axis=1)
+            if resized:
+                lost[0] -= (left[0] * mean[0]).sum()
         contacts = lost - friction
         self.contacts += float(contacts.sum())
         self.friction += float(friction.sum())

@@ -6,6 +6,7 @@ The state lives here, so a page can be reloaded at any time. Time passes only wh
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import functools
 import math
 import operator
@@ -174,6 +175,8 @@ def finite(value: float | None) -> float | None:
 #: Pages that may look at one world at a time.
 MAX_PAGES = 8
 _FPS = 60.0
+#: Between two frames at least, in s.
+_MOMENT = 0.004
 #: Texts that may wait for a page that reads slowly; one that is further behind is let go.
 _WAITING = 400
 #: Rows for the plots that may wait: a minute of them.
@@ -504,8 +507,12 @@ class Session:
             self.tick(now - last)
             last = now
             due = max(due + 1.0 / _FPS, self._clock())
-            # At least a moment for everybody else, however long the stepping took.
-            await asyncio.sleep(max(due - self._clock(), 0.001))
+            self._wake.clear()
+            # At least a moment for everybody else, however long the stepping took; and hands are answered at once.
+            await asyncio.sleep(_MOMENT)
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(self._wake.wait(), max(due - self._clock(), 0.0))
+                due = self._clock()
 
     def _moves(self) -> bool:
         return not self.stage.still or bool(self._wanted) or self._film is not None

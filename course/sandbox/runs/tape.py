@@ -234,12 +234,11 @@ class Tape:
     def take_over(self, other: Tape, index: int) -> None:
         """Have the frames of another tape up to this one for those after one's own, and go on."""
         since = bisect_right(other.ticks, self.ticks[-1])
-        for own, more in zip(
-            (self.frames, self.times, self.ticks, self.sums),
-            (other.frames, other.times, other.ticks, other.sums),
-            strict=True,
-        ):
-            own.extend(more[since : index + 1])
+        new = slice(since, index + 1)
+        self.frames += other.frames[new]
+        self.times += other.times[new]
+        self.ticks += other.ticks[new]
+        self.sums += other.sums[new]
         self.casts = other.casts | self.casts
         marks = other.marks
         self.marks += marks[bisect_right(marks, other.times[since - 1]) : bisect_right(marks, self.times[-1])]

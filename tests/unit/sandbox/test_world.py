@@ -212,8 +212,8 @@ def session(name: str, seed: int) -> float:
             low, high = {"gravity": (0, 20), "step": (0.3 * size, 2 * size), "iterations": (1, 50)}.get(
                 key, (0, 1)
             )
-            if key != "left" or "left" in world.settings:
-                whole = key in {"walls", "iterations"}
+            whole = key in {"walls", "iterations"}
+            with contextlib.suppress(UsageError):  # without wheels, there is no left one
                 world.set(key, chance.randint(low, high) if whole else chance.uniform(low, high))
         elif move == 5:
             with contextlib.suppress(UsageError):

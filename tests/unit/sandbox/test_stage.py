@@ -194,7 +194,9 @@ def test_going_on_after_a_long_run_takes_what_is_known_from_its_tape(name: str, 
     """Far from the end nothing is booked again, and yet states, account, frames and ticks are the same."""
     monkeypatch.setattr("course.sandbox.views.stage._TOLD", 2.0)
     stage, booked = make(name), []
-    monkeypatch.setattr(Ledger, "settle", lambda *a, real=Ledger.settle: booked.append(1) or real(*a))
+    monkeypatch.setattr(
+        Ledger, "settle", lambda *a, real=Ledger.settle, **k: booked.append(1) or real(*a, **k)
+    )
     watch(stage, 2.0)
     body = next(part.name for part in stage.world.parts if not part.fixed)
     stage.act("aim", body, 1.0, 0.5)

@@ -224,7 +224,10 @@ def session(name: str, seed: int) -> float:
             with contextlib.suppress(UsageError):
                 world.copy(body)
         else:
-            chance.choice([world.stop, lambda: world.spawn("box", 0.0, 0.0), lambda: world.remove(body)])()
+            act, given = chance.choice(
+                [(world.stop, ()), (world.spawn, ("box", 0, 0)), (world.remove, (body,))]
+            )
+            act(*given)
         for _ in range(chance.randrange(10)):  # no step at all between two moves is a pause
             world.step(8)
             most = max(most, world.receipt.kinetic)

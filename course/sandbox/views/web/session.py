@@ -508,7 +508,7 @@ class Session:
             last = now
             due = max(due + 1.0 / _FPS, self._clock())
             self._wake.clear()
-            # At least a moment for everybody else, however long the stepping took; and hands are answered at once.
+            # At least a moment for everybody else, and hands are answered at once.
             await asyncio.sleep(_MOMENT)
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._wake.wait(), max(due - self._clock(), 0.0))

@@ -122,7 +122,7 @@ class Event(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
         kind: "contact", "rest" (a body came to a stop), "gone" (it left the world), or "input" (the user
             did something).
         t: in s; step: number of the step, the first is 1.
-        a, b: names of the bodies; ``a`` moves, ``b`` is "" unless it is a contact.
+        a, b: names of the bodies; ``a`` moves, ``b`` is "" unless it is a contact, or a copy of it.
         x, y: where, in m.
         nx, ny: unit normal of a contact, from ``a`` to ``b``.
         approach, leave: speed along the normal before and after, in m/s; both positive for a bounce. A

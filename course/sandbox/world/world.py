@@ -563,7 +563,7 @@ class World:
         if self._space.part(made).wheels is not None:
             self._wheeled.append(self._space.part(made))
         self._recast()
-        self._say(f"{made} appears, like {name}", made)
+        self._say(f"{made} appears, like {name}", made, name)
         return made
 
     def stop(self) -> None:
@@ -613,8 +613,8 @@ class World:
         for tell in self.on_input:
             tell(self.ticks, what, arguments)
 
-    def _say(self, text: str, name: str = "") -> None:
-        self._report(Event(kind="input", t=self._clock.t, step=self._clock.steps, a=name, text=text))
+    def _say(self, text: str, name: str = "", other: str = "") -> None:
+        self._report(Event(kind="input", t=self._clock.t, step=self._clock.steps, a=name, b=other, text=text))
 
     # -- inside ----------------------------------------------------------------------------------
 

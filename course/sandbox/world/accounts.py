@@ -130,8 +130,7 @@ class Event(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
             late: the bodies were already inside each other.
         slip: speed along the surface before, in m/s.
         impulse: size of the impulse of the first step of contact, in N s.
-        before, after: kinetic energy of the two together, in J; None in a world without a receipt, as are
-            ``leave`` and ``impulse``.
+        before, after: kinetic energy of the two together, in J.
         shared: both of them can move.
         minor: too soft to be worth a sentence.
         text: what was done, for "input".
@@ -200,20 +199,8 @@ _KEPT = 3600
 _WEIGHT = 9.81
 
 
-@dataclass(frozen=True, slots=True)
-class History:
-    """The last minute at about 60 samples a second; each array (k,), in s, J, kg m/s and kg m²/s."""
-
-    t: Floats
-    kinetic: Floats
-    potential: Floats
-    contacts: Floats
-    friction: Floats
-    rods: Floats
-    residual: Floats
-    px: Floats
-    py: Floats
-    angular: Floats
+#: Columns of a sample, in s, J, kg m/s and kg m²/s.
+SAMPLED = ("t", "kinetic", "potential", "contacts", "friction", "rods", "residual", "px", "py", "angular")
 
 
 @dataclass(slots=True)
@@ -291,10 +278,6 @@ class Accounts:
             residual=ledger.start + ledger.given - spent,
             integrator=ledger.integrator,
         )
-
-    def history(self) -> History:
-        """The last minute; call ``close`` first."""
-        return History(*np.array(self._history).reshape(-1, 10).T)
 
     def samples(self, after: float) -> list[list[float]]:
         """The rows of the history that are later than this time, in s; call ``close`` first."""

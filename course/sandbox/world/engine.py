@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias, assert_never
 
@@ -642,15 +642,6 @@ class Space:
         places >>= self._shift
         found: Ints = self._table.take(places.view(np.int64))
         return found
-
-    def on_contact(self, tell: Callable[[str, str, Any], None]) -> None:
-        """Call ``tell(name of a, name of b, arbiter)`` from inside the step, when two begin to touch."""
-
-        def begin(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:  # noqa: ARG001
-            a, b = arbiter.bodies
-            tell(self._bodies[a.id][0].name, self._bodies[b.id][0].name, arbiter)
-
-        self.space.on_collision(None, None, begin=begin)
 
 
 class Recorder:

@@ -19,8 +19,8 @@ import numpy as np
 from course.errors import UsageError
 from course.sandbox.scene.model import Material, Part, Scene, layout, spawned, wall
 from course.sandbox.scene.rules import SETTINGS, checked, number
-from course.sandbox.world.accounts import Accounts, Clock, Event, Hand, History, Receipt
-from course.sandbox.world.contacts import ContactCollector, contact_events
+from course.sandbox.world.accounts import Accounts, Clock, Event, Hand, Receipt
+from course.sandbox.world.contacts import contact_events
 from course.sandbox.world.engine import Block, Floats, Space
 
 # ---
@@ -124,7 +124,7 @@ class World:
     Args:
         scene: what to build.
         settings: values for ``SETTINGS``; the scene's own where left out.
-        receipt: keep the account of energy. Without it contacts know no loss, and stepping is faster.
+        receipt: keep the account of energy. Without it no contact is told, and stepping is faster.
 
     Raises:
         UsageError: a setting is unknown or out of range.
@@ -183,8 +183,6 @@ class World:
         )
         self._space.space.gravity = self._gravity()
         self._wall()
-        if not self._with_receipt:
-            self._space.on_contact(ContactCollector(self._space, self._clock_now, self._report).begin)
         self._clock = Clock(self.settings["step"])
         self._accounts = Accounts(self._space, self._gravity(), self._clock)
         self._watch = Watch(scene.view)
@@ -198,9 +196,6 @@ class World:
         size = math.hypot(gx, gy)
         wanted = self.settings["gravity"]
         return (0.0, -wanted) if size == 0.0 else (gx * wanted / size, gy * wanted / size)
-
-    def _clock_now(self) -> Clock:
-        return self._clock
 
     # -- what views read -------------------------------------------------------------------------
 
@@ -289,14 +284,8 @@ class World:
         """Along x and y in kg m/s, and angular about the origin in kg m²/s."""
         return self._accounts.ledger.momentum(self._space.state())
 
-    @property
-    def history(self) -> History:
-        """The last minute of energies and momentum; one row in a world without a receipt."""
-        self._settle()
-        return self._accounts.history()
-
-    def samples(self, after: float) -> list[list[float]]:
-        """The rows of ``history`` that are later than this time, in s."""
+    def samples(self, after: float = -math.inf) -> list[list[float]]:
+        """Of the last minute, the rows that are later than this time, in s; ``SAMPLED`` names the columns."""
         self._settle()
         return self._accounts.samples(after)
 

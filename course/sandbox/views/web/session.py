@@ -153,7 +153,7 @@ def past(stage: Stage, most: int = 900) -> bytes:
     Args:
         most: rows at most; the last ones, about 60 of them a second.
     """
-    return _rows(3.0, stage.world.samples(-math.inf)[-most:])
+    return _rows(3.0, stage.world.samples()[-most:])
 
 
 def _rows(kind: float, rows: list[list[float]]) -> bytes:

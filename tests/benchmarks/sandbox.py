@@ -4,8 +4,8 @@
 
 A hundred bodies (50 balls, 50 boxes) fall into a box, and Newton's cradle swings. A world with its account, a
 world without one, and a bare pymunk space built from the same parts take turns, a slice of steps each, in an
-order that rotates; the figure is the ratio of their CPU times. Bare means `Space.step` in a loop, same settings,
-nobody listening. All three are the same simulation: their states are compared bit by bit at the end.
+order that rotates; the figure is the ratio of their CPU times. Bare means `Space.step` in a loop,
+with nobody listening. All three are the same simulation: their states are compared bit by bit at the end.
 """
 
 from __future__ import annotations

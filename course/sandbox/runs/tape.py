@@ -9,12 +9,13 @@ from __future__ import annotations
 import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable
+from threading import Thread
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from course.errors import UsageError
+from course.errors import CourseError, UsageError
 from course.sandbox.runs.recording import Film, Recording, ffmpeg
 from course.sandbox.scene.loading import Chosen
 from course.sandbox.scene.model import Part, Scene
@@ -252,6 +253,47 @@ class Tape:
         kept.frames, kept.times, kept.ticks = self.frames[:count], self.times[:count], self.ticks[:count]
         kept.casts, kept.marks = dict(self.casts), []
         return kept
+
+
+class Filming:
+    """A film of a tape in the making, beside the world.
+
+    Attributes:
+        share: how far it is, 0 to 1.
+        stopped: give it up.
+        data: the file, once it no longer ``running``.
+        failed: why there is none.
+    """
+
+    def __init__(self, tape: Tape, scene: Scene, kind: str, width: int) -> None:
+        self.name, self.share, self.stopped, self.data, self.failed = (
+            f"{scene.id}.{kind}",
+            0.0,
+            False,
+            b"",
+            "",
+        )
+        self._thread = Thread(target=self._make, args=(tape, scene, kind, width), daemon=True)
+        self._thread.start()
+
+    @property
+    def running(self) -> bool:
+        """It is not ready yet."""
+        return self._thread.is_alive()
+
+    def wait(self, seconds: float) -> None:
+        """Until it is ready, but no longer."""
+        self._thread.join(seconds)
+
+    def _make(self, tape: Tape, scene: Scene, kind: str, width: int) -> None:
+        try:
+            self.data = tape.film(scene, kind, width, self._told)
+        except CourseError as error:
+            self.failed = f"{error.message} {error.help or ''}".strip()
+
+    def _told(self, share: float) -> bool:
+        self.share = share
+        return not self.stopped
 
 
 #: Frames of a preview, and the simulated time they show at most, in s.

@@ -13,8 +13,8 @@ from typing import Any
 
 from course.errors import CourseError, UsageError
 from course.sandbox.runs.recording import Recording
-from course.sandbox.runs.tape import Frame, Tape, frame
-from course.sandbox.scene.loading import Chosen, Comparison, choose
+from course.sandbox.runs.tape import Filming, Frame, Tape, frame
+from course.sandbox.scene.loading import Chosen, Comparison, choose, own_copy
 from course.sandbox.scene.model import Part
 from course.sandbox.views.story import Experiment, Narrator
 from course.sandbox.world.accounts import Event
@@ -57,10 +57,23 @@ class Desk:
     played: frozenset[str] = frozenset()
     opened: Callable[[str], None] | None = None
 
-    def keep_of(self, chosen: Chosen) -> Callable[[Comparison], None] | None:
-        """``keep`` for one scene."""
-        keep = self.keep
-        return None if keep is None else lambda comparison: keep(chosen, comparison)
+    def stage(
+        self, of: Chosen | str, clock: Callable[[], float] = perf_counter, guess: float | None = None
+    ) -> Stage:
+        """A scene to play, also by its id or path."""
+        chosen, keep = choose(of) if isinstance(of, str) else of, self.keep
+        kept = None if keep is None else lambda comparison: keep(chosen, comparison)
+        return Stage(chosen, guess=guess, keep=kept, clock=clock)
+
+    def mine(self, stage: Stage) -> tuple[Stage, str]:
+        """The scene as a file of one's own, to play, and where it is."""
+        if self.save is None:
+            raise UsageError("Nothing can be saved from here.", code="no_save")
+        id_ = f"my-{stage.chosen.scene.id.removeprefix('my-')}"
+        path = self.save(f"{id_}.toml", own_copy(stage.chosen, id_))
+        made = self.stage(path, stage.clock)
+        made.world.paused = stage.world.paused
+        return made, f"This is your own copy now: {path}. Change it in an editor; it plays like any scene."
 
 
 @dataclass(frozen=True)
@@ -319,6 +332,11 @@ class Stage:
         """The settings that somebody chose, not those that the scene has of its own."""
         chosen = [one.arguments for one in self.recording.inputs if one.what == "set"]
         return {**self.chosen.settings, **{str(key): float(value) for key, value in chosen}}
+
+    def film(self, kind: str, width: int) -> Filming:
+        """Begin a film of this run, as "gif" or "mp4", or a "png" of what is looked at."""
+        tape = self.tape.until(self.t if kind == "png" else self.world.t)
+        return Filming(tape, self.chosen.scene, kind, width)
 
     # -- time ------------------------------------------------------------------------------------
 

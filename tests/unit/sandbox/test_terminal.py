@@ -155,7 +155,7 @@ def test_a_drag_moves_a_body_and_letting_go_throws_it():
         assert shot.y[row] > 0.2
         assert shot.vy[row] > 0.1
         app.frames(1)
-        assert "a hand takes right-puck" in app.events.text
+        assert "a hand takes the right puck" in app.events.text
         assert app.experiment.stage == "touched"
 
     play("head-on", script)
@@ -284,7 +284,7 @@ def test_a_line_changes_a_parameter_a_setting_or_a_body_and_makes_the_scene_ones
             await say(wrong)
         assert app.stage.chosen.parameters["speed"] == 5
         await pilot.press("ctrl+s")
-        app._film[0].join(60)
+        app._film.wait(60)
         app.frames(1)
         assert app.saved["head-on.gif"][:6] == b"GIF89a"
 

@@ -75,14 +75,12 @@ def shot_of(kept: Frame) -> Snapshot:
     hand = (numbers[7], numbers[8], numbers[9], numbers[10]) if kept[6] else None
     return Snapshot(
         t=float(kept[2]),
-        tick=0,
         version=int(kept[1]),
         x=x,
         y=y,
         angle=angle,
         vx=vx,
         vy=vy,
-        spin=np.zeros(count),
         joints=ends,
         hand=hand,
     )

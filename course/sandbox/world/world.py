@@ -100,20 +100,18 @@ class Snapshot:
 
     Attributes:
         version: changes when bodies were added or removed: fetch ``World.parts`` again.
-        x, y, angle, vx, vy, spin: (n,), in m, rad, m/s, rad/s.
+        x, y, angle, vx, vy: (n,), in m, rad, m/s.
         joints: ends of each joint, (m, 4): ax, ay, bx, by, in m.
         hand: where a body is held and where the pointer is: ax, ay, px, py, in m; None if nothing is held.
     """
 
     t: float
-    tick: int
     version: int
     x: Floats
     y: Floats
     angle: Floats
     vx: Floats
     vy: Floats
-    spin: Floats
     joints: Floats
     hand: tuple[float, float, float, float] | None
 
@@ -225,21 +223,19 @@ class World:
 
     def snapshot(self) -> Snapshot:
         """Where everything is now."""
-        x, y, angle, vx, vy, spin = self._space.state().T
+        x, y, angle, vx, vy, _ = self._space.state().T
         hand = None
         if self._hand is not None:
             place = self._space.body(self._hand.name).local_to_world(self._hand.anchor)
             hand = (float(place.x), float(place.y), self._hand.x, self._hand.y)
         return Snapshot(
             t=self.t,
-            tick=self.ticks,
             version=self.version,
             x=x,
             y=y,
             angle=angle,
             vx=vx,
             vy=vy,
-            spin=spin,
             joints=np.array(self._space.ends_of_joints()).reshape(-1, 4),
             hand=hand,
         )

@@ -439,6 +439,7 @@ def test_a_film_of_this_run_comes_as_a_file(kind: str, begins: bytes) -> None:
     watch(made, 1.0)
     told(page)
     send(made, page, "film", kind=kind, width=200)
+    send(made, page, "open", id="incline")  # which is not what is filmed
     made._film[1].wait(60)
     made.tick(0)
     data = []

@@ -153,14 +153,19 @@ class Recording:
         return first, began
 
     def replayed(
-        self, count: int, tick: int, version: int, ready: Callable[[World, Recording], None], halt: int = 0
+        self,
+        count: int,
+        tick: int,
+        version: int,
+        ready: Callable[[World, Recording], None],
+        halt: Callable[[], float],
     ) -> Iterator[float]:
         """Make the moment after ``tick`` steps and the first ``count`` inputs again, in a world of its own.
 
         Args:
             version: the first for the new world.
             ready: called with the new world and its recording, before the first step.
-            halt: a step after which it has to yield.
+            halt: tells the next step after which it has to yield.
 
         Yields:
             how far it is, 0 to 1, every few steps.
@@ -176,8 +181,7 @@ class Recording:
         for one in [*self.inputs[first:count], None]:
             until = tick if one is None else one.tick
             while world.ticks < until:
-                ends = halt if world.ticks < halt < until else until
-                world.step(min(_SLICE, ends - world.ticks))
+                world.step(int(min(_SLICE, until - world.ticks, max(1, halt() - world.ticks))))
                 yield (world.ticks - began) / max(1, tick - began)
             if one is not None:
                 act(world, one)

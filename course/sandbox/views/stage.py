@@ -471,21 +471,32 @@ class Stage:
             ((tape, tape.shared(there.recording, there.count, there.t - _TOLD)) for tape in self._tapes()),
             key=lambda pair: pair[0].times[pair[1]],
         )
-        halt = known.ticks[index] if index else 0
+        known_until = known.ticks[index] if index else 0
+
+        def halt() -> float:
+            """Where the comparison is made, and where what is known from a tape ends."""
+            world, left = made["world"], made["experiment"].left()
+            ends = math.inf if left is None else world.ticks + math.ceil(left / world.settings["step"] - 1e-6)
+            return min(ends, known_until if known_until > world.ticks else math.inf)
 
         def steps() -> Iterator[float]:
-            version, skipping = self.world.version + 1, False
+            version, skipping, frames = self.world.version + 1, False, 0
             for share in there.recording.replayed(there.count, there.tick, version, ready, halt):
-                self._retell(made)
-                world = made["world"]
-                if skipping and world.ticks == halt:
+                world, tape, experiment = made["world"], made["tape"], made["experiment"]
+                # Taking in events books the steps, so it is done with the frames, which do that anyway.
+                left = experiment.left()
+                ended = share == 1.0 or world.ticks == known_until or (left is not None and left <= 1e-9)
+                if ended or len(tape) != frames:
+                    self._retell(made)
+                    frames = len(tape)
+                if skipping and world.ticks == known_until:
                     world.resume(known.sums[index])
-                    made["tape"].take_over(known, index)
+                    tape.take_over(known, index)
                     made["narrator"].forget()
                     skipping = False
-                elif world.ticks < halt and not skipping and made["experiment"].left() is None:
+                elif world.ticks < known_until and not skipping and experiment.left() is None:
                     world.skip()
-                    made["tape"].end()
+                    tape.end()
                     skipping = True
                 yield share
 

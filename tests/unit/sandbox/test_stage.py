@@ -264,6 +264,18 @@ def test_no_run_ends_and_the_comparison_is_made_on_the_way() -> None:
     assert len(kept) == 1, "the same run is not kept twice"
 
 
+@pytest.mark.parametrize("name", ["free-fall", "head-on", "incline", "restitution-row", "box-stack"])
+def test_going_on_compares_the_same_moment_as_the_run_that_was_seen(name: str) -> None:
+    stage = make(name, settings={"step": 0.0037})  # no number of steps ends with a picture
+    watch(stage, stage.chosen.scene.duration + 1.0)
+    seen = stage.experiment.report()["comparison"]
+    assert seen is not None
+    stage.look(stage.world.t - 0.3)
+    stage.go_on()
+    stage.finish()
+    assert stage.experiment.report()["comparison"] == seen
+
+
 def test_a_step_is_a_picture_the_next_contact_or_the_solvers() -> None:
     stage = make("newtons-cradle")
     stage.step()

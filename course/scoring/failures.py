@@ -21,7 +21,7 @@ from course.figures.described import Plot
 from course.isolation.failures import StudentFailure
 from course.isolation.session import LOOP
 from course.printable import one_line
-from course.scoring.elsewhere import absent, lacking, newer, numpys
+from course.scoring.elsewhere import absent, cure, lacking, newer, numpys
 from course.scoring.explain.story import Diagnosis
 from course.scoring.verdict import Finding, Places
 
@@ -173,9 +173,12 @@ def _error_finding(failure: StudentFailure, *, shown: bool) -> Finding:
 
 
 def _apart(failure: StudentFailure, places: Places, *, shown: bool) -> str:
-    """The advice where the function may well work for its student; "" for any other."""
+    """The advice that fits this exception and no other; "" where none is known."""
     return (
-        _at_a_terminal(failure) or _by_a_star(failure, places, shown=shown) or lacking(failure, shown=shown)
+        _at_a_terminal(failure)
+        or _by_a_star(failure, places, shown=shown)
+        or lacking(failure, shown=shown)
+        or (cure(failure) if shown else "")
     )
 
 

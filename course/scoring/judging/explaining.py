@@ -35,6 +35,7 @@ from course.scoring.explain.story import (
     matching,
     read_table,
     read_words,
+    said_once,
     story_of,
 )
 from course.scoring.failures import CheckFailed
@@ -222,7 +223,7 @@ def _retold(
     return msgspec.structs.replace(
         check,
         diagnosis=diagnosis.code,
-        message=f"{message} {diagnosis.looks_like}".strip(),
+        message=said_once(message, diagnosis.looks_like),
         help=diagnosis.advice or advice,
         first_divergence=check.first_divergence or diagnosis.divergence,
     )

@@ -167,7 +167,7 @@ def test_of_programs_with_two_mistakes_what_they_share_is_named() -> None:
     assert common(fits) == ("MASS_SWAPPED",)
     both = story_of(failures(None), fits[:1], WORDS).diagnosis
     assert both is not None
-    assert "Two mistakes at once" in both.looks_like
+    assert "There seem to be two mistakes" in both.looks_like
     assert WORDS.entries["MASS_SWAPPED"].looks_like in both.looks_like
 
 
@@ -217,7 +217,7 @@ def test_of_two_mistakes_of_which_one_is_known_it_is_said_that_there_are_two() -
     shared = story_of(failures(None), fits, WORDS).diagnosis
     assert shared
     assert shared.code == "MASS_SWAPPED"
-    assert "Two mistakes at once" in shared.looks_like
+    assert "There seem to be two mistakes" in shared.looks_like
 
 
 def test_a_check_that_saw_a_fact_keeps_it() -> None:

@@ -161,7 +161,8 @@ def _error_finding(failure: StudentFailure, *, shown: bool) -> Finding:
     # A student chooses class names, and one could spell out a hidden input, so only known names are shown.
     known = isinstance(getattr(builtins, failure.type, None), type)
     name = failure.type if known else "an exception"
-    said = one_line(failure.message, _SAID).rstrip(" .") if shown else ""
+    brief = re.split(r"\n|\\n", failure.message, maxsplit=1)[0]  # of several lines the first
+    said = one_line(brief, _SAID).rstrip(" .") if shown else ""
     begin = "Start at that line: print above it the values that it uses, or call" if where else "Call"
     advice = f"{begin} the function yourself and read the traceback from the bottom up."
     return Finding(

@@ -134,9 +134,7 @@ def test_a_return_that_ends_a_loop_in_its_first_pass_is_named() -> None:
     told = told_more(judged(), LOOPS, PLACES)
     assert told.diagnosis == "RETURN_IN_LOOP"
     assert "on line 4 of your file" in told.message
-    helper = (
-        b"def total(e):\n    return one(e)\n\ndef one(e):\n    for x in e:\n        return x\n"
-    )
+    helper = b"def total(e):\n    return one(e)\n\ndef one(e):\n    for x in e:\n        return x\n"
     assert return_in_a_loop(helper, "total", PLACES)
 
 

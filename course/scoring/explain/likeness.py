@@ -51,19 +51,22 @@ def likeness(actual: Any, expected: Any, given: Mapping[str, Any] | None = None)
     a, e = _array(actual), _array(expected)
     with np.errstate(all="ignore"):
         if a is None or e is None:
-            return _of_kinds(actual, expected, a)
+            return _of_kinds(actual, expected, a, given or {})
         if not a.ndim and not e.ndim:
             return _of_numbers(actual, expected, given or {})
         return _of_arrays(a, e, given or {}) if a.shape == e.shape else _of_lengths(a, e)
 
 
-def _of_kinds(actual: Any, expected: Any, a: Array | None) -> str:
-    """The likeness of two texts, and of no number with None."""
+def _of_kinds(actual: Any, expected: Any, a: Array | None, given: Mapping[str, Any]) -> str:
+    """The likeness of two texts, and of a number where None is right."""
     if isinstance(actual, str) and isinstance(expected, str):
         alike = actual != expected and actual.strip().casefold() == expected.strip().casefold()
         return "Only capitals or spaces are different." if alike else ""
-    if a is None or expected != "None" or np.isfinite(a).any():
+    if a is None or expected != "None":
         return ""
+    if np.isfinite(a).any():
+        taken = "" if a.ndim else _taken(float(a), _inputs(given))
+        return f"Here your result is the same as {taken}." if taken else ""
     return f"Where there is no answer give None, not {a.flat[0]:g}."
 
 
@@ -111,7 +114,7 @@ def _of_two_numbers(a: float, e: float, given: Mapping[str, Any]) -> str:
     if not (math.isfinite(a) and math.isfinite(e)) or _same(a, e):
         return ""
     inputs = _inputs(given)
-    taken = next((name for name, value in inputs if _same(a, value) and value != 0.0), "")
+    taken = _taken(a, inputs)
     if not (a and e):
         return f"the same as {taken}" if taken else ""
     if _same(a, -e):
@@ -123,6 +126,11 @@ def _of_two_numbers(a: float, e: float, given: Mapping[str, Any]) -> str:
         or _of_powers(a, e)
         or _of_digits(a, e)
     )
+
+
+def _taken(a: float, inputs: Sequence[tuple[str, float]]) -> str:
+    """The input that a number is; "" if it is none."""
+    return next((name for name, value in inputs if _same(a, value) and value != 0.0), "")
 
 
 def _inputs(given: Mapping[str, Any]) -> list[tuple[str, float]]:

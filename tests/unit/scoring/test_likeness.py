@@ -43,6 +43,8 @@ PLACES = Places(module="work.py")
         (2.35, 2.3456, {}, "the right one rounded to 2 decimals"),
         (3.0, 3, {}, "of the type float, and int is asked for"),
         (math.inf, "None", {}, "give None, not inf"),
+        (6.0, "None", {"values": [5.0, 6.0]}, "the same as the last of `values`"),
+        (6.5, "None", {"values": [5.0, 6.0]}, ""),
         ("Mean ", "mean", {}, "Only capitals or spaces"),
         (1.7, 2.4, {"m": 3.0}, ""),
         (0.0, 2.4, {"h": 0.0}, ""),

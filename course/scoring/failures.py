@@ -161,13 +161,15 @@ def _error_finding(failure: StudentFailure, *, shown: bool) -> Finding:
     # A student chooses class names, and one could spell out a hidden input, so only known names are shown.
     known = isinstance(getattr(builtins, failure.type, None), type)
     name = failure.type if known else "an exception"
-    brief = re.split(r"\n|\\n", failure.message, maxsplit=1)[0]  # of several lines the first
-    said = one_line(brief, _SAID).rstrip(" .") if shown else ""
+    fitting = _apart(failure, places, shown=shown)
+    # Where the advice is known, the first of several lines is enough.
+    words = re.split(r"\n|\\n", failure.message, maxsplit=1)[0] if fitting else failure.message
+    said = one_line(words, _SAID).rstrip(" .") if shown else ""
     begin = "Start at that line: print above it the values that it uses, or call" if where else "Call"
     advice = f"{begin} the function yourself and read the traceback from the bottom up."
     return Finding(
         message=f"Your code raised {name}{where}{': ' if said else ''}{said}.",
-        help=_apart(failure, places, shown=shown) or advice,
+        help=fitting or advice,
         diagnosis="RAISED",
         actual=f"{failure.type}: {failure.message}" if failure.message else failure.type,
     )

@@ -391,5 +391,7 @@ def _is_said(check: CheckResult) -> bool:
     """Whether the message repeats all that is known of an exception: its class and its own words."""
     if check.status != "error" or not isinstance(check.actual, str):
         return False
-    name, _, said = check.actual.partition("\\n")[0].partition(": ")  # of several lines the first
-    return f"raised {name}" in check.message and said.rstrip(" .") in check.message
+    name, _, said = check.actual.partition(": ")
+    first = said.partition("\\n")[0].rstrip(" .")  # of several lines the first may do
+    repeated = said.rstrip(" .") in check.message or check.message.endswith(f": {first}.")
+    return f"raised {name}" in check.message and repeated

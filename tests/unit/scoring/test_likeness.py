@@ -13,7 +13,7 @@ from course.scoring import kit
 from course.scoring.elsewhere import cure
 from course.scoring.explain.likeness import likeness
 from course.scoring.explain.reading_code import names_of, return_in_a_loop, why_none
-from course.scoring.failures import CheckFailed
+from course.scoring.failures import CheckFailed, finding_of
 from course.scoring.judging.outcomes import told_more
 from course.scoring.verdict import CheckResult, Places, Status, Visibility
 
@@ -227,3 +227,12 @@ def test_pythons_commonest_errors_have_their_own_cure(code: str, advice: str) ->
     failure = StudentFailure(kind="error", type=type(raised.value).__name__, message=str(raised.value))
     assert advice in cure(failure)
     assert bool(advice) == bool(cure(failure))
+
+
+def test_of_an_exception_in_several_lines_the_first_is_repeated_where_the_advice_is_known() -> None:
+    lines = "module 'numpy' has no attribute 'float'.\n`np.float` was a deprecated alias for `float`."
+    finding = finding_of(StudentFailure("error", type="AttributeError", message=lines), shown=True)
+    assert finding.message == "Your code raised AttributeError: module 'numpy' has no attribute 'float'."
+    assert finding.help.endswith("has no `np.float`. Use `float`.")
+    whole = finding_of(StudentFailure("error", type="ValueError", message="a\nb"), shown=True)
+    assert whole.message == "Your code raised ValueError: a\\nb."

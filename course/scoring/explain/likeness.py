@@ -34,6 +34,8 @@ _TIMES = {
 }
 _TIMES |= {float(n): f"{n} times the right one" for n in (3, 4, 5, 6, 8, 9, 10, 12, 16, 100, 1000)}
 _TIMES |= {1 / n: f"the right one over {n}" for n in (5, 6, 8, 9, 10, 12, 16, 100, 1000)}
+#: Inputs that are whole numbers below it are not compared with a simple factor: too many things are 2.
+_BY_CHANCE = 20
 _PLACES = ("first", "second", "third", "fourth", "fifth", "sixth")
 
 
@@ -150,7 +152,9 @@ def _of_ratio(a: float, e: float, inputs: Sequence[tuple[str, float]]) -> str:
     known = next((words for factor, words in _TIMES.items() if _same(abs(ratio), factor)), "")
     if known:
         also = [
-            n for n, v in inputs if abs(v) != 1.0 and (_same(v, abs(ratio)) or _same(v * abs(ratio), 1.0))
+            n
+            for n, v in inputs
+            if n[0] == "`" and not _is_small(v) and (_same(v, abs(ratio)) or _same(v * abs(ratio), 1.0))
         ]
         turned = ", with the other sign" if ratio < 0 else ""
         return known + turned + (f" ({also[0]} is {_value(also[0], inputs)})" if len(also) == 1 else "")
@@ -160,6 +164,11 @@ def _of_ratio(a: float, e: float, inputs: Sequence[tuple[str, float]]) -> str:
         if len(names) == 1:
             return f"the right one {words.format(names[0])}" + (", with the other sign" if ratio < 0 else "")
     return ""
+
+
+def _is_small(value: float) -> bool:
+    """Whether it is a whole number that others are by chance."""
+    return value.is_integer() and abs(value) < _BY_CHANCE
 
 
 def _value(name: str, inputs: Sequence[tuple[str, float]]) -> str:

@@ -14,6 +14,6 @@ def hypotheses():
         {
             "twice": {"HALF_MISSING": 1.0, "HALF_TWICE": 0.5},
             "root": {"ROOT_MISSING": 1.0},
-            "gravity": {"G_IGNORED": lambda g: 9.81},
+            "gravity": {"G_IGNORED": lambda g: 9.81, "G_MULTIPLIES": lambda g: 1 / g},
         },
     )

@@ -14,6 +14,10 @@ def hypotheses():
         {
             "half": {"HALF_MISSING": 1.0, "HALF_UPSIDE_DOWN": 2.0},
             "power": {"SPEED_NOT_SQUARED": 1},
-            "gravity": {"DECELERATION": lambda g: 1.0, "G_IGNORED": lambda g: 9.81},
+            "gravity": {
+                "DECELERATION": lambda g: 1.0,
+                "G_IGNORED": lambda g: 9.81,
+                "G_MULTIPLIES": lambda g: 1 / g,
+            },
         },
     )

@@ -3,10 +3,10 @@
 from course.scoring import kit
 
 
-def reading_of(late=1.0, arrived=lambda t, now: t <= now, which=-1):
+def reading_of(late=1.0, arrived=lambda t, now: t <= now, which=-1, none=lambda values: None):
     def seen(times, values, latency, now):
         found = [value for t, value in zip(times, values) if arrived(t + late * latency, now)]
-        return found[which] if found else None
+        return found[which] if found else none(values)
 
     return seen
 
@@ -25,5 +25,6 @@ def hypotheses():
             "late": {"NO_LATENCY": 0.0, "FROM_THE_FUTURE": -1.0},
             "arrived": {"ARRIVAL_NOT_COUNTED": lambda t, now: t < now},
             "which": {"OLDEST_NOT_NEWEST": 0},
+            "none": {"LAST_FOR_NONE": lambda values: values[-1], "FIRST_FOR_NONE": lambda values: values[0]},
         },
     )

@@ -5,9 +5,9 @@ import math
 from course.scoring import kit
 
 
-def acceleration(inertia=1 / 3, arm=0.5, turn=math.cos, unit=float, gravity=-1.0):
+def acceleration(inertia=1 / 3, turned=1.0, arm=0.5, turn=math.cos, unit=float, gravity=-1.0):
     return lambda torque, m, l, angle, g=9.81: (
-        (torque + gravity * arm * m * g * l * turn(unit(angle))) / (inertia * m * l * l)
+        turned * (torque + gravity * arm * m * g * l * turn(unit(angle))) / (inertia * m * l * l)
     )
 
 
@@ -22,6 +22,7 @@ def hypotheses():
         acceleration,
         {
             "inertia": {"INERTIA_ABOUT_THE_CENTRE": 1 / 12, "MASS_AT_THE_END": 1.0},
+            "turned": {"SIGN_TURNED": -1.0},
             "arm": {"WEIGHT_AT_THE_END": 1.0},
             "turn": {"SINE_OF_THE_ANGLE": math.sin, "ANGLE_IGNORED": lambda angle: 1.0},
             "unit": {"DEGREES": math.radians},

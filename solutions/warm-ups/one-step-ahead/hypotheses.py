@@ -17,7 +17,11 @@ def hypotheses():
                 "SCHOOL_FORMULA": lambda v, a, h: h * v + h * h * a / 2,
                 "VELOCITY_WITHOUT_STEP": lambda v, a, h: v,
             },
-            "faster": {"STEP_FORGOTTEN": lambda a, h: a, "VELOCITY_KEPT": lambda a, h: 0.0},
+            "faster": {
+                "STEP_FORGOTTEN": lambda a, h: a,
+                "VELOCITY_KEPT": lambda a, h: 0.0,
+                "SLOWER": lambda a, h: -h * a,
+            },
             "order": {"ORDER_SWAPPED": -1},
         },
     )

@@ -18,7 +18,11 @@ def hypotheses():
                 "DISTANCE_SQUARED": lambda p, q: math.dist(p, q) ** 2,
                 "SIZES_ADDED": lambda p, q: abs(p[0] - q[0]) + abs(p[1] - q[1]),
             },
-            "radii": {"ONE_RADIUS": max},
+            "radii": {
+                "ONE_RADIUS": max,
+                "RADII_HALVED": lambda a, b: (a + b) / 2,
+                "DIAMETERS": lambda a, b: 2 * (a + b),
+            },
             "sign": {"GAP_NOT_DEPTH": -1.0},
         },
     )

@@ -15,8 +15,13 @@ def hand_of(second=lambda a1, a2: a1 + a2, order=1, unit=lambda angle: angle):
     return hand
 
 
+def stretched(a1, a2, l1, l2):
+    return (l1 + l2) * math.cos(a1 + a2), (l1 + l2) * math.sin(a1 + a2)
+
+
 def hypotheses():
-    return kit.terms(
+    yield "hand", ("ONE_LONG_LINK",), stretched
+    yield from kit.terms(
         "hand",
         hand_of,
         {

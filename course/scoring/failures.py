@@ -36,6 +36,7 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
         bare: message and advice of the check itself, without its probe's diagnosis.
         broke: where the probe raised, for the check's author; empty if it did not.
         comparison: along time, if there was one.
+        looked: a search of the check's own for the mistake was made on these numbers.
     """
 
     def __init__(
@@ -45,6 +46,8 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
         bare: tuple[str, str] | None = None,
         guess: Diagnosis | None = None,
         comparison: Comparison | None = None,
+        *,
+        looked: bool = False,
     ) -> None:
         super().__init__(finding.message)
         self.finding = finding
@@ -52,6 +55,7 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
         self.guess = guess or (Diagnosis(finding.diagnosis, "", "") if finding.diagnosis else None)
         self.broke = broke
         self.comparison = comparison
+        self.looked = looked
 
 
 #: The most of an exception's own message that a sentence repeats, in characters.

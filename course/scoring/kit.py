@@ -197,6 +197,7 @@ def fail(
         bare,
         found if isinstance(found, Diagnosis) else None,
         comparison,
+        looked=callable(diagnose),
     )
 
 

@@ -119,11 +119,13 @@ class Failure:
     Attributes:
         guess: the probe's diagnosis; None if it has none.
         finite: False if a compared value was nan or infinite.
+        looked: its own probe was asked, on the numbers that it shows.
     """
 
     check: str
     guess: Diagnosis | None
     finite: bool = True
+    looked: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +151,8 @@ def story_of(failures: Sequence[Failure], fits: Sequence[Row], words: Words, *, 
     Something that is kept between two calls is said first, for it can look like anything else; where the
     exercise has a code for it, that one. Then a program that fits decides. If none fits, the probes decide:
     first the origin of a nan, then causes, then consequences. Of several causes, the one that most checks
-    name is taken, and none if two are named equally often. A cause is said of every check that saw no other;
+    name is taken, and none if two are named equally often. A cause is said of every check that saw no other,
+    unless its own probe looked at its own numbers and did not find it;
     a consequence, and where a nan comes from, only of those that saw it. Beside a nan, or where none is named
     most, consequences stay with the checks that saw them.
 
@@ -249,7 +252,8 @@ def _contradicted(failures: Sequence[Failure], named: Diagnosis | None, words: W
     if kind != "cause":
         return frozenset(f.check for f in failures if not f.guess or f.guess.code != named.code)
     others = (f for f in failures if f.guess and f.guess.code != named.code)
-    return frozenset(f.check for f in others if f.guess and words.kind(f.guess.code) == kind)
+    refuted = (f.check for f in failures if f.looked and f.guess is None)
+    return frozenset((*(f.check for f in others if f.guess and words.kind(f.guess.code) == kind), *refuted))
 
 
 def _most_named(guesses: Sequence[Diagnosis]) -> Diagnosis | None:

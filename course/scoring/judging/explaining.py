@@ -129,7 +129,8 @@ class Explainer:
         self, name: str, failed: Mapping[str, CheckFailed], sums: tuple[float, ...] | None, kept: bool
     ) -> Story:
         failures = [
-            Failure(check, failure.guess, _finite(failure.finding)) for check, failure in failed.items()
+            Failure(check, failure.guess, _finite(failure.finding), failure.looked)
+            for check, failure in failed.items()
         ]
         wrong = sums and not is_right(self._table, name, sums)
         fits = matching(self._table, name, sums) if sums and wrong else ()

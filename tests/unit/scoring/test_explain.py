@@ -185,6 +185,16 @@ def test_a_consequence_is_said_of_the_checks_that_saw_it_and_a_cause_of_none_tha
     assert bare("SIGN_FLIPPED", "SIGN_FLIPPED", "MASS_SWAPPED") == {"check_2"}
 
 
+def test_a_cause_is_not_said_of_a_check_whose_own_probe_did_not_find_it() -> None:
+    (saw, plain), (looked,) = failures("SIGN_FLIPPED", None), [Failure("check_2", None, looked=True)]
+    story = story_of([saw, plain, looked], (), WORDS)
+    assert story.diagnosis
+    assert story.diagnosis.code == "SIGN_FLIPPED"
+    assert story.bare == {"check_2"}
+    # A program that fits is known to give these very answers.
+    assert story_of([saw, looked], (Row(("SIGN_FLIPPED",), (0.0,)),), WORDS).bare == frozenset()
+
+
 def test_of_several_causes_the_one_that_most_checks_name_is_told_and_of_as_many_none() -> None:
     assert told("SIGN_FLIPPED", "MASS_SWAPPED", "SIGN_FLIPPED") == "SIGN_FLIPPED"
     assert told("SIGN_FLIPPED", "MASS_SWAPPED") is None

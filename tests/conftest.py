@@ -85,6 +85,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """And all of them end with the same tests in the same order; of the long ones, those of the day."""
     if hasattr(config, "workerinput"):
         items.sort(key=lambda item: item.path)  # keeps the order within a file
+    if config.args_source is pytest.Config.ArgsSource.TESTPATHS and os.environ.get("COURSE_TURNS") != "all":
+        from tests.turns import of_other_days
+
+        later = of_other_days(items, time.gmtime().tm_yday)
+        config.hook.pytest_deselected(items=later)
+        items[:] = [item for item in items if item not in set(later)]
     if slice_ := os.environ.get("COURSE_SOAK"):
         number, of = _slice(slice_)
         units = sorted({_unit(item) for item in items if item.get_closest_marker("soak")})

@@ -61,6 +61,9 @@ def check_syllabus(document: Document[Syllabus]) -> None:
             document.fail(
                 ("lessons", index), f"lesson {lesson_id} is listed twice.", fix="Remove one of the two lines."
             )
+    for pair in syllabus.split.items():
+        for name in set(pair) - set(syllabus.lessons):
+            document.fail(("split",), f"{name} is not in `lessons`.", fix="Write an id that is listed there.")
 
 
 def check_lesson(document: Document[Lesson]) -> None:

@@ -299,6 +299,7 @@ class Syllabus(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     Attributes:
         version: version of the content; empty where it goes with the package and has the package's.
         objective: what the course is to bring about; each lesson belongs to one.
+        split: lessons that were part of another one, and that one: whoever read it then has read both.
     """
 
     format_version: int
@@ -306,6 +307,7 @@ class Syllabus(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     title: str
     lessons: tuple[str, ...]
     version: str = ""
+    split: dict[str, str] = {}
     objective: tuple[Objective, ...] = ()
 
 

@@ -150,11 +150,6 @@ _LINE_IN = 0.155
 _LINE_LETTERS = 28
 
 
-def steps() -> Figure:
-    """The errors of well-set engines in free fall and pendulum against the step, from the reference."""
-    return _steps(reference.load().rows)
-
-
 def speed() -> Figure:
     """How far a stack moves against the rate with a hundred boxes, from the reference."""
     return _speed(reference.load().rows)

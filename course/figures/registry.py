@@ -52,7 +52,6 @@ FIGURES: dict[str, tuple[str, str]] = {
     "why-simulate-standing": ("robots", "standing"),
     "engines-settings": ("engines", "settings"),
     "engines-speed": ("engines", "speed"),
-    "engines-steps": ("engines", "steps"),
     "twins-following": ("sim_to_real", "following"),
     "gap-settling": ("sim_to_real", "settling"),
     "summary-two-questions": ("robots", "two_questions"),

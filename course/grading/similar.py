@@ -26,7 +26,6 @@ import msgspec
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.errors import NotFoundError
-from course.grading.exports.html_report.pages import render
 from course.grading.pipes import limit_cpu, limit_memory, read_frame, write_frame
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.results.effective import Results
@@ -471,6 +470,8 @@ _BLANK = 2
 
 
 def page(found: Similar) -> str:
+    from course.grading.exports.html_report.pages import render
+
     style = Path(__file__).with_name("similar.css").read_text("utf-8")
     return render("similar", scripted=False, more_style=style, found=found, sides=_sides)
 

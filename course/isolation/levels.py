@@ -157,6 +157,9 @@ def ticking(sock: socket.socket) -> socket.socket:
 
 #: The wall limit, as a multiple: a machine may have six times as much to do as it has processors for.
 WALL = 6.0
+#: Seconds of CPU time for all of one submission; checks after that end as timeouts. By the wall clock there
+#: are ``WALL`` times as many.
+BUDGET_S = 60.0
 _TICK_S = 0.1  # how often a worker that does not answer is looked at
 
 

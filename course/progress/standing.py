@@ -2,14 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Iterable, Mapping
 from datetime import datetime
 from functools import cached_property
+from types import MappingProxyType
 
 from course.progress.history import History, Mistake, history_of, mistakes_of
 from course.progress.quiz import QuizHistory, quiz_history
 from course.progress.store import Event, Record
 from course.progress.workspace import Workspace
+
+
+def lesson_events(
+    events: Callable[[str], Iterable[Event]], lesson: str, split: Mapping[str, str]
+) -> tuple[Event, ...]:
+    """What is recorded about a lesson, oldest first.
+
+    Of a lesson that was part of another one: first what it keeps of that one's record. An end that was
+    reached before the two were parted does not say how many blocks there were.
+
+    Args:
+        events: those about a lesson.
+        split: lessons that were part of another one, and that one.
+    """
+    whole = events(split[lesson]) if lesson in split else ()
+    kept = [
+        event
+        for event in whole
+        if event.kind in {"prediction", "cell"} or (event.kind == "lesson" and "blocks" not in event.data)
+    ]
+    return (*kept, *events(lesson))
 
 
 class Standing:
@@ -19,24 +41,31 @@ class Standing:
 
     Args:
         record: None outside of a workspace.
+        split: lessons that were part of another one, and that one.
 
     Attributes:
         started: ids of the exercises that something was handed out for.
     """
 
-    def __init__(self, record: Record | None = None, started: Collection[str] = ()) -> None:
+    def __init__(
+        self,
+        record: Record | None = None,
+        started: Collection[str] = (),
+        split: Mapping[str, str] = MappingProxyType({}),
+    ) -> None:
         self._record = record
+        self._split = split
         self.started = frozenset(started)
         self._histories: dict[str, History] = {}
 
     @classmethod
-    def of(cls, workspace: Workspace) -> Standing:
+    def of(cls, workspace: Workspace, split: Mapping[str, str] = MappingProxyType({})) -> Standing:
         """As it is now.
 
         Raises:
             IntegrityError, MissingCapabilityError: the record cannot be read.
         """
-        return cls(workspace.store.record(), workspace.started())
+        return cls(workspace.store.record(), workspace.started(), split)
 
     def events(self, kind: str = "", subject: str = "") -> tuple[Event, ...]:
         """What was recorded of a kind and about a subject, oldest first; an empty string stands for any."""
@@ -60,7 +89,10 @@ class Standing:
     @cached_property
     def read(self) -> dict[str, datetime]:
         """When each lesson was first read to its end, by its id."""
-        return {event.subject: event.at for event in reversed(self.events("lesson"))}
+        ends = self.events("lesson")
+        found = {event.subject: event.at for event in reversed(ends)}
+        whole = {event.subject: event.at for event in reversed(ends) if "blocks" not in event.data}
+        return {part: whole[old] for part, old in self._split.items() if old in whole} | found
 
     @cached_property
     def quiz(self) -> QuizHistory:

@@ -337,7 +337,7 @@ class InProgress:
         """The last line was in sight: the lesson is read."""
         if not self.read:
             self.read = True
-            self._note("lesson", {"version": self._version})
+            self._note("lesson", {"version": self._version, "blocks": len(self.script.blocks)})
 
     # -- the record ----------------------------------------------------------------------------------
 
@@ -349,6 +349,8 @@ class InProgress:
         data, key = event.data, str(event.data.get("key", ""))
         if event.kind == "lesson":
             self.read = True
+            if event.subject != self.script.lesson.id:  # all of a longer lesson, which this one was part of
+                self.furthest = len(self.script.blocks) - 1
         elif event.kind == "bookmark":
             self._take_bookmark(data)
         elif event.kind == "prediction" and key in {one.key for one in self.script.questions}:

@@ -56,9 +56,6 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
 
 #: The most of an exception's own message that a sentence repeats, in characters.
 _SAID = 200
-#: Beginning of the traceback in a result whose check, or whose probe, raised an exception on a student's
-#: value.
-OURS = "In the check's own code: "
 #: Beginning of the message of a check that breaks whatever it is given.
 ON_THE_MODEL = "The check itself failed, on the model solution too: "
 

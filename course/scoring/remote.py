@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from course.isolation.failures import StudentFailure
-from course.isolation.levels import WALL, Deadline, Spawner
+from course.isolation.levels import BUDGET_S, WALL, Deadline, Spawner
 from course.isolation.session import Connection, LoadFault, LoadRefusedError
 from course.scoring.values import Inspected, as_march, overwritten
 from course.scoring.verdict import Places
@@ -18,10 +18,6 @@ from course.scoring.verdict import Places
 T = TypeVar("T")
 #: A step's name, the system that was marched along, and its times and states: t, (q, v).
 March = tuple[str, Any, Any, Any]
-
-#: Seconds of CPU time for all of one submission; checks after that end as timeouts. By the wall clock there
-#: are ``WALL`` times as many.
-BUDGET_S = 60.0
 
 
 class Heard(NamedTuple):

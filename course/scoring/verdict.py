@@ -273,6 +273,9 @@ class Places:
 # Measured and expected values as text for a reader.
 
 
+#: Beginning of the traceback in a result whose check, or whose probe, raised an exception on a student's
+#: value.
+OURS = "In the check's own code: "
 #: A gradebook keeps the seed of a run as a whole number of SQLite's.
 LARGEST_SEED = 2**63 - 1
 _DIGITS = 6

@@ -122,23 +122,27 @@ def options() -> str:
 
 
 def direct() -> str:
-    """What the direct scripts found, beside the course."""
+    """What the direct scripts found, beside the course: how much is the same, and each of the rest."""
     sys.path.insert(0, str(DIRECT.parent))
     try:
         import compare
     finally:
         sys.path.pop(0)
     lines = ["| engine | scenario | setting | direct | course | |", "|:--|:--|:--|:--|:--|:--|"]
+    same = []
     for engine, found in json.loads(DIRECT.read_text(encoding="utf-8")).items():
-        for line in found:
-            verdict, row = compare.judged(engine, line)
+        judged = [compare.judged(engine, line) for line in found]
+        same.append(f"{ENGINES[engine].name} {sum(verdict == 'same' for verdict, _row in judged)}")
+        for line, (verdict, row) in zip(found, judged, strict=True):
+            if verdict == "same":
+                continue
             setting = {"default": "as it comes", "tuned": "well set"}.get(line["setting"], line["setting"])
             ours = "" if row is None else compare.shown(row.value, row.samples)
             theirs = compare.shown(line["value"], line["samples"])
             lines.append(
                 f"| {ENGINES[engine].name} | {line['test']} | {setting} | {theirs} | {ours} | {verdict} |"
             )
-    return "\n".join([*lines, ""])
+    return "\n".join([f"Results that are the same: {', '.join(same)}. The others:\n", *lines, ""])
 
 
 if __name__ == "__main__":

@@ -93,6 +93,7 @@ def test_a_fault_report_and_the_doctor_work_without_posix(workspace, tmp_path):
     assert "protection: L1" in text
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize("encoding", ["cp1252", "latin-1"])
 def test_a_console_of_another_encoding_gets_what_it_can_show(tmp_path, encoding):
     """A character that it cannot show is a question mark, never the end of the program."""
@@ -112,6 +113,7 @@ def test_a_console_of_another_encoding_gets_what_it_can_show(tmp_path, encoding)
     assert json.loads(out)["id"] == "why-simulate"
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize("line", ["", "demo", "lesson numerical-integration --plain", "check doubling"])
 def test_a_console_of_windows_shows_what_is_met_first(workspace, line):
     real = line.startswith(("demo", "lesson"))
@@ -135,6 +137,7 @@ def test_files_are_utf_8_whatever_the_locale_says(tmp_path):
     assert run(root, "bug", program=program, encoding="latin-1", **strict)[0] == 0
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize("variable", [{"NO_COLOR": "1"}, {"TERM": "dumb"}])
 def test_a_console_without_colour_gets_none(workspace, variable):
     _, out, _ = run(workspace, "lessons", program=("-m", "course"), **variable)

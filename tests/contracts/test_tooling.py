@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.turns import of_other_days
+
 ROOT = Path(__file__).parents[2]
 _LINT_IMPORTS = "import sys; from importlinter.cli import lint_imports_command as run; sys.exit(run())"
 
@@ -67,6 +69,8 @@ class Others(importlib.machinery.PathFinder):
 
 sys.meta_path[sys.meta_path.index(importlib.machinery.PathFinder)] = Others
 import pytest
+
+from tests.turns import of_other_days
 sys.exit(pytest.main(["--collect-only", "-q", "-n0", "-p", "no:cacheprovider", "tests"]))
 """
 
@@ -75,3 +79,23 @@ def test_tests_are_collected_without_any_extra() -> None:
     """As the README's second command has it; CI installs them all, and would hide such an import."""
     done = _run("-c", _WITHOUT_EXTRAS)
     assert done.returncode == 0, f"{done.stdout[-2000:]}\n{done.stderr[-1000:]}"
+
+
+def test_what_comes_in_turn_comes_once_in_its_days() -> None:
+    class Item:
+        def __init__(self, path: str, of: int | None) -> None:
+            self.path, self.of = Path(path), of
+
+        def get_closest_marker(self, name: str) -> pytest.Mark | None:
+            return pytest.Mark(name, (self.of,), {}, _ispytest=True) if self.of else None
+
+    always = [Item("a.py", None) for _ in range(3)]
+    turns = [Item(path, 4) for path in "aaaaaaabb"]
+    seen: list[Item] = []
+    for day in range(363, 367):
+        later = of_other_days([*always, *turns], day)  # type: ignore[list-item,arg-type]
+        today = [item for item in turns if item not in later]
+        assert not {*map(id, always)} & {*map(id, later)}
+        assert len(today) <= 4
+        seen += today
+    assert sorted(map(id, seen)) == sorted(map(id, turns))

@@ -15,6 +15,8 @@ from typing import Any
 
 import pytest
 
+from course.progress.store import Store
+
 MADE = Path(__file__).resolve().parents[1] / "fixtures" / "made_by_1_2_0"
 
 
@@ -47,6 +49,20 @@ def test_a_workspace_of_1_2_0_says_and_keeps_what_it_said_then(student, tmp_path
     after = _known(json.loads(student("progress", "--json", cwd=workspace).stdout))
     assert after["quiz"] == told["quiz"]
     assert (after["lessons"], len(after["submissions"])) == (told["lessons"], 2)
+
+
+def test_who_read_how_contact_is_solved_in_1_2_0_has_read_both_lessons_that_came_of_it(
+    student, tmp_path: Path
+) -> None:
+    workspace = shutil.copytree(MADE / "workspace", tmp_path / "workspace")
+    before = json.loads(student("progress", "--json", cwd=workspace).stdout)
+    Store(workspace / ".course" / "progress.sqlite").append(
+        "lesson", "how-contact-is-solved", {"version": "1.2.0"}
+    )
+    after = json.loads(student("progress", "--json", cwd=workspace).stdout)
+    read = {one["id"] for one in after["lessons"] if one["read_at"]}
+    read -= {one["id"] for one in before["lessons"] if one["read_at"]}
+    assert read == {"how-contact-is-solved", "what-contact-leaves-over"}
 
 
 def _rows(gradebook: Path) -> list[str]:

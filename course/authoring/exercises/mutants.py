@@ -15,8 +15,7 @@ from course.authoring.exercises.grading import (
 from course.authoring.report import Progress
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise, Mutant
-from course.scoring.failures import OURS
-from course.scoring.verdict import CheckResult, Status, Verdict
+from course.scoring.verdict import OURS, CheckResult, Status, Verdict
 
 
 @dataclass(frozen=True, slots=True)

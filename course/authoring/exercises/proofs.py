@@ -21,10 +21,10 @@ from course.catalog.reading import Document, read_document, read_text
 from course.errors import ContentError
 from course.handed_in.attempts import numbers_of
 from course.progress.history import NO_MISTAKE
-from course.scoring.failures import ON_THE_MODEL, OURS
+from course.scoring.failures import ON_THE_MODEL
 from course.scoring.graders import LEFT_OUT
 from course.scoring.judging.outcomes import NOT_JUDGED
-from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility
+from course.scoring.verdict import OURS, CheckResult, Problem, Status, Verdict, Visibility
 
 _INTEGER = re.compile(r"(?<![\w.])-?\d+(?![\w.]*\w)")
 #: Of an exercise of n functions: n + 1 unusual solutions that must pass, and this many wrong ones times n.

@@ -33,6 +33,11 @@ from course.ids import LessonId
 MAX_COLUMNS = 58
 #: Of each lesson.
 LEAST_WARM_UPS = 2
+#: Reading a lesson: words and lines of code a minute, minutes for a prediction. Fluent readers take 238 words
+#: of non-fiction a minute (Brysbaert, Journal of Memory and Language 109, 2019); who stops at formulas and
+#: tries the cells, less than half. A head is rounded to five minutes, and may be that far off.
+WORDS_A_MINUTE, LINES_A_MINUTE, FOR_A_PREDICTION = 100, 10, 1.5
+OFF_BY = 5
 #: Whole numbers up to here are words ("four methods, 12 of them"), not measurements.
 _SMALL = 12
 #: "In 2005": a date has a source, not a computation.
@@ -494,8 +499,8 @@ def audit_lesson(
     try:
         LessonId(lesson_id)
         lesson = catalog.read_lesson(lesson_id)
-        _audit_head(catalog, path, lesson, findings)
         blocks = read_blocks(path)
+        _audit_head(catalog, path, lesson, blocks, findings)
         links.check_lesson(path, blocks)
         whole = bool(catalog.syllabus.objective)
         if whole and len(catalog.warm_ups(lesson_id)) < LEAST_WARM_UPS and lesson_id in catalog.lesson_ids():
@@ -518,8 +523,37 @@ def audit_lesson(
         findings.add_error(error)
 
 
-def _audit_head(catalog: Catalog, path: Path, lesson: Lesson, findings: Findings) -> None:
+def reading_minutes(blocks: tuple[b.Block, ...]) -> float:
+    """How long a lesson takes to read and try, its sources, drawings and hidden cells left out."""
+    took = 0.0
+    for block in b.walk_blocks(blocks):
+        match block:
+            case b.Paragraph(inlines=inlines) | b.Figure(caption=inlines):
+                took += len(b.plain_text(inlines).split()) / WORDS_A_MINUTE
+            case b.Table(rows=rows):
+                took += sum(len(b.plain_text(cell).split()) for row in rows for cell in row) / WORDS_A_MINUTE
+            case b.Prediction():
+                took += FOR_A_PREDICTION
+            case b.CodeCell(source=source, hidden=False):
+                took += len([line for line in source.splitlines() if line.strip()]) / LINES_A_MINUTE
+            case _:
+                pass
+    return took
+
+
+def _audit_head(
+    catalog: Catalog, path: Path, lesson: Lesson, blocks: tuple[b.Block, ...], findings: Findings
+) -> None:
     lines = LineMap(split_front_matter(read_text(path), path).toml, first_line=2)
+    took = reading_minutes(blocks)
+    if abs(lesson.minutes - took) > OFF_BY and catalog.syllabus.objective:
+        findings.add(
+            path,
+            lines.line(("minutes",)),
+            "lesson",
+            f"`minutes` is {lesson.minutes}; by its words, predictions and code it takes about {took:.0f}.",
+            f"Write: minutes = {5 * max(round(took / 5), 1)}",
+        )
     order = catalog.lesson_ids()
     place = order.index(lesson.id) if lesson.id in order else len(order)
     for index, earlier in enumerate(lesson.before):

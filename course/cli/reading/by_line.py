@@ -23,6 +23,7 @@ from course.cli.reading.lesson import Reader, paginate
 from course.cli.reading.screen.running import Bench, write_new
 from course.errors import CourseError
 from course.printable import counted
+from course.progress.standing import lesson_events
 from course.progress.store import Event
 from course.reading.cells import CellOutput
 from course.reading.parts import Cell, Question, read_script
@@ -369,7 +370,9 @@ def _events(here: Here | None, lesson: Lesson) -> tuple[Event, ...]:
     """The recorded events of a lesson; none where the record cannot be read."""
     if here is not None:
         with contextlib.suppress(CourseError):
-            return here.workspace.store.events(subject=lesson.id)
+            return lesson_events(
+                lambda name: here.workspace.store.events(subject=name), lesson.id, here.catalog.syllabus.split
+            )
     return ()
 
 

@@ -7,7 +7,6 @@ from xml.etree import ElementTree as ET
 
 from course.errors import UsageError
 from course.grading.exports.grades import number, replacing, write_csv, write_jsonl
-from course.grading.exports.html_report.pages import write_html
 from course.grading.exports.platforms import write_canvas, write_gradescope, write_moodle, write_worksheet
 from course.grading.exports.selection import (
     ExportOptions,
@@ -145,6 +144,13 @@ def _text(text: str) -> str:
     return "\n".join(one_line(line) for line in lines)
 
 
+def _html(target: Path, results: Results, options: ExportOptions) -> Written:
+    # Its templates load with it, and most commands of a class write none.
+    from course.grading.exports.html_report.pages import write_html
+
+    return write_html(target, results, options)
+
+
 # ---
 
 #: name -> the name of its file in OUT, and the function that writes it.
@@ -156,7 +162,7 @@ FORMATS: dict[str, tuple[str, Writer]] = {
     "canvas": ("canvas.csv", write_canvas),
     "moodle": ("moodle.csv", write_moodle),
     "moodle-worksheet": ("moodle-worksheet.csv", write_worksheet),
-    "html": ("report.html", write_html),
+    "html": ("report.html", _html),
 }
 
 #: The formats that a run writes by itself.

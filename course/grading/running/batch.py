@@ -24,9 +24,8 @@ from course.grading.pipes import read_frame, write_frame
 from course.grading.running.grader import Answer, Config, Job
 from course.grading.running.snapshot import in_use
 from course.isolation.launch import keep_private, sweep_after_the_dead
-from course.isolation.levels import WALL
+from course.isolation.levels import BUDGET_S, WALL
 from course.scoring.judging.submission import Submission, Terms
-from course.scoring.remote import BUDGET_S
 from course.scoring.verdict import Problem, Verdict, not_graded
 
 #: After so many deaths of graders a submission is not tried again and counts as our fault; or no grader

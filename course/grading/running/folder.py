@@ -10,7 +10,6 @@ import msgspec
 
 from course.errors import MissingCapabilityError, UsageError
 from course.grading.exports.grades import write_csv, write_jsonl
-from course.grading.exports.html_report.pages import write_pages
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.file import explained
 from course.grading.gradebook.salvage import back_up
@@ -84,6 +83,8 @@ def begin(out: Path, submissions: Path, *, resume: bool) -> Gradebook:
 
 def export_all(out: Path, results: Results) -> None:
     """The files that lie beside a gradebook after every run."""
+    from course.grading.exports.html_report.pages import write_pages
+
     try:
         write_jsonl(out / "results.jsonl", results.all(), results.course)
         write_csv(out / "grades.csv", results)

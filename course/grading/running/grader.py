@@ -17,7 +17,6 @@ from course.errors import ContentError, CourseError, MissingCapabilityError
 from course.grading.pipes import read_frame, served, write_frame
 from course.handed_in.notebook import opened
 from course.isolation.launch import keep_private
-from course.isolation.probe import kept_sandboxes
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import Problem, Verdict, not_graded
 
@@ -92,6 +91,8 @@ def main() -> None:
     null = os.open(os.devnull, os.O_RDONLY)
     os.dup2(null, 0)
     config = msgspec.msgpack.decode(read_frame(source) or b"", type=Config)
+    from course.isolation.probe import kept_sandboxes
+
     grader = _Grader(config)
     write_frame(sink, Answer())  # started: from here on a death is some submission's doing
     try:

@@ -30,9 +30,9 @@ from course.grading.running.batch import Graded, grade_all
 from course.grading.running.folder import BOOK, begin, export_all, note_without_work, remember, taken_back
 from course.grading.running.snapshot import Snapshot, Unpacked, among_graders, fresh, frozen, kept
 from course.quizzing.bank import Bank, needed
-from course.scoring.failures import OURS
 from course.scoring.graders import grader_version
 from course.scoring.judging.submission import Terms
+from course.scoring.verdict import OURS
 
 GradeAll = Callable[[Iterable[Entry], Terms], Iterator[Graded]]
 

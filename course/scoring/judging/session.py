@@ -27,7 +27,7 @@ from course.isolation.probe import open_sandbox
 from course.isolation.session import LoadRefusedError
 from course.scoring import versions
 from course.scoring.checks.collected import Check, CollectedChecks, companion, companion_path, not_importable
-from course.scoring.failures import ON_THE_MODEL, OURS, CheckFailed, Report, broke_at, finding_for, finding_of
+from course.scoring.failures import ON_THE_MODEL, CheckFailed, Report, broke_at, finding_for, finding_of
 from course.scoring.judging.explaining import Again, Explainer
 from course.scoring.judging.outcomes import (
     found,
@@ -42,7 +42,7 @@ from course.scoring.judging.outcomes import (
 )
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.remote import Heard, RemoteSubmission
-from course.scoring.verdict import CheckResult, Places, Problem, Status, Verdict, Visibility, bounded
+from course.scoring.verdict import OURS, CheckResult, Places, Problem, Status, Verdict, Visibility, bounded
 
 Scope = Literal["public", "full"]
 T = TypeVar("T")

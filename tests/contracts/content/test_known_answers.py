@@ -19,10 +19,9 @@ from course.catalog.load import Catalog
 from course.catalog.locate import content
 from course.scoring import kit
 from course.scoring.explain.story import TABLE, read_table
-from course.scoring.failures import OURS
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
-from course.scoring.verdict import CheckResult
+from course.scoring.verdict import OURS, CheckResult
 
 CATALOG = Catalog()
 #: Ten thousand times what sums of some hundred doubles lose.

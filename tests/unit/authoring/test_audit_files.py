@@ -51,6 +51,7 @@ def test_the_miniature_course_is_right(run: Callable[..., AuditReport]) -> None:
     assert (report.checks, report.graded, report.isolation) == (6, 22, "L3")
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("file", "old", "new", "at", "code", "says"),
     [
@@ -194,6 +195,7 @@ def test_each_fault_is_found_at_its_line(
         assert (found[0].file, found[0].line) == (file, line_of(mini / file, at))
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("file", "code", "says"),
     [
@@ -310,6 +312,7 @@ def test_a_mutant_that_is_not_listed_is_named(mini: Path, only_problem: Callable
     assert only_problem().file == "solutions/doubling/mutants/extra.py"
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("text", "line", "says"),
     [
@@ -353,6 +356,7 @@ def test_an_unknown_id_is_not_found(run: Callable[..., AuditReport]) -> None:
         run("thirds")
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize("folder", ["solutions", "graders"])
 def test_a_student_cannot_audit(mini: Path, folder: str) -> None:
     (mini / folder).rename(mini / "gone")
@@ -393,6 +397,21 @@ def test_a_course_with_objectives_has_whole_lessons(mini: Path, run: Callable[..
     said = [p.message for p in run("half-as-much").problems]
     assert "the lesson has no prediction." in said
     assert "a lesson has at least 2 warm-ups, and half-as-much has fewer." in said
+
+
+def test_minutes_that_do_not_fit_the_text_of_a_lesson_are_named(
+    mini: Path, run: Callable[..., AuditReport]
+) -> None:
+    syllabus, lesson = mini / SYLLABUS, mini / "lessons" / "half-as-much.md"
+    syllabus.write_text(syllabus.read_text() + OBJECTIVE)
+    asked = "\n> **Predict.** What is half of six? Of seven?\n\n> **Answer.** Three.\n"
+    cell = "\n```python\n" + "x = 1\n" * 100 + "```\n"
+    lesson.write_text(lesson.read_text() + "word " * 1200 + "\n" + 2 * asked + cell)  # 12, 3 and 10 minutes
+    said = [p for p in run("half-as-much").problems if "minutes" in p.message]
+    assert [p.where for p in said] == [f"lessons/half-as-much.md:{line_of(lesson, 'minutes = 2')}"]
+    assert said[0].message == "`minutes` is 2; by its words, predictions and code it takes about 25."
+    lesson.write_text(lesson.read_text().replace("minutes = 2", "minutes = 30"))
+    assert not [p for p in run("half-as-much").problems if "minutes" in p.message]
 
 
 def test_a_command_of_a_lesson_that_fails_is_named(mini: Path) -> None:

@@ -12,8 +12,7 @@ import pytest
 from course.authoring.audit import audit
 from course.authoring.report import AuditProblem, AuditReport
 from course.catalog.load import Catalog
-from course.scoring.failures import OURS
-from course.scoring.verdict import Problem, Status, Verdict
+from course.scoring.verdict import OURS, Problem, Status, Verdict
 
 MUTANTS = "solutions/doubling/mutants.toml"
 Change = Callable[[Verdict], Verdict]

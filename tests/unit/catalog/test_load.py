@@ -187,6 +187,14 @@ def test_an_unknown_id_is_answered_with_the_nearest(
         (LESSON, "+++", "", 1, "+++", "+++"),
         (SYLLABUS, 'id = "mini"', 'id = "Mini"', 2, "lower-case", "physics-sim"),
         (SYLLABUS, ', "half-as-much"', ', "twice-as-much"', 5, "listed twice", "Remove"),
+        (
+            SYLLABUS,
+            'version = "0.1.0"',
+            'split = { half-as-much = "twice" }',
+            4,
+            "twice is not in `lessons`",
+            "listed there",
+        ),
     ],
 )
 def test_what_is_wrong_is_named_with_line_and_fix(

@@ -19,7 +19,7 @@ def words(figure):
 
 def test_the_steps_name_every_engine_and_only_mujoco_s_pendulum_is_of_order_four():
     with house_style():
-        said = words(module.steps())
+        said = words(module._steps(reference.load().rows))
     for name in ("pymunk", "ODE", "Bullet 2.84", "Rapier", "PhysX", "Bullet 3", "DART"):
         assert name in said
     assert said.count("order 4.0") == 1
@@ -69,7 +69,7 @@ def test_no_name_of_the_speed_or_the_settings_is_cut():
 
 def test_where_a_smaller_step_gives_a_larger_error_no_order_is_claimed():
     with house_style():
-        figure = module.steps()
+        figure = module._steps(reference.load().rows)
     (pendulum,) = [axes for axes in figure.axes if "pendulum" in axes.get_title(loc="left")]
     words = [text.get_text() for text in pendulum.texts]
     assert "Rapier" in words

@@ -26,11 +26,13 @@ def found(figure_id: str) -> list[Fault]:
     return list(faults(figure_id, GOLDEN))
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize("figure_id", registry.figure_ids())
 def test_a_figure_can_be_read_and_looks_as_it_did_when_somebody_last_looked_at_it(figure_id: str) -> None:
     assert [f"{fault.problem} {fault.fix}" for fault in found(figure_id)] == []
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize("figure_id", ["integrators-energy", "integrators-order", "integrators-phase"])
 def test_the_tolerance_sees_one_method_drawn_as_another(
     figure_id: str, monkeypatch: pytest.MonkeyPatch
@@ -58,6 +60,7 @@ def drawn(change: Callable[[Figure, Axes], object]) -> Callable[[], Figure]:
     return builder
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("change", "problem"),
     [

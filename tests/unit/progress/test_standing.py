@@ -50,6 +50,14 @@ def test_an_event_that_somebody_spoilt_costs_those_alone_who_need_it(workspace, 
         assert standing.quiz.best is None
 
 
+@pytest.mark.parametrize(("data", "read"), [({"version": "1.2.0"}, {"a", "b"}), ({"blocks": 40}, {"a"})])
+def test_who_read_a_lesson_before_it_was_parted_has_read_both(workspace, data, read):
+    workspace.store.append("lesson", "a", data)
+    standing = Standing.of(workspace, {"b": "a"})
+    assert standing.read.keys() & {"a", "b"} == read
+    assert {standing.read[name] for name in read} == {standing.read["a"]}
+
+
 def test_outside_of_a_workspace_nothing_is_begun():
     nowhere = Standing()
     assert (nowhere.read, nowhere.mistakes, nowhere.started) == ({}, (), frozenset())

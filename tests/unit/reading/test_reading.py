@@ -5,12 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from course.catalog.load import Catalog
 from course.catalog.models import Lesson
+from course.progress.standing import lesson_events
 from course.progress.store import Store
-from course.reading.parts import read_script
+from course.reading.parts import read_script, words_of
 from course.reading.record import InProgress, Layout, Place, Row, Writer, find
 
 TEXT = """+++
@@ -144,6 +146,33 @@ def test_what_was_done_is_there_when_the_lesson_is_opened_again(lesson, tmp_path
     state = again.cell(cell)
     assert (state.source, state.ran, state.printed, state.seconds) == ("print(5)", "print(5)", "5", 0.25)
     assert (again.place, again.furthest, again.read) == (Place(6, 0.5), 8, True)
+
+
+def test_what_was_done_in_a_lesson_before_it_was_parted_is_in_both_parts(lesson, tmp_path):
+    whole = read_script(lesson)
+    part = replace(whole, lesson=msgspec.structs.replace(lesson, id="its-second-half"))
+    store = Store(tmp_path / "progress.sqlite")
+    first, _ = whole.questions
+    cell = whole.shown_cells[0]
+    store.append("prediction", lesson.id, {"key": first.key, "number": 1, "text": "five"})
+    store.append("cell", lesson.id, {"key": cell.key, "number": 1, "source": "print(5)"})
+    store.append("bookmark", lesson.id, {"block": 3, "part": 0.0, "words": words_of(whole.blocks[3])})
+
+    def opened():
+        events = lesson_events(
+            lambda name: store.events("", name), part.lesson.id, {part.lesson.id: lesson.id}
+        )
+        return InProgress(part, events, store.append)
+
+    begun = opened()
+    assert (begun.prediction(first).text, begun.cell(cell).source) == ("five", "print(5)")
+    assert (begun.place, begun.furthest, begun.read) == (Place(), -1, False)
+    InProgress(whole, (), store.append).reached_end()  # of the part that kept the name
+    assert not opened().read
+    store.append("lesson", lesson.id, {"version": "1.2.0"})
+    assert (opened().read, opened().furthest) == (True, len(part.blocks) - 1)
+    opened().reached_end()
+    assert [event.subject for event in store.events("lesson")] == [lesson.id, lesson.id]
 
 
 def test_a_place_and_answers_survive_an_edit_of_the_lesson(lesson, tmp_path):

@@ -28,6 +28,7 @@ from course.cli.reading.screen.page import Item, Page
 from course.cli.reading.screen.running import Drawer, Practice
 from course.errors import CourseError
 from course.full_screen import FullScreenApp, TextOverlay
+from course.progress.standing import lesson_events
 from course.progress.store import Event
 from course.progress.workspace import Workspace
 from course.reading.record import InProgress, Judgement, Place, Writer, find
@@ -60,7 +61,7 @@ def read(
         if store is None:
             return ()
         try:
-            return store.events(subject=lesson)
+            return lesson_events(lambda name: store.events(subject=name), lesson, catalog.syllabus.split)
         except CourseError as error:
             troubles.append(f"{error.message} {error.help}")
             return ()

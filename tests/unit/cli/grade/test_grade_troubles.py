@@ -106,7 +106,7 @@ def test_while_a_run_writes_every_other_command_is_told_and_the_run_goes_on(cour
 def test_the_gradebook_is_held_until_the_last_page_is_written(
     course, out: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from course.grading.running import folder
+    from course.grading.exports.html_report import pages
 
     refused = []
 
@@ -114,8 +114,8 @@ def test_the_gradebook_is_held_until_the_last_page_is_written(
         refused.append(course("grade", "late", "out", "--clear", "--json").json["error"]["code"])
         return whole(*arguments)
 
-    whole = folder.write_pages
-    monkeypatch.setattr(folder, "write_pages", write_pages)
+    whole = pages.write_pages
+    monkeypatch.setattr(pages, "write_pages", write_pages)
     ran = course("grade", "override", "out", "ada", "doubling", "--score", "1", "--reason", "oral exam")
     assert (ran.code, refused) == (0, ["gradebook_locked"])
     assert "oral exam" in (out / "report.html").read_text("utf-8")
@@ -125,14 +125,14 @@ def test_pages_that_cannot_be_written_cost_nothing_but_themselves(
     course, out: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from course.errors import MissingCapabilityError
-    from course.grading.running import folder
+    from course.grading.exports.html_report import pages
 
     def write_pages(path: Path, *_: object) -> None:
         raise MissingCapabilityError(f"{path} cannot be written.", help="-o", code="cannot_write")
 
     before = contents(out / "students")
     with monkeypatch.context() as patch:
-        patch.setattr(folder, "write_pages", write_pages)
+        patch.setattr(pages, "write_pages", write_pages)
         words = ("override", "out", "ada", "doubling", "--score", "1", "--reason", "oral exam")
         ran = course("grade", *words, "--json")
     assert (ran.code, ran.json["error"]["code"]) == (4, "cannot_write")

@@ -20,9 +20,9 @@ import pytest
 
 from course.catalog.load import Catalog
 from course.grading.exports.formats import export
+from course.grading.exports.html_report import pages
 from course.grading.exports.selection import ExportOptions
 from course.grading.results.roster import read_roster
-from course.grading.running import folder
 from course.grading.running.assign import assign, proposals, unsettled
 from course.grading.running.batch import grade_all
 from course.grading.running.folder import open_results
@@ -213,7 +213,7 @@ def graded_and_settled(
 def test_every_enrolled_student_has_one_row_and_triage_settles_the_rest(
     tmp_path: Path, catalog: Catalog, layout: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(folder, "write_pages", lambda *_: None)  # 1,500 pages, which other tests look at
+    monkeypatch.setattr(pages, "write_pages", lambda *_: None)  # 1,500 pages, which other tests look at
     graded_and_settled(tmp_path, catalog, layout, right)
 
 

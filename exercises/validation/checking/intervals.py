@@ -32,7 +32,7 @@ def expect_width(submission, rng, scale, offset):
         input=shown,
         message="The intervals do not have the width that the scatter of the mean requires.",
         help="The ends are quantiles of the statistic over resamples that are made of blocks of neighbours.",
-        diagnose=lambda: probes.of_interval(submission, 1, shown=shown),
+        diagnose=lambda: probes.of_interval(submission, 1),
     )
     expect_centred(submission, ends, np.mean(series, axis=1), shown)
 
@@ -93,7 +93,7 @@ def expect_centred(submission, ends, statistics, shown):
         input=shown,
         message="The middle of the intervals is too far from the statistic of the series.",
         help="The ends are quantiles of the statistic over the resamples.",
-        diagnose=lambda: probes.of_interval(submission, 1, shown=shown) or probes.named("NOT_CENTRED"),
+        diagnose=lambda: probes.of_interval(submission, 1) or probes.named("NOT_CENTRED"),
     )
 
 
@@ -126,8 +126,7 @@ def expect_level(submission, rng, statistic):
         message="The width of the interval does not depend on alpha as it should.",
         help="alpha is the fraction outside, both sides together.",
         diagnose=lambda: (
-            probes.of_interval(submission, 1, shown=shown, ends_first=True)
-            or probes.named("ONE_STANDARD_ERROR")
+            probes.of_interval(submission, 1, ends_first=True) or probes.named("ONE_STANDARD_ERROR")
         ),
     )
 
@@ -146,5 +145,5 @@ def _expect_chance(submission, ends, shown):
         "Two calls with different generators give the same interval.",
         help="Take every random number from rng.",
         input=shown,
-        diagnose=lambda: probes.of_interval(submission, 1, shown=shown) or probes.of_chance(submission),
+        diagnose=lambda: probes.of_interval(submission, 1) or probes.of_chance(submission),
     )

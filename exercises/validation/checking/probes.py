@@ -180,9 +180,9 @@ class Resampled:
         return [samples for samples in self.asked if not np.array_equal(samples, self.e)]
 
 
-def resample(submission, seed, count=_BOOT, n=_N, block=_BLOCK):
+def resample(submission, seed, count=_BOOT):
     """Have the submission make a few resamples, and look at them."""
-    e = np.arange(n, dtype=float)
+    e = np.arange(_N, dtype=float)
     answers = []
 
     def statistic(samples):
@@ -194,7 +194,7 @@ def resample(submission, seed, count=_BOOT, n=_N, block=_BLOCK):
     probe = callback("statistic(samples)", statistic)
     inspected = probe.during(
         lambda: submission.call_inspect(
-            "block_bootstrap_ci", e, probe, block, count, _ALPHA, np.random.default_rng(seed)
+            "block_bootstrap_ci", e, probe, _BLOCK, count, _ALPHA, np.random.default_rng(seed)
         )
     )
     asked = [np.asarray(call[0], dtype=float) for call in probe.calls]
@@ -312,19 +312,15 @@ def _quantiles(ends, values, low, high):
     return True
 
 
-def of_interval(submission, seed, found=None, *, shown=None, ends_first=False):
+def of_interval(submission, seed, found=None, *, ends_first=False):
     """The mistake behind a wrong interval, if the resamples or what is made of them show it.
 
     Args:
         found: the resamples, if they have been looked at.
-        shown: N, block and n_boot of the check that asks, for what need not be so with others.
         ends_first: of two mistakes, the one in what is made of the resamples.
     """
     found = found or resample(submission, seed)
     code = of_ends(found) or of_resamples(found) if ends_first else of_resamples(found) or of_ends(found)
-    if code == "PART_OF_SERIES" and shown:
-        drawn = resample(submission, seed, shown["n_boot"], shown["N"], shown["block"]).drawn
-        code = code if len(drawn) and len(np.unique(drawn)) < 0.8 * shown["N"] else of_ends(found)
     if code in {
         None,
         "ONE_SIDED",

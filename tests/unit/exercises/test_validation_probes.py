@@ -292,28 +292,6 @@ def test_rows_after_a_return_inside_the_loop_are_seen():
     assert probes.of_rows(np.array([2.0, 3.0, 0.0]), np.array([2.0, 3.0, 4.0])) is None
 
 
-@pytest.mark.parametrize(("length", "expected"), [(120, "PART_OF_SERIES"), (400, None)])
-def test_a_part_of_the_series_is_said_of_series_as_long_as_those_of_the_check(length, expected):
-    """It was once said of resamples that held 97.8 % of theirs; blocks started in the first ten of them."""
-
-    def bootstrap(e, statistic, block, n_boot, alpha, rng):
-        values = []
-        for _ in range(n_boot):
-            starts = rng.integers(0, min(10 * block, len(e) - block), -(-len(e) // block))
-            values.append(statistic((e[starts[:, None] + np.arange(block)]).ravel()[: len(e)]))
-        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
-
-    class First(Fake):
-        def call_inspect(self, name, *arguments):
-            return kit.Inspected(self.call(name, *arguments), list(arguments), shared=False)
-
-    solution = First()
-    solution.set("block_bootstrap_ci", bootstrap)
-    block = 5 if length == 120 else 40
-    shown = {"N": length, "block": block, "n_boot": 70}
-    assert code(probes.of_interval(solution, 1, shown=shown)) == expected
-
-
 def test_what_alpha_leaves_out_is_told_before_the_length_of_the_resamples():
     """A width that grows too much with alpha is not explained by resamples that are two errors too long."""
     long = [np.append(row, row[:2]) for row in blocks(12)]

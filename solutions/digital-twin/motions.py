@@ -24,7 +24,6 @@ def _motor(
     speed=lambda w, u_max: w,
     gives=lambda w, u, share: w + share * (u - w),
     ends=lambda w, u_max: w,
-    clips_first=False,
     holds=None,
 ):
     """``speed``: what counts as the speed before; ``holds``: what becomes of it inside the dead band."""
@@ -32,7 +31,7 @@ def _motor(
     def motor_step(w, u, dt, tau, u_max, deadband):
         if holds is not None and abs(u) <= deadband:
             return holds(w)
-        u = keep(clip(u, u_max), deadband) if clips_first else clip(keep(u, deadband), u_max)
+        u = clip(keep(u, deadband), u_max)
         return ends(gives(speed(w, u_max), u, share(dt, tau)), u_max)
 
     return motor_step
@@ -413,10 +412,11 @@ _COMMAND = {
 }
 
 #: With a large enough correction, the friction on the twin's own speed ends at the target all the same.
+_WRONG_WAY = {term: forms for term, forms in _COMMAND.items() if term != "gain"}
 _CORRECTED = _COMMAND | {"speed": tuple(form for form in _COMMAND["speed"] if form[0] != "USES_TWIN_SPEED")}
 
 TERMS = {
-    "motor_step": [(_motor, {}, _MOTOR), (_motor, {"clips_first": True}, _MOTOR)],
+    "motor_step": [(_motor, {}, _MOTOR)],
     "backlash": [(_play, {}, _PLAY)],
     "delay_line": [(_delay, {}, _DELAY)],
     "diff_drive_step": [(_arc, {}, _DRIVE), *((_arc, base, _STRAIGHT) for base in (_EULER, _TURNED_FIRST))],
@@ -424,6 +424,7 @@ TERMS = {
     "command": [
         (_command, {}, _COMMAND),
         *((_command, {"gain": gain}, _CORRECTED) for gain in (0.5, 1.0, 2.0)),
+        *((_command, {"gain": gain}, _WRONG_WAY) for gain in (-0.5, -1.0, -2.0)),
     ],
 }
 #: Programs that are wrong in another way, with their codes.

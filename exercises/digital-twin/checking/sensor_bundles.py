@@ -93,6 +93,9 @@ def expect_no_mean(values, spread, quantity, diagnose, **finding):
 
 def expect_std(values, expected, rel, source, message, diagnose, **finding):
     """The std of a sample is the expected one, and its mean is zero."""
+    if not math.isfinite(std(values)):
+        message = f"The {finding['quantity']} is not a number: a value is nan or infinite."
+        finding["help"] = "Look for a division by something that is 0 here."
     kit.expect_close(
         std(values),
         expected,
@@ -117,6 +120,11 @@ def imu_pairs(submission, calls):
     return pairs
 
 
+def of_quiet_imu(submission):
+    """The mistake of ``imu`` in a check without white noise."""
+    return bundles.unless(sensors.OF_THE_NOISE, lambda: sensors.of_imu(submission, bias_first=True))
+
+
 def expect_white(submission, calls, rel, source):
     """Without a walk, measured minus bias is as strong as the density says, at each sampling rate."""
     for call, (measured, bias) in zip(calls, imu_pairs(submission, calls), strict=True):
@@ -127,7 +135,7 @@ def expect_white(submission, calls, rel, source):
             rel,
             source,
             "Without a walk, the std of measured - bias is not noise_density / sqrt(dt).",
-            lambda: sensors.of_imu(submission),
+            lambda: bundles.unless(sensors.OF_THE_WALK, lambda: sensors.of_imu(submission)),
             quantity="std of measured - bias",
             help="A noise density is per square root of hertz: how many samples are there in a second?",
             input={"dt": dt, "noise_density": density, "bias_random_walk": 0.0, "samples": len(true)},
@@ -150,9 +158,9 @@ def expect_walk(submission, n, dt, walk, bias0, rng):
             input={"dt": dt, "bias_random_walk": walk, "noise_density": 0.0, "samples": n},
             message="The bias does not wander as a random walk of this strength should.",
             help="Independent steps add up: the variance grows with the time between two samples.",
-            diagnose=lambda: sensors.of_imu(submission, bias_first=True),
+            diagnose=lambda: of_quiet_imu(submission),
         )
-    ask = lambda: sensors.of_imu(submission, bias_first=True)  # noqa: E731
+    ask = lambda: of_quiet_imu(submission)  # noqa: E731
     expect_no_mean(
         np.diff(bias), walk * math.sqrt(dt), "the bias steps", ask, input={"bias0": bias0, "dt": dt}
     )
@@ -175,7 +183,7 @@ def expect_rate_kept(submission, true, dt, bias0, rng):
         message="The first bias is not bias0.",
         help="bias[0] = bias0; the first step leads to bias[1].",
         input={"bias0": bias0, "dt": dt},
-        diagnose=lambda: sensors.of_imu(submission, bias_first=True),
+        diagnose=lambda: of_quiet_imu(submission),
     )
     kit.expect_array(
         kit.as_vector(measured, n, "measured") - bias,
@@ -187,7 +195,7 @@ def expect_rate_kept(submission, true, dt, bias0, rng):
         message="Without white noise, measured minus bias is not the true rate.",
         help="measured[k] = true[k] + bias[k] + white noise.",
         input={"true": true, "dt": dt},
-        diagnose=lambda: sensors.of_imu(submission, bias_first=True),
+        diagnose=lambda: of_quiet_imu(submission),
     )
 
 
@@ -394,7 +402,7 @@ def expect_scan_noise(submission, r_max, sigma, rng):
         exact = np.where(np.cos(fan) > 0, 3.0 / np.cos(fan), np.inf)
     hits = exact <= r_max
     given = {"r_max": r_max, "sigma": sigma, "beams": n}
-    ask = lambda: scanners.of_lidar(submission)  # noqa: E731
+    ask = lambda: scanners.of_straight_lidar(submission)  # noqa: E731
     kit.expect_true(
         bool(np.all(wide[~hits] == r_max)),
         "A beam that hits nothing does not read r_max exactly.",

@@ -59,6 +59,32 @@ _N, _K = 20000, 0.02
 _FAST, _SLOW = 0.0025, 0.16  # s; eight times apart in the root
 
 
+#: Mistakes that make no difference where there is no walk, and those that make none without white noise.
+OF_THE_WALK = {
+    "BIAS_CONSTANT",
+    "BIAS_HELD",
+    "BIAS_NOT_RANDOM_WALK",
+    "BIAS_PULLED_BACK",
+    "BIAS_STEPS_RELATED",
+    "BIAS_NOT_SCALED_BY_SQRT_DT",
+    "BIAS_TIMES_DT",
+    "BIAS_OVER_SQRT_DT",
+    "BIAS_FACTOR",
+    "BIAS_STARTS_LATE",
+}
+OF_THE_NOISE = {
+    "WHITE_NOISE_MISSING",
+    "WHITE_NOISE_NOT_SCALED_BY_SQRT_DT",
+    "WHITE_NOISE_TIMES_SQRT_DT",
+    "WHITE_NOISE_TIMES_DT",
+    "WHITE_NOISE_OVER_DT",
+    "WHITE_NOISE_FACTOR",
+    "WHITE_NOISE_ACCUMULATES",
+    "WHITE_NOISE_RELATED",
+    "WHITE_NOISE_SHARED",
+}
+
+
 @np.errstate(all="ignore")  # a submission may have returned anything
 def of_imu(submission, bias_first=False):
     """The mistake that ``imu`` makes, found on long recordings with one kind of noise at a time.

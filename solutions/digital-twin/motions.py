@@ -44,7 +44,7 @@ _MOTOR = {
         ("DEADBAND_ONE_SIDED", lambda u, dead: 0.0 if 0 <= u <= dead else u),
         ("DEADBAND_SUBTRACTED", lambda u, dead: math.copysign(max(abs(u) - dead, 0.0), u)),
         ("DEADBAND_EDGE", lambda u, dead: 0.0 if abs(u) < dead else u),
-        ("DEADBAND_HALVED", lambda u, dead: 0.0 if abs(u) <= dead / 2 else u),
+        ("DEADBAND_WIDTH", lambda u, dead: 0.0 if abs(u) <= dead / 2 else u),
         ("DEADBAND_REVERSED", lambda u, dead: u if abs(u) <= dead else 0.0),
     ),
     "clip": (

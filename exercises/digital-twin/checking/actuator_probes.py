@@ -135,6 +135,10 @@ def of_delay(submission):
     shifts = [_shift(row, x) for row in rows]
     if None not in shifts and shifts[2] > shifts[0]:
         return named("DELAY_WHOLE_SAMPLES")
+    t = dt * np.arange(len(x))
+    circles = [np.interp(t - late, t, x, period=dt * len(x)) for late in lates]
+    if np.allclose(rows, circles, rtol=0, atol=1e-9):
+        return named("DELAY_WRAPS")
     pulse = np.zeros(8)
     pulse[3] = 1.0
     parts = (0.3, 0.8)

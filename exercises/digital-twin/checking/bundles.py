@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
-
 from course.scoring import kit
 
 twins = kit.companion("digital-twin", "twin_probes")
@@ -18,9 +16,7 @@ def unless(refuted, ask, other=lambda: None):
     said = ask()
     if said is None or said.code not in refuted:
         return said
-    code = "SECOND_MISTAKE"  # a fact: it stays with this check, whatever the others say
-    second = kit.attempt(other)
-    return dataclasses.replace(second, code=code) if second else twins.named(code)
+    return twins.second_mistake(kit.attempt(other))
 
 
 def one_by_one(first, second):

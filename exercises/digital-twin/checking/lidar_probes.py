@@ -88,7 +88,7 @@ def of_lidar(submission, noisy=True, straight=False):
     if np.all(right) and (straight or np.allclose(fans[0], _READS, rtol=0, atol=1e-9)):
         return of_lidar_noise(submission) if noisy else None
     fixed = np.allclose(moved, fans[0], rtol=0, atol=1e-9)
-    room = np.allclose(fans[0], _READS, rtol=0, atol=1e-9)
+    room = np.allclose(fans[3 if straight else 0], _READS, rtol=0, atol=1e-9)
     return _of_scenes(readings, right, None if straight else _turning(*fans), fixed, room)
 
 

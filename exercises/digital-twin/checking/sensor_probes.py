@@ -23,6 +23,11 @@ def of_encoder(submission, counts, theta, per_turn):
     wanted = floor if np.sum(counts == floor) >= np.sum(counts == nearest) else nearest
     if found := of_counts(counts, wanted):
         return found
+    single = theta.astype(np.float32)
+    for angles in (single, single.astype(float)):
+        turned = angles * per_turn / (2 * math.pi)
+        if any(np.array_equal(counts, rounded(turned)) for rounded in (np.floor, np.rint)):
+            return named("COUNTS_SINGLE_PRECISION")
     few = np.flatnonzero(counts != wanted)[:: max(1, np.count_nonzero(counts != wanted) // 8)]
     alone = [submission.call("encoder", theta[i : i + 1], per_turn) for i in few]
     if any(kit.as_vector(count, 1, "counts")[0] != counts[i] for count, i in zip(alone, few, strict=True)):

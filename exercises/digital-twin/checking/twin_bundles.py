@@ -28,11 +28,7 @@ def _of_sync(submission, late, backwards):
     """The mistake of ``sync`` in a check whose measurements may be late and whose cart may roll backwards."""
     refuted = set() if late else {"LATE_USED_AS_CURRENT", "TIME_RUNS_BACK"}
     refuted |= set() if backwards else {"LEARNS_FORWARDS_ONLY"}
-    return bundles.unless(
-        refuted,
-        lambda: twins.of_sync(submission),
-        lambda: twins.of_sync(submission, late, backwards),
-    )
+    return twins.of_sync(submission, refuted)
 
 
 def expect_follows(submission, twin, run, *, settled, frictions, message):

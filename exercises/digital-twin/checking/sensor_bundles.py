@@ -81,7 +81,7 @@ def expect_no_mean(values, spread, quantity, diagnose, **finding):
         mean,
         0.0,
         abs=MEAN_WITHIN * spread,
-        source="the README's share of the std",
+        source="the README's",
         quantity=f"mean of {quantity}",
         units="rad/s",
         message=f"The mean of {quantity} is not zero.",
@@ -94,9 +94,7 @@ def expect_no_mean(values, spread, quantity, diagnose, **finding):
 def expect_std(values, expected, rel, source, message, diagnose, **finding):
     """The std of a sample is the expected one, and its mean is zero."""
     if not math.isfinite(std(values)):
-        message = f"The {finding['quantity']} is not a number: a value is nan or infinite."
-        finding["help"] = "Look for a division by something that is 0 here."
-        diagnose = None
+        diagnose = None  # the comparison says what there is to say of a nan
     kit.expect_close(
         std(values),
         expected,
@@ -153,7 +151,7 @@ def expect_walk(submission, n, dt, walk, bias0, rng):
             spread,
             walk**2 * m * dt,
             rel=0.15,
-            source="the variance over ten of 20000 samples scatters by 2.6 %",
+            source="the README's",
             quantity=f"variance of the bias over {m} samples",
             units="(rad/s)²",
             input={"dt": dt, "bias_random_walk": walk, "noise_density": 0.0, "samples": n},
@@ -236,7 +234,7 @@ def expect_gyroscope_draws(submission, seed, dt):
             std(values),
             expected,
             rel=0.06,
-            source="five times the scatter of a std from 4000 samples",
+            source="the README's",
             quantity=f"std of {name}",
             units="rad/s",
             input={"dt": dt, "noise_density": 0.01, "bias_random_walk": 0.01, "samples": n},
@@ -248,7 +246,7 @@ def expect_gyroscope_draws(submission, seed, dt):
     kit.expect_bounded(
         max(alike) if np.all(np.isfinite(alike)) else math.nan,
         high=0.12,
-        source="seven times the scatter of a correlation from 4000 samples; it is the largest of 16000",
+        source="the README's 0.1, and what chance adds",
         quantity="largest correlation",
         input={"dt": dt, "noise_density": 0.01, "bias_random_walk": 0.01, "samples": n},
         message="The white noise and the bias steps are correlated: with each other, or with what they were "
@@ -378,7 +376,7 @@ def expect_density_of_short(submission, still, dt, density):
         found["noise_density"],
         density,
         rel=0.2,
-        source="the README's; from 2000 samples the density scatters by 2 %",
+        source="the README's",
         quantity="noise_density",
         units="rad/s/sqrt(Hz)",
         message="From a short recording, the noise density is wrong.",
@@ -426,7 +424,7 @@ def expect_scan_noise(submission, r_max, sigma, rng):
         std(off),
         sigma,
         rel=0.1,
-        source="six times the scatter of a std from the hits of one scan, 1800 or more",
+        source="the README's",
         quantity="std of the noise",
         units="m",
         input=given,

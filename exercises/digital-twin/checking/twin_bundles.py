@@ -234,7 +234,7 @@ def expect_twin_contract(submission, rng):
         kit.expect_bounded(
             held,
             high=most,
-            source="the README's; two seconds of a Kalman filter's history are some 300, whenever",
+            source="the README's",
             quantity="numbers in the memory after 16 s",
             input={"after 8 s": before},
             message=message,

@@ -435,6 +435,7 @@ OTHERS = {
         *((("DELAY_WHOLE_SAMPLES", "DELAY_HOLDS_FIRST"), _held(count)) for count in _COUNTS),
         *((("DELAY_WRAPS",), _rolled(count)) for count in _COUNTS),
         (("DELAY_ADVANCES",), _at_end),
+        (("DELAY_COVERS_START",), lambda x, dt, latency: np.where(dt * np.arange(len(x)) >= latency, x, 0.0)),
         (("DELAY_WRAPS",), _circle),
     ],
     "diff_drive_step": [

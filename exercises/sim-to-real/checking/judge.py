@@ -322,7 +322,7 @@ def expect_truth(estimates, carts, recordings, most, most_single):
             quantity="intervals that miss the truth" + (" when doubled" if times > 1 else ""),
             message=message,
             diagnose=lambda: probes.of_misses(estimates, carts, recordings),
-            input={"intervals": total},
+            input={"intervals": total, "times as wide": times},
         )
 
 

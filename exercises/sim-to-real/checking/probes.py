@@ -349,9 +349,10 @@ def of_gains(submission, estimate, box, gains, success):
 
     @functools.cache
     def ended_early():
-        return max(
-            success(*_better(gains, success)), success(*_best_of_grid(estimate, box))
-        ) > 1.03 * success(kp, kd)
+        return success(*_better(gains, success)) > 1.03 * success(kp, kd)
+
+    def ended_far_off():
+        return success(*_best_of_grid(estimate, box)) > 1.03 * success(kp, kd)
 
     looks = (
         ("GAINS_SWAPPED", swapped),
@@ -395,7 +396,7 @@ def of_gains(submission, estimate, box, gains, success):
     )
     code = next((code for code, seen in looks if seen()), None) or _unread(submission, estimate, box, gains)
     code = code or next((code for code, seen in rest if seen()), None)
-    return named(code or "SEARCH_ENDED_EARLY") if code or ended_early() else None
+    return named(code or "SEARCH_ENDED_EARLY") if code or ended_early() or ended_far_off() else None
 
 
 def _follows(pairs, estimates):

@@ -348,3 +348,11 @@ def test_noise_that_is_nan_is_not_asked_about_its_root():
     finding, code = failed(sensor_bundles.expect_white, Fake("imu", divided), calls, 0.06, "six")
     assert code == "NOT_A_NUMBER"
     assert "0/0" in finding.help
+
+
+def test_the_readme_is_as_short_as_a_student_reads():
+    before, checked = (
+        (ROOT / "exercises/digital-twin/README.md").read_text("utf-8").split("## What is checked")
+    )
+    assert len(before.split()) <= 1100
+    assert len(checked.split()) <= 500

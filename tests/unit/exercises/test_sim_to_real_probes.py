@@ -413,3 +413,11 @@ def test_a_search_that_ends_far_below_the_best_gains_is_told_so():
     kp, kd = probes._best_of_grid(heavy, box)
     assert probes._settling(([kp, 6.0], [kd, 4.0]), heavy, box).mean(axis=0)[0] < 0.8 * 3.0
     assert kp > 11.0
+
+
+def test_the_readme_is_as_short_as_a_student_reads():
+    before, checked = (
+        (ROOT / "exercises/sim-to-real/README.md").read_text("utf-8").split("## What is checked")
+    )
+    assert len(before.split()) <= 900
+    assert len(checked.split()) <= 500

@@ -255,6 +255,9 @@ def _by_law(task, calls, values, truth):
     if task.startswith("detect"):
         return None
     colliding = [pair for pair in zip(calls, values, strict=True) if _closing(task, pair[0]) > 0]
+    rubs = _rubs(calls, values, truth) if task == "resolve_with_friction" else None
+    if rubs == "FRICTION_DRIVES":  # it may add energy, too
+        return rubs
     if task != "impulse_1d":
         # The first wrong pair is the one whose numbers stand beside the finding.
         call, value = next(
@@ -265,11 +268,7 @@ def _by_law(task, calls, values, truth):
                 return "ENERGY_CREATED"
             if _momentum_lost(call, value):
                 return "MOMENTUM_LOST"
-    return (
-        _by_speeds(task, colliding)
-        if task != "resolve_with_friction"
-        else (_rubs(calls, values, truth) or _by_speeds(task, colliding))
-    )
+    return rubs or _by_speeds(task, colliding)
 
 
 def _by_speeds(task, colliding):
@@ -298,7 +297,8 @@ def _rubs(calls, values, truth):
             return "FRICTION_ASKEW"
         left = ((value[1] - value[0]) @ slip) / size
         more = along < float(wanted @ slip) / size
-        seen.add("FRICTION_TURNS_THE_SLIP" if left < -1e-8 else "TOO_STRONG" if more else "TOO_WEAK")
+        drives = "FRICTION_DRIVES" if along > 1e-8 else ""
+        seen.add(drives or ("FRICTION_TURNS_THE_SLIP" if left < -1e-8 else "TOO_STRONG" if more else "TOO_WEAK"))
     names = {"TOO_STRONG": "FRICTION_TOO_STRONG", "TOO_WEAK": "FRICTION_TOO_WEAK"}
     code = seen.pop() if len(seen) == 1 else None
     return names.get(code, code)

@@ -49,7 +49,7 @@ def _of_meeting(scene, truth, t, x, v, h):
     if truth.contact == math.inf:  # they part from the start
         blows = int(np.any(np.abs(np.diff(v, axis=0)) > 1e-9, axis=1).sum())
         return "IMPULSE_ON_SEPARATING" if 0 < blows < len(v) // 4 else None
-    code = _of_wait(scene, truth, t, x, h)
+    code = _of_reach(scene, truth, t, x) or _of_wait(scene, truth, t, x, h)
     if not code and not np.allclose(v[-1], truth.after, atol=1e-8):
         before = t < truth.contact - 1e-9
         came = np.allclose(x[before], scene.at(t, math.inf, None)[0][before], atol=1e-8)
@@ -74,6 +74,16 @@ def _first_row(states, start, later):
         return "ROWS_ALL_THE_SAME"
     missing = np.allclose(x[0], later, atol=1e-8) or not np.any(x[0])
     return "INITIAL_STATE_MISSING" if missing else "INITIAL_STATE_WRONG"
+
+
+def _of_reach(scene, truth, t, x):
+    """Which distance of the centres counts as contact, if all else is right."""
+    gap, speed = scene.x0[1] - scene.x0[0], scene.v0[0] - scene.v0[1]
+    for code, radii in (("RADIUS_IGNORED", 0), ("ONE_RADIUS_ONLY", 1), ("RADIUS_ADDED_TWICE", 4)):
+        moment = max(gap - radii * scene.radius, 0.0) / speed
+        if np.allclose(x, scene.at(t, moment, truth.after)[0], rtol=1e-9, atol=1e-8):
+            return code
+    return None
 
 
 def _of_wait(scene, truth, t, x, h):
@@ -157,8 +167,29 @@ def of_drop(scene, truth, t, z, v, h):
     if not math.isclose(z[0], scene.z0, abs_tol=1e-9) or not math.isclose(v[0], scene.v0, abs_tol=1e-9):
         later = scene.at([h], truth.times, truth.speeds)[0][0]
         return named(_first_row((z[:, None], v[:, None]), scene.z0, later))
-    code = _drop_start(scene, truth, t, z, v, h) or _drop_later(scene, truth, t, z, v)
+    code = (
+        _drop_floor(scene, t, z, v)
+        or _drop_start(scene, truth, t, z, v, h)
+        or _drop_later(scene, truth, t, z, v)
+    )
     return named(code) if code else None
+
+
+def _drop_floor(scene, t, z, v):
+    """Whether the ball bounces as it should, but at another height: where its first two parabolas meet."""
+    off = np.abs(z - (scene.z0 + scene.v0 * t - scene.g * t * t / 2)) > 1e-8
+    k = int(np.argmax(off))
+    turn = scene.v0 - v[k] - scene.g * t[k]  # the change of velocity at the bounce
+    if not off.any() or turn >= 0:
+        return None
+    moment = (z[k] - scene.z0 - v[k] * t[k] - scene.g * t[k] ** 2 / 2) / turn
+    down = scene.v0 - scene.g * moment
+    if not t[k - 1] - 1e-9 <= moment <= t[k] + 1e-9 or not math.isclose(turn, (1 + scene.restitution) * down):
+        return None
+    height = scene.z0 + scene.v0 * moment - scene.g * moment**2 / 2
+    floors = (("RADIUS_IGNORED", 0.0), ("RADII_HALVED", 0.5), ("FLOOR_TOO_HIGH", 2.0))
+    at = (code for code, radii in floors if math.isclose(height, radii * scene.radius, abs_tol=1e-8))
+    return next(at, None)
 
 
 def _drop_start(scene, truth, t, z, v, h):
@@ -183,6 +214,7 @@ def _drop_later(scene, truth, t, z, v):
     """What is wrong from the first contact on."""
     return (
         _drop_late(scene, truth, t, z, v)
+        or _drop_again(scene, truth, t, z)
         or _drop_rebound(scene, truth, t, z, v)
         or _drop_end(scene, truth, t, z, v)
         or _drop_impact(scene, truth, t, z, v)
@@ -231,6 +263,19 @@ def _turned(speed, down, scene, h):
     return any(math.isclose(speed, up, rel_tol=1e-8) for up in (-e * down - g * h, -e * (down - g * h)))
 
 
+def _drop_again(scene, truth, t, z):
+    """Whether the first ball to be back within the step of its bounce is where the floor should have held it."""
+    speed = scene.fastest
+    for moment, up in zip(truth.times, truth.speeds, strict=True):
+        k, speed = int(np.searchsorted(t, moment + 1e-9)), speed * scene.restitution
+        left = t[k] - moment if k < len(t) else 0.0
+        below = speed * left - scene.g * left**2 / 2
+        if below < -1e-8:
+            return "ONE_BOUNCE_A_STEP" if math.isclose(z[k], scene.radius + below, abs_tol=1e-9) else None
+        speed = up
+    return None
+
+
 def _drop_rebound(scene, truth, t, z, v):
     """The share of its speed with which the ball leaves its first contact, if that is a known wrong one."""
     if len(truth.times) < 1 or not truth.speeds[0]:
@@ -247,6 +292,7 @@ def _drop_rebound(scene, truth, t, z, v):
     gains = [factor * g * (z[k - 1] - scene.radius) for factor in (0.5, 1.0)] if k else []
     squares = [
         ("SPEED_AT_STEP_END", (scene.v0 - g * t[k]) ** 2),
+        ("SPEED_AT_STEP_START", v[max(k - 1, 0)] ** 2),
         ("FALLS_TO_ZERO", scene.fastest**2 + 2 * g * scene.radius),
         *(("FALL_WITHOUT_TWO", v[k - 1] ** 2 + gain) for gain in gains),
     ]

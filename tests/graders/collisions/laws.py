@@ -83,7 +83,7 @@ def expect_parting(submission, calls):
             args,
             "Bodies do not part as they should: at e times the speed of approach along the normal, and with "
             "the same slip across it.",
-            "The impact is J n: it has no part across the normal.",
+            "(va - vb) . n becomes -e times what it was, and across the normal nothing changes.",
             diagnose,
         )
         slip = (vb - va) - ((vb - va) @ n) * n

@@ -524,6 +524,71 @@ def test_a_fall_that_gains_another_share_of_its_height_is_told_by_the_rebound(fa
     assert (code == "FALL_WITHOUT_TWO") == (factor in (0.5, 1.0)), code
 
 
+@pytest.mark.parametrize(
+    ("floor", "code"),
+    [(0.0, "RADIUS_IGNORED"), (0.05, "RADII_HALVED"), (0.2, "FLOOR_TOO_HIGH"), (0.07, None)],
+)
+def test_a_floor_at_another_height_is_told_however_the_ball_comes_to_rest_there(floor, code):
+    scene, other, h = paths.Drop(1.0, 0.0, 0.1, 0.7), paths.Drop(1.0, 0.0, floor, 0.7), 0.01
+    t = h * np.arange(90)
+    theirs = motions.bounces(other, 1.0, h)
+    path = other.at(t, theirs.times, theirs.speeds)
+    found = tracks.of_drop(scene, motions.bounces(scene, 1.0, h), t, *path, h)
+    assert (found and found.code) == code
+
+
+@pytest.mark.parametrize("radii", [0, 1, 3, 4])
+def test_another_distance_of_contact_is_told_of_two_balls_even_if_it_is_met_steps_later(radii):
+    scene = paths.HeadOn((1.0, 2.0), (-1.2, 1.37), (1.0, -0.9), 0.35, 0.5)
+    t, truth = 0.1 * np.arange(21), motions.meeting(scene)
+    path = scene.at(t, (2.57 - radii * 0.35) / 1.9, truth.after)
+    found = tracks.of_head_on(scene, truth, t, *path, 0.1)
+    names = {0: "RADIUS_IGNORED", 1: "ONE_RADIUS_ONLY", 4: "RADIUS_ADDED_TWICE"}
+    assert (found and found.code) == names.get(radii)
+
+
+def dropped(e, speed_of, h=0.02, often=True):
+    """What ``tracks`` says of a ball that rests by its speed before the contact; ``often``: as often as it is
+    back within the step; ``speed_of``: the speed that counts for the bounce, of that and of the last sample."""
+    scene = paths.Drop(0.6, -0.3, 0.1, e)
+    z, v, rests = scene.z0, scene.v0, False
+    rows = [(z, v)]
+    for _ in range(80):
+        left, start, bounced = h, v, False
+        while not rests:
+            fallen = z + v * left - scene.g * left**2 / 2
+            if fallen > scene.radius or (bounced and not often):
+                z, v = fallen, v - scene.g * left
+                break
+            speed = math.sqrt(max(v**2 + 2 * scene.g * (z - scene.radius), 0.0))
+            left -= (v + speed) / scene.g
+            rests = speed <= scene.g * h
+            z, v, bounced = scene.radius, e * speed_of(speed, abs(start)), True
+        z, v = (scene.radius, 0.0) if rests else (z, v)
+        rows.append((z, v))
+    t = h * np.arange(len(rows))
+    found = tracks.of_drop(scene, motions.bounces(scene, t[-1] + h, h), t, *np.array(rows).T, h)
+    return found and found.code
+
+
+def test_a_ball_that_bounces_once_a_step_and_one_that_leaves_with_an_old_speed_are_told():
+    assert dropped(0.0, lambda speed, old: speed, often=False) == "ONE_BOUNCE_A_STEP"
+    assert dropped(0.005, lambda speed, old: speed, often=False) == "ONE_BOUNCE_A_STEP"
+    assert dropped(0.7, lambda speed, old: old) == "SPEED_AT_STEP_START"
+
+
+def test_friction_along_the_slip_is_not_friction_that_is_too_weak():
+    calls = scenes("resolve_with_friction")
+    right = [formulas.RIGHT["resolve_with_friction"](*call) for call in calls]
+    smooth = [formulas.RIGHT["resolve_with_friction"](*call[:6], 0.0) for call in calls]
+    for share, code in ((-0.4, "FRICTION_DRIVES"), (0.4, "FRICTION_TOO_WEAK")):
+        values = [
+            tuple(s + share * (r - s) for s, r in zip(*pair, strict=True))
+            for pair in zip(smooth, right, strict=True)
+        ]
+        assert said("resolve_with_friction", calls, values) == code
+
+
 def test_energy_and_momentum_are_said_of_the_first_wrong_pair_alone():
     n = np.array([1.0])
     slow, fast = [(1.0, 2.0, np.array([v]), np.array([0.0]), n, 0.5) for v in (1.0, 4.0)]

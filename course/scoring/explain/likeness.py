@@ -194,6 +194,8 @@ def _of_powers(a: float, e: float) -> str:
 
 
 def _of_digits(a: float, e: float) -> str:
+    if abs(a) == 1.0:  # a ratio is one for many reasons
+        return ""
     if a == math.trunc(e):
         return "the right one without its decimals"
     places = next((n for n in range(7) if a == round(e, n)), None)

@@ -42,6 +42,8 @@ PLACES = Places(module="work.py")
         (2.4**2, 2.4, {}, "the square of the right one"),
         (2.4**0.5, 2.4, {}, "the square root of the right one"),
         (2.0, 2.4, {}, "the right one without its decimals"),
+        (1.0, 1.41, {}, ""),
+        (-1.0, -0.98, {}, ""),
         (2.35, 2.3456, {}, "the right one rounded to 2 decimals"),
         (3.0, 3, {}, "of the type float, and int is asked for"),
         (math.inf, "None", {}, "give None, not inf"),

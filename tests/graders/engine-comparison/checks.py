@@ -101,7 +101,7 @@ def test_hidden_deterministic(submission):
 @pytest.mark.task("characterise")
 @pytest.mark.points(3)
 def test_hidden_report_complete(submission):
-    """Each of eight unknown engines gets a complete report"""
+    """Each of eight unknown engines gets a report with exactly the nine keys"""
     judging.expect_complete(submission, unknown(submission))
 
 

@@ -6,6 +6,7 @@ import copy
 import dataclasses
 import itertools
 import math
+import types
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +26,7 @@ choosing = kit.companion("engine-comparison", "choosing")
 judging = kit.companion("engine-comparison", "judging")
 listing = kit.companion("engine-comparison", "listing")
 measured = kit.companion("engine-comparison", "measured")
+probes = kit.companion("engine-comparison", "probes")
 probing = kit.companion("engine-comparison", "probing")
 questions = kit.companion("engine-comparison", "questions")
 lab = kit.reference("engine-comparison", "lab")
@@ -220,6 +222,29 @@ def test_an_engine_that_brings_the_measurement_down_does_not_take_the_others_wit
         judging.expect_key(found, "order", 0)
     with pytest.raises(kit.StudentFailure):
         judging.expect_complete(fake, found)
+
+
+@pytest.mark.parametrize("value", [None, 2.0011, "2"])
+def test_a_key_without_a_value_of_its_kind_costs_its_own_points_and_not_those_of_the_form(value):
+    found = cases_of(lambda truth: truth | {"order": value})
+    fake = types.SimpleNamespace(call_each=lambda *_: None)
+    judging.expect_complete(fake, found)
+    with pytest.raises(kit.CheckFailed):
+        judging.expect_key(found, "order", 0)
+
+
+def test_a_report_in_which_nothing_is_measured_has_no_points_for_its_form():
+    found = cases_of(lambda truth: dict.fromkeys(truth))
+    with pytest.raises(kit.CheckFailed, match="Nothing is measured"):
+        judging.expect_complete(None, found)
+
+
+def test_one_start_for_each_speed_is_named_even_where_it_lets_no_body_through():
+    shots = [("wall", (-1.0,), (speed,), boxes.BALSA.dt, 400, (0.0,)) for speed in (20.0, 40.0, 80.0)]
+    found = cases_of(lambda truth: truth | {"tunnelling_speed": math.inf})
+    for case in found:
+        case.runs = [(scene, q0, v0, case.box.dt, n, force) for scene, q0, v0, _, n, force in shots]
+    assert probes.of_key("tunnelling_speed", found).code == "TUNNEL_ONE_START"
 
 
 def test_a_measurement_that_never_ends_leaves_time_for_the_other_functions():

@@ -42,6 +42,9 @@ def hypotheses():
             yield from _pairs(task, family, base, terms)
     yield from (("observed_order", (code,), slope) for code, slope in _slopes())
     yield "max_stable_step", ("LIMIT_NEVER_SEEN",), lambda step, omega: math.inf
+    in_seconds = {"probe": lambda z, omega: z, "unit": lambda z, omega: z}
+    for way in (in_seconds, {"start": lambda omega: omega}):
+        yield "max_stable_step", ("SEARCH_IN_SECONDS",), _search(**way)
 
 
 def _pairs(task, family, base, terms):
@@ -268,7 +271,7 @@ def _search(
     above=False,
     dz=0.05,
     scales="both",
-    start=1.0,
+    start=lambda omega: 1.0,
     force=lambda omega: omega**2,
     probe=lambda z, omega: z / omega,
 ):
@@ -289,14 +292,15 @@ def _search(
             m = np.array([[float(c[0][0]) for c in columns], [float(c[1][0]) / rate for c in columns]])
             return size(m) <= limit
 
+        begin = first * start(omega)
         if above:
             z = last
             while z > first and not stable(z):
                 z -= dz
             return (none if z == last else unit(z, omega)) if z > first else zero
-        if not stable(first):
-            return zero if zero is not None else unit(first, omega)
-        low = first
+        if not stable(begin):
+            return zero if zero is not None else unit(begin, omega)
+        low = begin
         while stable(low + dz):
             low += dz
             if low >= last:
@@ -333,6 +337,8 @@ _SEARCH = {
         ("TOLERANCE_TOO_LOOSE", 1.01),
         ("TOLERANCE_TOO_LOOSE", 1.1),
         ("TOLERANCE_TOO_LOOSE", 2.0),
+        ("TOLERANCE_TOO_LOOSE", 1 + 1e-4),
+        ("TOLERANCE_TOO_LOOSE", 1 + 1e-6),
     ),
     "unit": (
         ("RETURNS_Z", lambda z, omega: z),

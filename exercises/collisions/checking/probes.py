@@ -297,8 +297,8 @@ def _rubs(calls, values, truth):
             return "FRICTION_ASKEW"
         left = ((value[1] - value[0]) @ slip) / size
         more = along < float(wanted @ slip) / size
-        drives = "FRICTION_DRIVES" if along > 1e-8 else ""
-        seen.add(drives or ("FRICTION_TURNS_THE_SLIP" if left < -1e-8 else "TOO_STRONG" if more else "TOO_WEAK"))
+        turns = "FRICTION_TURNS_THE_SLIP" if left < -1e-8 else ""
+        seen.add("FRICTION_DRIVES" if along > 1e-8 else turns or ("TOO_STRONG" if more else "TOO_WEAK"))
     names = {"TOO_STRONG": "FRICTION_TOO_STRONG", "TOO_WEAK": "FRICTION_TOO_WEAK"}
     code = seen.pop() if len(seen) == 1 else None
     return names.get(code, code)

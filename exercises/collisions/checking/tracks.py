@@ -264,7 +264,7 @@ def _turned(speed, down, scene, h):
 
 
 def _drop_again(scene, truth, t, z):
-    """Whether the first ball to be back within the step of its bounce is where the floor should have held it."""
+    """Whether a ball that is back within the step of its bounce is in the floor at the end of that step."""
     speed = scene.fastest
     for moment, up in zip(truth.times, truth.speeds, strict=True):
         k, speed = int(np.searchsorted(t, moment + 1e-9)), speed * scene.restitution

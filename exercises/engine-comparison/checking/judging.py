@@ -110,7 +110,7 @@ def expect_complete(submission: Any, found: list[Any]) -> None:
         if all(case.measured(key) is None for key in bench.KEYS):
             kit.fail(
                 "Nothing is measured of this engine: every value of its report is None.",
-                diagnose=probes.named("NOT_MEASURED"),
+                diagnose=probes.named("MEASURED_AS_NONE"),
                 input={"engine": case.name},
             )
     again = [dataclasses.replace(case, runs=[], through=[]) for case in found[:2]]

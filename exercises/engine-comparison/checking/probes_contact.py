@@ -205,9 +205,7 @@ def _too_high(most: float) -> Probe:
 
     def probe(key: str, cases: list[Any]) -> bool:
         wrong = [case for case in cases if not probing.right(key, case)]
-        return all(
-            case.truth[key] < case.measured(key) <= most * case.truth[key] for case in wrong
-        )
+        return all(case.truth[key] < case.measured(key) <= most * case.truth[key] for case in wrong)
 
     return probe
 

@@ -548,8 +548,11 @@ def test_another_distance_of_contact_is_told_of_two_balls_even_if_it_is_met_step
 
 
 def dropped(e, speed_of, h=0.02, often=True):
-    """What ``tracks`` says of a ball that rests by its speed before the contact; ``often``: as often as it is
-    back within the step; ``speed_of``: the speed that counts for the bounce, of that and of the last sample."""
+    """What ``tracks`` says of a ball that rests by its speed before the contact.
+
+    ``often``: it bounces as often as it is back within the step; ``speed_of``: the speed that counts for a
+    bounce, of that at the floor and that at the start of the step.
+    """
     scene = paths.Drop(0.6, -0.3, 0.1, e)
     z, v, rests = scene.z0, scene.v0, False
     rows = [(z, v)]

@@ -234,7 +234,7 @@ def test_a_key_without_a_value_of_its_kind_costs_its_own_points_and_not_those_of
 
 
 def test_a_report_in_which_nothing_is_measured_has_no_points_for_its_form():
-    found = cases_of(lambda truth: dict.fromkeys(truth))
+    found = cases_of(dict.fromkeys)
     with pytest.raises(kit.CheckFailed, match="Nothing is measured"):
         judging.expect_complete(None, found)
 

@@ -48,7 +48,8 @@ def _points():
 
 
 def _maps():
-    """Maps with a limit at h omega = 2, at 1.5 by -1, spiralling out, with a pocket, and with none."""
+    """Maps with a limit at h omega = 2, at 1.5 by -1, spiralling out, with a pocket, with none, and of slow
+    growth."""
     verlet = LinearStep([1, 0, -0.5], [0, 1], [0, -1, 0, 0.25], [1, 0, -0.5])
     flipped = LinearStep([0.6, 0, -1.6 / 1.5**2], [2.0], [0.0], [0.3])
     spiral = LinearStep([0.3, 0, 0.02], [0.75, 0, 0.05], [-0.75, 0, -0.05], [0.3, 0, 0.02])
@@ -57,8 +58,9 @@ def _maps():
     small = LinearStep([0.1], [0.0], [0.3], [0.7, 0.3 / 2.7])
     euler = LinearStep([1.0], [0.0, 1.0], [0.0, -1.0], [1.0])
     calm = LinearStep([0.5, 0.02], [0.1], [0.0], [0.4])
+    slow = LinearStep([1 - 1e-5, 1e-5 / 2.4], [0.0], [0.0], [0.2])
     yield from ((verlet, 3.7), (flipped, 4.0), (spiral, 0.6), (pocket, 1.7), (small, 2.3))
-    yield from ((euler, 2.9), (calm, 1.3), (verlet, 50.0))
+    yield from ((euler, 2.9), (calm, 1.3), (verlet, 50.0), (slow, 1.1))
 
 
 QUESTIONS = {

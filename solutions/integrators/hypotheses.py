@@ -337,8 +337,7 @@ _SEARCH = {
         ("TOLERANCE_TOO_LOOSE", 1.01),
         ("TOLERANCE_TOO_LOOSE", 1.1),
         ("TOLERANCE_TOO_LOOSE", 2.0),
-        ("TOLERANCE_TOO_LOOSE", 1 + 1e-4),
-        ("TOLERANCE_TOO_LOOSE", 1 + 1e-6),
+        *(("TOLERANCE_TOO_LOOSE", 1 + more) for more in (1e-4, 1e-5, 1e-6)),
     ),
     "unit": (
         ("RETURNS_Z", lambda z, omega: z),

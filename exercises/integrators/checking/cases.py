@@ -59,8 +59,8 @@ def pocket(low):
 
 
 def slow_growth(limit):
-    """A map that grows beyond h omega = ``limit``, by a hundred thousandth at 1 % beyond."""
-    return LinearStep([1 - 1e-3, 1e-3 / limit], [0.0], [0.0], [0.2])
+    """A map that grows beyond h omega = ``limit``, by a ten millionth at 1 % beyond."""
+    return LinearStep([1 - 1e-5, 1e-5 / limit], [0.0], [0.0], [0.2])
 
 
 def turn(c, s, z=None):

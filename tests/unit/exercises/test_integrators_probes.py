@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from course.physics import systems
 from course.scoring import kit
+from course.scoring.explain.story import TABLE, matching, read_table
+from course.scoring.judging.explaining import answer_numbers
 
+ROOT = Path(__file__).resolve().parents[3]
 probes = kit.companion("integrators", "probes")
 cases = kit.companion("integrators", "cases")
+questions = kit.companion("integrators", "questions")
 formulas = kit.reference("integrators", "formulas")
 
 
@@ -434,3 +440,65 @@ def test_a_wrong_stability_search_is_recognised(code, function, step, limit):
     omega = 3.0
     fake = Fake(max_stable_step=function)
     assert probes.of_stability(fake, function(step, omega), step, omega, limit).code == code
+
+
+def walked(limit=1 + 1e-8, begin=lambda omega: 0.05 / omega):
+    """A max_stable_step in small increments of h; ``limit``: on the spectral radius."""
+
+    def max_stable_step(step, omega):
+        h = begin(omega)
+        stable = lambda h: RADIUS(step.matrix(h * omega)) <= limit  # noqa: E731
+        if not stable(h):
+            return 0.0
+        while stable(h + 0.002 / omega):
+            h += 0.002 / omega
+            if h * omega >= 10:
+                return math.inf
+        return h
+
+    return max_stable_step
+
+
+@pytest.mark.parametrize(("limit", "right"), [(1 + 1e-8, True), (1 + 1e-6, False), (1 + 1e-5, False)])
+def test_slow_growth_tells_a_limit_that_is_too_loose(limit, right):
+    step, wanted = cases.slow_growth(2.6), (cases.slow_growth(2.6), 1.3, 2.6)
+    fake = Fake(max_stable_step=walked(limit))
+    with contextlib.nullcontext() if right else pytest.raises(kit.CheckFailed):
+        cases.expect_limit(fake, walked(limit)(step, 1.3), wanted, input={}, message="wrong")
+
+
+@pytest.mark.parametrize(
+    ("program", "codes"),
+    [
+        (walked(), set()),
+        (walked(1 + 1e-6), {"TOLERANCE_TOO_LOOSE"}),
+        (walked(1 + 1e-4), {"TOLERANCE_TOO_LOOSE"}),
+        (walked(begin=lambda omega: 0.05), {"SEARCH_IN_SECONDS"}),
+    ],
+)
+def test_a_loose_limit_and_a_search_in_seconds_are_known_by_their_answers(program, codes):
+    assert known("max_stable_step", program) == codes
+
+
+@pytest.mark.parametrize(
+    ("second", "fourth", "code"),
+    [(1.0, 1.0, "HALF_STEP_MISSING"), (0.5, 0.5, "LAST_STAGE_AT_HALF")],
+)
+def test_one_stage_of_rk4_at_another_point_of_the_step_is_known_by_its_answers(second, fourth, code):
+    def rk4_step(accel, t, q, v, h):
+        k1q, k1v = v, accel(t, q, v)
+        k2q, k2v = v + second * h * k1v, accel(t + second * h, q + second * h * k1q, v + second * h * k1v)
+        k3q, k3v = v + h / 2 * k2v, accel(t + h / 2, q + h / 2 * k2q, v + h / 2 * k2v)
+        k4q, k4v = v + h * k3v, accel(t + fourth * h, q + fourth * h * k3q, v + fourth * h * k3v)
+        return q + h / 6 * (k1q + 2 * k2q + 2 * k3q + k4q), v + h / 6 * (k1v + 2 * k2v + 2 * k3v + k4v)
+
+    assert known("rk4_step", rk4_step) == {code}
+
+
+def known(task, program):
+    """The codes of the known programs that answer all questions as this one does."""
+    table = read_table(ROOT / "exercises/integrators" / TABLE)
+    said = answer_numbers(
+        questions, task, lambda calls: [program(*call) for call in calls], table.within.get(task)
+    )
+    return {code for row in matching(table, task, said[task]) for code in row.codes}

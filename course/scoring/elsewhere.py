@@ -1,4 +1,4 @@
-"""What a file finds where its student wrote it, and not where it is checked.
+"""What a file finds where its student wrote it, and not where it is checked; and Python's commonest errors.
 
 A check runs apart from the student's files, screen, keyboard and network, in one process with one thread; of
 all packages it has those that the exercise allows. A line that needs more raises there, and Python's words
@@ -7,6 +7,7 @@ for that explain nothing to somebody on whose machine it works.
 
 from __future__ import annotations
 
+import math
 import re
 import sys
 
@@ -119,6 +120,22 @@ _INSTEAD = {
     "cumulative_prod": "`np.cumprod`",
     "sometrue": "`np.any`",
     "alltrue": "`np.all`",
+    "float": "`float`",
+    "int": "`int`",
+    "bool": "`bool`",
+    "complex": "`complex`",
+    "object": "`object`",
+    "str": "`str`",
+    "Inf": "`np.inf`",
+    "Infinity": "`np.inf`",
+    "infty": "`np.inf`",
+    "PINF": "`np.inf`",
+    "NINF": "`-np.inf`",
+    "NaN": "`np.nan`",
+    "NAN": "`np.nan`",
+    "asfarray": "`np.asarray`",
+    "row_stack": "`np.vstack`",
+    "round_": "`np.round`",
     "float_": "`np.float64`",
     "matvec": "`@`",
     "vecmat": "`@`",
@@ -173,4 +190,107 @@ def newer(failure: StudentFailure, code: str = "") -> str:
         if version > sys.version_info and re.search(said, failure.message) and re.search(look, code):
             since = ".".join(map(str, version))
             return f"Python {since} reads that, but it is checked with {PYTHON}: write it the older way."
+    return ""
+
+
+# ---
+# Python's commonest errors, each with its own cure.
+
+_MODULES = {"np": "import numpy as np", "numpy": "import numpy", "plt": ""}
+_MODULES |= {
+    name: f"import {name}"
+    for name in (
+        "bisect", "cmath", "collections", "copy", "functools", "itertools", "math", "operator", "random",
+        "statistics", "sys", "time",
+    )
+}  # fmt: skip
+_VERBS = {"+": "add to numbers", "-": "subtract", "*": "multiply", "/": "divide", "**": "have powers"}
+_AN_ARRAY = (
+    "Go through the values one by one, with `zip` for two lists, or make arrays first: `np.asarray(...)`."
+)
+#: What Python says -> what to do about it. "{0}" is what the first group found.
+_CURES: tuple[tuple[str, str], ...] = (
+    (
+        r"UnboundLocalError.*variable '(\w+)'",
+        "Give `{0}` a value before the loop, or the `if`, that changes it.",
+    ),
+    (
+        r"NameError: name '(\w+)'",
+        "Is `{0}` spelled like this everywhere, and set before this line is reached?",
+    ),
+    (
+        r"can't multiply sequence by non-int",
+        "A list times a number does not multiply its values. " + _AN_ARRAY,
+    ),
+    (
+        r"TypeError.*'NoneType'",
+        "Something here is None: a function without a `return`, or a variable nobody has set.",
+    ),
+    (
+        r"TypeError: '(?:float|int|list|tuple)' object is not callable",
+        "Brackets after a value call it. Is a `*` missing, or has a variable taken the name of a function?",
+    ),
+    (r"TypeError: '(?:float|int)' object is not iterable", "It is one number, and a list is needed here."),
+    (
+        r"TypeError: '(?:float|int)' object is not subscriptable",
+        "It is one number, and a number has no [index].",
+    ),
+    (
+        r"TypeError: list indices must be .* not float",
+        "An index is an int: divide with `//`, or use `int(...)`.",
+    ),
+    (
+        r"TypeError: list indices must be .* not tuple",
+        "A list of lists is indexed twice: `a[i][j]`, not `a[i, j]`.",
+    ),
+    (
+        r"IndexError: list index out of range",
+        "A list of n values has the indices 0 to n - 1. Which index is it here?",
+    ),
+    (r"IndexError.*out of bounds", "An axis of n values has the indices 0 to n - 1. Which index is it here?"),
+    (r"ZeroDivisionError", "What is divided by is zero for this input. Which value makes it so?"),
+    (
+        r"ValueError: (?:math domain error|expected a (?:non-?negative|positive) (?:input|number))",
+        "It is the root or the logarithm of a negative number, or an arc sine of more than 1: print it.",
+    ),
+    (
+        r"TypeError: only (?:size-1|length-1|0-dimensional) arrays",
+        "`math` takes one number at a time. For arrays use numpy's function of the same name.",
+    ),
+    (
+        r"ValueError: The truth value of an array",
+        "Compare single numbers, or say `.any()` or `.all()` of them.",
+    ),
+    (
+        r"positional arguments? but \d+ (?:was|were) given",
+        "Keep the stub's arguments in the `def`, all of them.",
+    ),
+    (r"missing \d+ required positional", "Pass every argument that the `def` names."),
+    (r"RecursionError", "The function calls itself without an end. When should it stop?"),
+    (
+        r"ValueError: (?:too many|not enough) values to unpack",
+        "The names on the left must be as many as the values.",
+    ),
+)
+
+
+def cure(failure: StudentFailure) -> str:
+    """What to do about one of Python's commonest errors, as a sentence or two; "" for any other."""
+    said = f"{failure.type}: {failure.message}"
+    if found := re.search(r"^NameError: name '(\w+)'", said):
+        name = found[1]
+        if _MODULES.get(name):
+            return f"Add `{_MODULES[name]}` at the top of the file."
+        if hasattr(math, name) and not name.startswith("_"):
+            return f"`{name}` is in math: add `import math` at the top, and write `math.{name}`."
+    if found := re.search(r"unsupported operand type\(s\) for (\S+?)(?::| or ).*'(?:list|tuple)'", said):
+        operator = found[1].rstrip("=")
+        return f"Python's lists do not {_VERBS.get(operator, 'calculate')}. {_AN_ARRAY}"
+    found = re.search(r"AttributeError: '(list|float|int)' object has no attribute '(\w+)'", said)
+    if found and hasattr(np.ndarray, found[2]):
+        what = "list" if found[1] == "list" else "number"
+        return f"Only arrays have `{found[2]}`; this is a {what}. Make an array first: `np.asarray(...)`."
+    for pattern, advice in _CURES:
+        if found := re.search(pattern, said):
+            return advice.format(*found.groups())
     return ""

@@ -21,7 +21,7 @@ from course.figures.described import Plot
 from course.isolation.failures import StudentFailure
 from course.isolation.session import LOOP
 from course.printable import one_line
-from course.scoring.elsewhere import absent, lacking, newer, numpys
+from course.scoring.elsewhere import absent, cure, lacking, newer, numpys
 from course.scoring.explain.story import Diagnosis
 from course.scoring.verdict import Finding, Places
 
@@ -36,6 +36,7 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
         bare: message and advice of the check itself, without its probe's diagnosis.
         broke: where the probe raised, for the check's author; empty if it did not.
         comparison: along time, if there was one.
+        looked: a search of the check's own for the mistake was made on these numbers.
     """
 
     def __init__(
@@ -45,6 +46,8 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
         bare: tuple[str, str] | None = None,
         guess: Diagnosis | None = None,
         comparison: Comparison | None = None,
+        *,
+        looked: bool = False,
     ) -> None:
         super().__init__(finding.message)
         self.finding = finding
@@ -52,6 +55,7 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
         self.guess = guess or (Diagnosis(finding.diagnosis, "", "") if finding.diagnosis else None)
         self.broke = broke
         self.comparison = comparison
+        self.looked = looked
 
 
 #: The most of an exception's own message that a sentence repeats, in characters.
@@ -158,21 +162,27 @@ def _error_finding(failure: StudentFailure, *, shown: bool) -> Finding:
     # A student chooses class names, and one could spell out a hidden input, so only known names are shown.
     known = isinstance(getattr(builtins, failure.type, None), type)
     name = failure.type if known else "an exception"
-    said = one_line(failure.message, _SAID).rstrip(" .") if shown else ""
+    fitting = _apart(failure, places, shown=shown)
+    # Where the advice is known, the first of several lines is enough.
+    words = re.split(r"\n|\\n", failure.message, maxsplit=1)[0] if fitting else failure.message
+    said = one_line(words, _SAID).rstrip(" .") if shown else ""
     begin = "Start at that line: print above it the values that it uses, or call" if where else "Call"
     advice = f"{begin} the function yourself and read the traceback from the bottom up."
     return Finding(
         message=f"Your code raised {name}{where}{': ' if said else ''}{said}.",
-        help=_apart(failure, places, shown=shown) or advice,
+        help=fitting or advice,
         diagnosis="RAISED",
         actual=f"{failure.type}: {failure.message}" if failure.message else failure.type,
     )
 
 
 def _apart(failure: StudentFailure, places: Places, *, shown: bool) -> str:
-    """The advice where the function may well work for its student; "" for any other."""
+    """The advice that fits this exception and no other; "" where none is known."""
     return (
-        _at_a_terminal(failure) or _by_a_star(failure, places, shown=shown) or lacking(failure, shown=shown)
+        _at_a_terminal(failure)
+        or _by_a_star(failure, places, shown=shown)
+        or lacking(failure, shown=shown)
+        or (cure(failure) if shown else "")
     )
 
 

@@ -14,9 +14,11 @@ This side is trusted: nothing here runs in the process that runs the student's c
 
 from __future__ import annotations
 
+import contextlib
 import functools
+import itertools
 import math
-from collections.abc import Callable, Collection, Hashable, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NoReturn, Protocol, TypeVar, cast
 
@@ -31,7 +33,7 @@ from course.physics.invariants import convergence_order
 from course.physics.systems import System
 from course.scoring.checks.collected import companion, known_answers, reference, sibling, words
 from course.scoring.explain.fingerprint import SAME, in_range
-from course.scoring.explain.story import Diagnosis, Words
+from course.scoring.explain.story import Diagnosis, Words, said_once
 from course.scoring.failures import (
     CheckFailed,
     Comparison,
@@ -114,6 +116,7 @@ __all__ = [
     "march_errors",
     "reference",
     "sibling",
+    "terms",
     "words",
 ]
 
@@ -144,6 +147,8 @@ def attempt(fn: Callable[[], Any]) -> Any:
         return None
 
 
+#: What a check does not say; the right answer may be None.
+_NOT_SAID: Any = object()
 #: The advice of a check that has none of its own, so that every finding has advice.
 _ADVICE = "Take one such case, work out by hand what the README asks for, and compare number by number."
 
@@ -154,21 +159,26 @@ def fail(
     help: str = "",  # noqa: A002 - the field's name in every report
     diagnose: Diagnose = None,
     input: dict[str, Any] | None = None,  # noqa: A002 - the field's name in every report
-    expected: Any = None,
+    expected: Any = _NOT_SAID,
     actual: Any = None,
     units: str = "",
     tolerance: Tolerance | None = None,
     first_divergence: Divergence | None = None,
     comparison: Comparison | None = None,
 ) -> NoReturn:
-    """End the check with a finding; a diagnosis adds its sentence to the message and replaces the advice."""
+    """End the check with a finding; a diagnosis adds its sentence to the message and replaces the advice.
+
+    ``expected=None`` says that None is right, and is kept as text: a finding's own None is nothing said.
+    """
+    if expected is None:
+        expected = "None"
     found, broke = _explained(diagnose)
     help = help or _ADVICE  # noqa: A001
     bare = message, help
     code: str | None = found if isinstance(found, str) else None
     if isinstance(found, Diagnosis):
         code = found.code
-        message = f"{message} {found.looks_like}".strip()
+        message = said_once(message, found.looks_like)
         help = found.advice or help  # noqa: A001
         first_divergence = first_divergence or found.divergence
     raise CheckFailed(
@@ -177,7 +187,7 @@ def fail(
             help=help,
             diagnosis=code,
             input=None if input is None else plain(input),
-            expected=plain(expected),
+            expected=None if expected is _NOT_SAID else plain(expected),
             actual=plain(actual),
             units=units,
             tolerance=_of_plain(tolerance),
@@ -187,6 +197,7 @@ def fail(
         bare,
         found if isinstance(found, Diagnosis) else None,
         comparison,
+        looked=callable(diagnose),
     )
 
 
@@ -235,6 +246,17 @@ _INFINITE = Diagnosis(
 )
 
 
+@contextlib.contextmanager
+def _read_for(finding: dict[str, Any]) -> Iterator[None]:
+    """Reads an answer: if it is of another kind, the finding says for which input."""
+    try:
+        yield
+    except CheckFailed as failed:
+        given = failed.finding.input or finding.get("input")
+        failed.finding = msgspec.structs.replace(failed.finding, input=given and plain(given))
+        raise
+
+
 def expect_true(condition: Any, message: str, **finding: Any) -> None:
     """``condition`` is True itself; a truthy object is not."""
     if condition is not True and not (isinstance(condition, np.bool_) and bool(condition)):
@@ -249,7 +271,8 @@ def expect_equal(actual: Any, expected: Any, *, message: str, **finding: Any) ->
 
 def expect_length(value: Any, length: int, *, message: str, name: str = "the result", **finding: Any) -> None:
     """A list or array has this many elements."""
-    items = as_list(value, name)
+    with _read_for(finding):
+        items = as_list(value, name)
     if len(items) != length:
         fail(message, expected=length, actual=len(items), units="1", **finding)
 
@@ -267,7 +290,8 @@ def expect_close(
     **finding: Any,
 ) -> None:
     """``|actual - expected| <= abs + rel |expected|``; an infinite expectation is met only by itself."""
-    number = as_number(actual, quantity)
+    with _read_for(finding):
+        number = as_number(actual, quantity)
     if math.isinf(expected):
         met = number == expected
     else:
@@ -299,7 +323,8 @@ def expect_array(
         t: times (s) of the rows, if the array is a trajectory; the finding then says when it went wrong.
     """
     wanted = np.asarray(expected, dtype=float)
-    array = as_array(actual, wanted.shape, quantity)
+    with _read_for(finding):
+        array = as_array(actual, wanted.shape, quantity)
     scale = float(np.max(np.abs(wanted), initial=0.0)) if rel else 0.0
     with np.errstate(all="ignore"):
         met = np.abs(array - wanted) <= abs + rel * scale
@@ -391,7 +416,8 @@ def expect_bounded(
     **finding: Any,
 ) -> None:
     """A number lies in [low, high]."""
-    number = as_number(actual, quantity)
+    with _read_for(finding):
+        number = as_number(actual, quantity)
     if not low <= number <= high:
         limits = Tolerance(source=source)
         finding["diagnose"] = _or_not_finite(number, finding.get("diagnose"))
@@ -469,6 +495,27 @@ def expect_untouched(
 
 def _same(given: Any, after: Any) -> bool:
     return bool(np.array_equal(np.asarray(given), np.asarray(after)))
+
+
+# ---
+# Wrong programs of which a table of answers is made.
+
+
+def terms(
+    task: str, family: Callable[..., Callable[..., Any]], wrong: Mapping[str, Mapping[str, Any]]
+) -> Iterator[tuple[str, tuple[str, ...], Callable[..., Any]]]:
+    """The programs of a family with one term wrong, then those with two: task, codes, function of each.
+
+    Args:
+        family: gives a program for its terms, the right one if it is given none.
+        wrong: by term, the code of each mistake and the form that the term has then.
+    """
+    for term, forms in wrong.items():
+        for code, form in forms.items():
+            yield task, (code,), family(**{term: form})
+    for one, other in itertools.combinations(wrong, 2):
+        for (code, form), (second, another) in itertools.product(wrong[one].items(), wrong[other].items()):
+            yield task, (code, second), family(**{one: form, other: another})
 
 
 # ---

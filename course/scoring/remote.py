@@ -55,6 +55,7 @@ class RemoteSubmission:
     Attributes:
         heard: the calls of this check, in order, that returned.
         returned: name and value of the last of the student's functions that returned in this check.
+        asking: name and arguments of the last ``call``; None after calls of another kind.
         asked: names of the functions that this check has used.
         marched: the first march of this check at home, if it made one.
         without: why only what the tasks need was loaded; None where all was.
@@ -95,6 +96,7 @@ class RemoteSubmission:
         self._printed_before = 0
         self._task = ""
         self.returned: tuple[str, Any] | None = None
+        self.asking: tuple[str, tuple[Any, ...]] | None = None
         self.asked: set[str] = set()
         self.marched: March | None = None
         self._left: dict[str, float] = {}  # of each task's share, s
@@ -126,6 +128,7 @@ class RemoteSubmission:
             CheckFailed: a function given to it refused its arguments.
         """
         given = self._kept(name, args) if not kwargs else None
+        self.asking = (name, args)
         with self._asking(name) as worker:
             return self._hear("call", name, given, worker.call(name, *args, **kwargs))
 
@@ -251,7 +254,7 @@ class RemoteSubmission:
         left = min(self._left.setdefault(task, self._cpu_left / 2), self._cpu_left)
         self._task = task
         self._deadline = Deadline(min(most, left), min(WALL * most, self._wall_left))
-        self.returned = None
+        self.returned = self.asking = None
         self.asked, self.marched = set(), None
         self.heard = []
         self._connection.deadline = self._deadline

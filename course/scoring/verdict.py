@@ -308,12 +308,12 @@ def format_value(value: Any, digits: int = _DIGITS) -> str:
 
 
 def format_pair(actual: Any, expected: Any) -> tuple[str, str]:
-    """Two values with as many digits as it takes to tell them apart."""
+    """Two values with as many digits as it takes to tell them apart; 3.0 and 3 as Python writes them."""
     for digits in (_DIGITS, 9, 12, _ALL_DIGITS):
         pair = format_value(actual, digits), format_value(expected, digits)
         if pair[0] != pair[1]:
-            break
-    return pair
+            return pair
+    return (str(actual), str(expected)) if type(actual) is not type(expected) else pair
 
 
 def format_input(values: dict[str, Any]) -> str:
@@ -321,16 +321,38 @@ def format_input(values: dict[str, Any]) -> str:
     return ", ".join(f"{name} = {format_value(value)}" for name, value in values.items())
 
 
+#: A tolerance up to this share of a value is for rounding, and tells a student nothing.
+_ROUNDING = 1e-6
+
+
 def format_tolerance(tolerance: Tolerance, units: str) -> str:
-    """A tolerance and where it comes from: "within 2 % (closed form)"."""
+    """How far a value may be off: "within 2 %"; "" where only rounding is allowed.
+
+    Where the number comes from is for those who read the check, and is not repeated.
+    """
     parts = []
-    if tolerance.rel is not None and math.isfinite(tolerance.rel):
+    if tolerance.rel is not None and math.isfinite(tolerance.rel) and tolerance.rel > _ROUNDING:
         percent = 100 * tolerance.rel
         parts.append(f"{percent:.3g} %" if percent >= 0.01 else f"{tolerance.rel:.1g} of it")
-    if tolerance.abs is not None:
+    if tolerance.abs is not None and tolerance.abs > _ROUNDING:
         parts.append(f"{tolerance.abs:.3g}{unit(units)}")
-    source = f" ({tolerance.source})" if tolerance.source else ""
-    return f"within {' or '.join(parts)}{source}" if parts else tolerance.source
+    return f"within {' or '.join(parts)}" if parts else ""
+
+
+def _limits(check: CheckResult) -> str:
+    """The limits of a number in words; "" where it is not compared with limits."""
+    expected, actual, limits = check.expected, check.actual, check.tolerance
+    if isinstance(expected, dict) and len(expected) == 1 and expected.keys() <= {"at least", "at most"}:
+        return " ".join(f"{side} {format_value(end)}" for side, end in expected.items())
+    if limits is None or limits.rel is not None or limits.abs is not None:
+        return ""
+    match expected, actual:
+        case [int() | float() as low, int() | float() as high], int() | float():
+            if low <= high:
+                return f"from {format_value(low)} to {format_value(high)}"
+            # No number is in between: the limit that this one breaks is what its student can use.
+            return f"at least {format_value(low)}" if actual < low else f"at most {format_value(high)}"
+    return ""
 
 
 def unit(units: str) -> str:
@@ -349,8 +371,10 @@ def numbers_of(check: CheckResult) -> list[tuple[str, str]]:
         if not _is_said(check):
             rows.append((label, f"{actual}{_unit_of(check.actual, units)}"))
     if check.expected is not None:
-        within = f", {format_tolerance(check.tolerance, units)}" if check.tolerance else ""
-        rows.append(("expected", f"{expected}{_unit_of(check.expected, units)}{within}"))
+        allowed = format_tolerance(check.tolerance, units) if check.tolerance else ""
+        limits = _limits(check)
+        shown = f"{limits}{unit(units)}" if limits else f"{expected}{_unit_of(check.expected, units)}"
+        rows.append(("expected", f"{shown}{allowed and ', '}{allowed}"))
     if check.input:
         rows.append(("input", format_input(check.input)))
     if check.first_divergence:
@@ -371,4 +395,6 @@ def _is_said(check: CheckResult) -> bool:
     if check.status != "error" or not isinstance(check.actual, str):
         return False
     name, _, said = check.actual.partition(": ")
-    return f"raised {name}" in check.message and said.rstrip(" .") in check.message
+    first = said.partition("\\n")[0].rstrip(" .")  # of several lines the first may do
+    repeated = said.rstrip(" .") in check.message or check.message.endswith(f": {first}.")
+    return f"raised {name}" in check.message and repeated

@@ -35,7 +35,7 @@ def test_plane_contact(submission, draw):
         "plane_contact",
         draw,
         "Touching, normal or depth of a sphere and a plane is wrong.",
-        "The centre is (x - point) . normal above the plane, below it if negative; depth is r less that.",
+        "The centre is (x - point) . normal above the plane. The depth is r less that.",
     )
 
 
@@ -62,7 +62,7 @@ def test_impulse_separating(submission, draw):
         bundles.IMPULSE,
         "impulse_separating",
         draw,
-        "The impulse of this pair is wrong: a is left of b, so they approach, and get one, where va > vb.",
+        "The impulse of this pair is wrong. a is left of b: they approach, and get one, only where va > vb.",
         "Return 0.0 unless va > vb.",
     )
 
@@ -97,7 +97,7 @@ def test_resolve_separating(submission, draw):
         bundles.RESOLVE,
         "resolve_separating",
         draw,
-        "The velocities of this pair are wrong: they approach where (va - vb) . n > 0, and only then change.",
+        "The velocities of this pair are wrong. They approach where (va - vb) . n > 0, and only then change.",
         "Return the velocities as they came unless (va - vb) . n > 0.",
     )
 
@@ -132,7 +132,7 @@ def test_friction_absent(submission, draw):
         bundles.FRICTION,
         "friction_absent",
         draw,
-        "Where nothing rubs (no coefficient, no slip, no impact), or next to it, the velocities are wrong.",
+        "The velocities of this pair, with little friction or none, are wrong.",
         "Friction needs mu > 0, a slip and an approach; without one of them the result is that of `resolve`.",
     )
 
@@ -167,8 +167,8 @@ def test_moment_never(submission, draw):
         bundles.MOMENT,
         "moment_never",
         draw,
-        "The answer for this pair is wrong: a time where the spheres touch within the step, else None.",
-        "None if the centres do not come nearer, if the quadratic has no real root, or if t > dt.",
+        "The answer for this pair is wrong.",
+        "None if they do not approach, if there is no real root, or if t > dt; otherwise a time.",
     )
 
 
@@ -222,7 +222,7 @@ def test_head_on_mended(submission, draw):
             t_end,
             h,
             "The two balls do not move as they should.",
-            "Straight lines until the surfaces touch, the impact at that very instant, straight lines after.",
+            "Straight lines until the surfaces touch, the impact at that instant, straight lines after it.",
         )
 
 

@@ -18,7 +18,7 @@ twins = kit.companion("digital-twin", "twin_bundles")
 
 #: The std of 4000 samples scatters by 1.1 %, so this is five times that.
 _SPREAD = 0.06
-_SPREAD_SOURCE = "five times the scatter of a std from 4000 samples"
+_SPREAD_SOURCE = "the README's"
 
 # Checks of no points look at clauses of the README that hidden checks score, on other numbers.
 
@@ -65,7 +65,7 @@ def test_imu_bias(submission):
 
 
 def _expect_bias(submission, measured, bias, true, step, given):
-    ask = lambda: sensors.sensors.of_imu(submission, bias_first=True)  # noqa: E731
+    ask = lambda: sensors.of_quiet_imu(submission)  # noqa: E731
     kit.expect_close(
         bias[0],
         given["bias0"],
@@ -190,7 +190,7 @@ def test_lidar_nearest(submission):
         input={"pose": [0.0, 0.0, 0.0], "segments": walls, "angles": angles, "r_max": 5.0, "sigma": 0.0},
         message="With several walls, without noise, a distance is wrong.",
         help="Take the smallest of all hits; a hit is ahead of the robot and between the ends of its wall.",
-        diagnose=lambda: sensors.scanners.of_lidar(submission, noisy=False),
+        diagnose=lambda: sensors.scanners.of_straight_lidar(submission, noisy=False),
     )
 
 

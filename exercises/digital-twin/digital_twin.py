@@ -1,7 +1,7 @@
 """A digital twin of a mobile robot: its sensors, its actuators, and the exchange in both directions.
 
 SI units and radians throughout. Replace each ``raise`` with your code; keep the names and the arguments.
-Start with ``encoder`` or ``backlash``: two lines each. README.md has the formulae and an example for each.
+Start with ``encoder``, then ``backlash``: two lines each. README.md has the formulae, with examples.
 """
 
 import math  # noqa: F401 - yours to use

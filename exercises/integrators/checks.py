@@ -134,7 +134,7 @@ def _expect_samples(submission, omega, spiral, start, steps):
     step = cases.turn(shrink * math.cos(angle), shrink * math.sin(angle), h * omega)
     value = submission.call("integrate", step, systems.Oscillator(omega), q0, v0, n * h, h)
     given = {"step": "a known linear map", "q0": q0, "v0": v0, "t_end": n * h, "h": h}
-    t, q, v = kit.as_tuple(value, ("t", "q", "v"))
+    t, q, v = cases.histories(value)
     t = kit.as_vector(t, None, "t")
     kit.expect_length(
         t,
@@ -196,7 +196,7 @@ def test_integrate_counts(submission, draw):
                 submission, np.array([1.0]), np.array([0.0]), t_end
             ),
         )
-        t, q, v = kit.as_tuple(value, ("t", "q", "v"))
+        t, q, v = cases.histories(value)
         for rows, name in ((t, "t"), (q, "q"), (v, "v")):
             kit.expect_length(
                 rows,
@@ -298,19 +298,12 @@ def test_stable_step_verlet(submission, draw):
     )
     values = submission.call_each("max_stable_step", [(verlet, omega) for omega in omegas])
     for value, omega in zip(values, omegas, strict=True):
-        kit.expect_close(
+        cases.expect_limit(
+            submission,
             value,
-            2.0 / omega,
-            rel=0.01,
-            source="the contract's 1 %",
-            quantity="largest stable step",
-            units="s",
+            (verlet, omega, 2.0),
             input={"step": "velocity Verlet's map on a spring", "omega": omega},
-            message="The largest stable step of a known one-step map is wrong.",
-            help="Build the map's matrix on (q, v/omega) from two calls and look at its eigenvalues.",
-            diagnose=lambda value=value, omega=omega: probes.of_stability(
-                submission, value, verlet, omega, 2.0
-            ),
+            message="The largest stable step of velocity Verlet is wrong.",
         )
 
 
@@ -334,18 +327,12 @@ def test_stable_step_ends(submission, draw):
     maps += [(cases.slow_growth(beyond), 1.3, math.inf, "one that is unstable beyond 10/omega only")]
     values = submission.call_each("max_stable_step", [(step, omega) for step, omega, _, _ in maps])
     for value, (step, omega, limit, kind) in zip(values, maps, strict=True):
-        kit.expect_close(
+        cases.expect_limit(
+            submission,
             value,
-            limit / omega,
-            rel=0.01,
-            source="the contract's 1 %",
-            quantity="largest stable step",
-            units="s",
+            (step, omega, limit),
             input={"step": kind, **step.params(), "omega": omega},
             message="The largest stable step of a made-up map is wrong.",
-            help="Walk up from 0.05/omega in increments of less than 0.25/omega; stable means a spectral "
-            "radius of at most 1 + 1e-8.",
-            diagnose=lambda case=(value, step, omega, limit): probes.of_stability(submission, *case),
         )
 
 
@@ -391,7 +378,7 @@ def test_integrate_arguments(submission):
         message="integrate fails on an initial state of whole numbers.",
         diagnose=lambda: probes.of_whole_start(submission, args),
     )
-    _, q, _ = kit.as_tuple(inspected.value, ("t", "q", "v"))
+    _, q, _ = cases.histories(inspected.value)
     q = kit.as_array(q, (n + 1, 2), "q")
     kit.expect_true(
         not np.array_equal(q, np.trunc(q)),
@@ -455,5 +442,5 @@ def _expect_order(submission, task, counts, within, draw):
         input=problem.input,
         message="On a spring that is pushed in time, the error does not shrink with the step as it should.",
         help="The acceleration depends on t here: which time does each evaluation belong to?",
-        diagnose=lambda: probes.of_step(submission, task, problem.run(counts[0])),
+        diagnose=lambda: probes.of_order_measured(submission, task, hs, errors, problem.run(counts[0])),
     )

@@ -91,7 +91,7 @@ def test_consistency_band_table(submission):
             setting,
             submission.call("consistency_band", *setting),
             [_TABLE[dof * count, p] / count for p in (alpha / 2, 1 - alpha / 2)],
-            source="the contract's 1 %",
+            source="the README's 1 %",
             help="The sum over the runs is chi-square with dof * runs degrees of freedom: take its "
             "quantiles at alpha/2 and 1 - alpha/2, and divide both by runs.",
         )

@@ -58,8 +58,8 @@ FACTORS = (
     ("RESTITUTION_HALVED", lambda e: 1 + e / 2),
     ("IMPULSE_HALVED", lambda e: (1 + e) / 2),
     ("RESTITUTION_AS_ENERGY", lambda e: 1 + math.sqrt(e)),
-    ("RESTITUTION_IGNORED", lambda e: 2.0),
     ("RESTITUTION_IGNORED", lambda e: 1.0),
+    ("RESTITUTION_IGNORED", lambda e: 2.0),
     ("ONLY_THE_REBOUND", lambda e: e),
     ("RESTITUTION_SIGN_FLIPPED", lambda e: 1 - e),
 )
@@ -295,6 +295,16 @@ _BY_ONE = (
 )
 
 
+def _without_masses(share, **terms):
+    """Each velocity changes by a part of (1 + e) s, whatever the masses are."""
+    return _impact(give=lambda ma, mb: share, kick=lambda j, m, other: j, **terms)
+
+
+def _without_parentheses(power):
+    """(1 + e) s / (1 / ma) + 1 / mb, or with power -1 (1 + e) s / 1 / ma + 1 / mb."""
+    return lambda ma, mb, va, vb, e: (1 + e) * (va - vb) * ma**power + 1 / mb if va > vb else 0.0
+
+
 def _one_after_the_other(ma, mb, va, vb, n, e, mu=0.0):
     """The impulse on b is computed with a's new velocity."""
     va, vb, n = _array(va), _array(vb), _array(n)
@@ -386,6 +396,21 @@ def _mixed(twice, four, over):
         room = b * b - four * a * c
         t = (-b - math.sqrt(max(room, 0.0))) / (over * a)
         return t if room >= 0 and 0 <= t <= dt else None
+
+    return time_of_impact
+
+
+def _without_root(share):
+    """What stands under the square root is used as it is, times ``share``."""
+
+    def time_of_impact(xa, va, ra, xb, vb, rb, dt):
+        x, v = _array(xb) - _array(xa), _array(vb) - _array(va)
+        a, b, c = float(v @ v), float(x @ v), float(x @ x) - (ra + rb) ** 2
+        if b >= 0 or c <= 0:
+            return 0.0 if b < 0 else None
+        room = b * b - a * c
+        t = (-b - share * room) / a
+        return t if room >= 0 and t <= dt else None
 
     return time_of_impact
 
@@ -500,6 +525,7 @@ _FRICTIONS = {
         ("FRICTION_SPINS", lambda p, s, v, g, mu: -min(mu * p, v / g / 3) * _unit(s)),
         ("FRICTION_STOPS_TWICE_THE_SLIP", lambda p, s, v, g, mu: -min(mu * p, 2 * v / g) * _unit(s)),
         ("FRICTION_ALL_OR_NOTHING", lambda p, s, v, g, mu: -s / g if mu * p >= v / g else 0.0 * s),
+        ("FRICTION_NOT_UNIT", lambda p, s, v, g, mu: -min(mu * p, v / g) * s),
         ("FRICTION_WITHOUT_BLOW", lambda p, s, v, g, mu: -min(mu, v / g) * _unit(s)),
     ),
     "friction_shares": tuple(
@@ -719,6 +745,10 @@ OTHERS = {
         (("NORMAL_REVERSED",), _plane(gap=lambda x, p, n: -float((x - p) @ n), normal=lambda n: -n)),
     ],
     "impulse_1d": [
+        (("IMPULSE_AS_VELOCITY",), lambda ma, mb, *rest: _line()(ma, mb, *rest) / ma),
+        (("IMPULSE_AS_VELOCITY",), lambda ma, mb, *rest: _line()(ma, mb, *rest) / mb),
+        (("IMPULSE_AS_VELOCITY",), lambda ma, mb, *rest: _line()(ma, mb, *rest) * _give(ma, mb)),
+        *((("PARENTHESES_MISSING",), _without_parentheses(first)) for first in (1, -1)),
         (("ONLY_HEAD_ON",), _strikes_if(lambda va, vb: va > 0 > vb)),
         (("ONLY_HEAD_ON",), _strikes_if(lambda va, vb: va * vb <= 0)),
         *((("APPROACH_BY_ONE_BODY",), _approach_by(meets)) for meets in _BY_ONE),
@@ -729,6 +759,7 @@ OTHERS = {
         (("SPEEDS_NOT_RELATIVE",), _speed_of(lambda va, vb: abs(va) + abs(vb))),
     ],
     "resolve": [
+        *((("MASSES_IGNORED",), _without_masses(share)) for share in (1.0, 2.0)),
         (("ONLY_HEAD_ON",), _from_both_sides(_impact())),
         *((("APPROACH_BY_ONE_BODY",), _approach_in_space(meets)) for meets in _BY_ONE),
         (("IMPULSE_COMPUTED_TWICE",), _one_after_the_other),
@@ -741,6 +772,7 @@ OTHERS = {
     ],
     "resolve_with_friction": [
         (("APPROACH_REVERSED",), _reversed(_impact(friction=_coulomb))),
+        *((("MASSES_IGNORED",), _without_masses(share, friction=_coulomb)) for share in (1.0, 2.0)),
         (("ONLY_HEAD_ON",), _from_both_sides(_impact(friction=_coulomb))),
         *((("APPROACH_BY_ONE_BODY",), _approach_in_space(meets, friction=_coulomb)) for meets in _BY_ONE),
         (("FRICTION_WITHOUT_REBOUND",), _friction_without_rebound),
@@ -764,6 +796,7 @@ OTHERS = {
             (("QUADRATIC_MIXED",), _mixed(*form))
             for form in ((1, 4, 2), (1, 1, 2), (1, 4, 1), (2, 1, 1), (2, 1, 2))
         ),
+        *((("ROOT_TERM_WRONG",), _without_root(share)) for share in (1.0, 2.0)),
         (("MISSES_COUNT_AS_HITS",), _head_on_always),
         (("MISSES_COUNT_AS_HITS",), _gap_over_speed),
         (("IMPACT_IN_THE_PAST",), _moment(past=True, overlap="ignored")),

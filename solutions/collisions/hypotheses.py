@@ -68,10 +68,12 @@ def _head_on(
     slow=None,
     waits=lambda gap, va, vb: max(gap, 0.0) / (va - vb),
     leaves=lambda h, wait: h - wait,
+    old=(),
 ):
     """``late``: the impact comes at the sample after; ``rest``: what is flown of the rest of the step;
 
-    ``overlaps``: it acts only if the balls overlap at the end of the step; ``first``: keeps row 0.
+    ``old``: which balls fly it with their old velocities; ``overlaps``: it acts only if the balls overlap at
+    the end of the step; ``first``: keeps row 0.
     """
 
     def collide(m, va, vb, e):
@@ -95,9 +97,11 @@ def _head_on(
             elif meets:
                 wait = waits(gap, va, vb)
                 xa, xb = xa + va * wait, xb + vb * wait
+                before = va, vb
                 va, vb = collide(m, va, vb, e)
                 left = leaves(h, wait) * rest
-                xa, xb = xa + va * left, xb + vb * left
+                on = [before[ball] if ball in old else now for ball, now in enumerate((va, vb))]
+                xa, xb = xa + on[0] * left, xb + on[1] * left
             else:
                 xa, xb = xa + va * h, xb + vb * h
             rows.append((xa, xb, va, vb))
@@ -110,6 +114,7 @@ def _head_on(
 
 
 _HEAD_ON = {
+    "old": (("OLD_VELOCITY_AFTER", (0,)), ("OLD_VELOCITY_AFTER", (1,))),
     "factor": formulas.FACTORS,
     "give": formulas.GIVES,
     "kick": formulas.TERMS["resolve"][2]["kick"],

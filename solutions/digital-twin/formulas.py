@@ -186,6 +186,7 @@ def _lidar(
     between=lambda share: (share >= 0) & (share <= 1),
     pick=lambda along, hit: np.min(np.where(hit, along, np.inf), axis=1),
     distance=lambda nearest, angle: nearest,
+    reads=lambda along, share, cross, length: along,
     reach=lambda r_max: r_max,
     none=lambda r_max: r_max,
     std=lambda sigma, nearest: sigma,
@@ -193,7 +194,10 @@ def _lidar(
     floor=lambda noisy, r_max: np.maximum(noisy, 0.0),
     on_none=False,
 ):
-    """``reach``: how far a hit counts; ``none``: what is read without one; ``on_none``: with noise on it."""
+    """``reach``: how far a hit counts; ``none``: what is read without one; ``on_none``: with noise on it.
+
+    ``reads``: what counts as the distance of a hit along its beam and at its share of the wall.
+    """
 
     def lidar(pose, segments, angles, r_max, sigma, rng):
         walls = np.asarray(segments, dtype=float).reshape(-1, 2, 2)
@@ -205,6 +209,8 @@ def _lidar(
             cross = dx * wy - dy * wx
             along, share = (ax * wy - ay * wx) / cross, (ax * dy - ay * dx) / cross
         hit = (cross != 0) & ahead(along) & between(share) & np.isfinite(along)
+        with np.errstate(all="ignore"):
+            along = reads(along, share, cross, np.hypot(wx, wy))
         nearest = distance(pick(along, hit), angles)
         found = np.isfinite(nearest) & (nearest <= reach(r_max))
         draws = numbers(rng, len(angles))
@@ -274,6 +280,11 @@ _LIDAR = {
     "distance": (
         ("DISTANCE_SQUARED", lambda nearest, angle: nearest**2),
         ("DISTANCE_ALONG_HEADING", lambda nearest, angle: nearest * np.cos(angle)),
+    ),
+    "reads": (
+        ("DISTANCE_ACROSS", lambda along, share, cross, length: along * np.abs(cross) / length),
+        ("DISTANCE_ALONG_WALL", lambda along, share, cross, length: share),
+        ("DISTANCE_ALONG_WALL", lambda along, share, cross, length: share * length),
     ),
     "reach": (("BEYOND_RANGE", lambda r_max: np.inf),),
     "none": (

@@ -24,7 +24,6 @@ def _motor(
     speed=lambda w, u_max: w,
     gives=lambda w, u, share: w + share * (u - w),
     ends=lambda w, u_max: w,
-    clips_first=False,
     holds=None,
 ):
     """``speed``: what counts as the speed before; ``holds``: what becomes of it inside the dead band."""
@@ -32,7 +31,7 @@ def _motor(
     def motor_step(w, u, dt, tau, u_max, deadband):
         if holds is not None and abs(u) <= deadband:
             return holds(w)
-        u = keep(clip(u, u_max), deadband) if clips_first else clip(keep(u, deadband), u_max)
+        u = clip(keep(u, deadband), u_max)
         return ends(gives(speed(w, u_max), u, share(dt, tau)), u_max)
 
     return motor_step
@@ -45,7 +44,7 @@ _MOTOR = {
         ("DEADBAND_ONE_SIDED", lambda u, dead: 0.0 if 0 <= u <= dead else u),
         ("DEADBAND_SUBTRACTED", lambda u, dead: math.copysign(max(abs(u) - dead, 0.0), u)),
         ("DEADBAND_EDGE", lambda u, dead: 0.0 if abs(u) < dead else u),
-        ("DEADBAND_HALVED", lambda u, dead: 0.0 if abs(u) <= dead / 2 else u),
+        ("DEADBAND_WIDTH", lambda u, dead: 0.0 if abs(u) <= dead / 2 else u),
         ("DEADBAND_REVERSED", lambda u, dead: u if abs(u) <= dead else 0.0),
     ),
     "clip": (
@@ -413,10 +412,11 @@ _COMMAND = {
 }
 
 #: With a large enough correction, the friction on the twin's own speed ends at the target all the same.
+_WRONG_WAY = {term: forms for term, forms in _COMMAND.items() if term != "gain"}
 _CORRECTED = _COMMAND | {"speed": tuple(form for form in _COMMAND["speed"] if form[0] != "USES_TWIN_SPEED")}
 
 TERMS = {
-    "motor_step": [(_motor, {}, _MOTOR), (_motor, {"clips_first": True}, _MOTOR)],
+    "motor_step": [(_motor, {}, _MOTOR)],
     "backlash": [(_play, {}, _PLAY)],
     "delay_line": [(_delay, {}, _DELAY)],
     "diff_drive_step": [(_arc, {}, _DRIVE), *((_arc, base, _STRAIGHT) for base in (_EULER, _TURNED_FIRST))],
@@ -424,6 +424,7 @@ TERMS = {
     "command": [
         (_command, {}, _COMMAND),
         *((_command, {"gain": gain}, _CORRECTED) for gain in (0.5, 1.0, 2.0)),
+        *((_command, {"gain": gain}, _WRONG_WAY) for gain in (-0.5, -1.0, -2.0)),
     ],
 }
 #: Programs that are wrong in another way, with their codes.
@@ -434,6 +435,7 @@ OTHERS = {
         *((("DELAY_WHOLE_SAMPLES", "DELAY_HOLDS_FIRST"), _held(count)) for count in _COUNTS),
         *((("DELAY_WRAPS",), _rolled(count)) for count in _COUNTS),
         (("DELAY_ADVANCES",), _at_end),
+        (("DELAY_COVERS_START",), lambda x, dt, latency: np.where(dt * np.arange(len(x)) >= latency, x, 0.0)),
         (("DELAY_WRAPS",), _circle),
     ],
     "diff_drive_step": [

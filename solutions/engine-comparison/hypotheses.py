@@ -325,7 +325,7 @@ _STABLE = (
     ("LIMIT_ASSUMED", lambda engine, info: math.sqrt(2) / info["omega"]),
     ("RETURNS_Z", _of("max_stable_step", lambda h, info: h * info["omega"])),
     ("STABLE_BY_DETERMINANT", _search(lambda m: abs(np.linalg.det(m)))),
-    ("STABLE_BY_TRACE", _search(lambda m: abs(np.trace(m)) / 2)),
+    *(("STABLE_BY_TRACE", _search(lambda m: abs(np.trace(m)) / 2, walk=walk)) for walk in (0.5, 0.25, 0.05)),
     ("EIGENVALUES_WITHOUT_MODULUS", _search(lambda m: np.linalg.eigvals(m).real.max())),
     ("EIGENVALUES_WITHOUT_MODULUS", _search(lambda m: abs(np.linalg.eigvals(m).real).max())),
     ("SMALLEST_EIGENVALUE", _search(lambda m: min(abs(np.linalg.eigvals(m))))),

@@ -107,6 +107,8 @@ def _runge_kutta(
     reach=(0, 0.5, 0.5, 1),
     times=(0, 0.5, 0.5, 1),
     source=(0, 0, 1, 2),
+    source_v=None,
+    reach_v=None,
     view=None,
     gives=lambda q, v, dq, dv: (q + dq, v + dv),
     sign=1.0,
@@ -115,6 +117,7 @@ def _runge_kutta(
 ):
     """The family around RK4: stage i is ``reach[i] * h`` along slope ``source[i]``, at ``times[i]``.
 
+    ``reach_v`` and ``source_v``: of the velocity, where they are others than those of the position.
     ``view(q, v, q_i, v_i)`` is what accel and dq see of stage i: position, velocity, slope of q.
     """
     view = view or (lambda _q, _v, q_i, v_i: (q_i, v_i, v_i))
@@ -122,8 +125,9 @@ def _runge_kutta(
     def step(accel, t, q, v, h):
         slopes = [(np.zeros_like(q), np.zeros_like(v))]
         for i in range(4):
-            dq, dv = slopes[source[i] + 1] if i else slopes[0]
-            q_i, v_i, slope = view(q, v, q + reach[i] * h * dq, v + reach[i] * h * dv)
+            dq = slopes[source[i] + 1 if i else 0][0]
+            dv = slopes[(source_v or source)[i] + 1 if i else 0][1]
+            q_i, v_i, slope = view(q, v, q + reach[i] * h * dq, v + (reach_v or reach)[i] * h * dv)
             slopes.append((slope, sign * accel(t + times[i] * h, q_i, v_i)))
         sums = [
             sum(w * k[part] for w, k in zip(ws, slopes[1:], strict=True))
@@ -166,6 +170,12 @@ def _sizes(right):
     forms += [("FACTOR_WRONG", lambda h, k=k: k * right * h) for k in (0.5, 2.0, 1 / 3, 1.5, 0.25, 4.0)]
     forms += [("WRONG_SIGN", lambda h: -right * h), ("TERM_MISSING", lambda h: 0.0)]
     return tuple(forms)
+
+
+def _of_drift():
+    """Other factors of half a drift."""
+    missing = {"TERM_MISSING": "DRIFT_HALF_MISSING"}
+    return tuple((missing.get(code, code), form) for code, form in _sizes(0.5))
 
 
 _TIMES = tuple(("STAGE_TIMES_AHEAD", shift) for shift in (1.0, 0.5, 2.0)) + (("STAGE_TIMES_BEHIND", -1.0),)
@@ -377,9 +387,9 @@ TERMS = {
             {},
             {
                 "gives": _GIVES,
-                "before": _sizes(0.5),
+                "before": _of_drift(),
                 "kick": _sizes(1.0),
-                "after": _sizes(0.5),
+                "after": _of_drift(),
                 "time": (("STAGE_TIMES_FROZEN", 0.0), ("STAGE_TIMES_WRONG", 1.0)),
                 "late": (("DRIFTS_WITH_OLD_VELOCITY", "old"), ("DRIFTS_WITH_MEAN_VELOCITY", "mean")),
                 "sign": _SIGN,
@@ -433,6 +443,27 @@ def _moved_by_new_velocity(accel, t, q, v, h):
     return q + h * v_next, v_next
 
 
+def _half_a_drift(accel, t, q, v, h):
+    """Drift, kick, drift whose second half starts again from the old position."""
+    v_next = v + h * np.asarray(accel(t + h / 2, q + h / 2 * v, v))
+    return q + h / 2 * v_next, v_next
+
+
+def _half_stages():
+    """RK4 with a stage of which only the position, or only the velocity, is wrong."""
+    kinds = (
+        ("STAGES_NOT_CHAINED", "source", ((0, 0, 0, 2), (0, 0, 1, 1), (0, 0, 1, 0), (0, 0, 0, 0))),
+        ("HALF_STEP_MISSING", "reach", ((0, 1, 0.5, 1), (0, 0.5, 1, 1), (0, 1, 1, 1))),
+        ("LAST_STAGE_AT_HALF", "reach", ((0, 0.5, 0.5, 0.5),)),
+        ("STAGE_NOT_MOVED", "reach", ((0, 0, 0.5, 1), (0, 0.5, 0, 1), (0, 0.5, 0.5, 0))),
+    )
+    right = {"source": (0, 0, 1, 2), "reach": (0, 0.5, 0.5, 1)}
+    for code, term, forms in kinds:
+        for form in forms:
+            yield (code,), _runge_kutta(**{term: form, f"{term}_v": right[term]})
+            yield (code,), _runge_kutta(**{f"{term}_v": form})
+
+
 OTHERS = {
     "explicit_euler_step": [
         (("FIRST_COMPONENT_ONLY",), _one_component(_EULER)),
@@ -457,6 +488,7 @@ OTHERS = {
         (("FIRST_COMPONENT_ONLY",), _one_component(_DKD)),
         (("VERLET_IS_EULER",), _EULER),
         (("ONE_KICK_HALF_WAY",), _one_kick_half_way),
+        (("DRIFT_HALF_MISSING",), _half_a_drift),
         (("VERLET_IS_SEMI_IMPLICIT",), _KICK_DRIFT),
         (("VERLET_IS_SEMI_IMPLICIT",), _DRIFT_KICK),
         (("VERLET_IS_RK4",), _RK4),
@@ -488,5 +520,6 @@ OTHERS = {
         (("RK4_IS_SEMI_IMPLICIT",), _KICK_DRIFT),
         (("HALF_STEP_MISSING",), _runge_kutta(reach=(0, 1, 1, 1), times=(0, 1, 1, 1))),
         (("LAST_STAGE_AT_HALF",), _runge_kutta(reach=(0, 0.5, 0.5, 0.5), times=(0, 0.5, 0.5, 0.5))),
+        *_half_stages(),
     ],
 }

@@ -231,6 +231,7 @@ def _slopes():
         yield on("ORDER_MEAN_OF_PAIRS", by_size(mean))
     yield on("ORDER_MEAN_OF_PAIRS", lambda x, y: float(np.mean(np.diff(y)) / np.mean(np.diff(x))))
     yield on("HALVING_ASSUMED", lambda x, y: float(np.mean(-np.diff(y)) / np.log(2)))
+    yield on("HALVING_ASSUMED", lambda x, y: float(np.mean(np.diff(y[np.argsort(x)])) / np.log(2)))
     yield on("HALVING_ASSUMED", lambda x, y: float((y[0] - y[-1]) / np.log(2)))
     yield on("HALVING_ASSUMED", lambda x, y: float((y[0] - y[1]) / np.log(2)))
     yield on("PAIRS_BROKEN", lambda x, y: _slope(np.sort(x), np.sort(y)))

@@ -84,7 +84,7 @@ _MOST_PAIRS = 260
 def build(catalog: Catalog, exercise: Exercise) -> Path | None:
     """Write the table of an exercise; None if it is there already, has no words or there are no questions.
 
-    Beside its mutants an exercise may have more wrong programs, in ``hypotheses.py``; a warm-up has none.
+    Beside its mutants an exercise may have more wrong programs, in ``hypotheses.py``.
     """
     needed = exercise.readme_path.with_name(WORDS), companion_path(exercise.id, "questions")
     if not all(path.is_file() for path in needed):

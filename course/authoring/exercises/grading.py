@@ -275,7 +275,7 @@ class LocalSubmission:
         self.seed = seed
         self.returned: tuple[str, Any] | None = None
         self.asked: set[str] = set()
-        self.marched = None
+        self.asking = self.marched = None
         self.faults, self.without = (), None
         self.used = 0.0
         self.heard: list[Any] = []

@@ -425,7 +425,7 @@ def _run_unseen(
         made["csv"] = table(done)
     if film is not None:
         with console.working("Drawing"):
-            made |= {kind: getattr(film, kind)(_FPS) for kind in ("gif", "mp4") if kind in targets.paths}
+            made |= {kind: getattr(film, kind)(_FPS) for kind in ("mp4", "gif") if kind in targets.paths}
             if "png" in targets.paths:
                 made["png"] = film.png(*made["picture"])
     told = _sentences(done)

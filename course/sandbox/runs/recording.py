@@ -6,14 +6,16 @@ what is replayed), a line for each thing done by hand, a line with a hash every 
 
 from __future__ import annotations
 
+import contextlib
 import io
 import math
 import platform
 import shutil
 import subprocess
+from collections import deque
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import IO, TYPE_CHECKING, Any, assert_never, cast
 
 import msgspec
 
@@ -151,13 +153,19 @@ class Recording:
         return first, began
 
     def replayed(
-        self, count: int, tick: int, version: int, ready: Callable[[World, Recording], None]
+        self,
+        count: int,
+        tick: int,
+        version: int,
+        ready: Callable[[World, Recording], None],
+        halt: Callable[[], float],
     ) -> Iterator[float]:
         """Make the moment after ``tick`` steps and the first ``count`` inputs again, in a world of its own.
 
         Args:
             version: the first for the new world.
             ready: called with the new world and its recording, before the first step.
+            halt: tells the next step after which it has to yield.
 
         Yields:
             how far it is, 0 to 1, every few steps.
@@ -173,7 +181,7 @@ class Recording:
         for one in [*self.inputs[first:count], None]:
             until = tick if one is None else one.tick
             while world.ticks < until:
-                world.step(min(_SLICE, until - world.ticks))
+                world.step(int(min(_SLICE, until - world.ticks, max(1, halt() - world.ticks))))
                 yield (world.ticks - began) / max(1, tick - began)
             if one is not None:
                 act(world, one)
@@ -400,10 +408,13 @@ class Film:
         return picture
 
     def gif(self, fps: float = 25.0) -> bytes:
-        """The film as an animated GIF that repeats."""
+        """The film as an animated GIF that repeats; it takes the frames, so that none is in memory twice."""
         # The format counts hundredths of a second.
         pause = max(2, round(100.0 / fps)) * 10
-        first, *rest = self._some()
+        frames = deque(self._some())
+        self._frames.clear()
+        first = frames.popleft()
+        rest = (frames.popleft() for _ in range(len(frames)))
         data = io.BytesIO()
         first.save(
             data,
@@ -428,12 +439,17 @@ class Film:
         command = [ffmpeg(), "-v", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"]
         command += ["-s", f"{self.size[0]}x{self.size[1]}", "-r", f"{fps:g}", "-i", "-"]
         command += ["-c:v", "libx264", "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-y"]
-        raw = b"".join(frame.convert("RGB").tobytes() for frame in self._some())
-        with tempfile.TemporaryDirectory() as folder:
+        with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as said:
             out = Path(folder) / "film.mp4"
-            done = subprocess.run([*command, str(out)], input=raw, capture_output=True, check=False)
-            if done.returncode or not out.is_file():
-                lines = done.stderr.decode(errors="replace").strip().splitlines()
+            with subprocess.Popen([*command, str(out)], stdin=subprocess.PIPE, stderr=said) as running:
+                with contextlib.suppress(OSError):  # it stopped reading, and says why
+                    for frame in self._some():
+                        cast("IO[bytes]", running.stdin).write(frame.convert("RGB").tobytes())
+                with contextlib.suppress(OSError):
+                    running.communicate()
+            if running.returncode or not out.is_file():
+                said.seek(0)
+                lines = said.read().decode(errors="replace").strip().splitlines()
                 raise MissingCapabilityError(
                     f"ffmpeg could not make the film: {lines[-1] if lines else 'it said nothing'}.",
                     help="Write a --gif instead.",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -314,7 +315,10 @@ def sentence(event: Event) -> str:
         return f"{when}{_the(event.a)} comes to rest at x = {_place(event.x)} m, y = {_place(event.y)} m."
     if event.kind == "gone":
         return f"{when}{_the(event.a)} has left the scene."
-    return f"{when}{event.text}."
+    text = event.text
+    for name in {event.a, event.b} - {""}:
+        text = re.sub(rf"(?<=\b){re.escape(name)}(?![\w-])", _the(name), text)
+    return f"{when}{text}."
 
 
 def _place(value: float) -> str:

@@ -6,15 +6,17 @@ any moment at once.
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable
+from threading import Thread
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from course.errors import UsageError
-from course.sandbox.runs.recording import Film, ffmpeg
+from course.errors import CourseError, UsageError
+from course.sandbox.runs.recording import Film, Recording, ffmpeg
 from course.sandbox.scene.loading import Chosen
 from course.sandbox.scene.model import Part, Scene
 from course.sandbox.world.world import Snapshot, World
@@ -73,14 +75,12 @@ def shot_of(kept: Frame) -> Snapshot:
     hand = (numbers[7], numbers[8], numbers[9], numbers[10]) if kept[6] else None
     return Snapshot(
         t=float(kept[2]),
-        tick=0,
         version=int(kept[1]),
         x=x,
         y=y,
         angle=angle,
         vx=vx,
         vy=vy,
-        spin=np.zeros(count),
         joints=ends,
         hand=hand,
     )
@@ -91,14 +91,18 @@ class Tape:
 
     Args:
         world: whose; from now on.
+        recording: what is done to it.
 
     Attributes:
-        frames, times, ticks: the frames, with the simulated time in s and the step of each.
+        frames, times, ticks, sums: the frames, with the simulated time in s, the step and the sums of the
+            account of each.
         casts: the bodies, by the version that a frame names.
         marks: times of the contacts that are worth a mark, in s.
     """
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: World, recording: Recording) -> None:
+        self.recording = recording
+        self.sums: list[tuple[float, ...]] = []
         self.frames: list[Frame] = []
         self.times: list[float] = []
         self.ticks: list[int] = []
@@ -131,15 +135,16 @@ class Tape:
         world = self._world
         if self.ticks and self.ticks[-1] == world.ticks:
             self._bytes -= self.frames.pop().nbytes
-            self.times.pop()
-            self.ticks.pop()
-        kept = frame(world)
-        kept[23] = 1.0
-        self.frames.append(kept)
+            for kept in (self.times, self.ticks, self.sums):
+                kept.pop()
+        shown = frame(world)
+        shown[23] = 1.0
+        self.frames.append(shown)
+        self.sums.append(world.sums)
         self.times.append(world.t)
         self.ticks.append(world.ticks)
         self.casts[world.version] = world.parts
-        self._bytes += kept.nbytes
+        self._bytes += shown.nbytes
         if self._bytes > _BYTES or len(self.frames) > 2 * _WHOLE:
             self._thin()
 
@@ -202,9 +207,42 @@ class Tape:
     def _thin(self) -> None:
         """Of the older half every other frame goes."""
         half = len(self.frames) // 2 // 2 * 2
-        for kept in (self.frames, self.times, self.ticks):
+        for kept in (self.frames, self.times, self.ticks, self.sums):
             del kept[1:half:2]
         self._bytes = sum(one.nbytes for one in self.frames)
+
+    def shared(self, there: Recording, count: int, before: float) -> int:
+        """The last frame that shows what the first inputs of another recording lead to as well, as an index.
+
+        Args:
+            there: the other one, and how many of its inputs count.
+            before: the latest time, in s.
+        """
+        inputs, run = there.inputs[:count], there.run_at(count)[0]
+        began, mine = inputs[run - 1].tick if run else 0, self.recording.inputs
+        if self.ticks[0] != began or self.recording.head != there.head:
+            return 0
+        same = next((i for i, pair in enumerate(zip(inputs, mine, strict=False)) if pair[0] != pair[1]), None)
+        same = min(len(inputs), len(mine)) if same is None else same
+        ends = [one.tick for rest in (inputs[same:], mine[same:]) for one in rest[:1]]
+        index, acts = self.at(before), {one.tick for one in inputs}
+        while index > 0 and (self.ticks[index] >= min(ends, default=math.inf) or self.ticks[index] in acts):
+            index -= 1
+        return index
+
+    def take_over(self, other: Tape, index: int) -> None:
+        """Have the frames of another tape up to this one for those after one's own, and go on."""
+        since = bisect_right(other.ticks, self.ticks[-1])
+        new = slice(since, index + 1)
+        self.frames += other.frames[new]
+        self.times += other.times[new]
+        self.ticks += other.ticks[new]
+        self.sums += other.sums[new]
+        self.casts = other.casts | self.casts
+        marks = other.marks
+        self.marks += marks[bisect_right(marks, other.times[since - 1]) : bisect_right(marks, self.times[-1])]
+        self._bytes = sum(one.nbytes for one in self.frames)
+        self.pace_itself()
 
     def until(self, t: float) -> Tape:
         """A tape of the frames up to this time, which nothing is added to."""
@@ -213,6 +251,47 @@ class Tape:
         kept.frames, kept.times, kept.ticks = self.frames[:count], self.times[:count], self.ticks[:count]
         kept.casts, kept.marks = dict(self.casts), []
         return kept
+
+
+class Filming:
+    """A film of a tape in the making, beside the world.
+
+    Attributes:
+        share: how far it is, 0 to 1.
+        stopped: give it up.
+        data: the file, once it no longer ``running``.
+        failed: why there is none.
+    """
+
+    def __init__(self, tape: Tape, scene: Scene, kind: str, width: int) -> None:
+        self.name, self.share, self.stopped, self.data, self.failed = (
+            f"{scene.id}.{kind}",
+            0.0,
+            False,
+            b"",
+            "",
+        )
+        self._thread = Thread(target=self._make, args=(tape, scene, kind, width), daemon=True)
+        self._thread.start()
+
+    @property
+    def running(self) -> bool:
+        """It is not ready yet."""
+        return self._thread.is_alive()
+
+    def wait(self, seconds: float) -> None:
+        """Until it is ready, but no longer."""
+        self._thread.join(seconds)
+
+    def _make(self, tape: Tape, scene: Scene, kind: str, width: int) -> None:
+        try:
+            self.data = tape.film(scene, kind, width, self._told)
+        except CourseError as error:
+            self.failed = f"{error.message} {error.help or ''}".strip()
+
+    def _told(self, share: float) -> bool:
+        self.share = share
+        return not self.stopped
 
 
 #: Frames of a preview, and the simulated time they show at most, in s.

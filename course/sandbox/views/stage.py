@@ -13,8 +13,8 @@ from typing import Any
 
 from course.errors import CourseError, UsageError
 from course.sandbox.runs.recording import Recording
-from course.sandbox.runs.tape import Frame, Tape, frame
-from course.sandbox.scene.loading import Chosen, Comparison, choose
+from course.sandbox.runs.tape import Filming, Frame, Tape, frame
+from course.sandbox.scene.loading import Chosen, Comparison, choose, own_copy
 from course.sandbox.scene.model import Part
 from course.sandbox.views.story import Experiment, Narrator
 from course.sandbox.world.accounts import Event
@@ -32,6 +32,9 @@ BUDGET = 0.012
 _PICTURE, _AHEAD = 1 / 60, 10.0
 #: Changes of one setting within this simulated time, in s, are undone together.
 _TOGETHER = 0.5
+#: The last stretch of a run that is made again with its account and its story; what is on a tape before, is
+#: taken from there, in s.
+_TOLD = 15.0
 #: Moments that can be gone back to.
 _UNDOS = 1000
 #: What does not change the world's future by itself, or belongs to what came before.
@@ -54,10 +57,23 @@ class Desk:
     played: frozenset[str] = frozenset()
     opened: Callable[[str], None] | None = None
 
-    def keep_of(self, chosen: Chosen) -> Callable[[Comparison], None] | None:
-        """``keep`` for one scene."""
-        keep = self.keep
-        return None if keep is None else lambda comparison: keep(chosen, comparison)
+    def stage(
+        self, of: Chosen | str, clock: Callable[[], float] = perf_counter, guess: float | None = None
+    ) -> Stage:
+        """A scene to play, also by its id or path."""
+        chosen, keep = choose(of) if isinstance(of, str) else of, self.keep
+        kept = None if keep is None else lambda comparison: keep(chosen, comparison)
+        return Stage(chosen, guess=guess, keep=kept, clock=clock)
+
+    def mine(self, stage: Stage) -> tuple[Stage, str]:
+        """The scene as a file of one's own, to play, and where it is."""
+        if self.save is None:
+            raise UsageError("Nothing can be saved from here.", code="no_save")
+        id_ = f"my-{stage.chosen.scene.id.removeprefix('my-')}"
+        path = self.save(f"{id_}.toml", own_copy(stage.chosen, id_))
+        made = self.stage(path, stage.clock)
+        made.world.paused = stage.world.paused
+        return made, f"This is your own copy now: {path}. Change it in an editor; it plays like any scene."
 
 
 @dataclass(frozen=True)
@@ -134,7 +150,7 @@ class Stage:
         self._last: tuple[str, Any, float] = ("", None, -math.inf)
         self.world = world or World(chosen.scene, chosen.settings)
         self.recording = Recording(self.world)
-        self.tape = Tape(self.world)
+        self.tape = Tape(self.world, self.recording)
         self.experiment = Experiment(self.world, chosen, guess, keep)
         self.narrator = Narrator()
         if chosen.scene.duration < _BLINK:
@@ -306,7 +322,7 @@ class Stage:
         world.paused, world.speed, world.version = self.world.paused, self.world.speed, self.world.version + 1
         self.chosen, self.world = chosen, world
         self.recording = Recording(world)
-        self.tape = Tape(world)
+        self.tape = Tape(world, self.recording)
         guess = self.experiment.guess
         self.experiment = Experiment(world, chosen, guess, self.keep)
         self.narrator.forget()
@@ -316,6 +332,11 @@ class Stage:
         """The settings that somebody chose, not those that the scene has of its own."""
         chosen = [one.arguments for one in self.recording.inputs if one.what == "set"]
         return {**self.chosen.settings, **{str(key): float(value) for key, value in chosen}}
+
+    def film(self, kind: str, width: int) -> Filming:
+        """Begin a film of this run, as "gif" or "mp4", or a "png" of what is looked at."""
+        tape = self.tape.until(self.t if kind == "png" else self.world.t)
+        return Filming(tape, self.chosen.scene, kind, width)
 
     # -- time ------------------------------------------------------------------------------------
 
@@ -443,12 +464,40 @@ class Stage:
 
         def ready(world: World, recording: Recording) -> None:
             experiment = Experiment(world, there.chosen, self.experiment.guess, None)
-            made.update(world=world, recording=recording, tape=Tape(world), experiment=experiment)
+            made.update(world=world, recording=recording, tape=Tape(world, recording), experiment=experiment)
             world.on_input.append(lambda _, what, __: experiment.felt(what))
 
+        known, index = max(
+            ((tape, tape.shared(there.recording, there.count, there.t - _TOLD)) for tape in self._tapes()),
+            key=lambda pair: pair[0].times[pair[1]],
+        )
+        known_until = known.ticks[index] if index else 0
+
+        def halt() -> float:
+            """Where the comparison is made, and where what is known from a tape ends."""
+            world, left = made["world"], made["experiment"].left()
+            ends = math.inf if left is None else world.ticks + math.ceil(left / world.settings["step"] - 1e-6)
+            return min(ends, known_until if known_until > world.ticks else math.inf)
+
         def steps() -> Iterator[float]:
-            for share in there.recording.replayed(there.count, there.tick, self.world.version + 1, ready):
-                self._retell(made)
+            version, skipping, frames = self.world.version + 1, False, 0
+            for share in there.recording.replayed(there.count, there.tick, version, ready, halt):
+                world, tape, experiment = made["world"], made["tape"], made["experiment"]
+                # Taking in events books the steps, so it is done with the frames, which do that anyway.
+                left = experiment.left()
+                ended = share == 1.0 or world.ticks == known_until or (left is not None and left <= 1e-9)
+                if ended or len(tape) != frames:
+                    self._retell(made)
+                    frames = len(tape)
+                if skipping and world.ticks == known_until:
+                    world.resume(known.sums[index])
+                    tape.take_over(known, index)
+                    made["narrator"].forget()
+                    skipping = False
+                elif world.ticks < known_until and not skipping and experiment.left() is None:
+                    world.skip()
+                    tape.end()
+                    skipping = True
                 yield share
 
         def done() -> None:
@@ -499,9 +548,12 @@ class Stage:
         while self._work is not None:
             self._work_on(math.inf)
 
+    def _tapes(self) -> list[Tape]:
+        return [self.tape, *([self.ghost] if self.ghost else [])]
+
     def _fresh_tape(self) -> Tape:
         self.tape.end()
-        return Tape(self.world)
+        return Tape(self.world, self.recording)
 
 
 def _in_words(what: str, arguments: tuple[Any, ...]) -> str:

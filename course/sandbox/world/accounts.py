@@ -122,7 +122,7 @@ class Event(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
         kind: "contact", "rest" (a body came to a stop), "gone" (it left the world), or "input" (the user
             did something).
         t: in s; step: number of the step, the first is 1.
-        a, b: names of the bodies; ``a`` moves, ``b`` is "" unless it is a contact.
+        a, b: names of the bodies; ``a`` moves, ``b`` is "" unless it is a contact, or a copy of it.
         x, y: where, in m.
         nx, ny: unit normal of a contact, from ``a`` to ``b``.
         approach, leave: speed along the normal before and after, in m/s; both positive for a bounce. A
@@ -130,8 +130,7 @@ class Event(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
             late: the bodies were already inside each other.
         slip: speed along the surface before, in m/s.
         impulse: size of the impulse of the first step of contact, in N s.
-        before, after: kinetic energy of the two together, in J; None in a world without a receipt, as are
-            ``leave`` and ``impulse``.
+        before, after: kinetic energy of the two together, in J.
         shared: both of them can move.
         minor: too soft to be worth a sentence.
         text: what was done, for "input".
@@ -191,8 +190,8 @@ class Receipt(msgspec.Struct, frozen=True, kw_only=True):
     integrator: float
 
 
-#: Steps that are booked together. More would save nothing, because the arrays would not fit the cache.
-BLOCK = 32
+#: States of bodies that are booked together, and steps: more would not fit the cache.
+_STATES, _STEPS = 3200, 256
 #: How often the history is sampled, in s of simulated time, and how many samples are kept.
 _SAMPLE = 1 / 60
 _KEPT = 3600
@@ -200,20 +199,8 @@ _KEPT = 3600
 _WEIGHT = 9.81
 
 
-@dataclass(frozen=True, slots=True)
-class History:
-    """The last minute at about 60 samples a second; each array (k,), in s, J, kg m/s and kg m²/s."""
-
-    t: Floats
-    kinetic: Floats
-    potential: Floats
-    contacts: Floats
-    friction: Floats
-    rods: Floats
-    residual: Floats
-    px: Floats
-    py: Floats
-    angular: Floats
+#: Columns of a sample, in s, J, kg m/s and kg m²/s.
+SAMPLED = ("t", "kinetic", "potential", "contacts", "friction", "rods", "residual", "px", "py", "angular")
 
 
 @dataclass(slots=True)
@@ -292,10 +279,6 @@ class Accounts:
             integrator=ledger.integrator,
         )
 
-    def history(self) -> History:
-        """The last minute; call ``close`` first."""
-        return History(*np.array(self._history).reshape(-1, 10).T)
-
     def samples(self, after: float) -> list[list[float]]:
         """The rows of the history that are later than this time, in s; call ``close`` first."""
         rows: list[list[float]] = []
@@ -306,6 +289,11 @@ class Accounts:
         return rows[::-1]
 
     # -- booking ---------------------------------------------------------------------------------
+
+    @property
+    def full(self) -> bool:
+        """It is time to ``close``."""
+        return len(self.recorder) >= min(_STEPS, _STATES // (len(self.base) + 1) + 1)
 
     def close(self) -> Block | None:
         """Book the steps that were only copied so far, and give them back; None if there were none."""
@@ -341,13 +329,21 @@ class Accounts:
         """Book a block and what was pushed during it, and sample it for the history."""
         ledger = self.ledger
         had = ledger.given, ledger.contacts, ledger.friction, ledger.rods
-        lost = ledger.settle(block, self.clock.size, by_hand, self._ties)
+        resized = block.first_step == self.clock.at + 1 > 1
+        lost = ledger.settle(block, self.clock.size, by_hand, self._ties, resized=resized)
         ledger.given += float(given.sum())
         ledger.friction += float(rubbed.sum())
         every = max(1, round(_SAMPLE / self.clock.size))
         rows = slice((-block.first_step) % every, None, every)
         changes = (np.cumsum([given, lost.contacts, lost.friction + rubbed, lost.rods], axis=1).T + had)[rows]
         self._remember(block.times[rows], block.states[rows], changes)
+
+    def resume(self, sums: tuple[float, ...]) -> None:
+        """Go on with these sums after steps of which nothing was kept."""
+        self._pushes.clear()
+        self._held.clear()
+        self._history.clear()
+        self.ledger.sums, self.base = sums, self.space.state()
 
     def gave(self) -> None:
         """Something was changed from outside since ``base``: book the energy it brought as given."""

@@ -1,15 +1,15 @@
-"""Contacts as events: from the account's blocks, or from inside the step in a world without one."""
+"""Contacts as events, from the account's blocks."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from course.sandbox.scene.model import Part
-from course.sandbox.world.accounts import Clock, Event
-from course.sandbox.world.engine import Block, Floats, Ledger, Space
+from course.sandbox.world.accounts import Event
+from course.sandbox.world.engine import Block, Floats, Ledger
 
 #: Contacts softer than this, in m/s, belong to resting and rolling.
 MINOR = 0.05
@@ -25,7 +25,7 @@ def contact_events(block: Block, parts: Sequence[Part], ledger: Ledger) -> list[
     if not len(found):
         return []
     k, a, b = contacts.row[found], contacts.a[found], contacts.b[found]
-    normal, point = contacts.normal[found], contacts.point[found]
+    normal, point = contacts.normal[:, found].T, contacts.point[:, found].T
     swap = np.array([_goes_second(parts[i], parts[j]) for i, j in zip(a.tolist(), b.tolist(), strict=True)])
     a, b = np.where(swap, b, a), np.where(swap, a, b)
     normal = np.where(swap[:, None], -normal, normal)
@@ -49,7 +49,7 @@ def contact_events(block: Block, parts: Sequence[Part], ledger: Ledger) -> list[
         -(came[:, 0] * nx + came[:, 1] * ny),
         left[:, 0] * nx + left[:, 1] * ny,
         np.abs(came[:, 1] * nx - came[:, 0] * ny),
-        np.hypot(*contacts.impulse[found].T),
+        np.hypot(*contacts.impulse[:, found]),
         *energies,
     )
     events = [_event(block, parts, row) for row in zip(*(column.tolist() for column in columns), strict=True)]
@@ -78,45 +78,6 @@ def _event(block: Block, parts: Sequence[Part], row: tuple[Any, ...]) -> Event:
         shared=not parts[b].fixed,
         minor=abs(approach) < MINOR,
     )
-
-
-class ContactCollector:
-    """Collects contacts while they begin; cheap as long as few do."""
-
-    def __init__(self, space: Space, clock: Callable[[], Clock], report: Callable[[Event], None]) -> None:
-        self._space = space
-        self._clock = clock
-        self._report = report
-
-    def begin(self, a: str, b: str, arbiter: Any) -> None:
-        """Called by the engine inside a step; velocities are still those of before the contact."""
-        space, clock = self._space, self._clock()
-        normal = arbiter.normal
-        points = arbiter.contact_point_set.points
-        point = points[0].point_a
-        swap = (space.part(a).fixed, a) > (space.part(b).fixed, b)
-        first, second = (b, a) if swap else (a, b)
-        nx, ny = (-normal.x, -normal.y) if swap else (normal.x, normal.y)
-        slow = space.body(first).velocity_at_world_point(point)
-        came = space.body(second).velocity_at_world_point(point) - slow
-        approach = -(came.x * nx + came.y * ny)
-        self._report(
-            Event(
-                kind="contact",
-                t=clock.t + clock.size,
-                step=clock.steps + 1,
-                a=first,
-                b=second,
-                x=point.x,
-                y=point.y,
-                nx=nx,
-                ny=ny,
-                approach=approach,
-                slip=abs(came.y * nx - came.x * ny),
-                shared=not space.part(second).fixed,
-                minor=abs(approach) < MINOR,
-            )
-        )
 
 
 def _goes_second(a: Part, b: Part) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias, assert_never
 
@@ -38,17 +38,18 @@ COLUMNS = ("x", "y", "angle", "vx", "vy", "spin")
 
 @dataclass(frozen=True, slots=True)
 class Contacts:
-    """All contacts of some steps, a row each.
+    """All contacts of some steps.
 
     Attributes:
-        row: which step of the block, 0 first.
-        a, b: indices of the bodies.
-        first: 1 where the two did not touch in the step before.
-        impulse: on ``a``, in N s, (n, 2).
-        normal: from ``a`` to ``b``, (n, 2).
-        point, other: where it acts on ``a`` and where on ``b``, in m, (n, 2); they differ by how deep the
+        row: which step of the block, 0 first, (n,).
+        a, b: indices of the bodies, (n,).
+        first: 1 where the two did not touch in the step before, (n,).
+        impulse: on ``a``, in N s, (2, n).
+        normal: from ``a`` to ``b``, (2, n).
+        point, other: where it acts on ``a`` and where on ``b``, in m, (2, n); they differ by how deep the
             bodies are in each other. Of a contact along an edge it is the middle.
-        half: half of the length of a contact along an edge, in m, (n,); 0 for a contact at a point.
+        half: half of the length of a contact along an edge, in m, (n,), 0 for a contact at a point; None
+            where there is no edge at all.
     """
 
     row: Ints
@@ -59,7 +60,7 @@ class Contacts:
     normal: Floats
     point: Floats
     other: Floats
-    half: Floats
+    half: Floats | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +102,15 @@ class Ledger:
         self.start = 0.0
         self.adopt(parts, gravity)
 
+    @property
+    def sums(self) -> tuple[float, ...]:
+        """All that was booked so far, in J."""
+        return self.contacts, self.friction, self.rods, self.integrator, self.given
+
+    @sums.setter
+    def sums(self, booked: tuple[float, ...]) -> None:
+        self.contacts, self.friction, self.rods, self.integrator, self.given = booked
+
     def adopt(self, parts: Sequence[Part], gravity: tuple[float, float]) -> None:
         """Switch to another set of bodies, or another gravity; the sums stay."""
         finite = [p.moment if np.isfinite(p.moment) else 0.0 for p in parts]
@@ -133,7 +143,13 @@ class Ledger:
     # -- of many steps ---------------------------------------------------------------------------
 
     def settle(
-        self, block: Block, step: float, given: Floats | None = None, tied: Ties | None = None
+        self,
+        block: Block,
+        step: float,
+        given: Floats | None = None,
+        tied: Ties | None = None,
+        *,
+        resized: bool = False,
     ) -> Losses:
         """Book the losses of a block, each from the impulses of its own kind.
 
@@ -142,28 +158,31 @@ class Ledger:
             step: their size, in s.
             given: the impulses of a hand, (k, n, 3), in N s and N m s.
             tied: the joints, if there are any.
+            resized: the step before the block had another size. Contacts then begin with the impulses of
+                that step times the ratio of the sizes, and the engine tells them without that factor.
         """
         before, after = block.before, block.states[:, :, 3:]
-        mean = (before + after) / 2
-        contacts, friction = self._of_contacts(block, mean)
+        mean, half = (before + after) / 2, block.contacts.half
+        pushed, lost, friction = self._of_contacts(block, mean)
         rods = np.zeros(len(mean))
-        if tied is not None:
-            # What nobody has been found for yet is the joints'.
-            left = (after - before) * self._inertias - self._weight_force.reshape(-1, 3) * step
-            left -= np.stack([self._impulses(block, axis) for axis in range(3)], axis=2)
+        if tied is not None or half is not None or resized:
+            # What nobody has been found for yet is the joints', or turns a body along an edge.
+            left = (after - before) * self._inertias - self._weight_force.reshape(-1, 3) * step - pushed
             if given is not None:
                 left -= given
-            pulled = tied.impulses(block.states, left, self._inertias)
-            rods = -(pulled * mean).sum(axis=(1, 2))
-            turning = left[:, :, 2] - pulled[:, :, 2]
-        elif block.contacts.half.any():
-            turning = (after[:, :, 2] - before[:, :, 2]) * self.inertia - self._impulses(block, 2)
-            if given is not None:
-                turning -= given[:, :, 2]
-        if block.contacts.half.any():
-            # How an edge's impulse is spread along it shows in how the body turns, and nowhere else.
-            most = self._levers(block)
-            contacts -= (np.clip(turning, -most, most) * mean[:, :, 2]).sum(axis=1)
+            if tied is not None:
+                pulled = tied.impulses(block.states, left, self._inertias)
+                rods = -(pulled * mean).sum(axis=(1, 2))
+                left -= pulled
+            if half is not None:
+                # How an edge's impulse is spread along it shows in how the body turns, and nowhere else.
+                most = self._levers(block, half)
+                turned = np.clip(left[:, :, 2], -most, most)
+                left[:, :, 2] -= turned
+                lost -= (turned * mean[:, :, 2]).sum(axis=1)
+            if resized:
+                lost[0] -= (left[0] * mean[0]).sum()
+        contacts = lost - friction
         self.contacts += float(contacts.sum())
         self.friction += float(friction.sum())
         self.rods += float(rods.sum())
@@ -173,26 +192,13 @@ class Ledger:
         self.integrator += float(jumps.ravel() @ self._weight_force.reshape(-1, 3)[:, :2].ravel())
         return Losses(contacts, friction, rods)
 
-    def _impulses(self, block: Block, axis: int) -> Floats:
-        """What contacts did to each body in each step along x, along y or turning (axis 2), (k, n)."""
-        c, (count, bodies) = block.contacts, block.states.shape[:2]
-        total = np.zeros(count * bodies)
-        for index, point, sign in ((c.a, c.point, 1.0), (c.b, c.other, -1.0)):
-            row = c.row * bodies + index
-            part = c.impulse[:, axis % 2]
-            if axis == 2:
-                arm = point - block.states.reshape(-1, 6)[:, :2].take(row, axis=0)
-                part = arm[:, 0] * c.impulse[:, 1] - arm[:, 1] * c.impulse[:, 0]
-            total += sign * np.bincount(row, weights=part, minlength=count * bodies)
-        return total.reshape(count, bodies)
-
-    def _levers(self, block: Block) -> Floats:
+    def _levers(self, block: Block, half: Floats) -> Floats:
         """The most that edges can turn each body beyond that, (k, n), in N m s."""
         c, (count, bodies) = block.contacts, block.states.shape[:2]
-        most = np.hypot(c.impulse[:, 0], c.impulse[:, 1]) * c.half
-        rows = np.concatenate([c.row * bodies + c.a, c.row * bodies + c.b])
-        summed = np.bincount(rows, weights=np.tile(most, 2), minlength=count * bodies)
-        return summed.astype(np.float64).reshape(count, bodies) * (1 + 1e-9)
+        most = np.hypot(*c.impulse) * half
+        summed = [_by_place(c.row * bodies + body, most, count * bodies) for body in (c.a, c.b)]
+        levers: Floats = (summed[0] + summed[1]).reshape(count, bodies) * (1 + 1e-9)
+        return levers
 
     def energies(self, velocities: Floats) -> Floats:
         """Kinetic energies of several states, (k,), in J; velocities (k, n, 3)."""
@@ -218,33 +224,37 @@ class Ledger:
         work: Floats = ((block.before + block.states[:, :, 3:]) * impulses).sum(axis=(1, 2)) / 2
         return work
 
-    def _of_contacts(self, block: Block, mean: Floats) -> tuple[Floats, Floats]:
-        """Energy that impulses took along normals and along surfaces, by step.
+    def _of_contacts(self, block: Block, mean: Floats) -> tuple[Floats, Floats, Floats]:
+        """What contacts did to each body in each step, (k, n, 3), in N s and N m s; what they took in each
+        step, and how much of it along surfaces, (k,), in J.
 
-        The velocity of a body's point p is ``(vx + w y - w py, vy - w x + w px)``: what does not depend on p
-        is computed once per body, and only three numbers per body are looked up for each contact.
+        The velocity of a body's point p is ``(vx + w y - w py, vy - w x + w px)``, and the torque of an
+        impulse ``p x J - x x J``: what does not depend on p is computed once per body.
         """
-        c, count = block.contacts, len(mean)
+        c, (count, bodies) = block.contacts, mean.shape[:2]
         if not len(c.row):
-            return np.zeros(count), np.zeros(count)
-        spin = mean[:, :, 2]
-        field = np.stack(
-            [mean[:, :, 0] + spin * block.states[:, :, 1], mean[:, :, 1] - spin * block.states[:, :, 0], spin]
-        ).reshape(3, -1)
-        start = c.row * mean.shape[1]
-        a, b = start + c.a, start + c.b
-        va, vb = field.take(a, axis=1), field.take(b, axis=1)
-        # Columns once, side by side: reading them out of wide rows again and again costs more.
-        px, py = c.point.T.copy()
-        qx, qy = c.other.T.copy()
-        nx, ny = c.normal.T.copy()
-        jx, jy = c.impulse.T.copy()
-        vx = vb[0] - va[0] - vb[2] * qy + va[2] * py
-        vy = vb[1] - va[1] + vb[2] * qx - va[2] * px
-        along = (jy * nx - jx * ny) * (vy * nx - vx * ny)
-        friction: Floats = np.bincount(c.row, weights=along, minlength=count).astype(np.float64)
-        across = (jx * nx + jy * ny) * (vx * nx + vy * ny)
-        return np.bincount(c.row, weights=across, minlength=count).astype(np.float64), friction
+            return np.zeros(mean.shape), np.zeros(count), np.zeros(count)
+        a, b = c.row * bodies + c.a, c.row * bodies + c.b
+        (jx, jy), (nx, ny), (px, py), (qx, qy) = c.impulse, c.normal, c.point, c.other
+        pairs = ((jx, jx), (jy, jy), (px * jy - py * jx, qx * jy - qy * jx))
+        sums: list[Floats] = [
+            _by_place(a, on, count * bodies) - _by_place(b, back, count * bodies) for on, back in pairs
+        ]
+        pushed = np.stack(sums, axis=1).reshape(mean.shape)
+        x, y, spin = block.states[:, :, 0], block.states[:, :, 1], mean[:, :, 2]
+        pushed[:, :, 2] -= x * pushed[:, :, 1] - y * pushed[:, :, 0]
+        vx, vy, spin = (mean[:, :, 0] + spin * y).ravel(), (mean[:, :, 1] - spin * x).ravel(), spin.ravel()
+        slip = (vy.take(b) - vy.take(a)) * nx
+        slip -= (vx.take(b) - vx.take(a)) * ny
+        slip += spin.take(b) * (qx * nx + qy * ny)
+        slip -= spin.take(a) * (px * nx + py * ny)
+        slip *= jy * nx - jx * ny
+        return pushed, -(pushed * mean).sum(axis=(1, 2)), _by_place(c.row, slip, count)
+
+
+def _by_place(places: Ints, amounts: Floats, count: int) -> Floats:
+    """Sums of the amounts that belong to the same place, (count,)."""
+    return np.bincount(places, amounts, count).astype(np.float64, copy=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -261,15 +271,16 @@ class Ties:
     """The joints of a space: which bodies they hold, and where.
 
     Attributes:
-        a, b: indices of the bodies, (m,).
-        anchors: in the frames of ``a`` and ``b``, (2, m, 2), in m.
-        rod: (m,); a joint that is no rod keeps both directions.
+        bodies: indices of the two that each holds, (2, m).
+        anchors: in the frames of the two, (2, m, 2), in m.
+        of, axis: of each condition, which joint it is of, (c,), and the direction that it keeps, (c, 2); 0, 0
+            for a rod, which keeps its own.
     """
 
-    a: Ints
-    b: Ints
+    bodies: Ints
     anchors: Floats
-    rod: NDArray[np.bool_]
+    of: Ints
+    axis: Floats
 
     def impulses(self, states: Floats, left: Floats, inertias: Floats) -> Floats:
         """The impulses with which joints account best for what is left of the momenta.
@@ -289,36 +300,32 @@ class Ties:
         np.divide(1.0, inertias, out=inverse, where=inertias > 0)
         weighted = rows * inverse.ravel()
         system = weighted @ rows.transpose(0, 2, 1)
+        # Joints that keep the same direction twice share it.
+        system += np.eye(len(self.of)) * (_SOFT * np.abs(system).max() + np.finfo(float).tiny)
         wanted = weighted @ left.reshape(len(left), -1, 1)
-        pulled: Floats = (
-            rows.transpose(0, 2, 1) @ (np.linalg.pinv(system, hermitian=True) @ wanted)
-        ).reshape(left.shape)
+        pulled: Floats = (rows.transpose(0, 2, 1) @ np.linalg.solve(system, wanted)).reshape(left.shape)
         return pulled
 
     def _conditions(self, states: Floats) -> Floats:
         """(k, c, 3 n): a row for each direction that a joint keeps."""
         count, bodies = states.shape[:2]
-        places, arms = [], []
-        for index, anchor in zip((self.a, self.b), self.anchors, strict=True):
-            cos, sin = np.cos(states[:, index, 2]), np.sin(states[:, index, 2])
-            arm = np.stack(
-                [cos * anchor[:, 0] - sin * anchor[:, 1], sin * anchor[:, 0] + cos * anchor[:, 1]], axis=2
-            )
-            arms.append(arm)
-            places.append(states[:, index, :2] + arm)
-        along = places[1] - places[0]
+        angle = states[:, self.bodies, 2]
+        (x, y), cos, sin = self.anchors.transpose(2, 0, 1), np.cos(angle), np.sin(angle)
+        arms = np.stack([cos * x - sin * y, sin * x + cos * y], axis=3)
+        ends = states[:, self.bodies, :2] + arms
+        along = ends[:, 1] - ends[:, 0]
         size = np.hypot(along[..., 0], along[..., 1])[..., None]
         along = np.divide(along, size, out=np.zeros_like(along), where=size > 0)
-        rows = np.zeros((count, 2 * len(self.a), bodies, 3))
-        for j, (a, b, rod) in enumerate(zip(self.a, self.b, self.rod, strict=True)):
-            for d in range(1 if rod else 2):
-                n = along[:, j] if rod else np.broadcast_to(np.eye(2)[d], (count, 2))
-                for body, arm, sign in ((a, arms[0][:, j], -1.0), (b, arms[1][:, j], 1.0)):
-                    turn = arm[:, 0] * n[:, 1] - arm[:, 1] * n[:, 0]
-                    rows[:, 2 * j + d, body] += sign * np.column_stack([n, turn])
-        return rows.reshape(count, 2 * len(self.a), -1)
+        kept = np.where((self.axis != 0.0).any(axis=1, keepdims=True), self.axis, along[:, self.of])
+        rows, number = np.zeros((count, len(self.of), bodies, 3)), np.arange(len(self.of))
+        for body, arm, sign in zip(self.bodies, arms.swapaxes(0, 1), (-1.0, 1.0), strict=True):
+            turn = arm[:, self.of, 0] * kept[..., 1] - arm[:, self.of, 1] * kept[..., 0]
+            rows[:, number, body[self.of]] += sign * np.concatenate([kept, turn[..., None]], axis=2)
+        return rows.reshape(count, len(self.of), -1)
 
 
+#: How much joints that keep the same direction give way to each other, as a part of what they hold.
+_SOFT = 1e-12
 #: How often a body that is placed is moved until it fits, and how well it has to, in m.
 _TRIES, _NEAR = 80, 1e-4
 #: Ids of bodies are addresses.
@@ -607,14 +614,19 @@ class Space:
         """What the joints hold, by the rows of every state; None if there are none."""
         if not self.joints:
             return None
-        rows = [
-            [self.index[self._bodies[j.a.id][0].name], self.index[self._bodies[j.b.id][0].name]]
-            for j in self.joints
+        bodies = [[self.index[self._bodies[end.id][0].name] for end in (j.a, j.b)] for j in self.joints]
+        anchors = np.array([[tuple(j.anchor_a), tuple(j.anchor_b)] for j in self.joints], dtype=float)
+        kept = [
+            (number, axis)
+            for number, joint in enumerate(self.joints)
+            for axis in ([(0, 0)] if isinstance(joint, pymunk.PinJoint) else [(1, 0), (0, 1)])
         ]
-        anchors = [[tuple(j.anchor_a), tuple(j.anchor_b)] for j in self.joints]
-        a, b = np.array(rows).T
-        rod = np.array([isinstance(j, pymunk.PinJoint) for j in self.joints])
-        return Ties(a=a, b=b, anchors=np.array(anchors, dtype=float).transpose(1, 0, 2), rod=rod)
+        return Ties(
+            bodies=np.array(bodies).T,
+            anchors=anchors.transpose(1, 0, 2),
+            of=np.array([number for number, _ in kept]),
+            axis=np.array([axis for _, axis in kept], dtype=float),
+        )
 
     # -- everything at once ----------------------------------------------------------------------
 
@@ -630,15 +642,6 @@ class Space:
         places >>= self._shift
         found: Ints = self._table.take(places.view(np.int64))
         return found
-
-    def on_contact(self, tell: Callable[[str, str, Any], None]) -> None:
-        """Call ``tell(name of a, name of b, arbiter)`` from inside the step, when two begin to touch."""
-
-        def begin(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:  # noqa: ARG001
-            a, b = arbiter.bodies
-            tell(self._bodies[a.id][0].name, self._bodies[b.id][0].name, arbiter)
-
-        self.space.on_collision(None, None, begin=begin)
 
 
 class Recorder:
@@ -672,20 +675,23 @@ class Recorder:
         states = np.frombuffer(self._states.float_buf(), dtype=np.float64).reshape(count, -1, 6)
         ends = np.array(self._ends) // (8 * _WHOLE)
         whole = np.frombuffer(self._contacts.int_buf(), dtype=np.uint64).reshape(-1, _WHOLE)
-        numbers = np.frombuffer(self._contacts.float_buf(), dtype=np.float64).reshape(-1, _NUMBERS)
-        to_middle = (numbers[:, 8:12] - numbers[:, 4:8]) * ((whole[:, 3] == 2) / 2)[:, None]
-        points = numbers[:, 4:8] + to_middle
-        bodies = [self._space.indices(whole[:, i]) for i in (0, 1)]
+        # Columns side by side: reading them out of wide rows again and again costs more.
+        numbers = np.frombuffer(self._contacts.float_buf(), dtype=np.float64).reshape(-1, _NUMBERS).T.copy()
+        edges, half = whole[:, 3] == 2, None
+        if edges.any():
+            to_middle = (numbers[8:12] - numbers[4:8]) * (edges / 2)
+            numbers[4:8] += to_middle
+            half = np.maximum(np.hypot(*to_middle[:2]), np.hypot(*to_middle[2:]))
         contacts = Contacts(
             row=np.repeat(np.arange(count), np.diff(ends, prepend=0)),
-            a=bodies[0],
-            b=bodies[1],
+            a=self._space.indices(whole[:, 0]),
+            b=self._space.indices(whole[:, 1]),
             first=whole[:, 2],
-            impulse=numbers[:, 0:2],
-            normal=numbers[:, 2:4],
-            point=points[:, :2],
-            other=points[:, 2:],
-            half=np.hypot(to_middle[:, 0], to_middle[:, 1]),
+            impulse=numbers[0:2],
+            normal=numbers[2:4],
+            point=numbers[4:6],
+            other=numbers[6:8],
+            half=half,
         )
         self._states.clear()
         self._contacts.clear()

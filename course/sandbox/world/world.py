@@ -19,8 +19,8 @@ import numpy as np
 from course.errors import UsageError
 from course.sandbox.scene.model import Material, Part, Scene, layout, spawned, wall
 from course.sandbox.scene.rules import SETTINGS, checked, number
-from course.sandbox.world.accounts import BLOCK, Accounts, Clock, Event, Hand, History, Receipt
-from course.sandbox.world.contacts import ContactCollector, contact_events
+from course.sandbox.world.accounts import Accounts, Clock, Event, Hand, Receipt
+from course.sandbox.world.contacts import contact_events
 from course.sandbox.world.engine import Block, Floats, Space
 
 # ---
@@ -100,20 +100,18 @@ class Snapshot:
 
     Attributes:
         version: changes when bodies were added or removed: fetch ``World.parts`` again.
-        x, y, angle, vx, vy, spin: (n,), in m, rad, m/s, rad/s.
+        x, y, angle, vx, vy: (n,), in m, rad, m/s.
         joints: ends of each joint, (m, 4): ax, ay, bx, by, in m.
         hand: where a body is held and where the pointer is: ax, ay, px, py, in m; None if nothing is held.
     """
 
     t: float
-    tick: int
     version: int
     x: Floats
     y: Floats
     angle: Floats
     vx: Floats
     vy: Floats
-    spin: Floats
     joints: Floats
     hand: tuple[float, float, float, float] | None
 
@@ -124,7 +122,7 @@ class World:
     Args:
         scene: what to build.
         settings: values for ``SETTINGS``; the scene's own where left out.
-        receipt: keep the account of energy. Without it contacts know no loss, and stepping is faster.
+        receipt: keep the account of energy. Without it no contact is told, and stepping is faster.
 
     Raises:
         UsageError: a setting is unknown or out of range.
@@ -183,8 +181,6 @@ class World:
         )
         self._space.space.gravity = self._gravity()
         self._wall()
-        if not self._with_receipt:
-            self._space.on_contact(ContactCollector(self._space, self._clock_now, self._report).begin)
         self._clock = Clock(self.settings["step"])
         self._accounts = Accounts(self._space, self._gravity(), self._clock)
         self._watch = Watch(scene.view)
@@ -198,9 +194,6 @@ class World:
         size = math.hypot(gx, gy)
         wanted = self.settings["gravity"]
         return (0.0, -wanted) if size == 0.0 else (gx * wanted / size, gy * wanted / size)
-
-    def _clock_now(self) -> Clock:
-        return self._clock
 
     # -- what views read -------------------------------------------------------------------------
 
@@ -230,21 +223,19 @@ class World:
 
     def snapshot(self) -> Snapshot:
         """Where everything is now."""
-        x, y, angle, vx, vy, spin = self._space.state().T
+        x, y, angle, vx, vy, _ = self._space.state().T
         hand = None
         if self._hand is not None:
             place = self._space.body(self._hand.name).local_to_world(self._hand.anchor)
             hand = (float(place.x), float(place.y), self._hand.x, self._hand.y)
         return Snapshot(
             t=self.t,
-            tick=self.ticks,
             version=self.version,
             x=x,
             y=y,
             angle=angle,
             vx=vx,
             vy=vy,
-            spin=spin,
             joints=np.array(self._space.ends_of_joints()).reshape(-1, 4),
             hand=hand,
         )
@@ -269,18 +260,28 @@ class World:
         return self._accounts.receipt()
 
     @property
+    def sums(self) -> tuple[float, ...]:
+        """What the account holds now, for ``resume``."""
+        self._settle()
+        return self._accounts.ledger.sums
+
+    def skip(self) -> None:
+        """From here on, keep no account: steps are the same ones, and quicker."""
+        self._settle()
+        self._with_receipt = False
+
+    def resume(self, sums: tuple[float, ...]) -> None:
+        """Keep the account again, with what it held at this moment when the same steps were made before."""
+        self._accounts.resume(sums)
+        self._with_receipt = True
+
+    @property
     def momentum(self) -> tuple[float, float, float]:
         """Along x and y in kg m/s, and angular about the origin in kg m²/s."""
         return self._accounts.ledger.momentum(self._space.state())
 
-    @property
-    def history(self) -> History:
-        """The last minute of energies and momentum; one row in a world without a receipt."""
-        self._settle()
-        return self._accounts.history()
-
-    def samples(self, after: float) -> list[list[float]]:
-        """The rows of ``history`` that are later than this time, in s."""
+    def samples(self, after: float = -math.inf) -> list[list[float]]:
+        """Of the last minute, the rows that are later than this time, in s; ``SAMPLED`` names the columns."""
         self._settle()
         return self._accounts.samples(after)
 
@@ -323,7 +324,7 @@ class World:
             self.ticks += 1
             if self._with_receipt:
                 recorder.take()
-                if len(recorder) >= BLOCK:
+                if self._accounts.full:
                     self._settle()
             if self.ticks % _TIDY == 0:
                 self._tidy()
@@ -547,7 +548,7 @@ class World:
         if self._space.part(made).wheels is not None:
             self._wheeled.append(self._space.part(made))
         self._recast()
-        self._say(f"{made} appears, like {name}", made)
+        self._say(f"{made} appears, like {name}", made, name)
         return made
 
     def stop(self) -> None:
@@ -597,8 +598,8 @@ class World:
         for tell in self.on_input:
             tell(self.ticks, what, arguments)
 
-    def _say(self, text: str, name: str = "") -> None:
-        self._report(Event(kind="input", t=self._clock.t, step=self._clock.steps, a=name, text=text))
+    def _say(self, text: str, name: str = "", other: str = "") -> None:
+        self._report(Event(kind="input", t=self._clock.t, step=self._clock.steps, a=name, b=other, text=text))
 
     # -- inside ----------------------------------------------------------------------------------
 
@@ -637,9 +638,10 @@ class World:
 
     def _tidy(self) -> None:
         """Report bodies that came to rest, and remove those that left."""
-        self._settle()
         state, parts = self._space.state(), self.parts
         gone, resting = self._watch.look(parts, state)
+        if gone or resting:
+            self._settle()
         for kind, rows in (("rest", resting), ("gone", gone)):
             for i in rows:
                 x, y = float(state[i, 0]), float(state[i, 1])

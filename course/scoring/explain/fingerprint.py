@@ -198,6 +198,16 @@ def reached_from(source: bytes, names: frozenset[str] | None = None) -> dict[str
     return _reach(*_read(source), names)
 
 
+def functions_of(source: bytes, task: str) -> list[ast.FunctionDef]:
+    """The function of a task, then the functions of the file that it uses, directly or through others."""
+    if len(source) > _LONGEST:
+        return []
+    defined, parts = _read(source)
+    reached = sorted(_reach(defined, parts, frozenset({task})).get(task, frozenset()) - {task})
+    found = (defined[name] for name in (task, *reached) if name in defined)
+    return [node for node in found if isinstance(node, ast.FunctionDef)]
+
+
 def may_remember(source: bytes, tasks: frozenset[str]) -> frozenset[str]:
     """The tasks whose functions could keep something from one call to the next, directly or through helpers.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -118,11 +119,13 @@ class Failure:
     Attributes:
         guess: the probe's diagnosis; None if it has none.
         finite: False if a compared value was nan or infinite.
+        looked: its own probe was asked, on the numbers that it shows.
     """
 
     check: str
     guess: Diagnosis | None
     finite: bool = True
+    looked: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +151,8 @@ def story_of(failures: Sequence[Failure], fits: Sequence[Row], words: Words, *, 
     Something that is kept between two calls is said first, for it can look like anything else; where the
     exercise has a code for it, that one. Then a program that fits decides. If none fits, the probes decide:
     first the origin of a nan, then causes, then consequences. Of several causes, the one that most checks
-    name is taken, and none if two are named equally often. A cause is said of every check that saw no other;
+    name is taken, and none if two are named equally often. A cause is said of every check that saw no other,
+    unless its own probe looked at its own numbers and did not find it;
     a consequence, and where a nan comes from, only of those that saw it. Beside a nan, or where none is named
     most, consequences stay with the checks that saw them.
 
@@ -203,11 +207,29 @@ def merged(codes: Sequence[str], words: Words, fits: Sequence[Row]) -> Diagnosis
     parts = [words(code) for code in codes]
     if all(len(row.codes) == 1 for row in fits):
         return parts[0]
-    # Of a program with one of them alone; with both at once it need not be so.
-    looks = " Of the other: ".join(part.looks_like for part in parts)
-    advice = " And for the other: ".join(part.advice for part in parts)
-    both = "Two mistakes at once would give these results. What is said of one of them alone: "
-    return Diagnosis(parts[0].code, both + looks, advice)
+    both = "There seem to be two mistakes."
+    if len(parts) == 1:
+        return Diagnosis(parts[0].code, f"{both} One of them: {parts[0].looks_like}", parts[0].advice)
+    looks = [both, *(f"{place}: {part.looks_like}" for place, part in zip(_PLACES, parts, strict=False))]
+    advice = [f"{place}: {part.advice}" for place, part in zip(_PLACES, parts, strict=False)]
+    return Diagnosis(parts[0].code, " ".join(looks), " ".join(advice))
+
+
+#: How the mistakes of a program that has several are counted.
+_PLACES = ("First", "Second", "Third")
+#: Two sentences that begin with so many words alike say the same, and the second says more.
+_ALIKE = 5
+
+
+def said_once(message: str, more: str) -> str:
+    """A check's message and what is added to it, without the sentences that both have."""
+    begins = {tuple(sentence.split()[:_ALIKE]) for sentence in _sentences(more)}
+    kept = [one for one in _sentences(message) if tuple(one.split()[:_ALIKE]) not in begins]
+    return " ".join([*kept, more]).strip()
+
+
+def _sentences(text: str) -> list[str]:
+    return re.split(r"(?<=[.!?]) +(?=[A-Z`])", text.strip()) if text.strip() else []
 
 
 def _origin(failures: Sequence[Failure], words: Words) -> Diagnosis | None:
@@ -230,7 +252,8 @@ def _contradicted(failures: Sequence[Failure], named: Diagnosis | None, words: W
     if kind != "cause":
         return frozenset(f.check for f in failures if not f.guess or f.guess.code != named.code)
     others = (f for f in failures if f.guess and f.guess.code != named.code)
-    return frozenset(f.check for f in others if f.guess and words.kind(f.guess.code) == kind)
+    refuted = (f.check for f in failures if f.looked and f.guess is None)
+    return frozenset((*(f.check for f in others if f.guess and words.kind(f.guess.code) == kind), *refuted))
 
 
 def _most_named(guesses: Sequence[Diagnosis]) -> Diagnosis | None:

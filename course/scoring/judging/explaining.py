@@ -35,6 +35,7 @@ from course.scoring.explain.story import (
     matching,
     read_table,
     read_words,
+    said_once,
     story_of,
 )
 from course.scoring.failures import CheckFailed
@@ -128,7 +129,8 @@ class Explainer:
         self, name: str, failed: Mapping[str, CheckFailed], sums: tuple[float, ...] | None, kept: bool
     ) -> Story:
         failures = [
-            Failure(check, failure.guess, _finite(failure.finding)) for check, failure in failed.items()
+            Failure(check, failure.guess, _finite(failure.finding), failure.looked)
+            for check, failure in failed.items()
         ]
         wrong = sums and not is_right(self._table, name, sums)
         fits = matching(self._table, name, sums) if sums and wrong else ()
@@ -222,7 +224,7 @@ def _retold(
     return msgspec.structs.replace(
         check,
         diagnosis=diagnosis.code,
-        message=f"{message} {diagnosis.looks_like}".strip(),
+        message=said_once(message, diagnosis.looks_like),
         help=diagnosis.advice or advice,
         first_divergence=check.first_divergence or diagnosis.divergence,
     )

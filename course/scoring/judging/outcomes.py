@@ -13,10 +13,13 @@ from course.isolation.failures import StudentFailure
 from course.isolation.session import LOOP, LoadFault, LoadRefusedError
 from course.scoring.checks.collected import Check
 from course.scoring.elsewhere import absent, lacking, newer
+from course.scoring.explain.likeness import likeness
+from course.scoring.explain.reading_code import names_of, return_in_a_loop, why_none
+from course.scoring.explain.story import NOT_FINITE, said_once
 from course.scoring.judging.submission import Submission
 from course.scoring.remote import RemoteSubmission
 from course.scoring.values import kind_of, plain
-from course.scoring.verdict import CheckResult, Finding, Places, Problem, Status
+from course.scoring.verdict import CheckResult, Finding, Places, Problem, Status, Visibility
 
 #: Diagnosis of a check that broke on a student's value and not on the model solution's.
 NOT_JUDGED = "NOT_JUDGED"
@@ -64,6 +67,32 @@ def skipped(check: Check, blocking: str) -> CheckResult:
         message="Not run: it builds on a check that did not pass.",
         help="Repair that one first.",
     )
+
+
+def told_more(
+    judged: CheckResult, source: bytes, places: Places, args: tuple[Any, ...] | None = None
+) -> CheckResult:
+    """The result of a failed check with what its student's code, or the numbers below it, show beyond doubt.
+
+    Only where no mistake is named. Numbers are compared where they are shown, so of public checks alone.
+
+    Args:
+        args: of the call that raised.
+    """
+    public = judged.visibility is Visibility.PUBLIC
+    if args and judged.input is None and public:
+        named = dict(zip(names_of(source, judged.task), args, strict=False))
+        judged = msgspec.structs.replace(judged, input=plain(named, 4) or None)
+    if judged.diagnosis == "RETURNS_NOTHING" and (advice := why_none(source, judged.task, places)):
+        return msgspec.structs.replace(judged, help=advice)
+    unnamed = judged.diagnosis is None
+    if unnamed and (found := return_in_a_loop(source, judged.task, places)):
+        message, advice = said_once(judged.message, found.looks_like), found.advice
+        return msgspec.structs.replace(judged, diagnosis=found.code, message=message, help=advice)
+    if judged.status is Status.FAIL and public and (unnamed or judged.diagnosis in NOT_FINITE):
+        fact = likeness(judged.actual, judged.expected, judged.input)
+        return msgspec.structs.replace(judged, message=f"{judged.message} {fact}".strip())
+    return judged
 
 
 def unjudged(returned: tuple[str, Any] | None, *, proven: bool) -> Finding:

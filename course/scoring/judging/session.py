@@ -12,7 +12,7 @@ import random
 from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from time import perf_counter
-from typing import Literal, Self, TypeVar
+from typing import Any, Literal, Self, TypeVar
 
 import msgspec
 
@@ -37,6 +37,7 @@ from course.scoring.judging.outcomes import (
     result,
     skipped,
     to_do,
+    told_more,
     unjudged,
     untouched,
 )
@@ -96,6 +97,7 @@ class GradingSession:
             keep_private()
         self._catalog = catalog
         self._failed: dict[str, CheckFailed] = {}  # of the submission at hand
+        self._raised: dict[str, tuple[Any, ...]] = {}  # arguments of the call that ended a check
         self._heard: dict[str, tuple[float, list[Heard]]] = {}  # calls of its failed checks, and their time
         self._explainer = _explainer(exercise)
         self._sound: dict[str, bool] = {}  # of checks that broke: whether they pass the model solution
@@ -239,6 +241,7 @@ class GradingSession:
             ordered = [check for check in ordered if check.id in wanted]
         results: dict[str, CheckResult] = {}
         self._failed.clear()
+        self._raised.clear()
         self._heard.clear()
         self.asked.clear()
         self.took.clear()
@@ -253,6 +256,10 @@ class GradingSession:
             source = submission.files[self.exercise.module]
             with Again(lambda: self._load(submission)) as again:
                 self._explainer.explain(results, self._failed, remote, source, self._heard, again)
+        for name, judged in results.items():
+            if judged.status in {Status.FAIL, Status.ERROR}:
+                source = submission.files[self.exercise.module]
+                results[name] = told_more(judged, source, places, self._raised.get(name))
         return [results[check.id] for check in self._checks.checks if check.id in results]
 
     def _run_one(self, check: Check, remote: RemoteSubmission, places: Places) -> CheckResult:
@@ -282,6 +289,8 @@ class GradingSession:
                     self._hung.add(check.task)
                 traceback = places.trace(outcome.traceback) or None
                 finding = finding_of(outcome, shown=check.visibility == "public")
+                if outcome.kind == "error" and remote.asking and remote.asking[0] == check.task:
+                    self._raised[check.id] = remote.asking[1]
                 return found(check, status, finding, duration_ms, traceback=traceback, stdout=printed)
         where = broke_at(outcome)
         proven = self._passes_the_model(check)

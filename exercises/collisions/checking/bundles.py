@@ -30,8 +30,8 @@ _NAMES = {
     DROP: ("z0", "v0", "radius", "restitution", "g", "t_end", "h"),
 }
 
-ROUNDING = "rounding: correct solutions were seen to use less than a hundredth of it"
-INSTANT = "the contract's 1e-9 s for the instant of each contact, times the speeds; and rounding"
+ROUNDING = "rounding"
+INSTANT = "the README's 1e-9 s for the instant of each contact, times the speeds; and rounding"
 
 # -- what is asked, and what should come back -------------------------------------------------------------
 
@@ -88,9 +88,34 @@ def shown(task, args):
 
 def answers(submission, task, calls):
     """What the task returns for each of ``calls``: in one piece, as the formulas do, and as its parts."""
-    values = submission.call_each(task, calls)
+    try:
+        values = submission.call_each(task, calls)
+    except kit.StudentFailure as failure:
+        if failure.kind == "error":
+            _tell_dimension(submission, task, calls, failure)
+        raise
     parts = [_parts(task, args, value) for args, value in zip(calls, values, strict=True)]
     return [found[0] if len(found) == 1 else found for found in parts], parts
+
+
+def _tell_dimension(submission, task, calls, failure):
+    """Where calls work with vectors of one length and fail with those of another, say so."""
+    by_size = {}
+    for args in calls:
+        if sizes := {len(arg) for arg in args if isinstance(arg, np.ndarray)}:
+            by_size.setdefault(sizes.pop(), []).append(args)
+    works = {
+        d: kit.attempt(lambda some=some: submission.call_each(task, some)) for d, some in by_size.items()
+    }
+    good, bad = ([d for d, found in works.items() if (found is None) == is_bad] for is_bad in (False, True))
+    if good and bad:
+        kit.fail(
+            f"In {bad[0]}-D your code raises {failure.type}; in {good[0]}-D it works.",
+            input=shown(task, by_size[bad[0]][0]),
+            expected="a result",
+            actual=failure.type,
+            diagnose=named("ONE_DIMENSION_ONLY"),
+        )
 
 
 def _parts(task, args, value):
@@ -238,7 +263,7 @@ def samples(value, t_end, h, names, given, width=None):
         t,
         h * np.arange(n + 1),
         abs=1e-9,
-        source="the contract's 1e-9 s",
+        source="the README's 1e-9 s",
         quantity="t",
         units="s",
         input=given,

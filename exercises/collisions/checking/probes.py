@@ -55,6 +55,10 @@ def _of_contact(task, calls, values, truth):  # noqa: PLR0911 - one return per m
     close = [np.allclose([*v[1], v[2]], [*right[1], right[2]], rtol=1e-6, atol=1e-6) for _, v, right in wrong]
     if all(close) and 2 * len(wrong) > len(values):
         return "PRECISION_LOST"
+    if all(_same((right[1], abs(right[2])), (value[1], value[2])) for _, value, right in wrong) and any(
+        value[2] > 0 > right[2] for _, value, right in wrong
+    ):
+        return "DEPTH_UNSIGNED"
     if all(not math.isclose(float(np.sqrt(value[1] @ value[1])), 1.0, rel_tol=1e-9) for _, value, _ in wrong):
         return "NORMAL_NOT_UNIT"
     if all(_same((-right[1], right[2]), value[1:]) for _, value, right in wrong) and len(wrong) < len(values):
@@ -252,11 +256,15 @@ def _by_law(task, calls, values, truth):
         return None
     colliding = [pair for pair in zip(calls, values, strict=True) if _closing(task, pair[0]) > 0]
     if task != "impulse_1d":
-        finite = [(c, v) for c, v in colliding if math.inf not in c[:2]]
-        if any(energy(*c[:2], *v) > energy(*c[:4]) * (1 + 1e-9) for c, v in finite):
-            return "ENERGY_CREATED"
-        if any(_momentum_lost(c, v) for c, v in finite):
-            return "MOMENTUM_LOST"
+        # The first wrong pair is the one whose numbers stand beside the finding.
+        call, value = next(
+            (c, v) for c, v, known in zip(calls, values, truth, strict=True) if not _same(known, v)
+        )
+        if _closing(task, call) > 0 and math.inf not in call[:2]:
+            if energy(*call[:2], *value) > energy(*call[:4]) * (1 + 1e-9):
+                return "ENERGY_CREATED"
+            if _momentum_lost(call, value):
+                return "MOMENTUM_LOST"
     return (
         _by_speeds(task, colliding)
         if task != "resolve_with_friction"

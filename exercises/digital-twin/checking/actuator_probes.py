@@ -39,6 +39,13 @@ def of_motor(submission):
     return named("DEADBAND_WIDTH") if _other_width(submission) else None
 
 
+def of_speed_limit(submission):
+    """Whether a motor that is faster than u_max is at u_max at once."""
+    value = kit.as_number(submission.call("motor_step", 30.0, 5.0, _DT, _TAU, 10.0, 2.0), "w_next")
+    clipped = 10.0, 10.0 + _SHARE * (5.0 - 10.0)  # after the lag, or before
+    return named("CLIPS_SPEED_NOT_COMMAND") if min(abs(np.subtract(clipped, value))) < 1e-6 else None
+
+
 def _other_width(submission):
     """Whether, for either sign, the dead band ends elsewhere than at its limit."""
     commands = (0.2, -0.2, 1.7, -1.7, 2.3, -2.3, 8.0, -8.0)
@@ -128,6 +135,10 @@ def of_delay(submission):
     shifts = [_shift(row, x) for row in rows]
     if None not in shifts and shifts[2] > shifts[0]:
         return named("DELAY_WHOLE_SAMPLES")
+    t = dt * np.arange(len(x))
+    circles = [np.interp(t - late, t, x, period=dt * len(x)) for late in lates]
+    if np.allclose(rows, circles, rtol=0, atol=1e-9):
+        return named("DELAY_WRAPS")
     pulse = np.zeros(8)
     pulse[3] = 1.0
     parts = (0.3, 0.8)

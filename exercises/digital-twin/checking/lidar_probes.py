@@ -8,6 +8,7 @@ import numpy as np
 
 from course.scoring import kit
 
+bundles = kit.companion("digital-twin", "bundles")
 draws = kit.companion("digital-twin", "sensor_probes")
 named = draws.named
 
@@ -63,11 +64,12 @@ _SLANTED = np.array([[[2.0, -1.5], [3.0, 2.0]]])
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything
-def of_lidar(submission, noisy=True):
+def of_lidar(submission, noisy=True, straight=False):
     """The mistake that ``lidar`` makes, from a room and from scenes with one wall or two, without noise.
 
     A mistake is named where the readings are those that it gives, not only where they are wrong.
     noisy: whether the noise may have to do with it
+    straight: whether the robot looks along the x axis, so that its heading has nothing to do with it
     """
     scenes = [scene[1:5] for scene in _SCENES] + list(_PLAIN)
     beams = ((_HEADING, _FAN), (0.0, _FAN), (0.0, _FAN - _HEADING), (0.0, _FAN + _HEADING))
@@ -83,11 +85,20 @@ def of_lidar(submission, noisy=True):
     if len(set(shifted)) == 1 and shifted[0] != _REACH:
         return named("WALLS_NOT_READ")
     right = np.abs(readings - [scene[-1] for scene in scenes]) < 1e-9
-    if np.all(right) and np.allclose(fans[0], _READS, rtol=0, atol=1e-9):
+    if np.all(right) and (straight or np.allclose(fans[0], _READS, rtol=0, atol=1e-9)):
         return of_lidar_noise(submission) if noisy else None
     fixed = np.allclose(moved, fans[0], rtol=0, atol=1e-9)
-    room = np.allclose(fans[0], _READS, rtol=0, atol=1e-9)
-    return _of_scenes(readings, right, _turning(*fans), fixed, room)
+    room = np.allclose(fans[3 if straight else 0], _READS, rtol=0, atol=1e-9)
+    return _of_scenes(readings, right, None if straight else _turning(*fans), fixed, room)
+
+
+def of_straight_lidar(submission, noisy=True):
+    """The same for a robot whose heading is 0: beams that do not turn with it are no reason."""
+    return bundles.unless(
+        {"HEADING_IGNORED", "HEADING_SUBTRACTED"},
+        lambda: of_lidar(submission, noisy),
+        lambda: of_lidar(submission, noisy, straight=True),
+    )
 
 
 def _turning(turned, ahead, less, more):

@@ -23,6 +23,11 @@ def of_encoder(submission, counts, theta, per_turn):
     wanted = floor if np.sum(counts == floor) >= np.sum(counts == nearest) else nearest
     if found := of_counts(counts, wanted):
         return found
+    single = theta.astype(np.float32)
+    for angles in (single, single.astype(float)):
+        turned = angles * per_turn / (2 * math.pi)
+        if any(np.array_equal(counts, rounded(turned)) for rounded in (np.floor, np.rint)):
+            return named("COUNTS_SINGLE_PRECISION")
     few = np.flatnonzero(counts != wanted)[:: max(1, np.count_nonzero(counts != wanted) // 8)]
     alone = [submission.call("encoder", theta[i : i + 1], per_turn) for i in few]
     if any(kit.as_vector(count, 1, "counts")[0] != counts[i] for count, i in zip(alone, few, strict=True)):
@@ -57,6 +62,32 @@ def of_counts(counts, wanted):
 
 _N, _K = 20000, 0.02
 _FAST, _SLOW = 0.0025, 0.16  # s; eight times apart in the root
+
+
+#: Mistakes that make no difference where there is no walk, and those that make none without white noise.
+OF_THE_WALK = {
+    "BIAS_CONSTANT",
+    "BIAS_HELD",
+    "BIAS_NOT_RANDOM_WALK",
+    "BIAS_PULLED_BACK",
+    "BIAS_STEPS_RELATED",
+    "BIAS_NOT_SCALED_BY_SQRT_DT",
+    "BIAS_TIMES_DT",
+    "BIAS_OVER_SQRT_DT",
+    "BIAS_FACTOR",
+    "BIAS_STARTS_LATE",
+}
+OF_THE_NOISE = {
+    "WHITE_NOISE_MISSING",
+    "WHITE_NOISE_NOT_SCALED_BY_SQRT_DT",
+    "WHITE_NOISE_TIMES_SQRT_DT",
+    "WHITE_NOISE_TIMES_DT",
+    "WHITE_NOISE_OVER_DT",
+    "WHITE_NOISE_FACTOR",
+    "WHITE_NOISE_ACCUMULATES",
+    "WHITE_NOISE_RELATED",
+    "WHITE_NOISE_SHARED",
+}
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything

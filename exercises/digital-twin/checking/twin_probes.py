@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -49,19 +50,60 @@ def same(a, b):
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything
-def of_sync(submission, late=True):
+def of_sync(submission, refuted=()):
     """The mistake that ``sync`` makes: first in single steps, then along a run of its own.
 
-    late: whether a late measurement may have to do with it
+    refuted: codes of mistakes that make no difference to the numbers of the check that asks
     """
     looks = (
-        lambda: _braking(submission),
-        lambda: _in_one_step(submission, late),
-        lambda: _backwards(submission),
-        lambda: _learning(submission),
+        lambda: [_braking(submission)],
+        lambda: _in_one_step(submission),
+        lambda: [_backwards(submission), _learning(submission)],
     )
-    code = next(filter(None, (look() for look in looks)), None)
-    return named(code) if code else None
+    codes = []
+    for look in looks:
+        codes += filter(None, look())
+        if codes and codes[0] not in _APART:
+            break
+    left = [code for code in codes if code not in refuted]
+    if codes and codes[0] in refuted:
+        return second_mistake(named(left[0]) if left else None)
+    if not left:
+        return None
+    about = _APART.get(left[0])
+    others = [code for code in left if about and _APART.get(code, about) != about]
+    first = named(left[0])
+    if not others:
+        return first
+    second = named(others[0])
+    return dataclasses.replace(
+        first,
+        looks_like=f"There seem to be two mistakes. First: {first.looks_like} Second: {second.looks_like}",
+        advice=f"First: {first.advice} Second: {second.advice}",
+    )
+
+
+def second_mistake(seen):
+    """What is said where the mistake of other checks makes no difference: what was seen besides, if anything.
+
+    It is a fact, which stays with its check whatever the others say.
+    """
+    return dataclasses.replace(seen, code="SECOND_MISTAKE") if seen else named("SECOND_MISTAKE")
+
+
+#: Mistakes that are seen beside others, and what they are about: one never looks like one of another kind.
+_APART = {
+    "BELIEVES_MEASUREMENT": "position",
+    "STEP_FIXED": "time",
+    "DRIVE_NOT_USED": "drive",
+    "DRIVE_CHANGED": "drive",
+    "LATE_USED_AS_CURRENT": "late",
+    "SPEED_NOT_CORRECTED": "speed",
+    "SPEED_CORRECTED_BACKWARDS": "speed",
+    "FRICTION_LEARNS_BACKWARDS": "friction",
+    "LEARNS_FORWARDS_ONLY": "friction",
+    "FRICTION_NOT_LEARNED": "friction",
+}
 
 
 #: m; no more than noise may be, or a twin that leaves outliers out is right to move by nothing
@@ -117,13 +159,12 @@ def _expected_speed(submission, speed, friction=0.5):
     return v[0] + gain * (expected - z[0])
 
 
-def _in_one_step(submission, late):
-    """From what one more measurement does; late: as ``of_sync`` says."""
+def _in_one_step(submission):
+    """Codes of what one more measurement does."""
     warm, good = _warm(submission)
-    late = late and good
     t, x, v, b = states([warm])[0].tolist()
     if not math.isfinite(t + x + v):
-        return None  # what it has made of a steady cart is beyond experiments
+        return []  # what it has made of a steady cart is beyond experiments
     b = b if 0.01 < b < 100.0 else 0.5
     soon, expected = (_predicted(warm, b, dt) for dt in (0.1, 0.2))
     pushed = {**warm, "drive": warm["drive"] + 4.0}
@@ -149,7 +190,7 @@ def _in_one_step(submission, late):
         ("GLOBAL_MEMORY", not same(twins[0], twins[2])),
         ("DRIVE_CHANGED", not kept),
         ("TIME_NOT_ADVANCED", abs(t0 - t) < 1e-9),
-        ("TIME_RUNS_BACK", late and t_late < t - 1e-9),
+        ("TIME_RUNS_BACK", good and t_late < t - 1e-9),
         ("TIME_NOT_THE_LATEST", abs(t0 - t - 0.2) > 1e-6),
         ("SURPRISE_INVERTED", moved < -1e-6),
         ("NO_CORRECTION", far <= 1e-6 * _SURPRISE),
@@ -162,12 +203,12 @@ def _in_one_step(submission, late):
         ("DRIVE_NOT_USED", undriven and not _driven_at_first(submission)),
         ("DRIVE_REMEMBERED", undriven),
         # As if it were new: by that share of the way back, or so, and not by twice as much.
-        ("LATE_USED_AS_CURRENT", late and now and 0.02 < (x - x_late) / abs(v) < 0.64 * max(moved, 0.1)),
+        ("LATE_USED_AS_CURRENT", good and now and 0.02 < (x - x_late) / abs(v) < 0.64 * max(moved, 0.1)),
         ("FRICTION_LEARNS_BACKWARDS", v > 0.2 and b_ahead - b0 > 1e-9),
         ("SPEED_NOT_CORRECTED", abs(v_ahead - v0) < 1e-9),
         ("SPEED_CORRECTED_BACKWARDS", v_ahead < v0),
     )
-    return next((code for code, seen in tests if seen), None)
+    return [code for code, seen in tests if seen]
 
 
 def _unsurprised(first, ahead, z):
@@ -194,26 +235,32 @@ def _predicted(twin, b, dt):
 
 def _backwards(submission):
     """Whether a twin of a cart that rolls backwards learns the wrong way from a surprise, or either way."""
+    forwards, backwards = _learned(submission)
+    if backwards > -1e-9:
+        return None
+    return "FRICTION_LEARNS_BACKWARDS" if forwards > 1e-9 else "LEARNS_FORWARDS_ONLY"
+
+
+def _learned(submission):
+    """By how much a new twin's friction changes with a surprise, 1/s, rolling forwards and backwards."""
     calls = [
         (scenes.new_twin(0.5, 0.5 * v, speed=v), 0.1 * v + z, 0.1)
         for v in (1.0, -1.0)
         for z in (0.0, _SURPRISE)
     ]
     friction = states(submission.call_each("sync", calls))[:, 3]
-    forwards, backwards = friction[1] - friction[0], friction[3] - friction[2]
-    if backwards > -1e-9:
-        return None
-    return "FRICTION_LEARNS_BACKWARDS" if forwards > 1e-9 else "LEARNS_FORWARDS_ONLY"
+    return friction[1] - friction[0], friction[3] - friction[2]
 
 
 def _learning(submission):
     """From how the friction is learned."""
     twins, _ = _run(submission, 0.5, ((0.0, 0.8),), 12.0)
     friction = states(twins)[:, 3]
-    if np.ptp(friction) < 1e-9:
-        return "FRICTION_NOT_LEARNED"
-    if not np.all(np.isfinite(friction)):
-        return None
+    moves = np.ptp(friction)
+    if not 1e-9 <= moves < math.inf:  # nan among them
+        return "FRICTION_NOT_LEARNED" if moves < 1e-9 else None
+    if np.std(friction[-40:]) > 0.05 and _learned(submission)[0] < -_SURPRISE:
+        return "FRICTION_SHARE_TOO_LARGE"
     share = _share(submission, twins[-1])
     if share > 0.6:
         # Constant shares do not ask how good a measurement is; a filter that begins afresh each time does.

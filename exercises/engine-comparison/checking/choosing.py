@@ -18,7 +18,7 @@ def expect_choices(submission: Any, questions: list[tuple[Any, Any, Any]]) -> No
 
     All of them are asked in one round trip.
     """
-    answers = submission.call_each(TASK, [(reports, needs) for reports, needs, _ in questions])
+    answers = _answers(submission, questions)
     everything = list(zip(questions, answers, strict=True))
     for (reports, needs, expected), answer in everything:
         given = {"requirements": needs, "reports, cut to what decides": _what_decides(reports, needs)}
@@ -46,6 +46,34 @@ def expect_choices(submission: Any, questions: list[tuple[Any, Any, Any]]) -> No
             )
 
 
+def _answers(submission: Any, questions: list[tuple[Any, Any, Any]]) -> list[Any]:
+    """What it chooses each time.
+
+    Raises:
+        CheckFailed: it raises an exception first where a required value is missing or None.
+    """
+    try:
+        return list(submission.call_each(TASK, [(reports, needs) for reports, needs, _ in questions]))
+    except kit.StudentFailure as failure:
+        for reports, needs, _ in questions:
+            if not kit.attempt(lambda reports=reports, needs=needs: [submission.call(TASK, reports, needs)]):
+                _expect_measured(failure, reports, needs)
+                break
+        raise
+
+
+def _expect_measured(failure: kit.StudentFailure, reports: Any, needs: Any) -> None:
+    """An exception is the fault of nothing that is missing in these reports."""
+    missing = any(report.get(need["key"]) is None for report in reports.values() for need in needs)
+    if missing and failure.type in {"KeyError", "TypeError"}:
+        kit.fail(
+            "Not every engine was measured in all that is required, and no answer comes.",
+            diagnose=named("MISSING_RAISES"),
+            input={"requirements": needs, "reports, cut to what decides": _what_decides(reports, needs)},
+            actual=failure.type,
+        )
+
+
 def _what_decides(reports: Any, needs: Any) -> Any:
     """Of each report the required keys and the cost: the answer depends on nothing else."""
     keys = [*dict.fromkeys(need["key"] for need in needs), "cost"]
@@ -56,7 +84,11 @@ def expect_untouched(submission: Any, reports: Any, needs: Any) -> None:
     """A call leaves reports and requirements as they were, where something is missing, too."""
     reports = {**reports, "void": {"cost": 0.5, **dict.fromkeys(n["key"] for n in needs[1:])}}
     given = [copy.deepcopy(reports), copy.deepcopy(needs)]
-    inspected = submission.call_inspect(TASK, reports, needs)
+    try:
+        inspected = submission.call_inspect(TASK, reports, needs)
+    except kit.StudentFailure as failure:
+        _expect_measured(failure, reports, needs)
+        raise
     # As text: what came back may hold anything, and not everything can be compared.
     if repr([*inspected.args_after]) != repr(given):
         kit.fail(

@@ -60,6 +60,23 @@ def _kept(key: str, cases: list[Any]) -> bool:
 # -- order ------------------------------------------------------------------------------------------------
 
 
+def _ends_apart(_: str, cases: list[Any]) -> bool:
+    """Of the runs of a spring with several steps, no two from one start took the same time."""
+
+    def apart(case: Any) -> bool:
+        runs = {(q0, v0, h, n) for _, (_, q0, v0, h, n, _) in probing.runs([case], "spring") if n > 3}
+        times = {(q0, v0, float(f"{h * n:.6g}")) for q0, v0, h, n in runs}
+        return len(runs) > 1 and len(times) == len(runs)
+
+    return all(map(apart, cases))
+
+
+def _negative(key: str, cases: list[Any]) -> bool:
+    """Wrong values are negative, or zero in part, and no right one is."""
+    wrong = [case.measured(key) for case in cases if not probing.right(key, case)]
+    return min(wrong) < 0 and max(wrong) <= 0
+
+
 def _one_for_all(key: str, cases: list[Any]) -> bool:
     return len({case.measured(key) for case in cases}) == 1 < len({case.truth[key] for case in cases})
 
@@ -260,6 +277,7 @@ def _repeated(how: int) -> Probe:
 
 _PROBES: dict[str, list[tuple[str, Probe]]] = {
     "order": [
+        ("ORDER_TIME_NOT_FIXED", _ends_apart),
         ("ORDER_ASSUMED", _one_for_all),
         ("ORDER_AGAINST_UNDAMPED", probing.where(probing.damped, lambda value, t: -1 <= value < t)),
         (
@@ -289,6 +307,7 @@ _PROBES: dict[str, list[tuple[str, Probe]]] = {
         ("DAMPING_OVER_ONE_STEP", _by_own_time(lambda c, h, n: c * n)),
         ("DAMPING_ROWS_COUNTED", _by_own_time(lambda c, h, n: c * n / (n + 1), 0.0005)),
         ("DAMPING_AT_DT", _long_steps),
+        ("DAMPING_SIGN", _negative),
     ],
     "max_stable_step": [
         ("TOLERANCE_TOO_TIGHT", probing.where(probing.keeps_area, lambda value, t: value < 0.9 * t)),
@@ -299,6 +318,7 @@ _PROBES: dict[str, list[tuple[str, Probe]]] = {
         ("LIMIT_COARSE", _coarse),
     ],
     **contact.PROBES,
+    "restitution": [("RESTITUTION_SIGN", _negative), *contact.PROBES["restitution"]],
     "deterministic": [
         ("DETERMINISM_ONE_RUN", _repeated(0)),
         ("DETERMINISM_AT_REST", _repeated(1)),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from course.physics.systems import FreeFall, LinearStep, Oscillator
@@ -70,18 +72,70 @@ def turn(c, s, z=None):
 # -- expectations ---------------------------------------------------------------------------------------
 
 
+#: Exceptions that are raised to refuse something, and by no slip in the code.
+_OTHER_REFUSALS = ("Exception", "RuntimeError", "AssertionError", "ArithmeticError")
+
+
+def histories(value):
+    """t, q and v of what integrate returns; if the times stand elsewhere, that is said."""
+    parts = kit.as_tuple(value, ("t", "q", "v"))
+    ranks = [kit.attempt(lambda part=part: np.ndim(part)) for part in parts]
+    if sorted(map(str, ranks)) == ["1", "2", "2"] and ranks[0] != 1:
+        kit.fail(
+            "integrate returns its three results in another order.",
+            expected="(t, q, v)",
+            actual=f"the times are number {ranks.index(1) + 1} of three",
+            help="Return (t, q, v): the times first, then the positions, then the velocities.",
+            diagnose=probes.named("TIMES_NOT_FIRST"),
+        )
+    return parts
+
+
+def expect_limit(submission, value, case, *, input, message):
+    """max_stable_step is right to 1 %, and zero and infinity exactly. case: step, omega, limit * omega."""
+    step, omega, limit = case
+    if value is None:
+        code = {0.0: "NONE_FOR_ZERO", math.inf: "NONE_FOR_INFINITY"}.get(limit, "NONE_FOR_LIMIT")
+        told = {"expected": limit / omega, "actual": "None", "units": "s"}
+        kit.fail(message, input=input, diagnose=probes.named(code), **told)
+    kit.expect_close(
+        value,
+        limit / omega,
+        rel=0.01,
+        source="the README's 1 %",
+        quantity="largest stable step",
+        units="s",
+        input=input,
+        message=message,
+        help="Walk up from 0.05/omega. At each step build the matrix on (q, v/omega) from two calls, and "
+        "look at its eigenvalues.",
+        diagnose=lambda: probes.of_stability(submission, value, step, omega, limit),
+    )
+
+
 def expect_refusals(submission, state, durations):
     """Each (t_end, h) raises ValueError."""
     for t_end, h in durations:
-        kit.expect_raises(
-            lambda t_end=t_end, h=h: submission.call(
-                "integrate", probes.IDENTITY, Oscillator(1.0), *state, t_end, h
-            ),
-            "ValueError",
-            input={"t_end": t_end, "h": h},
-            message="integrate does not raise ValueError for a duration that is not a whole number of steps.",
-            diagnose=lambda: probes.named("DURATION_NOT_CHECKED"),
-        )
+        try:
+            kit.expect_raises(
+                lambda t_end=t_end, h=h: submission.call(
+                    "integrate", probes.IDENTITY, Oscillator(1.0), *state, t_end, h
+                ),
+                "ValueError",
+                input={"t_end": t_end, "h": h},
+                message="A duration that is not a whole number of steps is not refused.",
+                diagnose=lambda: probes.named("DURATION_NOT_CHECKED"),
+            )
+        except kit.StudentFailure as failure:
+            if failure.type not in _OTHER_REFUSALS:
+                raise
+            kit.fail(
+                f"integrate refuses the duration with {failure.type} instead of ValueError.",
+                input={"t_end": t_end, "h": h},
+                expected="ValueError",
+                actual=failure.type,
+                diagnose=probes.named("OTHER_EXCEPTION"),
+            )
 
 
 def expect_start_kept(submission, args, inspected, given):

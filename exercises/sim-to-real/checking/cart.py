@@ -208,10 +208,13 @@ def prbs_recordings(carts, seconds, force, rng):
     return [(t, u, y) for t, y, u in recordings]
 
 
-def with_intervals(cart):
-    """A cart as ``tune`` is handed one: values as they are, with the intervals of an ordinary measurement."""
+def with_intervals(cart, low=1.0, high=1.0):
+    """A cart as ``tune`` is handed one: values as they are, with the intervals of an ordinary measurement.
+
+    low, high: further factors on the ends; by them it is seen whether the values count
+    """
     known = {**cart, "lag": cart["tau"] + cart["latency"]}
-    return {k: [v, v * (1 - _WIDTH[k]), v * (1 + _WIDTH[k])] for k, v in known.items()}
+    return {k: [v, low * v * (1 - _WIDTH[k]), high * v * (1 + _WIDTH[k])] for k, v in known.items()}
 
 
 _WIDTH = {"m": 0.003, "b": 0.012, "Fc": 0.02, "tau": 0.025, "latency": 0.015, "lag": 0.005}

@@ -83,7 +83,7 @@ def expect_shows(u, carts, u_max=cart.U_BENCH):
         kit.expect_bounded(
             float(widths[:, i].max()),
             high=cart.SCORED[name],
-            source="the accuracy asked of identify; random full force reaches a quarter of it",
+            source="the README's",
             quantity=f"narrowest possible 95 % half-width of {name}, as a share",
             message="From such a recording, no method could determine every parameter well enough.",
             input={"parameter": name},
@@ -105,7 +105,7 @@ def expect_fitted(u, carts):
         kit.expect_bounded(
             float(error),
             high=limit,
-            source="the README's; sums of sines at random phases came to 0.97 of it in 85 classes",
+            source="the README's",
             quantity=f"rms error of {name} in the given fit, as a share",
             message="From such a recording, the README's fit is too far off in a parameter.",
             input={"parameter": name},
@@ -125,8 +125,9 @@ def expect_kept(i, gap, seconds, carts, seed):
     asked = gap["excitation"], gap["parameter"]
     reach = bench.reach(*asked, seconds, carts, seed)
     threshold, needed = words.threshold_of(gap), words.NEEDED[gap["parameter"]]
-    if reach > needed:
-        enough = bench.reach(*asked, cart.BUDGET_S, carts, seed) <= needed
+    shows = words.SHOWN[gap["parameter"]]
+    if reach > shows:
+        enough = bench.reach(*asked, cart.BUDGET_S, carts, seed) <= shows
         wrong = "BUDGET_TOO_SHORT" if enough else "EXCITATION_CANNOT_SHOW"
     elif threshold > needed * _ROUNDING:
         wrong = "PROMISES_TOO_LITTLE"
@@ -174,7 +175,7 @@ def expect_accurate(estimates, carts, recordings=()):
                 estimate[name][0],
                 known[name],
                 rel=rel,
-                source="the README's; single recordings used up to six tenths of it",
+                source="the README's",
                 quantity=name,
                 units=_UNITS[name],
                 message="A parameter identified from a bench recording is too far from the cart's own.",
@@ -182,11 +183,16 @@ def expect_accurate(estimates, carts, recordings=()):
                 input={"parameter": name},
                 diagnose=lambda: probes.of_values(estimates, carts, recordings),
             )
+        kit.expect_true(
+            not probes.exchanged(estimates, carts),
+            "tau and the latency are not those of the carts.",
+            diagnose=named("TIMES_EXCHANGED"),
+        )
         kit.expect_close(
             estimate["lag"][0],
             estimate["tau"][0] + estimate["latency"][0],
             rel=0.02,
-            source="its definition, with room for a fit of its own",
+            source="the README's",
             quantity="lag",
             units="s",
             message="lag does not go with tau and latency.",
@@ -224,7 +230,7 @@ def expect_intervals(estimates, carts, recordings=()):
             kit.expect_bounded(
                 (high - low) / 2,
                 high=limit * abs(value) * _ROUNDING,
-                source="the README's; correct solutions use a third of it",
+                source="the README's",
                 quantity=f"half-width of {name}",
                 units=_UNITS[name],
                 message="An interval is too wide to be useful.",
@@ -250,7 +256,7 @@ def expect_honest_widths(estimates, recordings, carts):
         kit.expect_bounded(
             float(width),
             high=WIDEST,
-            source="the README's; correct solutions are 1 to 8 times as wide",
+            source="the README's",
             quantity=f"mean half-width of {name} over the narrowest possible",
             message="The intervals of a parameter are far wider than the recordings require.",
             diagnose=lambda: probes.of_misses(estimates, carts, recordings, "INTERVAL_USELESS"),
@@ -268,7 +274,7 @@ def expect_growth(full, weak, carts):
     kit.expect_bounded(
         growth,
         low=WIDER,
-        source="the README's; those of correct solutions are 2.4 to 13 times as wide",
+        source="the README's",
         quantity="half-widths from the weak recordings over those from the full ones, geometric mean",
         message="From short and weak recordings, the intervals are not so much wider as the README asks.",
         diagnose=lambda: probes.of_values(full, carts) or named("INTERVAL_WITHOUT_RECORDING"),
@@ -298,27 +304,35 @@ def expect_forgetful(first, second, last):
 WIDEST, WIDER = 12.0, 1.5
 
 
-def expect_truth(estimates, carts, recordings, most):
-    """Intervals hold the truth, taken twice as wide; ``most`` of the scored ones may miss it."""
-    missed, total = misses(estimates, carts)
-    kit.expect_bounded(
-        missed,
-        high=most,
-        source="the README's; tests/benchmarks/calibration/sim-to-real.md",
-        quantity="intervals that miss the truth when doubled",
-        message="Even intervals twice as wide as those of identify miss the true value too often.",
-        diagnose=lambda: probes.of_misses(estimates, carts, recordings),
-        input={"intervals": total},
-    )
+def expect_truth(estimates, carts, recordings, most, most_single):
+    """Intervals hold the truth, taken twice as wide and as they are; so many of the scored ones may miss it.
+
+    As they are: of 24 intervals a jackknife's missed 0 to 6 in 120 classes, those of one standard error
+    half of the time 9 and more.
+    """
+    for times, high, message in (
+        (2.0, most, "Even intervals twice as wide as those of identify miss the true value too often."),
+        (1.0, most_single, "The intervals of identify miss the true value too often for intervals of 95 %."),
+    ):
+        missed, total = misses(estimates, carts, times)
+        kit.expect_bounded(
+            missed,
+            high=high,
+            source="the README's",
+            quantity="intervals that miss the truth" + (" when doubled" if times > 1 else ""),
+            message=message,
+            diagnose=lambda: probes.of_misses(estimates, carts, recordings),
+            input={"intervals": total, "times as wide": times},
+        )
 
 
-def misses(estimates, carts):
-    """How many scored intervals miss the truth even when taken twice as wide, and how many there are."""
+def misses(estimates, carts, times=2.0):
+    """How many scored intervals, taken so many times as wide, miss the truth, and how many there are."""
     missed = total = 0
     for estimate, truth in zip(estimates, carts, strict=True):
         known = {**truth, "lag": truth["tau"] + truth["latency"]}
         for name in cart.SCORED:
             value, low, high = estimate[name]
             total += 1
-            missed += not value + 2 * (low - value) <= known[name] <= value + 2 * (high - value)
+            missed += not value + times * (low - value) <= known[name] <= value + times * (high - value)
     return missed, total

@@ -186,7 +186,8 @@ def expect_numbers(report, case, right, shown):
             help="Pool the samples of all runs that count, with errors simulated minus real.",
             input=shown,
             diagnose=lambda key=key, value=value: (
-                probes.of_number(key, value, right) or probes.of_pairs(key, value, case.sim, case.real)
+                probes.of_pairs(key, value, case.sim, case.real)
+                or probes.of_number(key, value, right, *probes.together(case.sim, case.real, right.used))
             ),
         )
 
@@ -197,7 +198,7 @@ def _expect_lag(report, right, shown):
         lag,
         right.numbers["lag_s"],
         abs=LAG_SHARE * right.dt,
-        source="a fifth of the longest time between samples; correct searches use a quarter of that",
+        source="a fifth of the longest time step",
         quantity="lag_s",
         units="s",
         message="`lag_s` is not how late the simulation is.",
@@ -232,7 +233,7 @@ def _expect_intervals(report, right, shown):
             source="three digits of Student's t",
             quantity=f"{key} interval",
             message=f"The interval of `{key}` has the wrong ends.",
-            diagnose=lambda: probes.of_interval(ends, right),
+            diagnose=lambda key=key: probes.of_interval(key, ends, right),
             **words,
         )
     kit.expect_array(

@@ -82,7 +82,7 @@ def expect_large_mean(submission, e):
         variance,
         float(np.var(e)),
         rel=1e-6,
-        source="rounding of two-pass and running formulas stays below 1e-8 here; one pass loses all digits",
+        source="rounding, if the mean is subtracted first",
         quantity="variance",
         units="m²",
         input={"e": e},
@@ -173,17 +173,19 @@ def expect_normalised(submission, task, err, covariance, names):
             expected=f"shape ({len(err)},)",
             actual=value,
         )
+    rows = kit.as_vector(value, len(err), "the result")
     kit.expect_array(
-        kit.as_vector(value, len(err), "the result"),
+        rows,
         expected,
         rel=1e-8,
-        source="rounding, for covariances of condition up to 1e5",
+        source="rounding",
         quantity=task,
         input={names[0]: err, names[1]: covariance},
         message="The normalised squared errors are wrong.",
         help=f"For each row: solve {names[1]} w = {names[0]} for w, then sum {names[0]} * w.",
-        diagnose=lambda: probes.of_whole(
-            submission, task, [err, covariance], lambda rows: _near(rows, expected)
+        diagnose=lambda: (
+            probes.of_rows(rows, expected)
+            or probes.of_whole(submission, task, [err, covariance], lambda rows: _near(rows, expected))
         ),
     )
     expect_left_alone(inspected, [err, covariance], names)
@@ -274,6 +276,7 @@ def expect_forces(submission, pairs):
                 input={"peaks": [np.max(f_sim), np.max(f_real)], "dt": dt, "samples": len(f_sim)},
                 message=f"The relative error of the {key} is wrong.",
                 help="Reduce each force to one number, then divide their difference by the real one.",
+                diagnose=functools.partial(probes.of_force, key, number, f_sim, f_real, dt),
             )
         expect_left_alone(inspected, [f_sim, f_real], ["f_sim", "f_real"])
 

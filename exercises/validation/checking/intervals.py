@@ -27,8 +27,7 @@ def expect_width(submission, rng, scale, offset):
         float(np.mean(ends[:, 1] - ends[:, 0])) / (2 * 1.96 * scale * shared.spread_of_mean(n, phi)),
         low=0.55,
         high=1.3,
-        source="correct variants over 100 seeds: 0.6 to 0.95, corrected for few blocks up to 1.0; one by "
-        "one it is 0.22",
+        source="blocks give 0.6 to 1.0, single samples 0.22",
         quantity="mean width over true width",
         input=shown,
         message="The intervals do not have the width that the scatter of the mean requires.",
@@ -89,7 +88,7 @@ def expect_centred(submission, ends, statistics, shown):
     kit.expect_bounded(
         float(np.mean(np.abs(middle - statistics)) / width),
         high=0.35,
-        source="correct variants stay below 0.2 over 200 seeds",
+        source="right intervals stay below 0.2",
         quantity="distance of the middle from the statistic, in widths",
         input=shown,
         message="The middle of the intervals is too far from the statistic of the series.",
@@ -121,12 +120,14 @@ def expect_level(submission, rng, statistic):
         ratio,
         low=1.55,
         high=2.5,
-        source="1.97 for a normal distribution; correct variants over 200 seeds",
+        source="a normal distribution gives 1.97",
         quantity="width at alpha 0.05 over width at alpha 0.32",
         input=shown,
         message="The width of the interval does not depend on alpha as it should.",
         help="alpha is the fraction outside, both sides together.",
-        diagnose=lambda: probes.of_interval(submission, 1) or probes.named("ONE_STANDARD_ERROR"),
+        diagnose=lambda: (
+            probes.of_interval(submission, 1, ends_first=True) or probes.named("ONE_STANDARD_ERROR")
+        ),
     )
 
 

@@ -68,6 +68,49 @@ def _offs(submission, series):
         yield abs(bias / np.mean(e) - 1), abs(variance / np.var(e) - 1)
 
 
+def of_rows(rows, right):
+    """Whether only the first of several rows was computed."""
+    alone = len(rows) > 1 and math.isclose(rows[0], right[0], rel_tol=1e-8) and np.ptp(rows[1:]) == 0
+    return named("FIRST_ROW_ALONE") if alone and rows[1] in {0.0, 1.0} else None
+
+
+def of_force(key, value, f_sim, f_real, dt):
+    """What a wrong relative error of the peak or the impulse is; the other may be wrong in another way."""
+    of = np.max if key == "peak" else np.sum
+    sim, real = of(f_sim), of(f_real)
+    ratios = {
+        "peak": [
+            ("PEAK_OF_ERROR", np.max(f_sim - f_real) / real),
+            ("PEAK_OF_ERROR", np.max(np.abs(f_sim - f_real)) / real),
+            ("PEAK_AT_SAME_TIME", f_sim[np.argmax(f_real)] / real - 1),
+            ("PEAK_AT_SAME_TIME", sim / f_real[np.argmax(f_sim)] - 1),
+        ],
+        "impulse": [
+            ("IMPULSE_OF_ABSOLUTE", np.sum(np.abs(f_sim - f_real)) / real),
+            ("IMPULSE_OF_PEAK", np.max(f_sim) / np.max(f_real) - 1),
+            (
+                "IMPULSE_OF_SQUARES",
+                np.sum(np.square(f_sim, dtype=float)) / np.sum(np.square(f_real, dtype=float)) - 1,
+            ),
+            ("MEAN_FORCE", np.mean(f_sim[f_sim > 0]) / np.mean(f_real[f_real > 0]) - 1),
+        ],
+    }
+    looks = [
+        *ratios[key],
+        ("WRONG_SIGN", (real - sim) / real),
+        ("DIVIDED_BY_SIM", (sim - real) / sim),
+        ("RATIO", sim / real),
+        ("RATIO", real / sim),
+        ("IN_PER_CENT", 100 * (sim - real) / real),
+        ("NOT_RELATIVE", sim - real),
+        ("NOT_RELATIVE", (sim - real) * dt),
+        ("DIVIDED_BY_BOTH", 2 * (sim - real) / (sim + real)),
+        ("DIVIDED_BY_BOTH", (sim - real) / max(sim, real)),
+    ]
+    codes = {code for code, wrong in looks if math.isclose(value, wrong, rel_tol=2e-3)}
+    return named(codes.pop()) if len(codes) == 1 else None
+
+
 #: dof and runs, 40 degrees of freedom in all.
 _FEWER = ((5, 8), (8, 5))
 
@@ -269,13 +312,15 @@ def _quantiles(ends, values, low, high):
     return True
 
 
-def of_interval(submission, seed, found=None):
+def of_interval(submission, seed, found=None, *, ends_first=False):
     """The mistake behind a wrong interval, if the resamples or what is made of them show it.
 
-    found: the resamples, if they have been looked at.
+    Args:
+        found: the resamples, if they have been looked at.
+        ends_first: of two mistakes, the one in what is made of the resamples.
     """
     found = found or resample(submission, seed)
-    code = of_resamples(found) or of_ends(found)
+    code = of_ends(found) or of_resamples(found) if ends_first else of_resamples(found) or of_ends(found)
     if code in {
         None,
         "ONE_SIDED",

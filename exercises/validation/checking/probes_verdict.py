@@ -85,18 +85,59 @@ def _close(report, numbers):
         yield value is not None and math.isclose(abs(value), abs(numbers[key]), rel_tol=1e-6)
 
 
+def together(sim, real, ids):
+    """The errors of the samples of these runs, of those that both sides have, and the sigmas."""
+    known = {run["id"]: run["y"] for run in real["runs"]}
+    runs = [run for run in sim["runs"] if run["id"] in known.keys() & set(ids)]
+    e = [np.subtract(run["y"], known[run["id"]]) for run in runs]
+    return np.concatenate([*e, np.empty(0)]), np.concatenate([*(run["sigma"] for run in runs), np.empty(0)])
+
+
 def _numbers(sim, real, ids):
     """rmse and bias of the runs of these ids that both sides have."""
-    known = {run["id"]: run["y"] for run in real["runs"]}
-    e = [np.subtract(run["y"], known[run["id"]]) for run in sim["runs"] if run["id"] in known.keys() & ids]
-    e = np.concatenate([*e, np.empty(0)])
+    e, _ = together(sim, real, ids)
     return {"rmse": float(np.sqrt(np.mean(e**2))), "bias": float(np.mean(e))} if len(e) else {}
 
 
-def of_number(key, value, right):
-    """What a wrong rmse, bias or coverage is, whatever else is wrong."""
-    mean = right.means.get(key, math.nan)
-    return named("MEAN_OF_RUNS") if math.isclose(value, mean, rel_tol=1e-6) else None
+def of_number(key, value, right, e, sigma):
+    """What a wrong rmse, bias or coverage is, whatever else is wrong.
+
+    Args:
+        e, sigma: the errors of the samples that count, simulated minus real, and what was claimed of each.
+    """
+    numbers = {
+        "rmse": (
+            ("MEAN_OF_RUNS", right.means.get(key)),
+            ("ROOT_MISSING", np.mean(e**2)),
+            ("MEAN_REMOVED", np.std(e)),
+            ("MEAN_ABSOLUTE", np.mean(np.abs(e))),
+            ("BIAS_FOR_RMSE", np.mean(e)),
+            ("NOT_AVERAGED", np.sqrt(np.sum(e**2))),
+        ),
+        "bias": (
+            ("MEAN_OF_RUNS", right.means.get(key)),
+            ("WRONG_SIGN", -np.mean(e)),
+            ("MEAN_ABSOLUTE", np.mean(np.abs(e))),
+            ("MEDIAN_FOR_MEAN", np.median(e)),
+            ("NOT_AVERAGED", np.sum(e)),
+        ),
+        "coverage": (
+            ("MEAN_OF_RUNS", right.means.get(key)),
+            ("OUTSIDE_COUNTED", np.mean(np.abs(e) > 1.96 * sigma)),
+            ("SIGMA_NOT_SCALED", np.mean(np.abs(e) <= sigma)),
+            *(("SIGMA_MULTIPLE", np.mean(np.abs(e) <= z * sigma)) for z in (2.0, 1.645, 3.0)),
+            *(("SIGMA_MISREAD", np.mean(np.abs(e) <= 1.96 * s)) for s in (np.sqrt(sigma), sigma**2)),
+            ("OWN_SPREAD_FOR_SIGMA", np.mean(np.abs(e) <= 1.96 * np.std(e))),
+            ("IN_PER_CENT", 100 * np.mean(np.abs(e) <= 1.96 * sigma)),
+        ),
+    }
+    return _only(numbers[key], lambda wrong: wrong is not None and math.isclose(value, wrong, rel_tol=1e-6))
+
+
+def _only(looks, fits):
+    """The code of what fits, if all that fits has the same code."""
+    codes = {code for code, wrong in looks if fits(wrong)}
+    return named(codes.pop()) if len(codes) == 1 else None
 
 
 def of_pairs(key, value, sim, real):
@@ -111,12 +152,30 @@ def of_pairs(key, value, sim, real):
     return named("MATCHED_BY_POSITION") if math.isclose(value, wrong, rel_tol=1e-6) else None
 
 
-def of_interval(ends, right):
-    """What wrong intervals about right numbers have in common."""
-    shares = [(ends[key][1] - ends[key][0]) / 2 / right.half(key) for key in NUMBERS if right.half(key) > 0]
+#: Student's t, as the stub has it.
+_T95 = (6.314, 2.920, 2.353, 2.132, 2.015, 1.943, 1.895, 1.860, 1.833, 1.812)
+
+
+def of_interval(key, ends, right):
+    """What the ends of a wrong interval show, and what wrong intervals about right numbers have in common."""
+    shares = [(ends[k][1] - ends[k][0]) / 2 / right.half(k) for k in NUMBERS if right.half(k) > 0]
     if shares and max(shares) < 0:
         return named("RETURNS_SWAPPED")
-    middles = [abs(sum(ends[key]) / 2 - right.numbers[key]) <= 0.01 * right.half(key) for key in NUMBERS]
+    if right.half(key) > 0 and abs(sum(ends[key]) / 2 - right.numbers[key]) <= 0.01 * right.half(key):
+        share, n = (ends[key][1] - ends[key][0]) / 2 / right.half(key), len(right.used)
+        t = _T95[n - 2]
+        looks = [
+            ("ZERO_WIDTH", 0.0),
+            *(("JACKKNIFE_FACTOR", x / (n - 1)) for x in (math.sqrt(n), 1.0)),
+            *(("JACKKNIFE_FACTOR", x) for x in (math.sqrt(n / (n - 1)), 1 / math.sqrt(n - 1), math.sqrt(n))),
+            *(
+                ("NOT_STUDENTS_T", z / t)
+                for z in (1.0, 1.645, 1.96, 2.0, 3.0, _T95[n - 1], *_T95[n - 3 : n - 2])
+            ),
+        ]
+        if found := _only(looks, lambda wrong: abs(share - wrong) < 1e-3 * max(wrong, 1e-6)):
+            return found
+    middles = [abs(sum(ends[k]) / 2 - right.numbers[k]) <= 0.01 * right.half(k) for k in NUMBERS]
     alike = len(shares) > 1 and 0.01 < max(shares) <= (1 + 1e-5) * min(shares)
     return named("INTERVALS_SCALED") if alike and all(middles) and abs(shares[0] - 1) > 2e-3 else None
 
@@ -136,25 +195,11 @@ def of_lag(value, half, right):
         ("LAG_IN_SAMPLES", abs(late) > dt and any(abs(value * h - late) <= 0.6 * h for h in right.steps)),
         ("LAG_IN_SAMPLES", abs(late) > dt and abs(value / 1000 - late) <= 0.3 * dt),
         ("LAG_AT_THE_END", abs(value) >= 0.19),  # no lag is larger than 0.2 s
-        ("LAG_MIRRORED", _mirrored(value, right)),
         ("LAG_WHOLE_SAMPLES", abs(value - late) < 1.01 * dt and _whole(value, right)),
     ]
     means = any(abs(value - m) <= 0.06 * dt and abs(half - h) <= 0.2 * dt for m, h in right.averages)
     looks.append(("LAG_MEAN_OF_RUNS", means))
     return named(next((code for code, fits in looks if fits), "LAG_NOT_BEST"))
-
-
-def _mirrored(value, right):
-    """Whether it lies as far from the best whole shift as the right one, on the other side."""
-    late = right.numbers["lag_s"]
-    for step in right.steps:
-        whole = step * round(late / step)
-        apart = (value - late) / step
-        if round(apart) and abs(apart - round(apart)) < 0.03:
-            continue  # it is off by whole samples, to what a search finds
-        if abs(late - whole) > 0.15 * step and abs(value + late - 2 * whole) < 0.05 * step:
-            return True
-    return False
 
 
 def _whole(value, right):

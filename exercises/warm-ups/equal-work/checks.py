@@ -8,7 +8,7 @@ from course.scoring import kit
 @pytest.mark.task("fair_step")
 @pytest.mark.points(1)
 def test_steps(submission):
-    """Cheap and dear engines get their steps"""
+    """Steps for engines with few iterations and with many"""
     cases = [
         ((0.01, 50, 10), 0.002),
         ((0.002, 8, 20), 0.005),
@@ -24,5 +24,5 @@ def test_steps(submission):
             units="s",
             input=dict(zip(("h", "iterations", "other"), args, strict=True)),
             message="The step of the other engine is wrong.",
-            help="Count the passes that the first engine makes in a second.",
+            help="Count the iterations that the first engine makes in a simulated second.",
         )

@@ -23,7 +23,7 @@ def test_gap_is_a_number(submission):
             kit.expect_accepts(
                 lambda one=one, other=other, k=k: submission.call("gap", one, other, k),
                 "TypeError",
-                input={"k": k},
+                input={"first": one, "second": other, "k": k},
                 message="The program stops here, with a TypeError.",
                 help="Read the last line of the error, and then the line it points at.",
             ),
@@ -32,7 +32,7 @@ def test_gap_is_a_number(submission):
             source=ROUNDING,
             quantity="gap",
             units="m",
-            input={"k": k},
+            input={"first": one, "second": other, "k": k},
             message="The distance of two balls is wrong.",
             help="A run is a list of pairs (position, velocity); the distance is between two positions.",
         )
@@ -49,7 +49,7 @@ def test_run_begins_at_the_start(submission):
         rel=1e-9,
         source="the first sample is what was given",
         quantity="first position and velocity",
-        input={"x": 10.0, "v": 2.0, "n": 3},
+        input={"x": 10.0, "v": 2.0, "a": -9.81, "n": 3},
         message="The first sample of a run is not its start.",
         help="What is in the list before the first step has been taken?",
     )
@@ -57,7 +57,7 @@ def test_run_begins_at_the_start(submission):
         states,
         4,
         name="the run",
-        input={"n": 3},
+        input={"x": 10.0, "v": 2.0, "a": -9.81, "n": 3},
         message="A run of three steps does not have four samples.",
         help="Count the start, and the state after each step.",
     )
@@ -70,7 +70,7 @@ def test_run_begins_at_the_start(submission):
         source="a method of first order is off by a t h / 2",
         quantity="position and velocity after a second",
         input={"x": x, "v": v, "a": a, "n": n},
-        message="The steps of the program were right as it was given, and no longer are.",
+        message="The steps were right in the program as it was given. Now they are not.",
         help="Only what is in the list at the beginning is missing.",
     )
 
@@ -91,9 +91,10 @@ def test_landing_is_where_the_ground_is(submission):
             message="The fall does not end at the ground.",
             help="Which sample is the first whose height is 0 or less?",
         )
-    kit.expect_true(
-        submission.call("landing_time", [2.0, 1.5]) is None,
-        "A ball that has not reached the ground has a landing time.",
+    kit.expect_equal(
+        submission.call("landing_time", [2.0, 1.5]),
+        None,
+        message="A ball that has not reached the ground has a landing time.",
         help="Give None where no sample is at or below the ground.",
         input={"heights": [2.0, 1.5]},
     )

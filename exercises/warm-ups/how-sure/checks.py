@@ -24,5 +24,5 @@ def test_samples(submission):
             units="1",
             input=dict(zip(("values",), args, strict=True)),
             message="The standard error is wrong.",
-            help="First the scatter of one value, then that of the mean.",
+            help="Compute the standard deviation of one value first, then that of the mean.",
         )

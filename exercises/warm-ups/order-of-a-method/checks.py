@@ -25,5 +25,5 @@ def test_orders(submission):
             units="1",
             input=dict(zip(("h", "error", "h_small", "error_small"), args, strict=True)),
             message="The order is wrong.",
-            help="By which factor did the step shrink, by which the error?",
+            help="By which factor did the step shrink, and by which the error?",
         )

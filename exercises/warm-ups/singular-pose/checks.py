@@ -21,6 +21,7 @@ def test_speeds(submission):
         kit.expect_true(
             found is not None,
             "You give None in a pose in which the tip can move in every direction.",
+            expected="a pair",
             input=dict(zip(("angle", "length", "vx", "vy"), args, strict=True)),
             help="Only an upright rod cannot move its tip up or down. In other poses return both speeds.",
         )
@@ -56,6 +57,8 @@ def test_singular_poses(submission):
             "You give speeds in a pose in which the tip can only move along the rail."
             if singular
             else "You give None in a pose in which the tip can move in every direction.",
+            expected=None if singular else "a pair",
+            actual=found,
             input=dict(zip(("angle", "length", "vx", "vy"), args, strict=True)),
             help="math.cos(math.pi / 2) is not exactly zero: compare |cos(angle)| with 1e-9.",
         )

@@ -23,6 +23,6 @@ def test_distances(submission):
             quantity="distance in doubts",
             units="1",
             input=dict(zip(("simulated", "doubt_s", "measured", "doubt_m"), args, strict=True)),
-            message="The distance in doubts is wrong.",
-            help="How uncertain is the difference of two uncertain numbers?",
+            message="The difference in units of its uncertainty is wrong.",
+            help="What is the uncertainty of a difference of two uncertain numbers?",
         )

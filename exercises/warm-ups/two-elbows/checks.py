@@ -22,8 +22,9 @@ def test_both_places(submission):
         kit.expect_true(
             found is not None,
             "You found no place, though the rod reaches the point.",
+            expected="a pair",
             input=dict(zip(("x", "y", "length"), args, strict=True)),
-            help="A rod that is as long as the point is far from the rail reaches it. Return both places.",
+            help="The rod reaches the point if it is at least as long as |y|. Return both places.",
         )
         kit.expect_array(
             found,
@@ -55,6 +56,8 @@ def test_out_of_reach(submission):
             "You found no place, though the rod reaches the point."
             if reached
             else "You do not give None, though the rod is too short to reach the point.",
+            expected="a pair" if reached else None,
+            actual=found,
             input=dict(zip(("x", "y", "length"), args, strict=True)),
             help="How far is the point from the rail, above or below? The rod must be as long as that.",
         )

@@ -33,12 +33,9 @@ ROWS = Path(__file__).with_name("misleading") / "rows.toml"
 LATIN = "# \N{LATIN SMALL LETTER E WITH ACUTE}\n"
 sys.path.insert(0, str(ROOT))
 
-from course.authoring.exercises.grading import compose, solution_path  # noqa: E402
+from course.authoring.exercises.grading import compose, grade_sources, solution_path  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.grading.exports.selection import checks_for_student  # noqa: E402
-from course.grading.intake.students import Entry  # noqa: E402
-from course.grading.running.batch import grade_all  # noqa: E402
-from course.scoring.judging.submission import Submission, Terms  # noqa: E402
 
 if TYPE_CHECKING:
     from course.scoring.verdict import Verdict
@@ -79,12 +76,9 @@ def joined(solution: Path, mistake: Path) -> str:
 
 def graded(sources: dict[str, tuple[str, str]]) -> dict[str, Verdict]:
     """Verdicts of a grading run, by name, on sources by name: exercise and text of each."""
-    catalog = Catalog()
-    entries = []
-    for name, (exercise_id, source) in sources.items():
-        exercise = catalog.exercise(exercise_id)
-        entries.append(Entry(name, exercise, Submission({exercise.module: source.encode()})))
-    return {done.entry.student: done.verdict for done in grade_all(entries, Terms(), graders=2)}
+    catalog, names = Catalog(), list(sources)
+    entries = [(catalog.exercise(exercise), source.encode()) for exercise, source in sources.values()]
+    return {names[index]: verdict for index, verdict in grade_sources(entries, graders=2)}
 
 
 def points_by_task(verdict: Verdict) -> dict[str, tuple[float, float]]:
@@ -217,13 +211,13 @@ def rows() -> None:
     verdicts = graded(sources)
     first = next(iter(catalog.exercises()))
     source = LATIN.encode("latin-1") + solution_path(catalog, first).read_bytes()
-    latin = next(iter(grade_all([Entry("x", first, Submission({first.module: source}))], Terms(), graders=1)))
+    ((_, latin),) = grade_sources([(first, source)], graders=1)
     print(
         "# What once misled\n\nWhat was done, what version 1.2.0 said of it, and what is said now, verbatim."
     )
     print("Written by `tests/benchmarks/mended/mended.py rows`.\n")
     print("## a latin-1 byte in a comment\n\nWas told: Was something else saved under its name?\n")
-    print("".join(f"- {line}\n" for line in told(latin.verdict)))
+    print("".join(f"- {line}\n" for line in told(latin)))
     for row in table:
         print(f"## {row['did']}\n\nWas told: {row['was']}\n")
         for program in row["programs"]:

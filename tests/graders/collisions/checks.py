@@ -270,8 +270,7 @@ def test_moment_oblique(submission, rng):
         bundles.MOMENT,
         [draws.passing(rng, d, share) for d in (2, 3) for share in (0.3, 0.7, 0.9, 1.1, 1.8)],
         "Where two spheres meet off centre or pass each other, the result is wrong.",
-        "Off centre they touch later than head on; past a sum of radii from the line they do not "
-        "touch at all.",
+        "Off centre they touch later than head on. If they pass at more than ra + rb, they do not touch.",
     )
     bundles.expect_kept(submission, bundles.MOMENT, draws.passing(rng, 3, 0.6))
 
@@ -285,7 +284,7 @@ def test_moment_overlap(submission, rng):
         bundles.MOMENT,
         [*(draws.overlap(rng, approach) for approach in (True, False, True, False)), *draws.level(rng)],
         "For spheres that overlap from the start the result is wrong.",
-        "Approaching means now; parting means None, for there is nothing to do.",
+        "If they approach, the answer is 0.0. If they part, it is None.",
     )
 
 

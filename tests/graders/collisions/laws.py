@@ -134,14 +134,14 @@ def expect_braking(submission, calls):
     parts, diagnose = _impacts(submission, task, calls)
     for args, found in zip(calls, parts, strict=True):
         ma, mb, va, vb, n = args[:5]
-        finding = _finding(
-            task,
-            args,
-            "An impact with friction breaks a law: it changes the momentum, adds energy, or does not brake "
-            "the slip as friction does.",
-            "Friction acts on both bodies, against the slip, and stops at the latest when the slip "
-            "has stopped.",
-            diagnose,
+        help_ = "Friction acts on both bodies, against the slip, and no longer than there is slip."
+        finding, adds, brakes = (
+            _finding(task, args, message, help_, diagnose)
+            for message in (
+                "An impact with friction changes the total momentum.",
+                "An impact with friction adds energy.",
+                "Friction does not brake the slip as it should.",
+            )
         )
         _expect_momentum(args, found, finding)
         before = probes.energy(ma, mb, va, vb)
@@ -151,7 +151,7 @@ def expect_braking(submission, calls):
             source=bundles.ROUNDING,
             quantity="kinetic energy",
             units="J",
-            **finding,
+            **adds,
         )
         slips = [(w - u) - ((w - u) @ n) * n for u, w in ((va, vb), found)]
         size = float(np.sqrt(slips[0] @ slips[0]))
@@ -164,7 +164,7 @@ def expect_braking(submission, calls):
             source="the scenes: friction takes at least 0.3 of each slip, and never more than all",
             quantity="slip afterwards",
             units="m/s",
-            **finding,
+            **brakes,
         )
 
 
@@ -185,13 +185,13 @@ def expect_line_symmetries(submission, rng):
         (mb, ma, -vb, -va, e),
         (mb, ma, va, vb, e),
     ]
-    train_says = "From a moving train the impulse of an impact is another one."
+    train_says = "Seen from a moving train, the impulse is different."
     names = (
         ("The impulse of an impact on a line is wrong.", None),
         (train_says, "DEPENDS_ON_THE_FRAME"),
         (train_says, "DEPENDS_ON_THE_FRAME"),
-        ("In a mirror the impulse of an impact is another one.", None),
-        ("With the two masses exchanged the impulse of an impact is another one.", None),
+        ("Seen in a mirror, the impulse is different.", None),
+        ("With a and b exchanged, the impulse is different.", None),
     )
     values, parts = bundles.answers(submission, task, calls)
     truth = bundles.right(task, calls)
@@ -234,10 +234,10 @@ def expect_symmetries(submission, task, rng):
     wanted = [(a, b), (a + train, b + train), (turn @ a, turn @ b), (mirror @ a, mirror @ b), (b, a)]
     words = (
         ("The velocities after an impact are wrong.", None),
-        ("From a moving train an impact is another one.", "DEPENDS_ON_THE_FRAME"),
-        ("Turned as a whole, an impact is another one.", "DEPENDS_ON_DIRECTION"),
-        ("In a mirror, an impact is another one.", "DEPENDS_ON_DIRECTION"),
-        ("With a and b exchanged, an impact is another one.", None),
+        ("Seen from a moving train, the impact is different.", "DEPENDS_ON_THE_FRAME"),
+        ("Turned as a whole, the impact is different.", "DEPENDS_ON_DIRECTION"),
+        ("Seen in a mirror, the impact is different.", "DEPENDS_ON_DIRECTION"),
+        ("With a and b exchanged, the impact is different.", None),
     )
     parts, diagnose = _impacts(submission, task, calls)
     for given, found, true, (message, code) in zip(calls, parts, wanted, words, strict=True):

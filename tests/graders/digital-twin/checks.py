@@ -59,7 +59,7 @@ def test_imu_white(submission, rng):
         for dt in (rng.uniform(0.002, 0.006), rng.uniform(0.05, 0.5))
     ]
     calls.append((*calls[0][:2], 3 * calls[0][2], *calls[0][3:]))  # at the same rate, another density
-    sensors.expect_white(submission, calls, 0.04, "eight times the scatter of a std from 20000 samples")
+    sensors.expect_white(submission, calls, 0.04, "the README's")
 
 
 @pytest.mark.task("imu")

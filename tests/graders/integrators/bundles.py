@@ -113,7 +113,9 @@ def expect_orders(submission, task, problems):
             input=problem.input,
             message=f"On {problem.name}, the error does not shrink with the step as it should.",
             help="Compare one step with the formula: time, position and velocity of each evaluation.",
-            diagnose=lambda problem=problem: probes.of_step(submission, task, problem.run(24)),
+            diagnose=lambda hs=hs, errors=errors, problem=problem: probes.of_order_measured(
+                submission, task, hs, errors, problem.run(24)
+            ),
         )
 
 
@@ -167,7 +169,9 @@ def expect_formula(submission, task, result, accel, t, q, v, h):
             message="On a system where time, position and velocity all matter, one step is not what the "
             "formula gives.",
             help="Write the formula down with every argument of accel and compare it with your line of code.",
-            diagnose=lambda: probes.of_step(submission, task),
+            diagnose=lambda: (
+                probes.of_step(submission, task) or probes.of_halves(q_next, v_next, (q_true, v_true))
+            ),
         )
 
 
@@ -250,15 +254,5 @@ def expect_limits(submission, maps):
     """max_stable_step is ``limit / omega`` to 1 %, for each (step, omega, limit, message)."""
     values = submission.call_each("max_stable_step", [(step, omega) for step, omega, _, _ in maps])
     for value, (step, omega, limit, message) in zip(values, maps, strict=True):
-        kit.expect_close(
-            value,
-            limit / omega,
-            rel=0.01,
-            source="the contract's 1 %",
-            quantity="largest stable step",
-            units="s",
-            input={**step.params(), "omega": omega},
-            message=message,
-            help="Build the map's matrix from two calls, walk up from 0.05/omega, look at its eigenvalues.",
-            diagnose=lambda case=(value, step, omega, limit): probes.of_stability(submission, *case),
-        )
+        given = {**step.params(), "omega": omega}
+        cases.expect_limit(submission, value, (step, omega, limit), input=given, message=message)

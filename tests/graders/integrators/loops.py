@@ -127,7 +127,7 @@ def _path(submission, args, n, given):
 def _arrays(submission, value, n, args, given):
     """The three arrays that integrate returns, with a row for every sample."""
     d = len(args[2])
-    t, q, v = kit.as_tuple(value, ("t", "q", "v"))
+    t, q, v = bundles.cases.histories(value)
     for rows, name in ((t, "t"), (q, "q"), (v, "v")):
         kit.expect_length(
             rows,

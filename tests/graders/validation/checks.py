@@ -138,7 +138,7 @@ def _expect_bands(submission, settings):
             setting,
             value,
             formulas.exactly()(*setting),
-            source="the contract's 1 %; Wilson and Hilferty's formula is off by at most 0.7 % here",
+            source="the README's 1 %",
             help="The sum over the runs is chi-square with dof * runs degrees of freedom.",
         )
 

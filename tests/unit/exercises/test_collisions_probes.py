@@ -522,3 +522,41 @@ def test_a_fall_that_gains_another_share_of_its_height_is_told_by_the_rebound(fa
     code = found and found.code
     # Three times is no slip that is known.
     assert (code == "FALL_WITHOUT_TWO") == (factor in (0.5, 1.0)), code
+
+
+def test_energy_and_momentum_are_said_of_the_first_wrong_pair_alone():
+    n = np.array([1.0])
+    slow, fast = [(1.0, 2.0, np.array([v]), np.array([0.0]), n, 0.5) for v in (1.0, 4.0)]
+    truth = [formulas.RIGHT["resolve"](*call) for call in (slow, fast)]
+    weaker = truth[0][0], truth[0][1] - 0.1  # loses energy, and momentum
+    created = truth[1][0] - 9.0, truth[1][1] + 4.5
+    for first, second, code in ((weaker, created, "MOMENTUM_LOST"), (created, weaker, "ENERGY_CREATED")):
+        calls, right = ([slow, fast], truth) if code == "MOMENTUM_LOST" else ([fast, slow], truth[::-1])
+        assert probes._by_law("resolve", calls, [first, second], right) == code
+
+
+def test_code_that_works_for_vectors_of_one_length_alone_is_told_so():
+    class Flat:
+        def call_each(self, task, calls):
+            if any(len(args[4]) != 2 for args in calls):
+                raise kit.StudentFailure("error", type="ValueError")
+            return [args[2:4] for args in calls]
+
+    calls = [(1.0, 1.0, np.zeros(d), np.zeros(d), np.eye(d)[0], 1.0) for d in (2, 3)]
+    with pytest.raises(kit.CheckFailed) as failed:
+        bundles.answers(Flat(), "resolve", calls)
+    assert failed.value.finding.diagnosis == "ONE_DIMENSION_ONLY"
+    with pytest.raises(kit.StudentFailure):
+        bundles.answers(Flat(), "resolve", calls[1:])
+
+
+def test_a_depth_without_its_sign_is_told_where_touching_is_right():
+    calls = [(np.zeros(2), 1.0, np.array([x, 0.0]), 1.0) for x in (1.0, 2.5, 4.0)]
+    truth = [formulas.RIGHT["detect_sphere_sphere"](*call) for call in calls]
+    values = [(touching, n, abs(depth)) for touching, n, depth in truth]
+    assert probes._of_contact("detect_sphere_sphere", calls, values, truth) == "DEPTH_UNSIGNED"
+
+
+def test_no_tolerance_is_explained_by_what_a_student_cannot_see():
+    sources = bundles.ROUNDING + bundles.INSTANT
+    assert not [word for word in ("solutions", "contract", "benchmarks") if word in sources]

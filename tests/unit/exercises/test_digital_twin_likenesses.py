@@ -19,6 +19,7 @@ spec = importlib.util.spec_from_file_location("digital_twin_again", SOLUTION / "
 right = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(right)
 
+actuator_bundles = kit.companion("digital-twin", "actuator_bundles")
 actuators = kit.companion("digital-twin", "actuator_probes")
 scanners = kit.companion("digital-twin", "lidar_probes")
 sensors = kit.companion("digital-twin", "sensor_probes")
@@ -247,3 +248,111 @@ def test_a_large_memory_that_never_grows_is_told_its_size():
     with pytest.raises(kit.CheckFailed) as failed:
         twin_bundles.expect_twin_contract(Fake("sync", heavy), np.random.default_rng(1))
     assert failed.value.guess.code == "MEMORY_TOO_LARGE"
+
+
+def failed(check, *args, **kwargs):
+    """The finding of a check that fails, and the code of what is said of it."""
+    with pytest.raises(kit.CheckFailed) as caught:
+        check(*args, **kwargs)
+    return caught.value.finding, getattr(caught.value.guess, "code", None)
+
+
+TURNLESS = ("heading + np.asarray(angles", "np.asarray(angles")
+
+
+def test_beams_that_do_not_turn_are_no_reason_at_a_heading_of_0():
+    """It was said beside a heading of 0, of a program whose noise was wrong as well."""
+    both = changed("lidar", TURNLESS, ("sigma * rng", "3 * sigma * rng"))
+    assert told("lidar", both) == "HEADING_IGNORED"
+    finding, code = failed(
+        sensor_bundles.expect_scan_noise, Fake("lidar", both), 7.0, 0.05, np.random.default_rng(9)
+    )
+    assert code == "SECOND_MISTAKE"
+    assert "std sigma" in finding.message
+
+
+def test_a_dead_band_is_no_reason_for_a_motor_beyond_its_limit():
+    def motor(w, u, dt, tau, u_max, deadband):
+        u = 0.0 if abs(u) <= 0.7 * deadband else min(max(u, -u_max), u_max)
+        return min(max(w, -u_max), u_max) + (1 - math.exp(-dt / tau)) * (u - min(max(w, -u_max), u_max))
+
+    assert told("motor_step", motor) == "DEADBAND_WIDTH"
+    calls = [(u, 0.1, 0.2, 10.0, 0.5) for u in (8.0, 0.45)]
+    finding, code = failed(actuator_bundles.expect_motor, Fake("motor_step", motor), 25.0, calls, "Wrong.")
+    assert code == "SECOND_MISTAKE"
+    assert "The speed is limited" in finding.message
+
+
+@pytest.mark.parametrize("slot", [(1.0, 0.0), (0.0, 1.0)])
+def test_a_slot_off_its_centre_is_told_in_words_that_hold_for_either_side(slot):
+    def play(x, gap, state):
+        y = min(max(state, x - slot[0] * gap), x + slot[1] * gap)
+        return y, y
+
+    said = actuators.of_backlash(Fake("backlash", play))
+    assert said.code == "SLOT_OFF_CENTRE"
+    assert "another distance" in said.looks_like
+
+
+def test_learning_forwards_only_is_no_reason_while_a_cart_rolls_forwards():
+    one_way = shares((" * np.sign(v)", ""))
+    assert told("sync", one_way) == "LEARNS_FORWARDS_ONLY"
+    assert twins.of_sync(Fake("sync", one_way), {"LEARNS_FORWARDS_ONLY"}).code == "SECOND_MISTAKE"
+
+
+def test_two_mistakes_of_a_twin_are_both_told():
+    both = shares((" * np.sign(v)", ""), ('twin["drive"] - b * v', "-b * v"))
+    said = twins.of_sync(Fake("sync", both))
+    assert said.code == "DRIVE_NOT_USED"
+    assert said.looks_like.count("First:") == said.looks_like.count("Second:") == 1
+    assert "moves backwards" in said.looks_like
+
+
+@pytest.mark.parametrize(
+    ("share", "code"), [("0.15", None), ("0.5", None), ("3.0", "FRICTION_SHARE_TOO_LARGE")]
+)
+def test_a_friction_that_takes_more_than_a_surprise_is_told_so(share, code):
+    assert told("sync", shares(("- 0.15", f"- {share}"))) == code
+
+
+def test_counts_of_angles_in_single_precision_are_told_so():
+    theta = sensor_bundles.angles_beside_counts(np.linspace(-51000, 51000, 20), 64)
+
+    def counts(theta, per_turn):
+        return np.floor(np.float32(theta) * per_turn / (2 * math.pi)).astype(np.int64)
+
+    said = sensors.of_encoder(Fake("encoder", counts), counts(theta, 64), theta, 64)
+    assert said.code == "COUNTS_SINGLE_PRECISION"
+
+
+def test_samples_before_the_first_that_are_counted_from_the_end_are_told_so():
+    def delayed(x, dt, latency):
+        places = [k - latency / dt for k in range(len(x))]
+        parts = [place - math.floor(place) for place in places]
+        return [
+            0.0
+            if place < -len(x)
+            else (1 - p) * x[math.floor(place)] + p * x[(math.floor(place) + 1) % len(x)]
+            for place, p in zip(places, parts, strict=True)
+        ]
+
+    assert told("delay_line", delayed) == "DELAY_WRAPS"
+
+
+def test_noise_that_is_nan_is_not_asked_about_its_root():
+    def divided(true, dt, density, walk, bias0, rng):
+        measured, bias = right.imu(true, dt, density, walk, bias0, rng)
+        return measured + np.float64(walk) / np.float64(walk), bias
+
+    calls = [(np.zeros(50), 0.01, 0.002, 0.0, 0.1, np.random.default_rng(1))]
+    finding, code = failed(sensor_bundles.expect_white, Fake("imu", divided), calls, 0.06, "six")
+    assert code == "NOT_A_NUMBER"
+    assert "0/0" in finding.help
+
+
+def test_the_readme_is_as_short_as_a_student_reads():
+    before, checked = (
+        (ROOT / "exercises/digital-twin/README.md").read_text("utf-8").split("## What is checked")
+    )
+    assert len(before.split()) <= 1100
+    assert len(checked.split()) <= 500

@@ -193,6 +193,7 @@ def test_a_run_with_senseless_arguments_is_a_finding_that_says_how_to_call_it(wr
     with pytest.raises(kit.CheckFailed) as failed:
         bench.engine(case)["$methods"]["run"](*wrong)
     assert failed.value.finding.diagnosis == "ENGINE_MISUSED"
+    assert failed.value.finding.expected.startswith("arguments that run accepts, but ")  # then, what is wrong
 
 
 # -- judging ----------------------------------------------------------------------------------------------
@@ -273,11 +274,27 @@ def test_a_number_that_is_nan_or_off_is_not_accepted(key):
         ("max_stable_step", lambda t: round(t["max_stable_step"], 1), "VALUE_ROUNDED"),
         ("deterministic", lambda t: True, "DETERMINISM_ONE_RUN"),
         ("symplectic", lambda t: False, "SYMPLECTIC_NEVER"),
+        # Twice the rate with the wrong sign, and a ratio at another speed: of two mistakes, the sign is seen.
+        ("linear_damping", lambda t: -2.0 * t["linear_damping"], "DAMPING_SIGN"),
+        ("restitution", lambda t: -0.8 * t["restitution"] * (t["restitution"] != 0.6), "RESTITUTION_SIGN"),
     ],
 )
 def test_a_probe_says_what_it_sees_and_no_more(key, slip, code):
     with pytest.raises(kit.CheckFailed) as failed:
         judging.expect_key(cases_of(lambda truth: {**truth, key: slip(truth)}), key, 0)
+    assert failed.value.finding.diagnosis == code
+
+
+@pytest.mark.parametrize(
+    ("steps", "code"), [((16, 16, 16), "ORDER_TIME_NOT_FIXED"), ((16, 32, 64), "ORDER_ASSUMED")]
+)
+def test_runs_of_a_spring_that_end_at_different_times_are_seen(steps, code):
+    found = cases_of(lambda truth: {**truth, "order": 2})
+    for case in found:
+        for n, parts in zip(steps, (16, 32, 64), strict=True):
+            case.runs.append(("spring", (1.0,), (0.7,), 1.3 / parts, n, (0.0,)))
+    with pytest.raises(kit.CheckFailed) as failed:
+        judging.expect_key(found, "order", 0)
     assert failed.value.finding.diagnosis == code
 
 
@@ -363,8 +380,14 @@ class Chooser:
     def __init__(self, function):
         self._function = function
 
-    def call_each(self, _, calls):
-        return [self._function(*call) for call in calls]
+    def call(self, _, *args):
+        try:
+            return self._function(*args)
+        except (KeyError, TypeError) as error:
+            raise kit.StudentFailure("error", type=type(error).__name__) from None
+
+    def call_each(self, name, calls):
+        return [self.call(name, *call) for call in calls]
 
 
 def test_every_slip_of_choosing_answers_the_questions_in_a_way_of_its_own():
@@ -403,6 +426,34 @@ def test_only_a_chooser_that_reads_names_is_told_so(function, code):
         choosing.expect_choices(Chooser(function), told)
     assert failed.value.finding.diagnosis == code
     choosing.expect_choices(Chooser(right.choose), told)
+
+
+@pytest.mark.parametrize(
+    ("function", "needs", "code"),
+    [
+        (lambda reports, needs: reports["a"][needs[0]["key"]] <= 1 and "a", "noise_db", "MISSING_RAISES"),
+        (lambda reports, needs: reports["a"][needs[0]["key"]] <= 1 and "a", "order", "MISSING_RAISES"),
+        (lambda reports, needs: needs["key"], "limit", None),  # it raises where everything was measured, too
+    ],
+)
+def test_an_exception_where_a_value_is_missing_is_told_as_that(function, needs, code):
+    reports = {"a": {"noise_db": None, "limit": 0.5, "cost": 1.0}}
+    told = [(reports, [measured.need("limit", "<=", 1)], "a")] if code is None else []
+    told.append((reports, [measured.need(needs, "<=", 1)], None if code else "a"))
+    with pytest.raises((kit.CheckFailed, kit.StudentFailure)) as failed:
+        choosing.expect_choices(Chooser(function), told)
+    found = failed.value.finding.diagnosis if isinstance(failed.value, kit.CheckFailed) else None
+    assert found == code
+
+
+def test_an_exception_where_a_value_is_missing_is_told_as_that_by_the_check_of_arguments_too():
+    class Raises:
+        def call_inspect(self, *_):
+            raise kit.StudentFailure("error", type="KeyError")
+
+    with pytest.raises(kit.CheckFailed) as failed:
+        choosing.expect_untouched(Raises(), {"a": {"cost": 1.0}}, [measured.need("order", ">=", 2)])
+    assert failed.value.finding.diagnosis == "MISSING_RAISES"
 
 
 @pytest.mark.parametrize("seed", range(30))

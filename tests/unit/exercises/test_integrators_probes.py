@@ -12,6 +12,7 @@ from course.physics import systems
 from course.scoring import kit
 
 probes = kit.companion("integrators", "probes")
+cases = kit.companion("integrators", "cases")
 formulas = kit.reference("integrators", "formulas")
 
 
@@ -86,8 +87,6 @@ def test_an_unknown_formula_is_described_by_how_it_converges():
         b = accel(t + 2 * h / 3, q + 2 * h / 3 * v, v + 2 * h / 3 * a)
         return q + h * (0.25 * v + 0.75 * (v + 2 * h / 3 * a)), v + h * (0.25 * a + 0.75 * b)
 
-    assert probes.of_step(Fake(rk4_step=off_by_a_tenth), "rk4_step").code == "DOES_NOT_CONVERGE"
-
     def divided(accel, t, q, v, h):
         """RK4 with 2 / k2 for 2 k2 in the position: the error falls and rises again."""
         k1, a1 = v, accel(t, q, v)
@@ -96,8 +95,64 @@ def test_an_unknown_formula_is_described_by_how_it_converges():
         k4, a4 = v + h * a3, accel(t + h, q + h * k3, v + h * a3)
         return q + h / 6 * (k1 + 2 / k2 + 2 * k3 + k4), v + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
 
-    assert probes.of_step(Fake(rk4_step=ralston), "rk4_step").code == "ORDER_TOO_LOW"
-    assert probes.of_step(Fake(rk4_step=divided), "rk4_step") is None
+    problem = kit.Problem(
+        "driven pendulum", probes._problem("rk4_step"), list(probes._Q), list(probes._V), 2.0, 1.2, 0.6
+    )
+    for step, code in ((off_by_a_tenth, "DOES_NOT_CONVERGE"), (ralston, "ORDER_TOO_LOW"), (divided, None)):
+        fake = Fake(rk4_step=step)
+        measured = kit.march_errors(fake, "rk4_step", problem, [16, 32, 64])
+        found = probes.of_order_measured(fake, "rk4_step", *measured, problem.run(16))
+        assert (found and found.code) == code
+        assert probes.of_step(fake, "rk4_step") is None  # of one step it is not said how errors fall
+
+
+@pytest.mark.parametrize("task", formulas.RIGHT)
+def test_single_precision_is_told_from_a_wrong_formula(task):
+    def single(accel, t, q, v, h):
+        right = formulas.RIGHT[task][-1](accel, t, q, v, h)
+        return [np.asarray(part, np.float32).astype(float) for part in right]
+
+    assert probes.of_step(Fake(**{task: single}), task).code == "FEW_DIGITS"
+
+
+def test_the_half_of_the_state_that_is_wrong_is_named_where_the_other_is_right():
+    right = np.array([1.0, 2.0]), np.array([3.0, 4.0])
+    assert probes.of_halves(right[0], 2 * right[1], right).code == "VELOCITY_ALONE_WRONG"
+    assert probes.of_halves(2 * right[0], right[1], right).code == "POSITION_ALONE_WRONG"
+    assert probes.of_halves(2 * right[0], 2 * right[1], right) is None
+
+
+@pytest.mark.parametrize("order", [(1, 2, 0), (1, 0, 2), (2, 0, 1)])
+def test_histories_in_another_order_are_told_by_where_the_times_stand(order):
+    parts = np.arange(3.0), np.ones((3, 2)), np.zeros((3, 2))
+    with pytest.raises(kit.CheckFailed) as failed:
+        cases.histories(tuple(parts[i] for i in order))
+    assert failed.value.finding.diagnosis == "TIMES_NOT_FIRST"
+    assert list(map(np.ndim, cases.histories(parts))) == [1, 2, 2]
+
+
+@pytest.mark.parametrize(
+    ("limit", "code"), [(0.0, "NONE_FOR_ZERO"), (math.inf, "NONE_FOR_INFINITY"), (2.0, "NONE_FOR_LIMIT")]
+)
+def test_none_for_a_largest_step_is_told_beside_what_it_stands_for(limit, code):
+    with pytest.raises(kit.CheckFailed) as failed:
+        cases.expect_limit(None, None, (None, 1.0, limit), input={}, message="Wrong.")
+    assert failed.value.finding.diagnosis == code
+
+
+def test_a_refusal_by_another_exception_is_no_crash():
+    def raises(name):
+        def integrate(*args):
+            raise kit.StudentFailure("error", type=name)
+
+        return Fake(integrate=integrate)
+
+    state, durations = (np.ones(1), np.zeros(1)), [(1.1, 0.2)]
+    with pytest.raises(kit.CheckFailed) as failed:
+        cases.expect_refusals(raises("RuntimeError"), state, durations)
+    assert failed.value.finding.diagnosis == "OTHER_EXCEPTION"
+    with pytest.raises(kit.StudentFailure):
+        cases.expect_refusals(raises("IndexError"), state, durations)
 
 
 MIXED = [order for order in itertools.permutations(range(3)) if order != (0, 1, 2)]
@@ -180,7 +235,7 @@ def test_one_acceleration_for_all_is_told_from_frozen_times():
         a = np.asarray(accel(t, q, v))
         return q + h * v + h * h / 6 * a, v + h * a
 
-    assert probes.of_step(Fake(velocity_verlet_step=verlet), "velocity_verlet_step").code == "ORDER_TOO_LOW"
+    assert probes.of_step(Fake(velocity_verlet_step=verlet), "velocity_verlet_step") is None
 
 
 def test_a_time_for_each_coordinate_is_in_its_place():
@@ -281,6 +336,8 @@ def _without(rows, value=0.0):
         ("INTEGER_STATE", lambda q, v: (np.trunc(q), np.trunc(v))),
         ("STATE_NOT_CARRIED", lambda q, v: (q[[0, 1, 1, 1, 1, 1]], v[[0, 1, 1, 1, 1, 1]])),
         ("PATH_STANDS_STILL", lambda q, v: (q[[0] * 6], v[[0] * 6])),
+        ("ROW_OF_Q_WRONG", lambda q, v: (q[[0] * 6], v)),
+        ("ROW_OF_V_WRONG", lambda q, v: (q, v[[0] * 6])),
         (None, lambda q, v: (q[[0, 5, 5, 5, 5, 5]], v[[0, 5, 5, 5, 5, 5]])),
         (None, lambda q, v: (q, v)),
     ],

@@ -175,6 +175,13 @@ def _on_a_grid(estimate, box):
         ("NO_CART_SETTLES", lambda estimate, box: {"kp": 20 * box["m"][1], "kd": 2.0}),
         ("KD_IS_RATIO", lambda estimate, box: {"kp": 7.0 * estimate["m"][0], "kd": 0.48}),
         ("SEARCH_ENDED_EARLY", lambda estimate, box: {"kp": min(5.0, 6.0 * estimate["m"][0]), "kd": 2.5}),
+        (
+            "ENDS_READ",
+            lambda estimate, box: {
+                "kp": 7.0 * box["m"][1] * estimate["m"][2] + estimate["latency"][2],
+                "kd": 2.4 * box["m"][1] * estimate["m"][2],
+            },
+        ),
     ],
 )
 def test_gains_that_stay_the_same_are_told_why_only_as_far_as_it_is_seen(code, tune):
@@ -367,3 +374,50 @@ def test_a_gain_that_is_too_large_is_not_said_to_be_no_number():
         with pytest.raises(kit.CheckFailed) as failed:
             probes.gains_of(dict(zip(("kp", "kd"), gains, strict=True)))
         assert message in failed.value.finding.message
+
+
+@pytest.mark.parametrize("swapped", [True, False])
+def test_times_that_are_exchanged_are_seen_where_they_differ(swapped):
+    truths = [cart.SHEET, {**cart.PUBLIC, "tau": 0.08, "latency": 0.081}]  # the second tells nothing
+    change = {"tau": lambda p: p["latency"], "latency": lambda p: p["tau"]} if swapped else {}
+    estimates = [_with(**change)(truth) for truth in truths]
+    assert probes.exchanged(estimates, truths) is swapped
+    if swapped:
+        with pytest.raises(kit.CheckFailed) as caught:
+            judge.expect_accurate(estimates, truths)
+        assert caught.value.guess.code == "TIMES_EXCHANGED"
+    else:
+        judge.expect_accurate(estimates, truths)
+
+
+def test_intervals_of_one_standard_error_are_too_few_to_hold_the_truth():
+    """Doubled, nearly all of them hold it: they kept all their points."""
+    truths = [cart.PUBLIC] * 3
+    off = _with(m=lambda p: 1.02 * p["m"], b=lambda p: 1.02 * p["b"], Fc=lambda p: 1.02 * p["Fc"])
+    estimates = [off(truth) for truth in truths]
+    assert judge.misses(estimates, truths) == (0, 12)
+    assert judge.misses(estimates, truths, 1.0) == (9, 12)
+    with pytest.raises(kit.CheckFailed, match="for intervals of 95 %"):
+        judge.expect_truth(estimates, truths, (), 1, 4)
+
+
+@pytest.mark.parametrize(("word", "shows"), [("slow_sine", False), ("multisine", True), ("prbs", True)])
+def test_a_slow_sine_does_not_show_the_lag(word, shows):
+    """The narrowest interval alone is within 10 %, and no fit comes near it."""
+    assert (bench.reach(word, "lag", 20.0, cart.PUBLIC_TYPES, (0, 5)) <= words.SHOWN["lag"]) == shows
+
+
+def test_a_search_that_ends_far_below_the_best_gains_is_told_so():
+    box = cart.MATCHED
+    heavy = cart.with_intervals({**cart.SHEET, "m": 2.4})
+    kp, kd = probes._best_of_grid(heavy, box)
+    assert probes._settling(([kp, 6.0], [kd, 4.0]), heavy, box).mean(axis=0)[0] < 0.8 * 3.0
+    assert kp > 11.0
+
+
+def test_the_readme_is_as_short_as_a_student_reads():
+    before, checked = (
+        (ROOT / "exercises/sim-to-real/README.md").read_text("utf-8").split("## What is checked")
+    )
+    assert len(before.split()) <= 900
+    assert len(checked.split()) <= 500

@@ -219,7 +219,7 @@ def test_a_mean_of_lags_is_told_from_the_lag_of_all():
 @pytest.mark.parametrize(
     ("change", "expected"),
     [
-        (lambda number, half: (number - half / 2, number + half / 2), "INTERVALS_SCALED"),
+        (lambda number, half: (number - 0.45 * half, number + 0.45 * half), "INTERVALS_SCALED"),
         (lambda number, half: (number + half, number - half), "RETURNS_SWAPPED"),
         (lambda number, half: (number - 0.1 * half - 0.1, number + 0.1 * half + 0.1), None),
         (lambda number, half: (number, number + half), None),
@@ -228,13 +228,77 @@ def test_a_mean_of_lags_is_told_from_the_lag_of_all():
 def test_wrong_intervals_are_recognised_by_what_they_have_in_common(change, expected):
     _, right = three_runs((0.02, 0.05, 0.08), offset=(0.0, -0.03, 0.01))
     ends = {key: change(right.numbers[key], right.half(key)) for key in verdict.NUMBERS}
-    assert code(verdict.of_interval(ends, right)) == expected
+    assert code(verdict.of_interval("rmse", ends, right)) == expected
 
 
 def test_a_mean_over_runs_is_told_whatever_else_is_wrong():
-    _, right = three_runs((0.02, 0.05, 0.08), offset=(0.0, -0.03, 0.01))
-    assert code(verdict.of_number("rmse", right.means["rmse"], right)) == "MEAN_OF_RUNS"
-    assert verdict.of_number("rmse", 1.01 * right.means["rmse"], right) is None
+    case, right = three_runs((0.02, 0.05, 0.08), offset=(0.0, -0.03, 0.01))
+    errors = verdict.together(case.sim, case.real, right.used)
+    assert code(verdict.of_number("rmse", right.means["rmse"], right, *errors)) == "MEAN_OF_RUNS"
+    assert verdict.of_number("rmse", 1.01 * right.means["rmse"], right, *errors) is None
+
+
+def changed(report, **new):
+    """A report with other numbers, and another factor of the width where ``times`` has one."""
+    times = new.pop("times", None)
+    ends = {
+        key: (lo, hi)
+        if times is None
+        else ((lo + hi) / 2 - times * (hi - lo) / 2, (lo + hi) / 2 + times * (hi - lo) / 2)
+        for key, (lo, hi) in report["intervals"].items()
+    }
+    return {**report, **new, "intervals": ends}
+
+
+@pytest.mark.parametrize(
+    ("new", "expected"),
+    [
+        ({"lag_s": lambda lag: -lag, "times": math.sqrt(3 / 2)}, "LAG_SIGN"),
+        ({"bias": lambda bias: -bias, "coverage": lambda share: share / 2}, "WRONG_SIGN"),
+        ({"times": math.sqrt(3 / 2)}, "JACKKNIFE_FACTOR"),
+        ({"times": 2.353 / 2.920}, "NOT_STUDENTS_T"),
+    ],
+)
+def test_of_two_mistakes_a_check_names_the_one_that_its_own_number_shows(new, expected):
+    """A lag of -0.047 that should be 0.047 was once told of an interval of one sigma."""
+    case, right = three_runs((0.02, 0.05, 0.08), offset=(0.0, -0.03, 0.01))
+    report = Fake().call("validate", case.sim, case.real, SPEC)
+    new = {key: of(report[key]) if callable(of) else of for key, of in new.items()}
+    with pytest.raises(kit.CheckFailed) as failed:
+        bundles.expect_measures(changed(report, **new), case, right, {})
+    assert failed.value.guess.code == expected
+    assert kit.words("validation").kind(expected) != "cause"  # it is not said of checks that do not show it
+
+
+@pytest.mark.parametrize(
+    ("key", "wrong", "expected"),
+    [
+        ("peak", lambda sim, real: (np.max(real) - np.max(sim)) / np.max(real), "WRONG_SIGN"),
+        ("impulse", lambda sim, real: (np.sum(real) - np.sum(sim)) / np.sum(real), "WRONG_SIGN"),
+        ("impulse", lambda sim, real: np.sum(np.abs(sim - real)) / np.sum(real), "IMPULSE_OF_ABSOLUTE"),
+        ("peak", lambda sim, real: 0.123, None),
+        # By the larger of the two, which here is the simulated one: neither name is certain.
+        ("peak", lambda sim, real: 1 - np.max(real) / np.max(sim), None),
+    ],
+)
+def test_peak_and_impulse_are_each_told_by_their_own_number(key, wrong, expected):
+    t = 0.001 * np.arange(61)
+    sim, real = shared.pulse(t, 0.021, 0.016, 88.0, 0.6), shared.pulse(t, 0.012, 0.02, 80.0, 0.4)
+    assert code(probes.of_force(key, wrong(sim, real), sim, real, 0.001)) == expected
+
+
+def test_rows_after_a_return_inside_the_loop_are_seen():
+    assert code(probes.of_rows(np.array([2.0, 0.0, 0.0]), np.array([2.0, 3.0, 4.0]))) == "FIRST_ROW_ALONE"
+    assert probes.of_rows(np.array([2.0, 3.0, 0.0]), np.array([2.0, 3.0, 4.0])) is None
+
+
+def test_what_alpha_leaves_out_is_told_before_the_length_of_the_resamples():
+    """A width that grows too much with alpha is not explained by resamples that are two errors too long."""
+    long = [np.append(row, row[:2]) for row in blocks(12)]
+    ends = np.quantile([np.mean(row**2) for row in long], [0.2, 0.8])
+    found = resampled(long, ends)
+    assert probes.of_resamples(found) == "RESAMPLE_SIZE"
+    assert probes.of_ends(found) == "ONE_SIDED"
 
 
 SPEC = {"rmse_max": 1.0, "bias_max": 0.01, "lag_max_s": 0.01, "coverage_min": 0.0, "coverage_max": 1.1}
@@ -471,3 +535,14 @@ def test_a_band_without_alpha_and_a_symmetric_one_are_recognised():
         solution = Fake()
         solution.set("consistency_band", band)
         assert code(probes.of_band(solution, (2, 20, 0.05), ends, right)) == expected
+
+
+@pytest.mark.parametrize(
+    ("exercise", "first"), [("validation", "`rmse`"), ("engine-comparison", "`linear_damping`")]
+)
+def test_a_readme_is_short_and_begins_with_something_to_write(exercise, first):
+    text = (ROOT / "exercises" / exercise / "README.md").read_text(encoding="utf-8")
+    reading, exact = text.split("\n## What is checked")
+    assert len(reading.split()) <= 900
+    assert len(exact.split()) <= 500
+    assert first in " ".join(reading.split()[:200])

@@ -514,7 +514,7 @@ def test_a_search_for_the_mistake_that_breaks_leaves_the_checks_own_finding(
     verdict = grade(session, solution + b"\ndef double(x):\n    return x\n")
     check = next(check for check in verdict.checks if check.id == "double_of_three")
     assert (verdict.state, check.status, check.diagnosis) == ("graded", Status.FAIL, None)
-    assert check.message == "The result is not twice the number."
+    assert check.message == "The result is not twice the number. Here your result is half the right one."
     assert str(check.traceback).startswith("In the check's own code: ZeroDivisionError")
 
 

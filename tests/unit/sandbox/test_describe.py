@@ -5,6 +5,7 @@ from __future__ import annotations
 from course.sandbox.runs.running import account, run, sentence, sentences
 from course.sandbox.scene.loading import choose
 from course.sandbox.world.accounts import Event, Receipt
+from course.sandbox.world.world import World
 
 
 def contact(**more) -> Event:
@@ -66,3 +67,14 @@ def test_a_whole_scene_reads_as_a_story() -> None:
     told = list(sentences(done.events))
     assert any("ball 4 meets the floor at 4.41 m/s and leaves at 3.53; 36 %" in line for line in told)
     assert any("ball 0 comes to rest" in line for line in told)
+
+
+def test_what_hands_do_names_bodies_as_sentences_do() -> None:
+    world = World(choose("head-on").scene)
+    world.copy("left-puck")
+    world.aim("left-puck", 1.0, 0.0)
+    told = [sentence(event) for event in world.drain_events()]
+    assert told == [
+        "0.00 s: new 1 appears, like the left puck.",
+        "0.00 s: the left puck now moves at 1.00 m/s.",
+    ]

@@ -12,6 +12,7 @@ from course.sandbox.runs import recording
 from course.sandbox.runs.tape import shot_of
 from course.sandbox.scene.loading import choose, scene_ids
 from course.sandbox.views.stage import Stage
+from course.sandbox.world.engine import Ledger
 
 
 def make(name: str, **more) -> Stage:
@@ -76,21 +77,33 @@ def test_going_on_from_any_moment_gives_the_same_states_to_the_last_bit(name: st
     assert stage.world.state_hash() == seen[end]
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_undo_and_redo_through_random_acts_return_to_the_same_bytes(seed: int) -> None:
-    through(seed, 40)
+@pytest.mark.parametrize("name", scene_ids())
+def test_undo_and_redo_through_random_acts_return_to_the_same_bytes(name: str) -> None:
+    chance, stage = random.Random(1), make(name)
+    stage.world.paused = True
+    states = played(stage, chance, 20)
+    taken_back_and_given_again(stage, states)
+    for _ in states[1:]:
+        stage.undo()
+        stage.finish()
+    with pytest.raises(UsageError, match="nothing to undo"):
+        stage.undo()
 
 
 @pytest.mark.soak
-@pytest.mark.parametrize("name", ["head-on", "newtons-cradle", "dominoes", "robot-boxes"])
+@pytest.mark.parametrize("name", scene_ids())
 def test_undo_and_redo_through_five_hundred_acts_return_to_the_same_bytes(name: str) -> None:
-    through(7, 500, name)
-
-
-def through(seed: int, acts: int, name: str = "") -> None:
-    chance = random.Random(seed)
-    stage = make(name or chance.choice(["head-on", "newtons-cradle", "box-stack"]))
+    chance, stage = random.Random(7), make(name)
     stage.world.paused = True
+    for _ in range(
+        20
+    ):  # each undo makes the run anew from its start, so not all acts are taken back each time
+        states = played(stage, chance, 25)
+        taken_back_and_given_again(stage, states[-chance.randrange(2, 7) :])
+
+
+def played(stage: Stage, chance: random.Random, acts: int) -> list[tuple[bytes, dict[str, float]]]:
+    """The states before each act that can be undone, and after the last."""
     states = []
     for _ in range(acts):
         before = len(stage._undos)
@@ -100,13 +113,15 @@ def through(seed: int, acts: int, name: str = "") -> None:
             states.append(state)
         stage.world.step(chance.randrange(3))
     states.append((stage.world.state().tobytes(), dict(stage.world.settings)))
-    assert len(states) == len(stage._undos) + 1 > acts / 4
+    assert len(states) > acts / 4
+    return states
+
+
+def taken_back_and_given_again(stage: Stage, states: list[tuple[bytes, dict[str, float]]]) -> None:
     for state in reversed(states[:-1]):
         stage.undo()
         stage.finish()
         assert (stage.world.state().tobytes(), stage.world.settings) == state
-    with pytest.raises(UsageError, match="nothing to undo"):
-        stage.undo()
     for state in states[1:]:
         stage.redo()
         stage.finish()
@@ -189,6 +204,51 @@ def test_going_on_shows_how_far_it_is_and_can_be_stopped() -> None:
     assert (stage.working, stage.world.state_hash(), stage.undoable()) == (None, before, ("", ""))
 
 
+@pytest.mark.parametrize("name", ["billiards-break", "newtons-cradle", "robot-boxes", "galton-board"])
+def test_going_on_after_a_long_run_takes_what_is_known_from_its_tape(name: str, monkeypatch) -> None:
+    """Far from the end nothing is booked again, and yet states, account, frames and ticks are the same."""
+    monkeypatch.setattr("course.sandbox.views.stage._TOLD", 2.0)
+    stage, booked = make(name), []
+    monkeypatch.setattr(
+        Ledger, "settle", lambda *a, real=Ledger.settle, **k: booked.append(1) or real(*a, **k)
+    )
+    watch(stage, 2.0)
+    body = next(part.name for part in stage.world.parts if not part.fixed)
+    stage.act("aim", body, 1.0, 0.5)
+    watch(stage, 14.0)
+    old, there = stage.tape, stage.tape.at(15.0)
+    until = [mark for mark in old.marks if mark < 12.9]
+    played = len(booked)
+    stage.look(old.times[there])
+    stage.go_on()
+    stage.finish()
+    assert stage.world.ticks == old.ticks[there]
+    assert stage.tape.ticks == old.ticks[: there + 1]
+    for mine, kept in zip(stage.tape.frames, old.frames, strict=False):
+        assert mine[2:] == pytest.approx(kept[2:], rel=1e-5, abs=1e-6)
+    assert [mark for mark in stage.tape.marks if mark < 12.9] == until
+    assert stage.world.sums == pytest.approx(old.sums[there], rel=1e-9, abs=1e-9)
+    assert len(booked) - played < 0.8 * played
+    seen = {one.tick: one.hash for one in old.recording.hashes}
+    stage.world.step(200)
+    assert all(seen.get(one.tick, one.hash) == one.hash for one in stage.recording.hashes)
+
+
+def test_a_tape_is_known_only_up_to_where_two_histories_part() -> None:
+    stage = make("head-on")
+    watch(stage, 20.0)
+    stage.act("aim", "left" if stage.world.moves("left") else stage.world.parts[0].name, 0.5, 0.0)
+    parted = stage.world.ticks
+    watch(stage, 20.0)
+    tape, before = stage.tape, stage.recording
+    assert tape.ticks[tape.shared(before, 1, 39.0)] > parted
+    assert 0 < tape.ticks[tape.shared(before, 0, 39.0)] < parted
+    other = make("head-on", settings={"step": 0.002})
+    assert tape.shared(other.recording, 0, 39.0) == 0
+    stage.act("reset")
+    assert stage.tape.shared(stage.recording, 1, 39.0) == 0, "that run began at another moment"
+
+
 def test_a_parameter_starts_the_scene_anew_keeps_the_settings_and_can_be_undone() -> None:
     stage = make("newtons-cradle")
     stage.act("set", "gravity", 3.0)
@@ -217,6 +277,18 @@ def test_no_run_ends_and_the_comparison_is_made_on_the_way() -> None:
     stage.finish()
     assert stage.experiment.stage == "done"
     assert len(kept) == 1, "the same run is not kept twice"
+
+
+@pytest.mark.parametrize("name", ["free-fall", "head-on", "incline", "restitution-row", "box-stack"])
+def test_going_on_compares_the_same_moment_as_the_run_that_was_seen(name: str) -> None:
+    stage = make(name, settings={"step": 0.0037})  # no number of steps ends with a picture
+    watch(stage, stage.chosen.scene.duration + 1.0)
+    seen = stage.experiment.report()["comparison"]
+    assert seen is not None
+    stage.look(stage.world.t - 0.3)
+    stage.go_on()
+    stage.finish()
+    assert stage.experiment.report()["comparison"] == seen
 
 
 def test_a_step_is_a_picture_the_next_contact_or_the_solvers() -> None:

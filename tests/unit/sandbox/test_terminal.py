@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable
+from threading import Event
 from typing import Any
 
 import pytest
 from textual.pilot import Pilot
 from textual.widgets import Input, OptionList, Static
 
-from course.errors import MissingCapabilityError
+from course.errors import MissingCapabilityError, UsageError
+from course.sandbox.runs.tape import Tape
 from course.sandbox.scene.loading import choose, scene_ids
 from course.sandbox.views.stage import Desk, Stage
 from course.sandbox.views.terminal import view as terminal
@@ -155,7 +157,7 @@ def test_a_drag_moves_a_body_and_letting_go_throws_it():
         assert shot.y[row] > 0.2
         assert shot.vy[row] > 0.1
         app.frames(1)
-        assert "a hand takes right-puck" in app.events.text
+        assert "a hand takes the right puck" in app.events.text
         assert app.experiment.stage == "touched"
 
     play("head-on", script)
@@ -284,9 +286,37 @@ def test_a_line_changes_a_parameter_a_setting_or_a_body_and_makes_the_scene_ones
             await say(wrong)
         assert app.stage.chosen.parameters["speed"] == 5
         await pilot.press("ctrl+s")
-        app._film[0].join(60)
+        app._film.wait(60)
         app.frames(1)
         assert app.saved["head-on.gif"][:6] == b"GIF89a"
+
+    play("head-on", script)
+
+
+def test_a_film_says_how_far_it_is_and_can_be_stopped(monkeypatch):
+    drawn, go = Event(), Event()
+
+    def slow(self, scene, kind, width, told) -> bytes:
+        told(0.25)
+        drawn.set()
+        go.wait(20)
+        if not told(0.5):
+            raise UsageError("The film was stopped.")
+        return b"GIF89a"
+
+    monkeypatch.setattr(Tape, "film", slow)
+
+    async def script(app: Played, pilot: Pilot[None]) -> None:
+        await pilot.press("ctrl+s")
+        assert drawn.wait(20)
+        app.frames(1)
+        assert "Making the film: 25 %, k stops it" in app.head.text
+        await pilot.press("k")
+        go.set()
+        app._film.wait(20)
+        app.frames(1)
+        assert "The film was stopped." in app.keys.text
+        assert app.saved == {}
 
     play("head-on", script)
 

@@ -152,6 +152,26 @@ def test_nothing_passes_while_nobody_looks() -> None:
     assert asyncio.run(go(watching=True, pages=False)) == 0
 
 
+def test_a_hand_is_answered_before_the_next_frame_is_due(monkeypatch) -> None:
+    monkeypatch.setattr("course.sandbox.views.web.session._FPS", 0.2)
+
+    async def go() -> None:
+        made = Session(Stage(choose("head-on")))
+        made.stage.world.paused = False
+        page = made.join()
+        task = asyncio.create_task(made.run())
+        await asyncio.sleep(0.05)  # the first frame; the next one is due in five seconds
+        x, y = (float(c) for c in made.stage.world.state()[0, :2])
+        made.receive(page, json.dumps({"do": "grab", "x": x, "y": y, "reach": 0.5}))
+        while True:
+            data = await page.fetch()
+            if isinstance(data, bytes) and np.frombuffer(data, "<f4")[[0, 6]].tolist() == [1, 1]:
+                break
+        task.cancel()
+
+    asyncio.run(asyncio.wait_for(go(), 3))
+
+
 def test_a_world_that_is_too_much_work_runs_slower_and_says_so() -> None:
     clock = Clock(each=0.002)
     made, page = make("head-on", clock=clock, settings={"step": 1e-5})
@@ -419,7 +439,8 @@ def test_a_film_of_this_run_comes_as_a_file(kind: str, begins: bytes) -> None:
     watch(made, 1.0)
     told(page)
     send(made, page, "film", kind=kind, width=200)
-    made._film._thread.join(60)
+    send(made, page, "open", id="incline")  # which is not what is filmed
+    made._film[1].wait(60)
     made.tick(0)
     data = []
     while (item := page.take()) is not None:

@@ -170,9 +170,7 @@ def test_a_body_at_rest_gains_and_loses_nothing() -> None:
         assert getattr(later, part) == pytest.approx(getattr(settled, part), abs=2e-3), part
 
 
-@pytest.mark.parametrize(
-    "name", ["billiards-break", "dominoes", "box-stack", "restitution-row", "incline", "robot-boxes"]
-)
+@pytest.mark.parametrize("name", scene_ids())
 def test_the_books_balance_and_nothing_but_the_solver_is_in_the_residual(name: str) -> None:
     world = World(choose(name).scene)
     for _ in range(8):
@@ -192,7 +190,7 @@ def session(name: str, seed: int) -> float:
     chance = random.Random(f"{name} {seed}")
     world = World(choose(name).scene)
     left, bottom, right, top = world.scene.view
-    most = 0.0
+    most, size = 0.0, world.settings["step"]
     world.step(chance.randrange(200))
     for _ in range(12):
         moving = [part.name for part in world.parts if not part.fixed]
@@ -200,7 +198,7 @@ def session(name: str, seed: int) -> float:
             break
         body = chance.choice(moving)
         x, y = world.state()[world._space.index[body], :2]
-        move = chance.randrange(7)
+        move = chance.randrange(9)
         if move == 0:
             world.grab(x, y, 0.05)
         elif move == 1:
@@ -210,13 +208,26 @@ def session(name: str, seed: int) -> float:
         elif move == 3:
             world.throw(x, y, chance.uniform(-3, 3), chance.uniform(-3, 3), 0.01)
         elif move == 4:
-            key, high = chance.choice([("gravity", 20), ("restitution", 1), ("friction", 1), ("walls", 1)])
-            world.set(key, chance.randrange(2) if key == "walls" else chance.uniform(0, high))
+            key = chance.choice(["gravity", "restitution", "friction", "step", "iterations", "walls", "left"])
+            low, high = {"gravity": (0, 20), "step": (0.3 * size, 2 * size), "iterations": (1, 50)}.get(
+                key, (0, 1)
+            )
+            whole = key in {"walls", "iterations"}
+            with contextlib.suppress(UsageError):  # without wheels, there is no left one
+                world.set(key, chance.randint(low, high) if whole else chance.uniform(low, high))
         elif move == 5:
             with contextlib.suppress(UsageError):
                 world.place(body, chance.uniform(left, right), chance.uniform(bottom, top))
+        elif move == 6:
+            world.change(body, chance.choice(["vx", "vy", "spin", "mass"]), chance.uniform(0.5, 3))
+        elif move == 7:
+            with contextlib.suppress(UsageError):
+                world.copy(body)
         else:
-            world.change(body, chance.choice(["vx", "vy", "spin"]), chance.uniform(-3, 3))
+            act, given = chance.choice(
+                [(world.stop, ()), (world.spawn, ("box", 0, 0)), (world.remove, (body,))]
+            )
+            act(*given)
         for _ in range(chance.randrange(10)):  # no step at all between two moves is a pause
             world.step(8)
             most = max(most, world.receipt.kinetic)
@@ -226,7 +237,7 @@ def session(name: str, seed: int) -> float:
 
 @pytest.mark.parametrize("name", scene_ids())
 def test_whatever_hands_do_every_joule_has_an_impulse_of_its_own(name: str) -> None:
-    assert max(session(name, seed) for seed in range(5)) < 0.01
+    assert max(session(name, seed) for seed in (*range(5), 201)) < 0.01
 
 
 def test_a_hand_that_books_two_percent_too_much_is_found_out(monkeypatch) -> None:
@@ -262,18 +273,6 @@ def test_impulses_read_after_the_step_are_those_that_callbacks_see_inside_it() -
     assert told == pytest.approx(seen, rel=1e-12)
 
 
-def test_a_world_without_a_receipt_sees_the_same_contacts() -> None:
-    def contacts(*, receipt: bool) -> list[tuple]:
-        world = World(choose("billiards-break").scene, receipt=receipt)
-        world.run_until(1.0)
-        found = [event for event in world.drain_events() if event.kind == "contact"]
-        return sorted((e.step, e.a, e.b, round(e.approach, 9), round(e.slip, 9)) for e in found)
-
-    with_it, without = contacts(receipt=True), contacts(receipt=False)
-    assert len(with_it) > 20
-    assert with_it == without
-
-
 def test_a_world_without_a_receipt_says_so() -> None:
     with pytest.raises(UsageError):
         _ = World(scene(puck("a", 0, 0)), receipt=False).receipt
@@ -287,7 +286,7 @@ def test_whatever_hands_do_the_books_balance(seed: int) -> None:
     play_about(world, chance, 25)
     size = max(1.0, abs(world.receipt.given), world.receipt.kinetic)
     assert abs(imbalance(world)) < 1e-9 * size
-    assert len(world.history.t) > 0
+    assert len(world.samples()) > 0
 
 
 # -- hands -----------------------------------------------------------------------------------------------
@@ -339,7 +338,7 @@ def test_a_throw_along_a_rod_is_lost_in_the_rod_and_not_by_the_solver(scene_name
     assert abs(after.residual - before.residual) < 0.01 * after.rods
     assert imbalance(world) == pytest.approx(0, abs=1e-9)
     world.run_until(world.t + 1 / 30)
-    assert world.history.rods[-1] == pytest.approx(world.receipt.rods, rel=1e-2)
+    assert world.samples()[-1][5] == pytest.approx(world.receipt.rods, rel=1e-2)
 
 
 def test_a_hand_drags_a_body_to_where_it_is_and_a_moving_hand_throws() -> None:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pytest
 
 from course.scoring.verdict import (
     CheckResult,
+    Status,
     Tolerance,
+    Visibility,
     format_input,
     format_pair,
     format_points,
@@ -56,14 +59,16 @@ def test_an_input_reads_like_a_sentence():
 @pytest.mark.parametrize(
     ("tolerance", "units", "text"),
     [
-        (Tolerance(rel=0.02, source="closed form"), "1", "within 2 % (closed form)"),
-        (Tolerance(abs=1e-9, source="rounding"), "m", "within 1e-09 m (rounding)"),
-        (Tolerance(rel=1e-12), "s", "within 1e-12 of it"),
+        (Tolerance(rel=0.02, source="closed form"), "1", "within 2 %"),
+        (Tolerance(rel=5e-5), "1", "within 5e-05 of it"),
+        (Tolerance(rel=1e-9, abs=0.01, source="of 200 programs"), "m", "within 0.01 m"),
+        (Tolerance(abs=1e-9, source="rounding"), "m", ""),
+        (Tolerance(rel=1e-12), "s", ""),
         (Tolerance(rel=0.5, abs=0.1), "", "within 50 % or 0.1"),
-        (Tolerance(source="theory"), "", "theory"),
+        (Tolerance(source="theory"), "", ""),
     ],
 )
-def test_a_tolerance_says_how_much_and_why(tolerance, units, text):
+def test_a_tolerance_says_how_much_unless_it_is_only_for_rounding(tolerance, units, text):
     assert format_tolerance(tolerance, units) == text
 
 
@@ -83,3 +88,29 @@ def test_only_numbers_have_a_unit(actual, shown):
         actual=actual, expected=2.0, units="m",
     )  # fmt: skip
     assert numbers_of(check) == [("measured", shown), ("expected", "2 m")]
+
+
+def compared(
+    actual: Any, expected: Any, tolerance: Tolerance | None = None, units: str = ""
+) -> dict[str, str]:
+    """The numbers of a failed check by their labels."""
+    check = CheckResult(
+        id="c", title="c", task="t", status=Status.FAIL, visibility=Visibility.PUBLIC, points=0.0,
+        max_points=1.0, actual=actual, expected=expected, tolerance=tolerance, units=units,
+    )  # fmt: skip
+    return dict(numbers_of(check))
+
+
+def test_limits_are_said_in_words_and_where_none_can_be_met_the_one_that_is_broken():
+    limits = Tolerance(source="theory")
+    assert compared(3.0, [0.9, 1.1], limits, "m")["expected"] == "from 0.9 to 1.1 m"
+    assert compared(3.0, [2.18494, 0.03], limits)["expected"] == "at most 0.03"
+    assert compared(0.0, [2.18494, 0.03], limits)["expected"] == "at least 2.18494"
+    assert compared(3.0, {"at most": 0.5}, limits, "s")["expected"] == "at most 0.5 s"
+    assert compared([1.0, 2.0], [0.9, 1.1], Tolerance(abs=0.01))["expected"] == "[0.9, 1.1], within 0.01"
+    assert compared(3, [1, 2], Tolerance(abs=0.0), "evaluations")["expected"] == "[1, 2] evaluations"
+
+
+def test_a_number_of_the_wrong_type_does_not_look_like_the_right_one():
+    assert compared(3.0, 3) == {"measured": "3.0", "expected": "3"}
+    assert compared("None", None) == {"measured": "None"}

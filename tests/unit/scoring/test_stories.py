@@ -58,7 +58,7 @@ def impulse_1d(ma, mb, va, vb, restitution):
 """
     (checks,) = failed(session, impulse).values()
     assert codes(checks) == {"RESTITUTION_SQUARED"}
-    assert all("Two mistakes at once" in check.message for check in checks)
+    assert all("There seem to be two mistakes" in check.message for check in checks)
     assert all("wrong sign" in check.message for check in checks)
 
 

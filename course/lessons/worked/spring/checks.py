@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -13,11 +15,6 @@ ROUNDING = "only rounding is allowed"
 
 def explicit(x, v, rate, h):
     return x + h * v, v - h * rate**2 * x
-
-
-def semi_implicit(x, v, rate, h):
-    v_next = v - h * rate**2 * x
-    return x + h * v_next, v_next
 
 
 def moved(step, given):
@@ -34,23 +31,81 @@ def asked(submission, given):
     return np.array([kit.as_vector(values, given["n"] + 1) for values in found])
 
 
+def moving(way):
+    """A step whose new position is ``way(at)``: ``at`` has x, v, v_next and h."""
+
+    def step(x, v, rate, h):
+        v_next = v - h * rate**2 * x
+        return way(SimpleNamespace(x=x, v=v, v_next=v_next, h=h)), v_next
+
+    return step
+
+
+#: How the position may move instead: code, new position, what it looks like, what to change.
+OTHERS = (
+    (
+        "EULER_IS_SEMI_IMPLICIT",
+        lambda at: at.x + at.h * at.v_next,
+        "These are exactly the steps of semi-implicit Euler: the velocity is already updated when the "
+        "position is computed.",
+        "Explicit Euler uses only the old state: move the position with the old v, not with v_next.",
+    ),
+    (
+        "STEP_FORGOTTEN",
+        lambda at: at.x + at.v,
+        "The position moves by v, as if a step lasted a second.",
+        "A step lasts h seconds: move the position by h * v.",
+    ),
+    (
+        "STEP_FORGOTTEN",
+        lambda at: at.x + at.v_next,
+        "The position moves by v_next, as if a step lasted a second.",
+        "A step lasts h seconds, and explicit Euler uses the old v: move the position by h * v.",
+    ),
+    (
+        "POSITION_FORGOTTEN",
+        lambda at: at.h * at.v,
+        "The new position is only the way of one step: the old position is not in it.",
+        "Add the way to the old position: x + h * v.",
+    ),
+    (
+        "WRONG_WAY",
+        lambda at: at.x - at.h * at.v,
+        "The position moves against the velocity.",
+        "Add h * v.",
+    ),
+    (
+        "MEAN_VELOCITY",
+        lambda at: at.x + at.h * (at.v + at.v_next) / 2,
+        "The position moves with the mean of the old and the new velocity.",
+        "That is more exact, but it is not explicit Euler: use the old v alone.",
+    ),
+    (
+        "VELOCITY_FORGOTTEN",
+        lambda at: at.x + at.h,
+        "The position moves by h, whatever the velocity is.",
+        "In h seconds it moves by h * v.",
+    ),
+    (
+        "POSITION_STANDS",
+        lambda at: at.x,
+        "The position never changes: no step gives x a new value.",
+        "Assign the new position to x.",
+    ),
+)
+
+
 def which_method(submission):
-    """Semi-implicit Euler under the other's name: its very states, over 20 steps. Or no method at all."""
+    """The mistake in the line that moves the position: its very states, over 20 steps."""
     given = {**GIVEN, "n": 20}
     found = kit.attempt(lambda: asked(submission, given))
-    if found is not None and np.all(found[0] == GIVEN["stretch"]):
-        return kit.Diagnosis(
-            "POSITION_STANDS",
-            "The position never changes: no step gives x a new value.",
-            "Assign the new position to x.",
-        )
-    if found is not None and np.allclose(found, moved(semi_implicit, given), rtol=1e-12, atol=1e-15):
-        return kit.Diagnosis(
-            "EULER_IS_SEMI_IMPLICIT",
-            "These are exactly the steps of semi-implicit Euler: the velocity is already updated when the "
-            "position is computed.",
-            "Explicit Euler uses only the old state: move the position with the old v, not with v_next.",
-        )
+    if found is None:
+        return None
+    if np.all(found[0] == GIVEN["stretch"]):
+        return kit.Diagnosis(OTHERS[-1][0], *OTHERS[-1][2:])
+    for code, way, looks_like, advice in OTHERS:
+        if np.allclose(found, moved(moving(way), given), rtol=1e-12, atol=1e-15):
+            return kit.Diagnosis(code, looks_like, advice)
     return None
 
 
@@ -67,7 +122,7 @@ def test_first_step(submission):
         quantity="x",
         units="m",
         input=given,
-        message="The mass starts at rest, so its old velocity is zero, and yet the first step moves it.",
+        message="The mass starts at rest, so its old velocity is zero, but the first step moves it.",
         help="Compute the new position from the state at the start of the step.",
         diagnose=lambda: which_method(submission),
     )
@@ -88,7 +143,7 @@ def test_energy_grows(submission):
         source="exact for explicit Euler on a spring; 200 roundings lose less than 1e-12",
         quantity="energy over its start",
         input=GIVEN,
-        message="On a spring explicit Euler gains energy at every step, by one factor. This motion does not.",
+        message="Each step of explicit Euler multiplies the energy by 1 + (rate h)^2. This one does not.",
         help="Compute the new position and the new velocity from the old ones.",
         diagnose=lambda: which_method(submission),
     )

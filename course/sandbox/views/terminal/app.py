@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from threading import Thread
 from time import perf_counter
 from typing import Any, ClassVar
 
@@ -15,7 +14,8 @@ from textual.geometry import Size
 
 from course.errors import CourseError, UsageError
 from course.full_screen import FullScreenApp
-from course.sandbox.scene.loading import choose, guess_of, own_copy, scenes
+from course.sandbox.runs.tape import Filming
+from course.sandbox.scene.loading import guess_of, scenes
 from course.sandbox.scene.rules import SETTINGS
 from course.sandbox.views.stage import Desk, Stage
 from course.sandbox.views.story import Experiment
@@ -140,11 +140,11 @@ class SandboxApp(FullScreenApp):
         self._first = self._gallery_first = stage is None
         self._played = set(self.desk.played)
         self._budget = 0.5 / max(fps, 1.0)
-        self.put_on(stage or self._opened(scenes()[0].id))
+        self.put_on(stage or self.desk.stage(scenes()[0].id, clock))
         self.calm = self.animation_level != "full"
         self._fps = fps
         self._last = clock()
-        self._film: tuple[Thread, list[Any]] | None = None
+        self._film: Filming | None = None
         self._read_at = -1.0
         self._drawn_at = -1.0
         self._panel_wanted = True
@@ -155,10 +155,6 @@ class SandboxApp(FullScreenApp):
         self.panel = Lines(ink, paper, id="panel")
         self.events = Lines(ink, paper, id="events")
         self.keys = Lines(ink, bar, id="keys")
-
-    def _opened(self, name: str) -> Stage:
-        chosen = choose(name)
-        return Stage(chosen, keep=self.desk.keep_of(chosen), clock=self._clock)
 
     def put_on(self, stage: Stage) -> None:
         """Play this from now on, in place."""
@@ -255,9 +251,9 @@ class SandboxApp(FullScreenApp):
         if verdict and verdict != self._compared:
             self.say(verdict)
         self._compared = verdict
-        if self._film is not None and not self._film[0].is_alive():
-            (kept, self._film) = (self._film[1], None)
-            self._save(*kept)
+        if self._film is not None and not self._film.running:
+            film, self._film, save = self._film, None, self.desk.save
+            self._attempt(lambda: film.failed or (save and f"Saved: {save(film.name, film.data)}"))
 
     def _draw(self, now: float) -> None:
         width, height = self.canvas.size
@@ -274,7 +270,7 @@ class SandboxApp(FullScreenApp):
             says, share = self.stage.working
             return f"{says}: {100 * share:.0f} %, k stops it"
         if self._film is not None:
-            return "the film is being made"
+            return f"Making the film: {100 * self._film.share:.0f} %, k stops it"
         if self.stage.at is not None:
             return f"of {self.world.t:.3f} s {('', '▶', '◀')[self.stage.way]}"
         return "paused" if self.world.paused else ""
@@ -361,7 +357,7 @@ class SandboxApp(FullScreenApp):
         def chosen(name: str | None) -> None:
             if name is None:
                 return
-            self.put_on(self._opened(name))
+            self.put_on(self.desk.stage(name, self._clock))
             self.world.paused = self.calm
             self.renew()
 
@@ -397,7 +393,9 @@ class SandboxApp(FullScreenApp):
         name, _, text = line.replace("=", " ").strip().rpartition(" ")
         name = name.strip()
         if line == "mine":
-            return self._make_mine()
+            made, says = self.desk.mine(self.stage)
+            self.put_on(made)
+            return says
         value = guess_of(text, "")
         if value is None:
             raise UsageError("A name and a number, please: angle 45.")
@@ -410,14 +408,6 @@ class SandboxApp(FullScreenApp):
         else:
             raise UsageError(f"There is no {name[:30]!r} to change here.")
         return f"{name}: {value:g}"
-
-    def _make_mine(self) -> str:
-        if self.desk.save is None:
-            raise UsageError("Nothing can be saved from here.")
-        id_ = f"my-{self.stage.chosen.scene.id.removeprefix('my-')}"
-        path = self.desk.save(f"{id_}.toml", own_copy(self.stage.chosen, id_))
-        self.put_on(self._opened(path))
-        return f"Your own copy: {path}"
 
     def action_help(self) -> None:
         """All keys."""
@@ -458,9 +448,11 @@ class SandboxApp(FullScreenApp):
         self._attempt(lambda: self.stage.play_back(-1))
 
     def action_now(self) -> None:
-        """Back to now, or stop what is being made again."""
+        """Back to now, or stop what is being made."""
         if self.stage.working is not None:
             self.stage.stop_work()
+        elif self._film is not None:
+            self._film.stopped = True
         self.stage.present()
         self.renew()
 
@@ -523,24 +515,7 @@ class SandboxApp(FullScreenApp):
         if self._film is not None or self.desk.save is None:
             self.say("One film is being made already." if self._film else "Nothing can be saved from here.")
             return
-        kept: list[Any] = [f"{self.stage.chosen.scene.id}.gif", b"", ""]
-        tape, scene = self.stage.tape.until(self.world.t), self.stage.chosen.scene
-
-        def make() -> None:
-            try:
-                kept[1] = tape.film(scene, "gif", _FILM_WIDTH, lambda _: not self._exit)
-            except CourseError as error:
-                kept[2] = error.message
-
-        self._film = Thread(target=make, daemon=True), kept
-        self._film[0].start()
-
-    def _save(self, name: str, data: bytes, failed: str) -> None:
-        if failed or self.desk.save is None:
-            self.say(failed)
-            return
-        save = self.desk.save
-        self._attempt(lambda: f"Saved: {save(name, data)}")
+        self._film = self.stage.film("gif", _FILM_WIDTH)
 
     def action_speed(self, factor: float) -> None:
         """Slower or faster."""

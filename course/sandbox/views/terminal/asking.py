@@ -162,14 +162,12 @@ class Gallery(Overlay[str]):
         none = np.zeros(len(parts))
         shot = Snapshot(
             t=0.0,
-            tick=0,
             version=0,
             x=x,
             y=y,
             angle=angle,
             vx=none,
             vy=none,
-            spin=none,
             joints=joints[at].astype(float),
             hand=None,
         )

@@ -7,7 +7,7 @@ import sys
 
 from course.errors import MissingCapabilityError
 from course.sandbox.scene.loading import Chosen
-from course.sandbox.views.stage import Desk, Stage
+from course.sandbox.views.stage import Desk
 
 
 def play(
@@ -31,7 +31,7 @@ def play(
     from course.sandbox.views.terminal.app import SandboxApp
 
     desk = desk or Desk()
-    stage = None if chosen is None else Stage(chosen, guess=guess, keep=desk.keep_of(chosen))
+    stage = None if chosen is None else desk.stage(chosen, guess=guess)
     app = SandboxApp(stage, desk, fps=fps)
     app.play()
     return app.stage.recording.encode()

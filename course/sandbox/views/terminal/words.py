@@ -16,7 +16,7 @@ from textual.widget import Widget
 
 from course.sandbox.scene.rules import SETTINGS
 from course.sandbox.views.terminal.picture import Cells
-from course.sandbox.world.accounts import History, Receipt
+from course.sandbox.world.accounts import SAMPLED, Receipt
 from course.sandbox.world.engine import Floats
 from course.sandbox.world.world import World
 
@@ -163,7 +163,8 @@ def panel(world: World, parameters: Sequence[tuple[str, str]], width: int, heigh
         parameters: the scene's own, with their values.
         width, height: of the column, in cells.
     """
-    history, receipt, momentum = world.history, world.receipt, world.momentum
+    rows = np.array(world.samples()).reshape(-1, len(SAMPLED)).T
+    history, receipt, momentum = dict(zip(SAMPLED, rows, strict=True)), world.receipt, world.momentum
     settings = _settings(world, parameters, width)
     tall = max(1, min(4, (height - 5 - len(settings) - 3) // 8))
     lines = [*_energy(history, receipt, width, tall), *_momentum(history, momentum, width, tall)]
@@ -181,9 +182,9 @@ def _drawn(receipt: Receipt) -> list[tuple[str, str, str]]:
     return [one for one in _ENERGIES if one[0] != "rods" or receipt.rods]
 
 
-def _energy(history: History, receipt: Receipt, width: int, tall: int) -> list[Line]:
+def _energy(history: dict[str, Floats], receipt: Receipt, width: int, tall: int) -> list[Line]:
     drawn = _drawn(receipt)
-    series = {name: getattr(history, name) for name, _, _ in drawn}
+    series = {name: history[name] for name, _, _ in drawn}
     had = receipt.start + receipt.given
     scale = max(abs(had), *(abs(getattr(receipt, name)) for name in series), 1e-12)
     span = max(max((float(np.ptp(v)) for v in series.values() if len(v)), default=0.0), 1e-9 * scale)
@@ -197,8 +198,10 @@ def _energy(history: History, receipt: Receipt, width: int, tall: int) -> list[L
     return lines
 
 
-def _momentum(history: History, momentum: tuple[float, float, float], width: int, tall: int) -> list[Line]:
-    series = [getattr(history, name) for name, _, _ in _MOMENTA]
+def _momentum(
+    history: dict[str, Floats], momentum: tuple[float, float, float], width: int, tall: int
+) -> list[Line]:
+    series = [history[name] for name, _, _ in _MOMENTA]
     scale = max(*(abs(value) for value in momentum), 1e-12)
     lines: list[Line] = [(("Momentum in kg m/s", "bold"),)]
     for (_, label, colour), values, value in zip(_MOMENTA, series, momentum, strict=True):

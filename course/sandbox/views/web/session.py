@@ -6,12 +6,12 @@ The state lives here, so a page can be reloaded at any time. Time passes only wh
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import functools
 import math
 import operator
 from collections import deque
 from collections.abc import Callable
-from threading import Thread
 from time import perf_counter
 from typing import Annotated, Any, Literal
 
@@ -20,8 +20,8 @@ import numpy as np
 from msgspec import Meta
 
 from course.errors import CourseError, UsageError
-from course.sandbox.runs.tape import Frame, Tape, preview
-from course.sandbox.scene.loading import choose, own_copy, scene_ids, scenes
+from course.sandbox.runs.tape import Filming, Frame, preview
+from course.sandbox.scene.loading import choose, scene_ids, scenes
 from course.sandbox.scene.model import Part
 from course.sandbox.scene.rules import SETTINGS
 from course.sandbox.views.stage import BUDGET, Desk, Stage
@@ -152,7 +152,7 @@ def past(stage: Stage, most: int = 900) -> bytes:
     Args:
         most: rows at most; the last ones, about 60 of them a second.
     """
-    return _rows(3.0, stage.world.samples(-math.inf)[-most:])
+    return _rows(3.0, stage.world.samples()[-most:])
 
 
 def _rows(kind: float, rows: list[list[float]]) -> bytes:
@@ -174,6 +174,8 @@ def finite(value: float | None) -> float | None:
 #: Pages that may look at one world at a time.
 MAX_PAGES = 8
 _FPS = 60.0
+#: Between two frames at least, in s.
+_MOMENT = 0.004
 #: Texts that may wait for a page that reads slowly; one that is further behind is let go.
 _WAITING = 400
 #: Rows for the plots that may wait: a minute of them.
@@ -269,7 +271,7 @@ class Session:
     ) -> None:
         self.desk = desk or Desk()
         self.gallery = stage is None
-        self.stages = [stage or self._opened(scenes()[0].id)]
+        self.stages = [stage or self.desk.stage(scenes()[0].id)]
         self.stage.world.paused = self.gallery
         if stage is not None and self.desk.opened is not None:
             self.desk.opened(stage.chosen.scene.id)
@@ -287,16 +289,12 @@ class Session:
         self._ghost = False
         self._cards: dict[str, tuple[str, bytes]] = {}
         self._wanted: deque[tuple[Page, str]] = deque()
-        self._film: Filming | None = None
+        self._film: tuple[Page, Filming] | None = None
 
     @property
     def stage(self) -> Stage:
         """What is played."""
         return self.stages[0]
-
-    def _opened(self, name: str) -> Stage:
-        chosen = choose(name)
-        return Stage(chosen, keep=self.desk.keep_of(chosen))
 
     def _put_on(self, stage: Stage) -> None:
         """Play this from now on, in place."""
@@ -405,7 +403,7 @@ class Session:
     def _do_cancel(self, _: Page) -> None:
         self.stage.stop_work()
         if self._film is not None:
-            self._film.stopped = True
+            self._film[1].stopped = True
 
     def _do_ghost(self, _: Page, on: bool) -> None:
         if on and self.stage.ghost is None:
@@ -419,7 +417,7 @@ class Session:
     def _do_film(self, page: Page, kind: str, width: int) -> None:
         if self._film is not None:
             raise UsageError("One film is being made already.", code="busy")
-        self._film = Filming(page, self.stage, kind, width)
+        self._film = page, self.stage.film(kind, width)
 
     def _do_parameter(self, _: Page, key: str, value: float) -> None:
         if key not in self.stage.chosen.parameters:
@@ -430,7 +428,7 @@ class Session:
     def _do_open(self, _: Page, name: str) -> None:
         if name not in scene_ids():
             raise UsageError(f"There is no scene called {name!r}.", code="scene_not_found")
-        self._put_on(self._opened(name))
+        self._put_on(self.desk.stage(name))
 
     def _do_watch(self, page: Page, on: bool) -> None:
         page.watching = on
@@ -470,18 +468,9 @@ class Session:
             page.tell(data)
 
     def _do_mine(self, page: Page) -> None:
-        stage = self.stage
-        if self.desk.save is None:
-            raise UsageError("Nothing can be saved from here.", code="no_save")
-        name = stage.chosen.scene.id.removeprefix("my-")
-        path = self.desk.save(f"my-{name}.toml", own_copy(stage.chosen, f"my-{name}"))
-        chosen = choose(path)
-        made = Stage(chosen, keep=self.desk.keep_of(chosen))
-        made.world.paused = stage.world.paused
+        made, says = self.desk.mine(self.stage)
         self._put_on(made)
-        self._warn(
-            page, f"This is your own copy now: {path}. Change it in an editor; it plays like any scene."
-        )
+        self._warn(page, says)
 
     @staticmethod
     def _warn(page: Page, message: str) -> None:
@@ -504,8 +493,12 @@ class Session:
             self.tick(now - last)
             last = now
             due = max(due + 1.0 / _FPS, self._clock())
-            # At least a moment for everybody else, however long the stepping took.
-            await asyncio.sleep(max(due - self._clock(), 0.001))
+            self._wake.clear()
+            # At least a moment for everybody else, and hands are answered at once.
+            await asyncio.sleep(_MOMENT)
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(self._wake.wait(), max(due - self._clock(), 0.0))
+                due = self._clock()
 
     def _moves(self) -> bool:
         return not self.stage.still or bool(self._wanted) or self._film is not None
@@ -584,17 +577,15 @@ class Session:
             self._tell({"type": "marks", "marks": marks[max(told, 0) :], "anew": told < 0})
 
     def _tell_film(self) -> None:
-        film = self._film
-        if film is None or film.running:
+        if self._film is None or self._film[1].running:
             return
-        self._film = None
-        if film.failed or film.page not in self.pages:
-            self._warn(film.page, film.failed)
+        (page, film), self._film = self._film, None
+        if film.failed:
+            self._warn(page, film.failed)
             return
-        name = f"{self.stage.chosen.scene.id}.{film.kind}"
-        film.page.tell(_json({"type": "file", "name": name}))
+        page.tell(_json({"type": "file", "name": film.name}))
         # Four bytes that say so, and then the file.
-        film.page.tell(np.array([_FILM], dtype="<f4").tobytes() + film.data)
+        page.tell(np.array([_FILM], dtype="<f4").tobytes() + film.data)
 
     def _tell(self, message: dict[str, Any]) -> None:
         text = _json(message)
@@ -605,7 +596,7 @@ class Session:
         stage, working = self.stage, self.stage.working
         undo, redo = stage.undoable()
         if working is None and self._film is not None:
-            working = "Making the film", self._film.share
+            working = "Making the film", self._film[1].share
         return {
             "type": "status",
             "settings": dict(stage.world.settings),
@@ -679,36 +670,6 @@ def _body(part: Part) -> dict[str, Any]:
         "friction": part.friction,
         "track": part.wheels.track if part.wheels else 0.0,
     }
-
-
-class Filming:
-    """A film in the making, beside the world.
-
-    Args:
-        page: which asked for it.
-    """
-
-    def __init__(self, page: Page, stage: Stage, kind: str, width: int) -> None:
-        self.page, self.kind, self.share, self.stopped = page, kind, 0.0, False
-        self.data, self.failed = b"", ""
-        tape = stage.tape.until(stage.t if kind == "png" else stage.world.t)
-        self._thread = Thread(target=self._make, args=(tape, stage, width), daemon=True)
-        self._thread.start()
-
-    @property
-    def running(self) -> bool:
-        """It is not ready yet."""
-        return self._thread.is_alive()
-
-    def _make(self, tape: Tape, stage: Stage, width: int) -> None:
-        try:
-            self.data = tape.film(stage.chosen.scene, self.kind, width, self._told)
-        except CourseError as error:
-            self.failed = f"{error.message} {error.help or ''}".strip()
-
-    def _told(self, share: float) -> bool:
-        self.share = share
-        return not self.stopped
 
 
 def _json(message: dict[str, Any]) -> str:

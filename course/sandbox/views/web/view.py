@@ -27,7 +27,7 @@ from course.browser import invite
 from course.errors import UsageError
 from course.extras import require
 from course.sandbox.scene.loading import Chosen
-from course.sandbox.views.stage import Desk, Stage
+from course.sandbox.views.stage import Desk
 from course.sandbox.views.web.session import SCRIPTS, Page, Session
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ def play(
     from course.sandbox.views.web.session import Session
 
     desk = desk or Desk()
-    stage = None if chosen is None else Stage(chosen, guess=guess, keep=desk.keep_of(chosen))
+    stage = None if chosen is None else desk.stage(chosen, guess=guess)
     session = Session(stage, desk)
     failures: list[BaseException] = []
 

@@ -96,7 +96,7 @@ def test_that_a_check_gives_no_points_here_is_marked_and_said_once():
     ]
 
 
-def test_a_failure_says_what_was_measured_expected_why_and_where():
+def test_a_failure_says_what_was_measured_expected_and_where():
     words = _shown(
         _check(
             "a",
@@ -118,7 +118,7 @@ def test_a_failure_says_what_was_measured_expected_why_and_where():
         "    Energy grows.",
         "    Look at the order.",
         "    measured: 1 J",
-        "    expected: 1.01 J, within 2 % (closed form)",
+        "    expected: 1.01 J, within 2 %",
         "    input: h = 0.05",
         "    differs: q[0], first at step 1, t = 0.05 s",
     ]

@@ -156,14 +156,15 @@ export class Body {
     if (!row) return;
     const body = view.bodies.find((b) => b.name === view.chosen);
     const mass = body.mass ? `, ${plain(Number(body.mass.toPrecision(3)))} kg` : "";
-    this.line.textContent = `${spoken(view.chosen)}${mass}: ${short(Math.hypot(row[3], row[4]))} m/s`;
+    const small = (value) => (Math.abs(value) < 1e-4 ? 0 : value); // what is left of a body at rest
+    this.line.textContent = `${spoken(view.chosen)}${mass}: ${short(small(Math.hypot(row[3], row[4])))} m/s`;
     const now = { mass: body.mass, restitution: body.restitution, friction: body.friction, vx: row[3], vy: row[4] };
     const { restitution, friction } = view.state.settings;
     if (restitution !== undefined) now.restitution = restitution;
     if (friction !== undefined) now.friction = friction;
     for (const [name, input] of this.inputs) {
       if (document.activeElement === input || now[name] === undefined) continue;
-      const text = String(Number((Math.abs(now[name]) < 1e-4 ? 0 : now[name]).toPrecision(4)));
+      const text = String(Number(small(now[name]).toPrecision(4)));
       if (input.value !== text) input.value = text;
     }
     this.following.setAttribute("aria-pressed", String(view.followed === view.chosen));

@@ -1,0 +1,299 @@
+"""What a wrong answer has in common with the right one, as a sentence that is true of the printed numbers.
+
+It is said where no mistake is named. Nothing here guesses: each sentence is computed from the numbers that
+the student reads below it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+#: Two numbers are the same if they differ by less than this share of the larger one.
+_SAME = 1e-9
+_TIMES = {
+    2.0: "twice the right one",
+    0.5: "half the right one",
+    1 / 3: "a third of the right one",
+    0.25: "a quarter of the right one",
+    math.sqrt(2.0): "the right one times the square root of 2",
+    math.sqrt(0.5): "the right one over the square root of 2",
+    math.pi: "the right one times pi",
+    2 * math.pi: "the right one times 2 pi",
+    0.5 / math.pi: "the right one over 2 pi",
+    180 / math.pi: "the right one times 180/pi, as if it were in degrees",
+    math.pi / 180: "the right one times pi/180, as if it were turned from degrees to radians",
+    9.81: "the right one times 9.81",
+    1 / 9.81: "the right one over 9.81",
+}
+_TIMES |= {float(n): f"{n} times the right one" for n in (3, 4, 5, 6, 8, 9, 10, 12, 16, 100, 1000)}
+_TIMES |= {1 / n: f"the right one over {n}" for n in (5, 6, 8, 9, 10, 12, 16, 100, 1000)}
+#: Inputs that are whole numbers below it are not compared with a simple factor: too many things are 2.
+_BY_CHANCE = 20
+_PLACES = ("first", "second", "third", "fourth", "fifth", "sixth")
+
+
+def likeness(actual: Any, expected: Any, given: Mapping[str, Any] | None = None) -> str:
+    """One sentence on what two values have in common; "" if nothing worth saying.
+
+    Args:
+        actual, expected: plain values, as a finding has them.
+        given: the inputs by name, as it has them.
+    """
+    if isinstance(actual, dict) and isinstance(expected, dict) and actual.keys() == expected.keys():
+        actual, expected = list(actual.values()), list(expected.values())
+        if len(actual) == 1:
+            (actual,), (expected,) = actual, expected
+    a, e = _array(actual), _array(expected)
+    with np.errstate(all="ignore"):
+        if a is None or e is None:
+            return _of_kinds(actual, expected, a, given or {})
+        if not a.ndim and not e.ndim:
+            return _of_numbers(actual, expected, given or {})
+        return _of_arrays(a, e, given or {}) if a.shape == e.shape else _of_lengths(a, e)
+
+
+def _of_kinds(actual: Any, expected: Any, a: Array | None, given: Mapping[str, Any]) -> str:
+    """The likeness of two texts, and of a number where None is right."""
+    if isinstance(actual, str) and isinstance(expected, str):
+        alike = actual != expected and actual.strip().casefold() == expected.strip().casefold()
+        return "Only capitals or spaces are different." if alike else ""
+    if a is None or expected != "None":
+        return ""
+    if np.isfinite(a).any():
+        taken = "" if a.ndim else _taken(float(a), _inputs(given))
+        return f"Here your result is the same as {taken}." if taken else ""
+    return f"Where there is no answer give None, not {a.flat[0]:g}."
+
+
+def _of_numbers(actual: float, expected: float, given: Mapping[str, Any]) -> str:
+    """The likeness of two numbers."""
+    if actual == expected and type(actual) is not type(expected):
+        kinds = f"of the type {type(actual).__name__}, and {type(expected).__name__} is asked for"
+        return f"The number is right, but it is {kinds}."
+    if isinstance(expected, int) and abs(actual - expected) != 1:  # a count or an index has no factor
+        return ""
+    said = _of_two_numbers(float(actual), float(expected), given)
+    return f"Here your result is {said}." if said else ""
+
+
+def _array(value: Any) -> Array | None:
+    """Numbers as an array; None for anything else."""
+    if not all(isinstance(one, int | float) and not isinstance(one, bool) for one in _leaves(value)):
+        return None
+    try:
+        array = np.array(value, dtype=float)
+    except (ValueError, OverflowError):  # rows of different lengths
+        return None
+    return array if array.size else None
+
+
+def _leaves(value: Any) -> Iterator[Any]:
+    if isinstance(value, list | tuple):
+        for item in value:
+            yield from _leaves(item)
+    else:
+        yield value
+
+
+def _same(a: Any, e: Any) -> bool:
+    """Whether numbers, or arrays of one shape, are equal but for rounding."""
+    a, e = np.asarray(a), np.asarray(e)
+    return a.shape == e.shape and bool(np.all(np.abs(a - e) <= _SAME * np.max(np.abs(e), initial=0.0)))
+
+
+# -- one number -----------------------------------------------------------------------------------------
+
+
+def _of_two_numbers(a: float, e: float, given: Mapping[str, Any]) -> str:
+    """What a wrong number is, to follow "your result is"."""
+    if not (math.isfinite(a) and math.isfinite(e)) or _same(a, e):
+        return ""
+    inputs = _inputs(given)
+    taken = _taken(a, inputs)
+    if not (a and e):
+        return f"the same as {taken}" if taken else ""
+    if _same(a, -e):
+        return "right but for its sign"
+    return (
+        _of_ratio(a, e, inputs)
+        or (f"the same as {taken}" if taken else "")
+        or _of_difference(a, e, inputs)
+        or _of_powers(a, e)
+        or _of_digits(a, e)
+    )
+
+
+def _taken(a: float, inputs: Sequence[tuple[str, float]]) -> str:
+    """The input that a number is; "" if it is none."""
+    return next((name for name, value in inputs if _same(a, value) and value != 0.0), "")
+
+
+def _inputs(given: Mapping[str, Any]) -> list[tuple[str, float]]:
+    """The numbers of the input with their names; of a list, the first and the last."""
+    found: list[tuple[str, float]] = []
+    for name, value in given.items():
+        if isinstance(value, list | tuple) and value:
+            found += [(f"the first of `{name}`", value[0]), (f"the last of `{name}`", value[-1])]
+        else:
+            found.append((f"`{name}`", value))
+    return [(n, float(v)) for n, v in found if isinstance(v, int | float) and not isinstance(v, bool)]
+
+
+def _of_ratio(a: float, e: float, inputs: Sequence[tuple[str, float]]) -> str:
+    """The factor between two numbers: a known one, or one of the inputs."""
+    ratio = a / e
+    known = next((words for factor, words in _TIMES.items() if _same(abs(ratio), factor)), "")
+    if known:
+        also = [
+            n
+            for n, v in inputs
+            if n[0] == "`" and not _is_small(v) and (_same(v, abs(ratio)) or _same(v * abs(ratio), 1.0))
+        ]
+        turned = ", with the other sign" if ratio < 0 else ""
+        return known + turned + (f" ({also[0]} is {_value(also[0], inputs)})" if len(also) == 1 else "")
+    for power, words in ((1, "times {}"), (-1, "over {}"), (2, "times {} squared"), (-2, "over {} squared")):
+        # A factor in [] would be one value of several, which no formula multiplies with.
+        names = [n for n, v in inputs if n[0] == "`" and v > 0 and v != 1.0 and _same(abs(ratio), v**power)]
+        if len(names) == 1:
+            return f"the right one {words.format(names[0])}" + (", with the other sign" if ratio < 0 else "")
+    return ""
+
+
+def _is_small(value: float) -> bool:
+    """Whether it is a whole number that others are by chance."""
+    return value.is_integer() and abs(value) < _BY_CHANCE
+
+
+def _value(name: str, inputs: Sequence[tuple[str, float]]) -> str:
+    return f"{dict(inputs)[name]:g}"
+
+
+def _of_difference(a: float, e: float, inputs: Sequence[tuple[str, float]]) -> str:
+    """By how much a number is off, where that is one, or one of the inputs."""
+    by = next(
+        (n for n, v in inputs if n[0] == "`" and v > 0 and abs(abs(a - e) - v) <= _SAME * max(v, abs(e))), ""
+    )
+    if not by and abs(a - e) == 1.0:
+        by = "1"
+    return f"too {'large' if a > e else 'small'} by {by}" if by else ""
+
+
+def _of_powers(a: float, e: float) -> str:
+    if _same(a * e, 1.0):
+        return "one over the right one"
+    if e > 0.0 and _same(a, e * e):
+        return "the square of the right one"
+    return "the square root of the right one" if a > 0.0 and _same(a * a, e) else ""
+
+
+def _of_digits(a: float, e: float) -> str:
+    if a == math.trunc(e):
+        return "the right one without its decimals"
+    places = next((n for n in range(7) if a == round(e, n)), None)
+    return f"the right one rounded to {_counted(places, 'decimal')}" if places is not None else ""
+
+
+def _counted(n: int, noun: str) -> str:
+    return f"{n} {noun}" + "s" * (n != 1)
+
+
+# -- several --------------------------------------------------------------------------------------------
+
+
+def _of_arrays(a: Array, e: Array, given: Mapping[str, Any]) -> str:
+    """The likeness of two arrays of one shape."""
+    if not np.isfinite(a).all():
+        where = tuple(int(i) for i in np.argwhere(~np.isfinite(a))[0])
+        return f"The first {a[where]:g} is at {list(where)}."
+    if not np.isfinite(e).all() or _same(a, e) or a.size < 2:
+        return ""
+    return _of_order(a, e) or _of_parts(a, e, given) or _of_all(a, e, given)
+
+
+def _of_order(a: Array, e: Array) -> str:
+    """The right values in other places."""
+    if a.ndim == 2 and _same(a, e.T):
+        return "Your matrix is the right one with rows and columns exchanged."
+    if _same(a, e[::-1]) and len(e) > 1:
+        return (
+            "The two are right, but exchanged." if len(e) == 2 else "The values are right, in reverse order."
+        )
+    if e.ndim == 1 and _same(np.sort(a), np.sort(e)):
+        return "The values are right, in another order."
+    if len(e) > 3 and np.ptp(e) > 0:
+        if _same(a[1:], e[:-1]):
+            return "From the second on, your values are the right ones, one place late."
+        if _same(a[:-1], e[1:]):
+            return "Your values are the right ones, one place early."
+    return ""
+
+
+def _of_parts(a: Array, e: Array, given: Mapping[str, Any]) -> str:
+    """Which of the values are wrong, where some are right."""
+    if _same(np.abs(a), np.abs(e)):
+        off = np.argwhere(np.sign(a) != np.sign(e))
+        every = len(off) == np.count_nonzero(e)
+        return "Only the signs are wrong." if every else f"Only the sign of {_named(off, a)} is wrong."
+    off = np.argwhere(np.abs(a - e) > _SAME * np.max(np.abs(e)))
+    if not 0 < len(off) < a.size or a.ndim > 1 or len(off) > 2:
+        return ""
+    said = f"Only {_named(off, a)} is wrong" if len(off) == 1 else f"Only {_named(off, a)} are wrong"
+    more = _of_two_numbers(float(a[tuple(off[0])]), float(e[tuple(off[0])]), given) if len(off) == 1 else ""
+    return f"{said}: it is {more}." if more else f"{said}."
+
+
+def _named(off: NDArray[np.intp], a: Array) -> str:
+    if a.ndim > 1:
+        return " and ".join(str([int(i) for i in one]) for one in off[:2])
+    return " and ".join(f"the {_PLACES[i]}" if (i := int(one[0])) < len(_PLACES) else f"[{i}]" for one in off)
+
+
+def _of_all(a: Array, e: Array, given: Mapping[str, Any]) -> str:
+    """What is the same in every place: a factor, a distance, a value."""
+    unchanged = next((n for n, v in given.items() if (x := _array(v)) is not None and _same(a, x)), "")
+    if unchanged:
+        return f"Your result is `{unchanged}`, unchanged."
+    if not a.any():
+        return ""
+    if _same(a, np.full_like(a, a.flat[0])) and np.ptp(e) > 0:
+        return f"All your values are the same{_times(a)}."
+    some = e != 0.0
+    if np.count_nonzero(some) > 1 and not a[~some].any():
+        ratios = a[some] / e[some]
+        if _same(ratios, np.full_like(ratios, ratios[0])):
+            said = _of_ratio(float(ratios[0]), 1.0, _inputs(given))
+            return f"Every value is {said or f'{ratios[0]:.6g} times the right one'}."
+    if _same(a - e + np.max(np.abs(e)), np.full_like(a, a.flat[0] - e.flat[0]) + np.max(np.abs(e))):
+        by = float(a.flat[0] - e.flat[0])
+        return f"Every value is too {'large' if by > 0 else 'small'} by the same {abs(by):.6g}."
+    return ""
+
+
+def _times(a: Array) -> str:
+    return "" if a.size < 3 else f": {a.flat[0]:.6g}"
+
+
+def _of_lengths(a: Array, e: Array) -> str:
+    """What is missing, or too much, where one value is."""
+    if a.ndim != e.ndim or not a.ndim or a.shape[1:] != e.shape[1:]:
+        return ""
+    if len(a) == len(e) - 1:
+        places = (
+            (e[1:], "The first is missing, the others are right."),
+            (e[:-1], "The last is missing, the others are right."),
+        )
+        return next((words for part, words in places if _same(a, part)), "")
+    if len(a) == len(e) + 1:
+        more = (
+            (a[1:], "There is one too many, at the beginning."),
+            (a[:-1], "There is one too many, at the end."),
+        )
+        return next((words for part, words in more if _same(part, e)), "")
+    return ""

@@ -1,0 +1,47 @@
+"""Every wrong program that a warm-up knows of fails a check and is told one of its own mistakes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from course.authoring.exercises.diagnosis import hypotheses_of, sums_of
+from course.authoring.exercises.grading import LocalSubmission, solutions_folder
+from course.catalog.load import Catalog
+from course.scoring.checks.collected import CollectedChecks, companion
+from course.scoring.explain.story import TABLE, common, matching, read_table
+from course.scoring.judging.session import check_files
+
+#: Two mistakes that leave the answers of one: what the one is called is as true.
+AS_TRUE = {
+    frozenset({"SIGN_TURNED", "OF_THE_COARSE"}): "NEGATIVE_POWER",
+    frozenset({"ALWAYS_HALVED", "FIRST_ORDER"}): "THE_CHANGE",
+    frozenset({"HALF_TWICE"}): "LANDING_SPEED_ALL_THE_WAY",
+    frozenset({"NO_ROOT", "ONCE"}): "HALF_NOT_ROOT",
+    frozenset({"ERRORS_WITHOUT_LOGARITHM", "STEPS_WITHOUT_LOGARITHM"}): "NO_LOGARITHM",
+    frozenset({"FROM_THE_MEASUREMENT", "AWAY_FROM_THE_SENSOR"}): "SHARES_SWAPPED",
+}
+
+
+@pytest.fixture(scope="module")
+def catalog() -> Catalog:
+    return Catalog()
+
+
+@pytest.mark.parametrize("warm_up", Catalog().warm_up_ids())
+def test_every_known_wrong_program_fails_and_is_told_what_is_wrong(catalog: Catalog, warm_up: str) -> None:
+    exercise = catalog.exercise(warm_up)
+    checks = CollectedChecks(check_files(exercise, catalog, "public"), draws=False)
+    model = (solutions_folder(catalog, exercise) / exercise.module).read_text(encoding="utf-8")
+    table = read_table(Path(exercise.folder) / TABLE)
+    questions = companion(warm_up, "questions")
+    for task, codes, function in hypotheses_of(catalog, exercise):
+        submission: Any = LocalSubmission(model, replaced={task: function})
+        outcomes = [checks.run(check, submission) for check in checks.in_order() if check.task == task]
+        assert any(outcomes), f"no check fails for {codes}"
+        numbers = sums_of(questions, task, function)
+        said = common(matching(table, task, numbers[task]))
+        assert {*codes, AS_TRUE.get(frozenset(codes))} & {*said}, f"{codes} are told {said}"
+    checks.close()

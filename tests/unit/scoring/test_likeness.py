@@ -1,0 +1,240 @@
+"""What a wrong answer has in common with the right one, and what a function's own text shows."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from course.isolation.failures import StudentFailure
+from course.scoring import kit
+from course.scoring.elsewhere import cure
+from course.scoring.explain.likeness import likeness
+from course.scoring.explain.reading_code import names_of, return_in_a_loop, why_none
+from course.scoring.failures import CheckFailed, finding_of
+from course.scoring.judging.outcomes import told_more
+from course.scoring.verdict import CheckResult, Places, Status, Visibility
+
+PLACES = Places(module="work.py")
+
+
+@pytest.mark.parametrize(
+    ("actual", "expected", "given", "said"),
+    [
+        (-2.4, 2.4, {}, "Here your result is right but for its sign."),
+        (4.8, 2.4, {}, "Here your result is twice the right one."),
+        (-4.8, 2.4, {}, "Here your result is twice the right one, with the other sign."),
+        (2.4 * 180 / math.pi, 2.4, {}, "times 180/pi, as if it were in degrees"),
+        (124.0, 1.24, {"resolution": 0.01}, "100 times the right one (`resolution` is 0.01)"),
+        (2.4, 0.24 * 0.07, {"x": 3.0, "y": 0.07, "z": 0.1}, ""),
+        (4.8, 2.4, {"m": 2.0}, "Here your result is twice the right one."),
+        (4.8, 2.4, {"values": [0.5, 3.1]}, "Here your result is twice the right one."),
+        (0.48, 2.4, {"e": 0.2, "v": 3.7}, "the right one over 5 (`e` is 0.2)"),
+        (2.4 * 0.07, 2.4, {"h": 0.07}, "the right one times `h`"),
+        (2.4 / 0.07**2, 2.4, {"h": 0.07}, "the right one over `h` squared"),
+        (3.7, 2.4, {"v": 3.7}, "the same as `v`"),
+        (3.0, 5.0, {"errors": [3.0, 4.0]}, "the same as the first of `errors`"),
+        (2.7, 2.0, {"left": 0.7}, "too large by `left`"),
+        (6, 7, {}, "too small by 1"),
+        (1 / 2.4, 2.4, {}, "one over the right one"),
+        (2.4**2, 2.4, {}, "the square of the right one"),
+        (2.4**0.5, 2.4, {}, "the square root of the right one"),
+        (2.0, 2.4, {}, "the right one without its decimals"),
+        (2.35, 2.3456, {}, "the right one rounded to 2 decimals"),
+        (3.0, 3, {}, "of the type float, and int is asked for"),
+        (math.inf, "None", {}, "give None, not inf"),
+        (6.0, "None", {"values": [5.0, 6.0]}, "the same as the last of `values`"),
+        (6.5, "None", {"values": [5.0, 6.0]}, ""),
+        ("Mean ", "mean", {}, "Only capitals or spaces"),
+        (1.7, 2.4, {"m": 3.0}, ""),
+        (0.0, 2.4, {"h": 0.0}, ""),
+        (2.4, 0.0, {}, ""),
+        ("text", 2.4, {}, ""),
+        (True, 1.0, {}, ""),
+        ([], [1.0, 2.0], {}, ""),
+        (None, 2.4, {}, ""),
+    ],
+)
+def test_a_number_is_compared_with_the_right_one_and_with_what_went_in(
+    actual: Any, expected: Any, given: dict[str, Any], said: str
+) -> None:
+    found = likeness(actual, expected, given)
+    assert found == said if not said or said.startswith("Here") else said in found
+
+
+@pytest.mark.parametrize(
+    ("actual", "expected", "said"),
+    [
+        ([4.0, 1.0], [1.0, 4.0], "The two are right, but exchanged."),
+        ([4.0, 2.0, 1.0], [1.0, 2.0, 4.0], "The values are right, in reverse order."),
+        ([2.0, 4.0, 1.0], [1.0, 2.0, 4.0], "The values are right, in another order."),
+        ([[1.0, 3.0], [2.0, 4.0]], [[1.0, 2.0], [3.0, 4.0]], "rows and columns exchanged"),
+        ([0.0, 1.0, 2.0, 4.0, 7.0], [1.0, 2.0, 4.0, 7.0, 9.0], "one place late"),
+        ([2.0, 4.0, 7.0, 9.0, 0.0], [1.0, 2.0, 4.0, 7.0, 9.0], "one place early"),
+        ([2.0, 4.0, 7.0], [1.0, 2.0, 4.0, 7.0], "The first is missing"),
+        ([1.0, 2.0, 4.0], [1.0, 2.0, 4.0, 7.0], "The last is missing"),
+        ([0.0, 1.0, 2.0], [1.0, 2.0], "one too many, at the beginning"),
+        ([1.0, 2.0, 9.0], [1.0, 2.0], "one too many, at the end"),
+        ([-1.0, -2.0], [1.0, 2.0], "Only the signs are wrong."),
+        ([1.0, -2.0], [1.0, 2.0], "Only the sign of the second is wrong."),
+        ([1.0, 4.0], [1.0, 2.0], "Only the second is wrong: it is twice the right one."),
+        ([1.5, 2.0, 4.0], [1.0, 2.0, 4.0], "Only the first is wrong."),
+        ([3 / 7, -4 / 7], [0.6, -0.8], "Every value is 0.714286 times the right one."),
+        ([2.0, 4.0], [1.0, 2.0], "Every value is twice the right one."),
+        ([1.5, 2.5, 4.5], [1.0, 2.0, 4.0], "Every value is too large by the same 0.5."),
+        ([2.5, 2.5, 2.5], [1.0, 2.0, 4.0], "All your values are the same: 2.5."),
+        ([1.0, 2.0, math.nan], [1.0, 2.0, 4.0], "The first nan is at [2]."),
+        ([1.0, 5.0, 3.0], [2.0, 7.0, 4.0], ""),
+        ([0.0, 0.0], [1.0, 2.0], ""),
+        ({"q[9]": 2.0}, {"q[9]": 4.0}, "Here your result is half the right one."),
+        ([[1.0], [2.0, 3.0]], [1.0, 2.0], ""),
+    ],
+)
+def test_several_numbers_are_compared_with_the_right_ones(actual: Any, expected: Any, said: str) -> None:
+    found = likeness(actual, expected)
+    assert said in found
+    assert bool(said) == bool(found)
+
+
+def test_an_input_that_is_given_back_is_recognised() -> None:
+    assert (
+        likeness([3.0, -4.0], [0.6, -0.9], {"wanted": [3.0, -4.0]}) == "Your result is `wanted`, unchanged."
+    )
+
+
+def test_what_is_said_of_random_numbers_is_nothing() -> None:
+    rng = np.random.default_rng(1)
+    drawn = rng.uniform(0.1, 10.0, (2000, 6))
+    said = [likeness(a, e, {"x": x, "list": [y, z]}) for a, e, x, y, z, _ in drawn.tolist()]
+    said += [likeness(row[:3], row[3:], {"x": row[0] + 1.0}) for row in drawn.tolist()]
+    assert not any(said)
+
+
+def judged(**fields: Any) -> CheckResult:
+    usual = {"status": Status.FAIL, "visibility": Visibility.PUBLIC, "message": "It is wrong."}
+    usual |= {"id": "c", "title": "c", "task": "total", "points": 0.0, "max_points": 1.0}
+    return CheckResult(**(usual | fields))
+
+
+LOOPS = b"""
+def total(errors):
+    for error in errors:
+        return error
+"""
+
+
+def test_a_fact_is_said_of_a_public_check_without_a_name_and_of_no_other() -> None:
+    numbers = {"actual": 4.0, "expected": 2.0}
+    told = told_more(judged(**numbers), b"", PLACES)
+    assert told.message == "It is wrong. Here your result is twice the right one."
+    assert told_more(judged(**numbers, diagnosis="NAMED"), b"", PLACES).message == "It is wrong."
+    hidden = judged(**numbers, visibility=Visibility.HIDDEN)
+    assert told_more(hidden, b"", PLACES).message == "It is wrong."
+
+
+def test_a_return_that_ends_a_loop_in_its_first_pass_is_named() -> None:
+    told = told_more(judged(), LOOPS, PLACES)
+    assert told.diagnosis == "RETURN_IN_LOOP"
+    assert "on line 4 of your file" in told.message
+    helper = b"def total(e):\n    return one(e)\n\ndef one(e):\n    for x in e:\n        return x\n"
+    assert return_in_a_loop(helper, "total", PLACES)
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        b"def total(e):\n    for x in e:\n        if x:\n            return x\n    return 0\n",
+        b"def total(e):\n    for x in e:\n        if not x:\n            continue\n        return x\n",
+        b"def total(e):\n    while True:\n        return 0\n",
+        b"def other(e):\n    for x in e:\n        return x\n\ndef total(e):\n    return 0\n",
+        b"def total(e: not Python",
+    ],
+)
+def test_a_return_that_may_belong_where_it_stands_is_not_blamed(code: bytes) -> None:
+    assert return_in_a_loop(code, "total", PLACES) is None
+
+
+def test_a_function_that_gives_none_is_told_the_condition_or_the_print_and_not_a_missing_return() -> None:
+    bounce = b"def after(v, e):\n    if v < 0:\n        return -e * v\n    return None\n"
+    assert "condition on line 2 of your file" in why_none(bounce, "after", PLACES)
+    assert "`print`" in why_none(b"def after(v):\n    print(2 * v)\n", "after", PLACES)
+    assert "is None here" in why_none(b"def after(v):\n    x = None\n    return x\n", "after", PLACES)
+    assert why_none(b"def after(v):\n    2 * v\n", "after", PLACES) == ""
+    nothing = judged(diagnosis="RETURNS_NOTHING", task="after", help="Is a `return` missing?")
+    assert "condition" in told_more(nothing, bounce, PLACES).help
+
+
+def test_the_call_that_raised_is_shown_with_its_arguments() -> None:
+    raised = judged(status=Status.ERROR, diagnosis="RAISED")
+    assert names_of(LOOPS, "total") == ("errors",)
+    assert told_more(raised, LOOPS, PLACES, ([3.0, 4.0],)).input == {"errors": [3.0, 4.0]}
+    assert told_more(judged(visibility=Visibility.HIDDEN), LOOPS, PLACES, ([3.0],)).input is None
+
+
+def test_a_value_of_another_kind_is_told_with_its_input() -> None:
+    words = {"message": "It is wrong.", "source": "exact", "quantity": "x", "input": {"v": 2.0}}
+    calls = (
+        lambda: kit.expect_close(None, 1.0, rel=1e-9, **words),
+        lambda: kit.expect_array("text", [1.0], rel=1e-9, **words),
+        lambda: kit.expect_bounded([1.0], low=0.0, **words),
+        lambda: kit.expect_length(3.0, 2, message="It is wrong.", input={"v": 2.0}),
+    )
+    for call in calls:
+        with pytest.raises(CheckFailed) as failed:
+            call()
+        assert failed.value.finding.input == {"v": 2.0}
+
+
+def test_none_as_the_right_answer_is_shown_and_nothing_said_is_not() -> None:
+    with pytest.raises(CheckFailed) as failed:
+        kit.expect_equal(5.0, None, message="It is wrong.")
+    assert (failed.value.finding.expected, failed.value.finding.actual) == ("None", 5.0)
+    with pytest.raises(CheckFailed) as failed:
+        kit.fail("It is wrong.")
+    assert failed.value.finding.expected is None
+
+
+@pytest.mark.parametrize(
+    ("code", "advice"),
+    [
+        ("math.sqrt(2.0)", "Add `import math`"),
+        ("np.sqrt(2.0)", "Add `import numpy as np`"),
+        ("sqrt(2.0)", "write `math.sqrt`"),
+        ("totl + 1", "Is `totl` spelled"),
+        ("[1.0] - [2.0]", "lists do not subtract"),
+        ("[1.0] / 2.0", "lists do not divide"),
+        ("[1.0] ** 2", "lists do not have powers"),
+        ("[1.0] * 2.0", "does not multiply its values"),
+        ("[1.0].mean()", "Only arrays have `mean`; this is a list"),
+        ("None + 1.0", "is None"),
+        ("2.0 * 3.0(1.0)", "Is a `*` missing"),
+        ("[1.0][1]", "0 to n - 1"),
+        ("[1.0][0.5]", "An index is an int"),
+        ("[[1.0]][0, 0]", "indexed twice"),
+        ("(1.0)[0]", "no [index]"),
+        ("sum(1.0)", "a list is needed"),
+        ("1 / 0", "divided by is zero"),
+        ("__import__('math').sqrt(-1.0)", "negative number"),
+        ("(lambda x: x)()", "Pass every argument"),
+        ("(lambda: 0)(1)", "Keep the stub's arguments"),
+        ("int('x')", ""),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::SyntaxWarning")
+def test_pythons_commonest_errors_have_their_own_cure(code: str, advice: str) -> None:
+    with pytest.raises(Exception) as raised:
+        eval(code, {})
+    failure = StudentFailure(kind="error", type=type(raised.value).__name__, message=str(raised.value))
+    assert advice in cure(failure)
+    assert bool(advice) == bool(cure(failure))
+
+
+def test_of_an_exception_in_several_lines_the_first_is_repeated_where_the_advice_is_known() -> None:
+    lines = "module 'numpy' has no attribute 'float'.\n`np.float` was a deprecated alias for `float`."
+    finding = finding_of(StudentFailure("error", type="AttributeError", message=lines), shown=True)
+    assert finding.message == "Your code raised AttributeError: module 'numpy' has no attribute 'float'."
+    assert finding.help.endswith("has no `np.float`. Use `float`.")
+    whole = finding_of(StudentFailure("error", type="ValueError", message="a\nb"), shown=True)
+    assert whole.message == "Your code raised ValueError: a\\nb."

@@ -504,7 +504,13 @@ class Watcher:
     def _show(self, made: Attempt) -> None:
         show_loading(self.console, self._printed, whole=self.verbose)
         show_verdict(
-            self.console, self.exercise, made.verdict, verbose=self.verbose, brief=True, focus=self._focus
+            self.console,
+            self.exercise,
+            made.verdict,
+            verbose=self.verbose,
+            brief=True,
+            focus=self._focus,
+            keyed=self.pressed is not None,
         )
         # A picture takes the room that the finding needs, so it is one of the details.
         show_curve(self.console, made, focus=self._focus, drawn=self.verbose)

@@ -526,10 +526,11 @@ class Watcher:
         return found
 
     def _say_changes(self, verdict: Verdict) -> None:
-        """First the checks that broke since the last run, and those that turned green."""
+        """First the checks that broke since the last run, and those that were wrong and turned green."""
         if self._made is None:
             return
-        before = {check.id: check.status for check in self._made.verdict.checks}
+        checks = self._made.verdict.checks
+        before = {check.id: check.status for check in checks if not is_unwritten([check])}
         broke = [c for c in verdict.checks if c.status != "pass" and before.get(c.id) == "pass"]
         fixed = [c for c in verdict.checks if c.status == "pass" and before.get(c.id, "pass") != "pass"]
         for label, style, changed in (("broke", "bold red", broke), ("fixed", "bold green", fixed)):

@@ -412,6 +412,18 @@ def test_keys_give_a_hint_the_next_function_details_and_another_run(watching, wr
     assert len(_said(watcher)) == said
 
 
+def test_a_function_that_was_not_written_before_was_not_fixed(watching, write):
+    watcher, session = watching
+    write("wrong", "raise NotImplementedError")
+    watcher.look(session)
+    write("wrong", "RIGHT")
+    watcher.look(session)
+    assert "fixed" not in _said(watcher)
+    write("RIGHT", "RIGHT")
+    watcher.look(session)
+    assert _said(watcher).count("fixed") == 1
+
+
 def test_beside_keys_no_command_is_named_for_what_is_kept_back(watching, write):
     watcher, session = watching
     write("wrong", "also wrong")

@@ -283,6 +283,11 @@ def cure(failure: StudentFailure) -> str:
             return f"Add `{_MODULES[name]}` at the top of the file."
         if hasattr(math, name) and not name.startswith("_"):
             return f"`{name}` is in math: add `import math` at the top, and write `math.{name}`."
+    if re.search(r"unsupported operand type\(s\) for -=?: 'list' and 'int'", said):
+        return (
+            "A number is subtracted from a whole list. If you mean one less than its length, write "
+            "`len(a) - 1`; to subtract it from every value, make an array first: `np.asarray(...)`."
+        )
     if found := re.search(r"unsupported operand type\(s\) for (\S+?)(?::| or ).*'(?:list|tuple)'", said):
         operator = found[1].rstrip("=")
         return f"Python's lists do not {_VERBS.get(operator, 'calculate')}. {_AN_ARRAY}"

@@ -24,6 +24,8 @@ DEFINED = ast.FunctionDef | ast.ClassDef
 #: What is said of the checks that fail: codes, None for no diagnosis.
 TOLD = {
     "digital-twin": {
+        "command_at_ten_per_second": {"GAIN_TOO_LARGE"},
+        "drive_straight_below_a_tenth": {"SLOW_TURN_AS_STRAIGHT"},
         "lidar_one_side": {"WALLS_ONE_SIDED"},
     },
     "integrators": {

@@ -504,7 +504,13 @@ class Watcher:
     def _show(self, made: Attempt) -> None:
         show_loading(self.console, self._printed, whole=self.verbose)
         show_verdict(
-            self.console, self.exercise, made.verdict, verbose=self.verbose, brief=True, focus=self._focus
+            self.console,
+            self.exercise,
+            made.verdict,
+            verbose=self.verbose,
+            brief=True,
+            focus=self._focus,
+            keyed=self.pressed is not None,
         )
         # A picture takes the room that the finding needs, so it is one of the details.
         show_curve(self.console, made, focus=self._focus, drawn=self.verbose)
@@ -520,10 +526,11 @@ class Watcher:
         return found
 
     def _say_changes(self, verdict: Verdict) -> None:
-        """First the checks that broke since the last run, and those that turned green."""
+        """First the checks that broke since the last run, and those that were wrong and turned green."""
         if self._made is None:
             return
-        before = {check.id: check.status for check in self._made.verdict.checks}
+        checks = self._made.verdict.checks
+        before = {check.id: check.status for check in checks if not is_unwritten([check])}
         broke = [c for c in verdict.checks if c.status != "pass" and before.get(c.id) == "pass"]
         fixed = [c for c in verdict.checks if c.status == "pass" and before.get(c.id, "pass") != "pass"]
         for label, style, changed in (("broke", "bold red", broke), ("fixed", "bold green", fixed)):

@@ -100,8 +100,8 @@ class CheckTable:
         most = sum(check.max_points for check in self.checks)
         of = f" of {self._task}" if self._task else ""
         score = f": {format_points(points)} of {in_points(most)}" if self._scored else ""
-        if self.passed and len(self.checks) == 1:
-            return f"The one public check{of} passes{score}."
+        if len(self.checks) == 1:
+            return f"The one public check{of} {'passes' if self.passed else 'fails'}{score}."
         if self.passed:
             return f"All {len(self.checks)} public checks{of} pass{score}."
         pass_ = "passes" if passing == 1 else "pass"

@@ -208,6 +208,10 @@ _VERBS = {"+": "add to numbers", "-": "subtract", "*": "multiply", "/": "divide"
 _AN_ARRAY = (
     "Go through the values one by one, with `zip` for two lists, or make arrays first: `np.asarray(...)`."
 )
+_ONE_LESS = (
+    "A number is subtracted from a whole list. If you mean one less than its length, write `len(a) - 1`; "
+    "to subtract it from every value, make an array first: `np.asarray(...)`."
+)
 #: What Python says -> what to do about it. "{0}" is what the first group found.
 _CURES: tuple[tuple[str, str], ...] = (
     (
@@ -285,7 +289,8 @@ def cure(failure: StudentFailure) -> str:
             return f"`{name}` is in math: add `import math` at the top, and write `math.{name}`."
     if found := re.search(r"unsupported operand type\(s\) for (\S+?)(?::| or ).*'(?:list|tuple)'", said):
         operator = found[1].rstrip("=")
-        return f"Python's lists do not {_VERBS.get(operator, 'calculate')}. {_AN_ARRAY}"
+        several = f"Python's lists do not {_VERBS.get(operator, 'calculate')}. {_AN_ARRAY}"
+        return _ONE_LESS if operator == "-" and said.endswith("'list' and 'int'") else several
     found = re.search(r"AttributeError: '(list|float|int)' object has no attribute '(\w+)'", said)
     if found and hasattr(np.ndarray, found[2]):
         what = "list" if found[1] == "list" else "number"

@@ -113,8 +113,10 @@ def as_array(value: Any, shape: Sequence[int | None], name: str = "the result") 
 def _refuse_shape(array: Array, name: str, wanted: str) -> NoReturn:
     raise CheckFailed(
         Finding(
-            message=f"{_capital(name)} has the wrong shape.",
-            help="Print its `numpy.shape` and compare it with the shape in the README's contract.",
+            message=f"{_capital(name)} {'has the wrong shape' if array.ndim else 'is a single number'}.",
+            help="Print its `numpy.shape` and compare it with what was expected."
+            if array.ndim
+            else "Make it a list or an array: [x, v], or [x] where there is only one number.",
             diagnosis="WRONG_SHAPE",
             expected=f"shape {wanted}",
             actual=f"shape {array.shape}",
@@ -317,7 +319,7 @@ def _advice(value: Any, wanted: str) -> str:
         return "Return one plain number: no brackets around it, and no array, not even of one element."
     if wanted.startswith("an array of numbers") and isinstance(value, list | tuple):
         return "Every element must be a number, and all rows equally long: is there a None, or text, in it?"
-    return "The README's contract says what to return, and what each part is."
+    return "The README says what to return, and what each part is."
 
 
 def _kind(value: Any) -> str:

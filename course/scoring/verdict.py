@@ -211,7 +211,7 @@ def _unspoken(result: CheckResult) -> CheckResult:
             status=Status.FAIL,
             diagnosis="OTHER_FORM",
             message=f"What `{result.task}` returns has not the form that was asked for.",
-            help="Compare it with the README's contract, for everything that it may be called with.",
+            help="Compare it with the README, for everything that it may be called with.",
         )
     if result.status not in _NO_VALUE:
         return result
@@ -281,6 +281,8 @@ LARGEST_SEED = 2**63 - 1
 _DIGITS = 6
 #: A float64 has no more digits than this.
 _ALL_DIGITS = 17
+#: How many digits are tried, in this order, to tell numbers apart.
+_MORE_DIGITS = (_DIGITS, 9, 12, _ALL_DIGITS)
 
 
 def format_points(points: float) -> str:
@@ -309,7 +311,7 @@ def format_value(value: Any, digits: int = _DIGITS) -> str:
 
 def format_pair(actual: Any, expected: Any) -> tuple[str, str]:
     """Two values with as many digits as it takes to tell them apart; 3.0 and 3 as Python writes them."""
-    for digits in (_DIGITS, 9, 12, _ALL_DIGITS):
+    for digits in _MORE_DIGITS:
         pair = format_value(actual, digits), format_value(expected, digits)
         if pair[0] != pair[1]:
             return pair
@@ -318,7 +320,15 @@ def format_pair(actual: Any, expected: Any) -> tuple[str, str]:
 
 def format_input(values: dict[str, Any]) -> str:
     """The input of a check: "omega = 2, h = 0.05"."""
-    return ", ".join(f"{name} = {format_value(value)}" for name, value in values.items())
+    return ", ".join(f"{name} = {format_value(value, _telling(value))}" for name, value in values.items())
+
+
+def _telling(value: Any) -> int:
+    """The digits that a list of numbers needs: more where different ones would all look alike."""
+    numbers = [item for item in value if not isinstance(item, str)] if isinstance(value, list | tuple) else []
+    if all(item == numbers[0] for item in numbers):
+        return _DIGITS
+    return next((n for n in _MORE_DIGITS if len({format_value(item, n) for item in numbers}) > 1), _DIGITS)
 
 
 #: A tolerance up to this share of a value is for rounding, and tells a student nothing.

@@ -79,9 +79,9 @@ class Here:
         return self.catalog.exercise(name) if (name := self._folder_name() or "") in known else None
 
     def _say_renumbered(self, chosen: Exercise, number: str) -> None:
-        """Of a number that meant another exercise before 2.0, the chapter's: name both."""
+        """Of a number that meant another exercise before 2.0, one that was begun here: name both."""
         before = next((one for one in self.catalog.exercises() if str(one.number) == number), chosen)
-        if before is not chosen:
+        if before is not chosen and before in self.started():
             current().warn(
                 f"{number} is {chosen.id}, by the order of the lessons; before 2.0 it was {before.id}, "
                 f"which is {self.catalog.place_of(before)} now."

@@ -83,6 +83,7 @@ def show_verdict(
     whole: bool = True,
     brief: bool = False,
     focus: str = "",
+    keyed: bool = False,
 ) -> None:
     """Show every task of a verdict, and the summary.
 
@@ -92,6 +93,7 @@ def show_verdict(
         brief: show one failure in detail, the first one of the first function that fails, at the very end,
             and one line for everything else; students work on one at a time.
         focus: with ``brief``, the function to show instead.
+        keyed: keys show what is kept back, and they are named below.
     """
     if not console.quiet:
         page = _Page(console, verbose=verbose, brief=brief, focus=focus, scored=not exercise.is_warm_up)
@@ -101,7 +103,7 @@ def show_verdict(
         for check in verdict.checks:
             if check.task not in known:
                 page.check(check)
-        page.close()
+        page.close(keyed=keyed)
         if not verbose:
             show_unshown(console, verdict)
         for warning in verdict.warnings:
@@ -279,10 +281,12 @@ class _Page:
         self._unscored = True
         return f"{check.title} *"
 
-    def close(self) -> None:
-        """Say once what the mark means, and how to see what was kept back."""
+    def close(self, *, keyed: bool) -> None:
+        """Say once what the mark means, and how to see what was kept back, unless keys do."""
         if self._unscored:
             self._console.line(("* No points here; the grading run judges it.", "dim"))
+        if keyed:
+            return
         if self._left_out:
             command = "`course check`" if self._scored else "--verbose"
             self._console.note((f"One function at a time in detail; {command} shows all.", "dim"))

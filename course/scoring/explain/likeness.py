@@ -252,7 +252,9 @@ def _of_parts(a: Array, e: Array, given: Mapping[str, Any]) -> str:
 def _named(off: NDArray[np.intp], a: Array) -> str:
     if a.ndim > 1:
         return " and ".join(str([int(i) for i in one]) for one in off[:2])
-    return " and ".join(f"the {_PLACES[i]}" if (i := int(one[0])) < len(_PLACES) else f"[{i}]" for one in off)
+    return " and ".join(
+        f"the {_PLACES[i]} value" if (i := int(one[0])) < len(_PLACES) else f"[{i}]" for one in off
+    )
 
 
 def _of_all(a: Array, e: Array, given: Mapping[str, Any]) -> str:

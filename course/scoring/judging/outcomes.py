@@ -107,7 +107,7 @@ def unjudged(returned: tuple[str, Any] | None, *, proven: bool) -> Finding:
         "" if proven else " There is no model solution here to tell whether the value or the check is wrong."
     )
     advice = (
-        "The README's contract says what to return, and what each part is. Call the function yourself and "
+        "The README says what to return, and what each part is. Call the function yourself and "
         "print the result: is every number finite, and of an ordinary size?"
     )
     if not proven:

@@ -131,7 +131,7 @@ def test_euler_uses_old_rates(submission):
         quantity="position and velocity",
         input={"x": x, "v": v, "a": a, "h": h},
         message="This is not a step of explicit Euler.",
-        help="Compare it with the function below it, line by line.",
+        help="Both values move with their old rates, and both new ones are returned.",
     )
 
 

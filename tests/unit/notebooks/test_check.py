@@ -97,6 +97,8 @@ def test_a_function_checked_before_the_others_were_run_is_an_attempt_at_it_alone
     assert attempt["only"] == "double"
     assert (attempt["score"], attempt["max_score"], attempt["passed"]) == (2.0, 2.0, True)
     assert [check["task"] for check in attempt["checks"]] == ["double"]
+    wrong = magic.check(Shell([DOUBLE.replace("x + x", "x + x + x")]), "doubling", "double")
+    assert wrong.summary == "The one public check of double fails: 0 of 2 points."
 
 
 def test_code_that_cannot_be_run_is_recorded_as_that(here: Workspace) -> None:

@@ -199,7 +199,10 @@ def test_keys_place_and_aim_copy_and_take_away():
         before = app.at("left-puck")
         await pilot.press("enter", "up", "up", "enter")
         assert app.at("left-puck") == (before[0], before[1] - 2)
-        await pilot.press("v", "shift+up", "v")
+        await pilot.press("v")
+        app.frames(1)
+        assert "point where it should fly" in app.keys.text
+        await pilot.press("shift+up", "v")
         app.frames(1)
         assert "will fly" in app.keys.text
         await pilot.press("shift+down", "y")

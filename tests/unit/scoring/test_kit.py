@@ -332,6 +332,13 @@ def test_a_wrong_shape_is_named_in_the_fields_and_not_in_the_words():
     assert "30" not in finding.message + finding.help
 
 
+def test_a_number_in_place_of_an_array_is_said_to_be_one():
+    finding = finding_of(kit.as_vector, 10.0, 2, "position and velocity")
+    assert finding.message == "`position and velocity` is a single number."
+    assert "[x, v]" in finding.help
+    assert finding.diagnosis == "WRONG_SHAPE"
+
+
 def test_missing_keys_are_named_and_extra_ones_reported():
     finding = finding_of(kit.as_record, {"bias": 1.0, "extra": 2.0}, ("bias", "variance"))
     assert "variance" in finding.message

@@ -56,6 +56,14 @@ def test_an_input_reads_like_a_sentence():
     assert format_input({"omega": 2.0, "h": 0.05}) == "omega = 2, h = 0.05"
 
 
+def test_an_input_of_different_numbers_does_not_read_as_if_they_were_equal():
+    assert format_input({"e": [1e7 + 0.3, 1e7 + 1.1, "… 3 more"]}) == "e = [10000000.3, 10000001.1, … 3 more]"
+    assert format_input({"e": [1e7, 1e7]}) == "e = [1e+07, 1e+07]"
+    assert format_input({"e": [math.nan, math.nan]}) == "e = [nan, nan]", (
+        "different, and no digits tell them apart"
+    )
+
+
 @pytest.mark.parametrize(
     ("tolerance", "units", "text"),
     [

@@ -187,7 +187,7 @@ class ScreenPrinter(FancyPrinter):
         if not self._script.gives_away(index):
             return self._block(block)
         if index == question.end - 1:
-            words = "Predict what comes out (Enter) or skip it (s): then it is shown here."
+            words = "After your prediction the answer is shown here."
             return Text(words, style="dim italic")
         return None
 

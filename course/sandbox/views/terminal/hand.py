@@ -127,7 +127,7 @@ class Pointer:
             return "Nothing to aim there."
         self._aimed, ax, ay = near
         self.aim = ax, ay, ax, ay
-        return f"{self._aimed}: point to where it shall fly, and let go."
+        return f"{self._aimed}: point where it should fly, and let go."
 
     def drop(self) -> None:
         """Forget everything that is held or aimed."""

@@ -412,6 +412,33 @@ def test_keys_give_a_hint_the_next_function_details_and_another_run(watching, wr
     assert len(_said(watcher)) == said
 
 
+def test_a_function_that_was_not_written_before_was_not_fixed(watching, write):
+    watcher, session = watching
+    write("wrong", "raise NotImplementedError")
+    watcher.look(session)
+    write("wrong", "RIGHT")
+    watcher.look(session)
+    assert "fixed" not in _said(watcher)
+    write("RIGHT", "RIGHT")
+    watcher.look(session)
+    assert _said(watcher).count("fixed") == 1
+
+
+def test_beside_keys_no_command_is_named_for_what_is_kept_back(watching, write):
+    watcher, session = watching
+    write("wrong", "also wrong")
+    watcher.look(session)
+    kept_back = "One function at a time in detail"
+    assert kept_back in _said(watcher)
+    read, write_end = os.pipe()
+    watcher.pressed = loop.Keys(read)
+    watcher.press("n", session)
+    os.close(read)
+    os.close(write_end)
+    assert _said(watcher).count(kept_back) == 1
+    assert "n next failing" in watcher.keys
+
+
 def test_keys_name_a_hint_once_one_is_due_and_another_function_once_another_one_fails(watching, write):
     watcher, session = watching
     watcher.look(session)

@@ -189,6 +189,9 @@ def expect_slow_turns(submission, rng):
         v, half = rng.uniform(0.2, 0.9), rng.choice([-1, 1]) * rate * track / 2
         calls.append((rng.uniform(-2, 2, 3), v - half, v + half, track, rng.uniform(0.5, 2.0)))
     first, second = ((rng.uniform(-2, 2, 3), *rng.uniform(0.2, 0.8, 4)) for _ in range(2))
+    for turn in (0.0195, 0.049, 0.098):  # just below round limits, and so far that a straight line is off
+        half = rng.choice([-1, 1]) * turn / 2.0 * track / 2
+        calls.append((rng.uniform(-2, 2, 3), 0.9 - half, 0.9 + half, track, 2.0))
     calls += bundles.one_by_one(first, second)
     for call, value in zip(calls, submission.call_each("diff_drive_step", calls), strict=True):
         expect_pose(submission, value, call[0], call[1:])

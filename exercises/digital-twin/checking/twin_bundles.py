@@ -329,7 +329,7 @@ def expect_command_closes_loop(submission, rng):
         for (before, after), target in zip(frictions, targets, strict=True)
     ]
     x, v, b = np.zeros(2), np.array([cart.v for cart in carts]), np.array([before for before, _ in frictions])
-    drives, places = np.zeros(2), np.zeros((n + 1, 2))
+    drives, places, gain = np.zeros(2), np.zeros((n + 1, 2)), 0.0
     ask = lambda: twins.of_command(submission)  # noqa: E731
     given = {"targets": targets, "frictions before and after 5 s": frictions}
     for k in range(n):
@@ -351,6 +351,8 @@ def expect_command_closes_loop(submission, rng):
             "enough for a command every 0.1 s.",
             diagnose=ask,
         )
+        far = np.abs(targets - v) > 0.1
+        gain = max([gain, *((drives - b * targets)[far] / (targets - v)[far]).tolist()])
         a = drives - b * v
         x, v = x + step * v + step**2 / 2 * a, v + step * a
         for cart, drive in zip(carts, drives, strict=True):
@@ -370,5 +372,16 @@ def expect_command_closes_loop(submission, rng):
         message="Over the last three seconds, a cart that is driven by command is not at its target speed.",
         help="Compute the drive from the friction that the twin has learned and from the target speed; a "
         "correction must push towards that speed, forwards and backwards.",
+        diagnose=ask,
+    )
+    kit.expect_bounded(
+        gain,
+        high=twins.LARGEST_GAIN,
+        source="the README's",
+        quantity="largest correction over the difference of the speeds",
+        units="1/s",
+        input=given,
+        message="The gain of `command` is not one of those that the README allows.",
+        help="Multiply the difference of the speeds by 0.2 to 3 per second.",
         diagnose=ask,
     )

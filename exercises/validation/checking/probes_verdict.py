@@ -141,15 +141,25 @@ def _only(looks, fits):
 
 
 def of_pairs(key, value, sim, real):
-    """Whether a wrong rmse or bias is that of runs paired by their place in the two lists."""
-    ids = {run["id"] for run in real["runs"]} - set(sim["calibrated_on"])
-    pairs = [(s, r) for s, r in zip(sim["runs"], real["runs"], strict=False) if s["id"] in ids]
-    alike = all(s["id"] == r["id"] for s, r in pairs)
-    if key == "coverage" or alike or any(len(s["y"]) != len(r["y"]) for s, r in pairs):
+    """Whether a wrong rmse or bias is that of runs paired by their place in the two lists.
+
+    By the place in the lists as they are, or in what is left of each without the runs that do not count.
+    """
+    if key == "coverage":
         return None
-    e = np.concatenate([np.asarray(s["y"]) - np.asarray(r["y"]) for s, r in pairs])
-    wrong = np.mean(e) if key == "bias" else np.sqrt(np.mean(e**2))
-    return named("MATCHED_BY_POSITION") if math.isclose(value, wrong, rel_tol=1e-6) else None
+    ids = {run["id"] for run in real["runs"]} - set(sim["calibrated_on"])
+    count = ids & {run["id"] for run in sim["runs"]}
+    whole = [(s, r) for s, r in zip(sim["runs"], real["runs"], strict=False) if s["id"] in ids]
+    left = zip(*([run for run in side["runs"] if run["id"] in count] for side in (sim, real)), strict=True)
+    for pairs in (whole, list(left)):
+        alike = all(s["id"] == r["id"] for s, r in pairs)
+        if alike or any(len(s["y"]) != len(r["y"]) for s, r in pairs):
+            continue
+        e = np.concatenate([np.asarray(s["y"]) - np.asarray(r["y"]) for s, r in pairs])
+        wrong = np.mean(e) if key == "bias" else np.sqrt(np.mean(e**2))
+        if math.isclose(value, wrong, rel_tol=1e-6):
+            return named("MATCHED_BY_POSITION")
+    return None
 
 
 #: Student's t, as the stub has it.

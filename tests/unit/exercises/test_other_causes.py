@@ -24,6 +24,8 @@ DEFINED = ast.FunctionDef | ast.ClassDef
 #: What is said of the checks that fail: codes, None for no diagnosis.
 TOLD = {
     "digital-twin": {
+        "command_at_ten_per_second": {"GAIN_TOO_LARGE"},
+        "drive_straight_below_a_tenth": {"SLOW_TURN_AS_STRAIGHT"},
         "lidar_one_side": {"WALLS_ONE_SIDED"},
     },
     "integrators": {
@@ -67,6 +69,7 @@ TOLD = {
         "bootstrap_shuffles_each_resample": {"IID_BOOTSTRAP"},
         "energy_of_a_joule_at_least": {None},
         "folds_by_id": {"TRAINS_ON_TOO_LITTLE"},
+        "folds_cut_by_rounding": {"MEAN_OF_RUNS"},
         "force_above_a_tenth": {None},
         "lag_in_milliseconds": {"LAG_IN_SAMPLES", "LAG_NOT_BEST"},
         "nees_of_the_first_row": {"SUMMED"},
@@ -75,6 +78,7 @@ TOLD = {
         "verdict_bias_about_zero": {None},
         "verdict_ends_not_covered": {None},
         "verdict_lists_what_both_have": {"OTHER_RUNS_LISTED", "WRONG_SIGN"},
+        "verdict_pairs_what_is_left": {"MATCHED_BY_POSITION"},
         "verdict_part_of_an_id": {None},
         "verdict_spread_about_the_number": {None},
         "wrap_ten_turns": {None},

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -336,6 +337,28 @@ def test_a_wrong_promise_is_told_what_is_wrong_with_it(metric, threshold, code):
 def test_the_least_settling_on_another_box_is_what_a_search_finds(box, best):
     carts = cart.drawn(cart.PUBLIC, box, 300, np.random.default_rng(11))
     assert reference.search(carts, 12, first=100)[2] == pytest.approx(best, rel=0.01)
+
+
+@pytest.mark.parametrize("i", range(3))
+def test_the_grid_that_a_student_is_told_of_is_fine_enough_by_itself(i):
+    """Twelve values of kp by eight of kd/kp reached 0.87 where 0.94 passes, however the carts were drawn."""
+    asked, box, seed = reference.realities(12)[i], reference.OTHER_BOXES[i], 5
+    (kps,), (ratios,) = (
+        {eval(found, {"np": np}).tobytes() for text in _told() for found in re.findall(pattern, text)}
+        for pattern in (r"np\.geomspace\(2, 40, \d+\)", r"np\.linspace\(0\.2, 0\.8, \d+\)")
+    )
+    kp, ratio = (x.ravel() for x in np.meshgrid(np.frombuffer(kps), np.frombuffer(ratios)))
+    carts = cart.drawn(asked, box, 300, np.random.default_rng(seed))
+    best = cart.rollout(kp, kp * ratio, carts, np.random.default_rng(seed + 1)).mean(axis=0).argmin()
+    assert reference.other_success(12, i, kp[best], (kp * ratio)[best]) >= judge.PASS
+
+
+def _told():
+    """What is said of the grid: in the README, as a hint and as advice."""
+    folder = ROOT / "exercises/sim-to-real"
+    texts = [(folder / name).read_text("utf-8") for name in ("README.md", "hints.toml", "diagnoses.toml")]
+    assert all("np.geomspace(2, 40, " in text for text in texts)
+    return texts
 
 
 def test_the_given_fit_finds_everything_in_reversals_and_no_lag_in_a_slow_swing():

@@ -59,7 +59,7 @@ TOLD = {
         "stable_columns_exchanged": {"TOLERANCE_TOO_TIGHT", None},
         "symplectic_if_undamped": {None},
         "tunnelling_by_majority": {"TUNNEL_UNSAFE_REPORTED"},
-        "tunnelling_starts_over_dt": {"TUNNEL_NEVER_SEEN"},
+        "tunnelling_starts_over_dt": {"TUNNEL_STARTS_NARROW"},
     },
     "validation": {
         "coverage_ends_like_values": {"WHOLE_NUMBERS"},

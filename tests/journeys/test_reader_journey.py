@@ -105,7 +105,7 @@ class Student:
         path = self.workspace.path(exercise.place, exercise.module)
         assert path.is_file(), name
         self.terminal.keys("r")
-        while "checked already" in self.terminal.wait("Checking", "checked already"):  # the task before
+        while "checked already" in self.begun(name, 1):  # the task before
             self.terminal.wait_until_gone("checked already")
             self.terminal.keys("r")
         self.checked(name, 1)
@@ -118,10 +118,22 @@ class Student:
         self.terminal.keys("h")
         self.terminal.wait("Hint:")
         path.write_bytes(compose(solution, wrong[1]))
-        self.terminal.wait("Checking")
+        self.begun(name, 3)
         path.write_bytes(solution.read_bytes())
         self.terminal.wait("Done: every check passes.")
         self.done.append(name)
+
+    def begun(self, name: str, times: int) -> str:
+        """The screen, once this check runs, or is over, which may be sooner than one looks, or is refused."""
+        until = time.monotonic() + 40.0
+        while time.monotonic() < until:
+            screen = self.terminal.screen()
+            if "Checking" in screen or "checked already" in screen:
+                return screen
+            if len(self.workspace.store.events("check", name)) >= times:
+                return screen
+            time.sleep(0.1)
+        pytest.fail(f"Check {times} of {name} did not begin on:\n{self.terminal.screen()}")
 
     def checked(self, name: str, times: int) -> None:
         """Wait until the record has a check and the screen its answer."""

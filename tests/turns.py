@@ -26,11 +26,15 @@ def soak_unless(chosen: Iterable[Any], cases: Iterable[Any]) -> list[Any]:
 
 
 def of_other_days(items: Iterable[pytest.Item], day: int) -> list[pytest.Item]:
-    """Of each file's tests that come in turn, ``turns(N)``, those that are not one of the N of this day."""
+    """Of each file's tests that come in turn, ``turns(N)``, those that are not one of the N of this day.
+
+    Long ones (``soak``) have slices of their own, and are left to them.
+    """
     later = []
     places = Counter[tuple[Path, int]]()
     for item in items:
-        if marker := item.get_closest_marker("turns"):
+        marker = None if item.get_closest_marker("soak") else item.get_closest_marker("turns")
+        if marker:
             of = marker.args[0]
             if (places[item.path, of] + day) % of:
                 later.append(item)

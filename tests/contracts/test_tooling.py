@@ -83,13 +83,14 @@ def test_tests_are_collected_without_any_extra() -> None:
 
 def test_what_comes_in_turn_comes_once_in_its_days() -> None:
     class Item:
-        def __init__(self, path: str, of: int | None) -> None:
-            self.path, self.of = Path(path), of
+        def __init__(self, path: str, of: int | None, long: bool = False) -> None:
+            self.path, self.of, self.long = Path(path), of, long
 
         def get_closest_marker(self, name: str) -> pytest.Mark | None:
-            return pytest.Mark(name, (self.of,), {}, _ispytest=True) if self.of else None
+            has = self.long if name == "soak" else self.of
+            return pytest.Mark(name, (self.of,), {}, _ispytest=True) if has else None
 
-    always = [Item("a.py", None) for _ in range(3)]
+    always = [*(Item("a.py", None) for _ in range(3)), *(Item("a.py", 4, long=True) for _ in range(5))]
     turns = [Item(path, 4) for path in "aaaaaaabb"]
     seen: list[Item] = []
     for day in range(363, 367):

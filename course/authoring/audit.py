@@ -22,6 +22,7 @@ from course.authoring.exercises.grading import (
     instructors,
     solutions_folder,
 )
+from course.authoring.exercises.mutants import caught_by
 from course.authoring.exercises.proofs import Proof, Prover, plan
 from course.authoring.exercises.source import CheckSource, audit_style
 from course.authoring.lessons.lint import (
@@ -340,8 +341,8 @@ def _grade(
     """Grade what was planned; how many submissions got a score, and at which protection level."""
     work: list[tuple[Prover, Proof]] = []
     for candidate in candidates:
-        entries = solutions_folder(catalog, candidate.exercise) / "mutants.toml"
-        prover = Prover(candidate.exercise, candidate.checks, entries, Findings(findings.root))
+        caught = caught_by(catalog, candidate.exercise)
+        prover = Prover(candidate.exercise, candidate.checks, caught, Findings(findings.root))
         work += [(prover, proof) for proof in candidate.proofs]
     provers = tuple(dict.fromkeys(prover for prover, _ in work))
     if on_progress:
@@ -354,11 +355,11 @@ def _grade(
         graded += verdict.state == "graded"
         isolation = verdict.isolation or isolation
         if on_progress:
-            on_progress(done, len(work), f"{prover.exercise.id}: {proof.role} {proof.path.name}")
+            on_progress(done, len(work), f"{prover.exercise.id}: {proof.role} {proof.name}")
         if all(prover.hopeless for prover in provers):
             break
     for prover in provers:
         if done == len(work):  # a field that no check has had may be one of a program that was left out
-            prover.judge_hints(catalog.hints_document(prover.exercise))
+            prover.judge_hints()
         findings.problems += prover.problems
     return graded, isolation

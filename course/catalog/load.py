@@ -1,4 +1,4 @@
-"""The catalogue: lessons, exercises, hints and mutants of one course, each read when it is first needed.
+"""The catalogue: lessons and exercises of one course, each read when it is first needed.
 
 Listing ids costs one small file or one folder listing, so that shell completion is instant; everything else
 is read once and kept. Facts that a type cannot express are checked in ``course.catalog.load``.
@@ -24,8 +24,6 @@ from course.catalog.models import (
     Exercise,
     Hints,
     Lesson,
-    Mutant,
-    MutantList,
     Rubric,
     Syllabus,
     Times,
@@ -133,6 +131,7 @@ def check_exercise(document: Document[Exercise]) -> None:
                 fix="Take it out.",
             )
     _check_tasks(document)
+    _check_hints(document)
 
 
 def _check_kind(document: Document[Exercise]) -> None:
@@ -202,48 +201,26 @@ def _check_hidden(document: Document[Exercise]) -> None:
         )
 
 
-def check_hints(document: Document[Hints], exercise: Exercise) -> None:
-    """Hints belong to tasks that exist, once each, and are not empty."""
-    tasks = [task.id for task in exercise.task]
-    seen: set[str] = set()
+def _check_hints(document: Document[Exercise]) -> None:
+    """Hints are not empty, and what is said of one names one that there is."""
     for index, entry in enumerate(document.value.task):
-        if entry.id not in tasks:
-            document.fail(
-                ("task", index, "id"),
-                f"exercise {exercise.id} has no task {entry.id!r}.",
-                fix=f"Its tasks are {', '.join(tasks)}.",
-            )
-        if entry.id in seen:
-            document.fail(
-                ("task", index, "id"),
-                f"task {entry.id} has hints twice.",
-                fix="Put all its hints into one list.",
-            )
-        seen.add(entry.id)
+        numbers = [str(number + 1) for number in range(len(entry.hints))]
+        known = f"Its hints are 1 to {len(numbers)}" if numbers else "It has none yet"
         for number, hint in enumerate(entry.hints):
             _check_words(document, ("task", index, "hints", number), hint)
         for fitting in entry.fits:
-            if fitting not in map(str, range(1, len(entry.hints) + 1)):
-                document.fail(
-                    ("task", index, "fits"),
-                    f"task {entry.id} has no hint number {fitting}.",
-                    fix=f"Its hints are 1 to {len(entry.hints)}.",
-                )
+            if fitting not in numbers:
+                problem = f"task {entry.id} has no hint number {fitting}."
+                document.fail(("task", index, "fits"), problem, fix=f"{known}.")
         for told, sentences in entry.yours.items():
             where = ("task", index, "yours", told)
-            if told not in ("any", *map(str, range(1, len(entry.hints) + 1))):
-                document.fail(
-                    where,
-                    f"task {entry.id} has no hint number {told}.",
-                    fix=f"Its hints are 1 to {len(entry.hints)}, or any.",
-                )
+            if told not in ("any", *numbers):
+                document.fail(where, f"task {entry.id} has no hint number {told}.", fix=f"{known}, or any.")
             for sentence in sentences:
                 if not fields_of(sentence):
-                    document.fail(
-                        where,
-                        f"a sentence about the student's numbers has no field: {sentence!r}.",
-                        fix="Name one, such as {got}, or make the sentence a part of the hint.",
-                    )
+                    problem = f"a sentence about the student's numbers has no field: {sentence!r}."
+                    fix = "Name one, such as {got}, or make the sentence a part of the hint."
+                    document.fail(where, problem, fix=fix)
 
 
 def check_rubric(document: Document[Rubric]) -> None:
@@ -260,31 +237,6 @@ def check_rubric(document: Document[Rubric]) -> None:
             f"the good answer has fewer than {max(1, rubric.least_words)} words.",
             fix="Make it longer, or `least_words` smaller.",
         )
-
-
-def check_mutants(document: Document[MutantList], exercise: Exercise) -> None:
-    """Mutants name plain files, once each, and tasks that exist."""
-    tasks = [task.id for task in exercise.task]
-    files: set[str] = set()
-    for index, mutant in enumerate(document.value.mutant):
-        where = ("mutant", index)
-        if not _MODULE.fullmatch(mutant.file):
-            document.fail(
-                (*where, "file"),
-                f"{mutant.file!r} is not a plain Python file name.",
-                fix="Write: wrong_sign.py",
-            )
-        if mutant.file in files:
-            document.fail((*where, "file"), f"{mutant.file} is listed twice.", fix="Remove one entry.")
-        files.add(mutant.file)
-        if mutant.task not in tasks:
-            document.fail(
-                (*where, "task"),
-                f"exercise {exercise.id} has no task {mutant.task!r}.",
-                fix=f"Its tasks are {', '.join(tasks)}.",
-            )
-        for key in ("misconception", "check", "diagnosis"):
-            _check_words(document, (*where, key), getattr(mutant, key))
 
 
 def _check_words(document: Document[Any], where: tuple[str | int, ...], text: str) -> None:
@@ -323,8 +275,6 @@ class Catalog:
         self.content = content or current_content()
         self._lesson = cache(self.read_lesson)
         self._exercise = cache(self.read_exercise)
-        self._hints: dict[str, Hints] = {}
-        self._mutants: dict[str, tuple[Mutant, ...]] = {}
 
     # -- the course ------------------------------------------------------------------------------
 
@@ -494,15 +444,7 @@ class Catalog:
             raise ContentError(self.times_path, None, problem, help=fix) from None
 
     def hints(self, exercise: Exercise) -> Hints:
-        if exercise.id not in self._hints:
-            self._hints[exercise.id] = self.hints_document(exercise).value
-        return self._hints[exercise.id]
-
-    def hints_document(self, exercise: Exercise) -> Document[Hints]:
-        """``hints.toml`` with its lines."""
-        document = read_document(exercise.hints_path, Hints)
-        check_hints(document, exercise)
-        return document
+        return Hints(exercise.task)
 
     def rubric(self, exercise: Exercise) -> Rubric | None:
         """The question of an exercise that is answered in prose; None if it has none."""
@@ -511,21 +453,6 @@ class Catalog:
         document = read_document(exercise.rubric_path, Rubric)
         check_rubric(document)
         return document.value
-
-    def mutants(self, exercise: Exercise) -> tuple[Mutant, ...]:
-        """The expected outcome of each wrong solution; empty where there are no solutions (a wheel)."""
-        if self.content.solutions is None:
-            return ()
-        if exercise.id not in self._mutants:
-            self._mutants[exercise.id] = self.mutant_document(exercise).value.mutant
-        return self._mutants[exercise.id]
-
-    def mutant_document(self, exercise: Exercise) -> Document[MutantList]:
-        """``mutants.toml`` with its lines; needs a checkout."""
-        folder = self.content.solution_folder(exercise.id) or self.content.root / "solutions" / exercise.id
-        document = read_document(folder / "mutants.toml", MutantList)
-        check_mutants(document, exercise)
-        return document
 
 
 def _declared_in(folder: Path) -> tuple[str, ...]:

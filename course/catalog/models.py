@@ -26,6 +26,16 @@ class CourseRef(msgspec.Struct, frozen=True):
     version: str
 
 
+#: Of the failed checks of a task: diagnosis, "" for none, and fields by name.
+Found = Iterable[tuple[str, Mapping[str, str]]]
+_FIELD = re.compile(r"\{([^{}]*)\}")
+
+
+def fields_of(sentence: str) -> frozenset[str]:
+    """The fields that a hint's sentence about the student's numbers names."""
+    return frozenset(_FIELD.findall(sentence))
+
+
 class Task(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One function of an exercise; the unit that points belong to.
 
@@ -34,6 +44,11 @@ class Task(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         points: public and hidden points together.
         read: the section that explains it, as "lesson#section"; "" for the exercise's lesson as a whole.
         fault: the diagnosis of the function as it is handed out; "" where the student writes it.
+        hints: mildest first.
+        fits: by number of a hint, counted from 1, the diagnoses after which it is the one to give.
+        yours: by number of a hint, "any" for all that have none of their own, what it goes on to say of the
+            student's own numbers. ``{name}`` stands for a field of the failed check; of several sentences
+            the first is said whose fields are all there.
     """
 
     id: str
@@ -41,6 +56,25 @@ class Task(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     points: float
     read: str = ""
     fault: str = ""
+    hints: tuple[str, ...] = ()
+    fits: dict[str, tuple[str, ...]] = {}
+    yours: dict[str, tuple[str, ...]] = {}
+
+    def said(self, index: int, failed: Found) -> str:
+        """A hint, from 0, with the student's numbers where it has a sentence for them.
+
+        Args:
+            failed: diagnosis and fields of each failed check; one whose diagnosis the hint fits goes first.
+        """
+        fitting = self.fits.get(str(index + 1), ())
+        sentences = self.yours.get(str(index + 1), self.yours.get("any", ()))
+        for _, fields in sorted(failed, key=lambda check: check[0] not in fitting):
+            for sentence in sentences:
+                if fields.keys() >= fields_of(sentence):
+                    parts = _FIELD.split(sentence)  # words and names of fields, in turn
+                    parts[1::2] = [fields[name] for name in parts[1::2]]
+                    return f"{self.hints[index]} {''.join(parts)}"
+        return self.hints[index]
 
 
 #: At home a check may take so many times what it takes at most of a right solution, and so many once another
@@ -131,10 +165,6 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return Path(self.folder) / "checks.py"
 
     @property
-    def hints_path(self) -> Path:
-        return Path(self.folder) / "hints.toml"
-
-    @property
     def rubric_path(self) -> Path:
         return Path(self.folder) / "rubric.toml"
 
@@ -162,16 +192,6 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return next((task.title for task in self.task if task.id == task_id), task_id)
 
 
-#: Of the failed checks of a task: diagnosis, "" for none, and fields by name.
-Found = Iterable[tuple[str, Mapping[str, str]]]
-_FIELD = re.compile(r"\{([^{}]*)\}")
-
-
-def fields_of(sentence: str) -> frozenset[str]:
-    """The fields that a hint's sentence about the student's numbers names."""
-    return frozenset(_FIELD.findall(sentence))
-
-
 class Measured(msgspec.Struct, frozen=True):
     """How long an exercise's slow checks take, see ``Exercise.slow``, and a digest of what was measured."""
 
@@ -186,46 +206,13 @@ class Times(msgspec.Struct, frozen=True):
     exercises: dict[str, Measured] = {}
 
 
-class TaskHints(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The hints of one task, mildest first.
-
-    Attributes:
-        fits: by number of a hint, counted from 1, the diagnoses after which it is the one to give.
-        yours: by number of a hint, "any" for all that have none of their own, what it goes on to say of the
-            student's own numbers. ``{name}`` stands for a field of the failed check; of several sentences
-            the first is said whose fields are all there.
-    """
-
-    id: str
-    hints: tuple[str, ...]
-    fits: dict[str, tuple[str, ...]] = {}
-    yours: dict[str, tuple[str, ...]] = {}
-
-    def said(self, index: int, failed: Found) -> str:
-        """A hint, from 0, with the student's numbers where it has a sentence for them.
-
-        Args:
-            failed: diagnosis and fields of each failed check; one whose diagnosis the hint fits goes first.
-        """
-        fitting = self.fits.get(str(index + 1), ())
-        sentences = self.yours.get(str(index + 1), self.yours.get("any", ()))
-        for _, fields in sorted(failed, key=lambda check: check[0] not in fitting):
-            for sentence in sentences:
-                if fields.keys() >= fields_of(sentence):
-                    parts = _FIELD.split(sentence)  # words and names of fields, in turn
-                    parts[1::2] = [fields[name] for name in parts[1::2]]
-                    return f"{self.hints[index]} {''.join(parts)}"
-        return self.hints[index]
-
-
 class Hints(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """``hints.toml`` of an exercise."""
+    """The hints of an exercise, from its tasks."""
 
-    format_version: int
-    task: tuple[TaskHints, ...]
+    task: tuple[Task, ...]
 
-    def of(self, task_id: str) -> TaskHints:
-        return next((task for task in self.task if task.id == task_id), TaskHints(task_id, ()))
+    def of(self, task_id: str) -> Task:
+        return next((task for task in self.task if task.id == task_id), Task(task_id, task_id, 0.0))
 
     def after(self, task_id: str, diagnoses: Collection[str], given: Collection[int]) -> int | None:
         """The next hint, from 0: one that fits a diagnosis, else the mildest; None if all are given."""
@@ -250,34 +237,6 @@ class Rubric(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     least_words: int
     points: tuple[str, ...]
     good_answer: str
-
-
-class Mutant(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One deliberately wrong solution and what must happen to it.
-
-    Attributes:
-        file: its file under ``solutions/<id>/mutants``; it holds only what it gets wrong and is appended
-            to the model solution.
-        task: the task whose points it loses, and the only one.
-        misconception: the belief behind such code.
-        check: id of the check that must catch it.
-        diagnosis: the code that check's finding must carry.
-        also: codes that it gets under other draws of a grading run and that are as true of it; "" for none.
-    """
-
-    file: str
-    task: str
-    misconception: str
-    check: str
-    diagnosis: str
-    also: tuple[str, ...] = ()
-
-
-class MutantList(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """``mutants.toml`` of an exercise."""
-
-    format_version: int
-    mutant: tuple[Mutant, ...]
 
 
 class Objective(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

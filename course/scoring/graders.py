@@ -24,8 +24,8 @@ _CODE = (
 _FILES = (
     "grading/__init__.py", "grading/pipes.py", "grading/running/__init__.py", "grading/running/grader.py",
 )  # fmt: skip
-#: Folders without a part in grading: an exercise's wrong and its unusual solutions.
-LEFT_OUT = frozenset({"accepted", "mutants"})
+#: Files and folders without a part in grading: an exercise's wrong and its unusual solutions.
+LEFT_OUT = frozenset({"accepted", "mistakes.py", "record.json"})
 _NOT_READ = frozenset({".md", ".pyc"})
 #: Of this package's code, what every exercise's score depends on.
 _DECIDES = ("scoring", "isolation", "physics")

@@ -1,7 +1,7 @@
 """The diagnosis of every known wrong program: hypothesis by diagnosis, at home and in a grading run.
 
 The programs are the course's own, so they run unprotected and fast, each against the checks of its own task.
-The table is kept with the solution, and the page about the graders shows it.
+What comes of it is kept with the solution, as its record.
 """
 
 from __future__ import annotations
@@ -9,8 +9,6 @@ from __future__ import annotations
 import ast
 import contextlib
 import hashlib
-import itertools
-import json
 import math
 import re
 from collections import Counter
@@ -27,75 +25,92 @@ import numpy as np
 from course.authoring.exercises.grading import (
     LocalSubmission,
     accepted_files,
-    compose,
+    accepted_sources,
+    blamed,
     exercise_graders,
+    mistakes_of,
     solution_path,
     solutions_folder,
 )
-from course.authoring.exercises.mutants import mutant_path
+from course.authoring.exercises.mutants import (
+    Record,
+    Reported,
+    read_record,
+    record_path,
+    run_mutants,
+    write_record,
+)
 from course.authoring.exercises.source import parse
+from course.authoring.mistakes import Mistakes, Wrong, mistakes_path
 from course.authoring.report import Findings, Progress
 from course.catalog.load import Catalog
-from course.catalog.locate import content
 from course.catalog.models import Exercise
 from course.catalog.reading import read_text
-from course.errors import ContentError, CourseError
+from course.errors import ContentError
 from course.progress.workspace import write_atomically
 from course.scoring import kit
-from course.scoring.checks.collected import companion_path, words
+from course.scoring.checks.collected import companion_path, questions_of, questions_path, words
 from course.scoring.explain.fingerprint import numbers_of
 from course.scoring.explain.story import (
-    TABLE,
-    WORDS,
     Row,
     Table,
+    forget_tables,
     is_right,
     matching,
     read_table,
-    read_words,
-    table_bytes,
+    table_path,
+    tables_in,
 )
-from course.scoring.failures import place_of, reason_of
 from course.scoring.judging.explaining import answer_numbers, answers, tasks_asked
 from course.scoring.judging.session import GradingSession, Scope
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import Status
 
 # ---
-# ``hypotheses.json``: computed on the author's machine, and part of the exercise.
+# ``diagnoses.json``: computed on the author's machine, and part of the exercise.
 #
 # The wheel has no solutions. So that a diagnosis at home is as good as in a grading run, this module writes
-# the answers of each known wrong program to the questions of an exercise, as fingerprints, and the expected
-# values of its public checks for their fixed inputs. The audit refuses a file that is older than what it was
-# made from.
+# the words of ``mistakes.py``, the answers of each known wrong program to the questions of an exercise, as
+# fingerprints, and the expected values of its public checks for their fixed inputs. The audit refuses a file
+# that is older than what it was made from.
 
 
-HYPOTHESES = "hypotheses.py"
-#: Files of an exercise, and of its solution, that the table follows from.
-SOURCES = (
-    ("questions.py", "checking/paths.py"),
-    (HYPOTHESES, "formulas.py", "motions.py", "draws.py", "mutants.toml"),
-)
+#: Files of an exercise, and of its solution beside ``mistakes.py``, that the table follows from.
+SOURCES = (("checking/paths.py",), ("formulas.py", "motions.py", "draws.py"))
 #: How many programs with two mistakes are kept for a task: students hardly write more, and the wheel would
 #: grow.
 _MOST_PAIRS = 260
 
 
 def build(catalog: Catalog, exercise: Exercise) -> Path | None:
-    """Write the table of an exercise; None if it is there already, has no words or there are no questions.
-
-    Beside its mutants an exercise may have more wrong programs, in ``hypotheses.py``.
-    """
-    needed = exercise.readme_path.with_name(WORDS), companion_path(exercise.id, "questions")
-    if not all(path.is_file() for path in needed):
+    """Write the table of an exercise; None if it is there already, or nothing is known of its mistakes."""
+    if not mistakes_of(catalog, exercise).words:
         return None
-    path = exercise.readme_path.with_name(TABLE)
-    data = table_bytes(table_of(catalog, exercise))
-    with contextlib.suppress(OSError, ValueError):
-        if _alike(json.loads(path.read_bytes()), json.loads(data)):
+    folder = exercise.readme_path.parent
+    made = table_of(catalog, exercise)
+    with contextlib.suppress(ContentError):
+        if _alike(msgspec.to_builtins(read_table(folder)), msgspec.to_builtins(made)):
             return None
-    write_atomically(path, data)
+    return _write_table(folder, made)
+
+
+def _write_table(folder: Path, table: Table) -> Path:
+    """Write the table of the exercise in this folder, an entry or a row a line; warm-ups share a file."""
+    path = table_path(folder)
+    if path.parent == folder:
+        text = _lines(table)
+    else:
+        every = (tables_in(path) if path.is_file() else {}) | {folder.name: table}
+        kept = sorted(name for name in every if (path.parent / name).is_dir())
+        text = "{" + ",\n".join(f'"{name}": {_lines(every[name])}' for name in kept) + "}"
+    write_atomically(path, f"{text}\n".encode())
+    forget_tables()
     return path
+
+
+def _lines(table: Table) -> str:
+    text = msgspec.json.format(msgspec.json.encode(table), indent=0).decode().replace("\n", "")
+    return text.replace("]],[[", "]],\n[[").replace('"},"', '"},\n"')
 
 
 def _alike(one: Any, other: Any) -> bool:
@@ -111,12 +126,20 @@ def _alike(one: Any, other: Any) -> bool:
 
 def digest(catalog: Catalog, exercise: Exercise) -> str:
     """A digest of everything that the table of an exercise is computed from."""
+    file = mistakes_path(solutions_folder(catalog, exercise))
+    return _digest(catalog, exercise, file.read_bytes() if file.is_file() else b"")
+
+
+def _digest(catalog: Catalog, exercise: Exercise, mistakes: bytes) -> str:
     solutions = solutions_folder(catalog, exercise)
     own, theirs = SOURCES
     files = [exercise.readme_path.parent / name for name in own] + [solutions / name for name in theirs]
-    files += [solution_path(catalog, exercise), *accepted_files(catalog, exercise)]
-    files += sorted((solutions / "mutants").glob("*.py"))
-    made_from = hashlib.sha256()
+    files += [
+        questions_path(exercise.id),
+        solution_path(catalog, exercise),
+        *accepted_files(catalog, exercise),
+    ]
+    made_from = hashlib.sha256(mistakes)
     for path in files:
         if path.is_file():
             made_from.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
@@ -124,17 +147,21 @@ def digest(catalog: Catalog, exercise: Exercise) -> str:
 
 
 def table_of(catalog: Catalog, exercise: Exercise) -> Table:
-    with _blamed(companion_path(exercise.id, "questions")):
-        return _table_of(catalog, exercise)
+    path = questions_path(exercise.id)
+    with blamed(path):
+        questions = questions_of(exercise.id) if path.is_file() else None
+        return _table_of(catalog, exercise, questions)
 
 
-def _table_of(catalog: Catalog, exercise: Exercise) -> Table:
-    questions = kit.companion(exercise.id, "questions")
+def _table_of(catalog: Catalog, exercise: Exercise, questions: ModuleType | None) -> Table:
+    words = mistakes_of(catalog, exercise).words
+    if questions is None:
+        return Table(made_from=digest(catalog, exercise), words=words, answers=_plain(_expected(exercise)))
     within: dict[str, float] = getattr(questions, "WITHIN", {})
     tasks = sorted(tasks_asked(questions))
     for task in tasks:
         if task not in {task.id for task in exercise.task}:
-            path = companion_path(exercise.id, "questions")
+            path = questions_path(exercise.id)
             raise ContentError(path, None, f"{task!r} is no function of the exercise.", help="Correct it.")
     right: dict[str, set[tuple[float, ...]]] = {}
     for task in tasks:
@@ -143,6 +170,7 @@ def _table_of(catalog: Catalog, exercise: Exercise) -> Table:
                 right.setdefault(name, set()).add(sums)
     made = Table(
         made_from=digest(catalog, exercise),
+        words=words,
         within=within,
         right={name: tuple(sorted(sums)) for name, sums in right.items()},
         answers=_plain(_expected(exercise)),
@@ -196,67 +224,34 @@ def sums_of(questions: ModuleType, task: str, function: Callable[..., Any]) -> d
     }
 
 
-def hypotheses_of(
-    catalog: Catalog, exercise: Exercise
-) -> Iterator[tuple[str, tuple[str, ...], Callable[..., Any]]]:
-    """Task, codes and function of every known wrong program: the mutants, then ``hypotheses.py``.
+def hypotheses_of(catalog: Catalog, exercise: Exercise) -> Iterator[Wrong]:
+    """Task, codes and function of every known wrong program: those that are texts first.
 
-    Mutants whose diagnosis is not in the exercise's own words are left out: they are found while reading a
-    value.
+    Those whose code has no words of the exercise's own are left out: it is found while reading a value.
     """
-    solution = solution_path(catalog, exercise)
-    told = words(exercise.id).entries
-    for mutant in (mutant for mutant in catalog.mutants(exercise) if mutant.diagnosis in told):
-        file = mutant_path(catalog, exercise, mutant)
-        with _blamed(file):
-            function = _executed(compose(solution, file))[mutant.task]
-        yield mutant.task, (mutant.diagnosis,), function
-    path, more = solutions_folder(catalog, exercise) / HYPOTHESES, _hypotheses(exercise)
-    if more is not None:
-        tasks = {task.id for task in exercise.task}
-        with _blamed(path):
-            programs = [(task, codes, function) for task, codes, function in more.hypotheses()]
-        for task, codes, function in programs:
-            if task not in tasks:
-                raise ContentError(
-                    path, None, f"{task!r} is no function of the exercise.", help="Correct it."
-                )
-            for code in codes:
-                if code not in told:
-                    raise ContentError(path, None, f"{WORDS} has no words for {code}.", help="Write them.")
-            yield task, codes, function
-
-
-def _hypotheses(exercise: Exercise) -> ModuleType | None:
-    """``hypotheses.py`` of an exercise; None if it has none."""
-    folder = content().solution_folder(exercise.id)
-    if folder is None or not (folder / HYPOTHESES).is_file():
-        return None
-    with _blamed(folder / HYPOTHESES):
-        return kit.reference(exercise.id, "hypotheses")
-
-
-@contextlib.contextmanager
-def _blamed(path: Path) -> Iterator[None]:
-    """What an author's code raises, as a fault of its own file and line, or else of ``path``."""
-    try:
-        yield
-    except CourseError:
-        raise
-    except Exception as error:
-        place = place_of(error)
-        file, line = (content().root / place[0], place[1]) if place else (path, None)
-        if isinstance(error, SyntaxError) and error.filename:
-            file, line = Path(error.filename), error.lineno
-        problem = f"it raises {reason_of(error)}."
-        raise ContentError(file, line, problem, help="Correct that line, or what it needs.") from error
+    solution, mistakes = solution_path(catalog, exercise), mistakes_of(catalog, exercise)
+    model, file = read_text(solution), mistakes_path(solution.parent)
+    for variant in (variant for variant in mistakes.wrong if variant.code in mistakes.words):
+        source = variant.composed(model, file)
+        with blamed(file):
+            function = _executed(source.encode())[variant.task]
+        yield variant.task, (variant.code,), function
+    tasks = {task.id for task in exercise.task}
+    with blamed(file):
+        programs = list(mistakes.functions())
+    for task, codes, function in programs:
+        if task not in tasks:
+            raise ContentError(file, None, f"{task!r} is no function of the exercise.", help="Correct it.")
+        for code in codes:
+            if code not in mistakes.words:
+                raise ContentError(file, None, f"there are no words for {code}.", help="Write them.")
+        yield task, codes, function
 
 
 def _right(catalog: Catalog, exercise: Exercise, task: str) -> Iterator[Callable[..., Any]]:
-    solution = solution_path(catalog, exercise)
-    yield _executed(solution.read_bytes())[task]
-    for path in accepted_files(catalog, exercise):
-        yield _executed(compose(solution, path))[task]
+    yield _executed(solution_path(catalog, exercise).read_bytes())[task]
+    for source in accepted_sources(catalog, exercise).values():
+        yield _executed(source)[task]
 
 
 def _executed(source: bytes) -> dict[str, Any]:
@@ -291,32 +286,8 @@ def _plain(value: Any) -> Any:
     return str(value) if isinstance(value, float) and math.isinf(value) else value
 
 
-CONFUSION = "confusion.json"
-#: Task, codes of what is wrong, and function.
-_Program = tuple[str, tuple[str, ...], "Callable[..., Any]"]
 #: Programs that are tried for a task: all with one mistake, and of those with two as many as are missing.
 _EACH = 200
-
-
-class Reported(msgspec.Struct, frozen=True, array_like=True):
-    """How often programs with these mistakes get this diagnosis.
-
-    Attributes:
-        codes: of the mistakes in them.
-        said: diagnosis, "" for none, "survives" where no check fails.
-    """
-
-    task: str
-    codes: tuple[str, ...]
-    said: str
-    count: int
-
-
-class Confusion(msgspec.Struct, frozen=True, kw_only=True):
-    """``confusion.json``: rows at home ("public") and in a grading run ("full")."""
-
-    made_from: str
-    rows: dict[str, tuple[Reported, ...]]
 
 
 class _Rehearsal(GradingSession):
@@ -330,9 +301,9 @@ class _Rehearsal(GradingSession):
         return LocalSubmission(self.source, self._terms.seed, {task: function})
 
 
-def confusion_of(
+def rows_of(
     catalog: Catalog, exercise: Exercise, *, on_progress: Progress | None = None, each: int = _EACH
-) -> Confusion:
+) -> dict[str, tuple[Reported, ...]]:
     """Try ``each`` known wrong programs for every task: all with one mistake, then some with two."""
     known = list(hypotheses_of(catalog, exercise))
     chosen = [item for item in known if len(item[1]) == 1]
@@ -352,10 +323,10 @@ def confusion_of(
             if on_progress:
                 on_progress(done, len(scopes) * len(chosen), exercise.id)
         rows[scope] = tuple(Reported(*key, count) for key, count in sorted(counts.items()))
-    return Confusion(made_from=made_from(catalog, exercise), rows=rows)
+    return rows
 
 
-def as_one(exercise: Exercise, program: _Program) -> _Program:
+def as_one(exercise: Exercise, program: Wrong) -> Wrong:
     """A program with two mistakes; if it answers every question like one with a single mistake, it is that.
 
     If it answers like others with two, and the table has only those, it is one of them.
@@ -363,11 +334,10 @@ def as_one(exercise: Exercise, program: _Program) -> _Program:
     only the ends count and the last starts from the first, are Heun's method.
     """
     task, codes, function = program
-    table = read_table(exercise.readme_path.with_name(TABLE))
-    fits = [
-        matching(table, name, sums)
-        for name, sums in sums_of(kit.companion(exercise.id, "questions"), task, function).items()
-    ]
+    table, questions = read_table(exercise.readme_path.parent), questions_of(exercise.id)
+    if table is None or questions is None:
+        return program
+    fits = [matching(table, name, sums) for name, sums in sums_of(questions, task, function).items()]
     rows = fits[0] if len(fits) == 1 else ()
     if rows and (len(rows[0].codes) == 1 or set(codes) not in [set(row.codes) for row in rows]):
         codes = rows[0].codes
@@ -376,24 +346,23 @@ def as_one(exercise: Exercise, program: _Program) -> _Program:
 
 def made_from(catalog: Catalog, exercise: Exercise) -> str:
     """A digest of every file that affects the diagnosis of a wrong program; how it is worded does not."""
-    code = code_of(catalog, exercise, "*.py", "hypotheses.json")
-    found = hashlib.sha256(digest(catalog, exercise).encode() + code)
-    kinds = {code: entry.kind for code, entry in words(exercise.id).entries.items()}
-    found.update(json.dumps(kinds, sort_keys=True).encode())
-    return found.hexdigest()[:16]
+    file = mistakes_path(solutions_folder(catalog, exercise))
+    tree = parse(file) if file.is_file() else ast.Module([], [])
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "mistakes":
+            node.args[1:] = []
+    mistakes = ast.dump(tree).encode()
+    code = _digest(catalog, exercise, mistakes).encode() + code_of(catalog, exercise)
+    return hashlib.sha256(code).hexdigest()[:16]
 
 
-def code_of(catalog: Catalog, exercise: Exercise, *patterns: str) -> bytes:
-    """The files that decide about a program, in a row: the exercise's, its graders' and the references'."""
-    folders = (exercise.readme_path.parent, exercise_graders(catalog, exercise))
-    paths = [
-        path
-        for folder in folders
-        for path in sorted(itertools.chain(*map(folder.rglob, patterns)), key=attrgetter("name"))
-    ]
+def code_of(catalog: Catalog, exercise: Exercise) -> bytes:
+    """The code that decides about a program, in a row: the exercise's, its graders' and the references'."""
     solution = solution_path(catalog, exercise)
+    folders = (exercise.readme_path.parent, exercise_graders(catalog, exercise))
+    paths = [p for folder in folders for p in sorted(folder.rglob("*.py"), key=attrgetter("name"))]
     others = sorted(solution.parent.glob("*.py"))
-    paths += [path for path in others if path not in (solution, solution.with_name(HYPOTHESES))]
+    paths += [path for path in others if path not in (solution, mistakes_path(solution.parent))]
     return b"".join(path.name.encode() + b"\0" + path.read_bytes() + b"\0" for path in paths)
 
 
@@ -401,7 +370,7 @@ def _tried(
     catalog: Catalog,
     exercise: Exercise,
     scope: Scope,
-    chosen: list[_Program],
+    chosen: list[Wrong],
 ) -> Iterator[tuple[str, tuple[str, ...], str]]:
     source = solution_path(catalog, exercise).read_text(encoding="utf-8")
     own = words(exercise.id)
@@ -457,13 +426,9 @@ def tally(fate: Callable[[Reported], str], rows: tuple[Reported, ...]) -> Tally:
     return sum((Tally(**{fate(row): row.count}) for row in rows), Tally())
 
 
-def fate_of(exercise: Exercise) -> Callable[[Reported], str]:
-    """Says under which field of ``Tally`` the programs of a row are counted.
-
-    ``ALSO`` in ``hypotheses.py`` has, by code, what else is true of a program with that mistake.
-    """
-    own, names = words(exercise.id), _names(exercise)
-    also: dict[str, tuple[str, ...]] = getattr(_hypotheses(exercise), "ALSO", {})
+def fate_of(catalog: Catalog, exercise: Exercise) -> Callable[[Reported], str]:
+    """Says under which field of ``Tally`` the programs of a row are counted."""
+    own, names, also = words(exercise.id), _names(exercise), mistakes_of(catalog, exercise).true_too
 
     def fate(row: Reported) -> str:
         if row.said == "survives":
@@ -481,7 +446,8 @@ def fate_of(exercise: Exercise) -> Callable[[Reported], str]:
 def _names(exercise: Exercise) -> set[tuple[str, str, str]]:
     """(task, code, code) of programs with one mistake and the same answers to every question."""
     found = set()
-    for name, rows in read_table(exercise.readme_path.with_name(TABLE)).rows.items():
+    table = read_table(exercise.readme_path.parent)
+    for name, rows in table.rows.items() if table else ():
         task = name.partition(".")[0]  # parts of a task are "task.part"
         same: dict[tuple[float, ...], set[str]] = {}
         for row in rows:
@@ -491,22 +457,45 @@ def _names(exercise: Exercise) -> set[tuple[str, str, str]]:
     return found
 
 
-def write_confusion(catalog: Catalog, exercise: Exercise, table: Confusion) -> Path:
-    """Write the table beside the solution, one row a line."""
-    path = solutions_folder(catalog, exercise) / CONFUSION
-    fate = fate_of(exercise)
-    with _blamed(path.with_name(HYPOTHESES)):  # what the page and the audit will ask of each row
-        for row in (row for rows in table.rows.values() for row in rows):
-            fate(row)
-    text = msgspec.json.encode(table).decode().replace("],[", "],\n[")
-    write_atomically(path, f"{text}\n".encode())
-    return path
+@dataclass(frozen=True, slots=True)
+class Accepted:
+    """A new record, and what it says otherwise than the one before.
+
+    Attributes:
+        changes: a sentence for each program that is caught or named otherwise.
+        told: how the programs that are functions are diagnosed in a grading run.
+    """
+
+    path: Path
+    changes: tuple[str, ...]
+    told: Tally
 
 
-def read_confusion(catalog: Catalog, exercise: Exercise) -> Confusion | None:
-    """The table of an exercise; None if it has none."""
-    path = solutions_folder(catalog, exercise) / CONFUSION
-    return msgspec.json.decode(path.read_bytes(), type=Confusion) if path.is_file() else None
+def accept(catalog: Catalog, exercise: Exercise, *, on_progress: Progress | None = None) -> Accepted:
+    """Grade every wrong program of an exercise, and write what comes of it as its record."""
+    before = read_record(catalog, exercise) or Record()
+    outcomes = run_mutants(catalog, exercise, on_progress=on_progress)
+    caught = {one.mutant.name: one.by for one in outcomes}
+    changes = [
+        f"{name}: caught by {caught[name] or 'no check'}, and was by {check}."
+        for name, check in before.caught.items()
+        if name in caught and caught[name] != check
+    ]
+    changes += [
+        f"{one.mutant.name}: told {one.diagnosis or 'nothing'}, not {one.mutant.code}."
+        for one in outcomes
+        if (one.diagnosis or "") not in (one.mutant.code, *one.mutant.also)
+    ]
+    rows, fate = rows_of(catalog, exercise, on_progress=on_progress), fate_of(catalog, exercise)
+    named = {(r.task, r.codes) for r in before.rows.get("full", ()) if fate(r) == "named"}
+    still = {(r.task, r.codes) for r in rows["full"] if fate(r) == "named"}
+    known = {(r.task, r.codes) for r in rows["full"]}
+    changes += [
+        f"{task}: {' and '.join(codes)} is no longer named." for task, codes in sorted(named & known - still)
+    ]
+    record = Record(made_from=made_from(catalog, exercise), caught=caught, rows=rows)
+    path = write_record(catalog, exercise, record)
+    return Accepted(path, tuple(changes), tally(fate, rows["full"]))
 
 
 # ---
@@ -518,79 +507,64 @@ _CODE = re.compile(r"[A-Z][A-Z0-9]*(_[A-Z0-9]+)*")
 
 def audit_diagnoses(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
     """Report missing files, stale tables, codes without words, and words that are given where untrue."""
-    words_path = exercise.readme_path.with_name(WORDS)
-    table_path = exercise.readme_path.with_name(TABLE)
-    if not words_path.is_file():
-        if (solutions_folder(catalog, exercise) / HYPOTHESES).is_file():
-            findings.add(words_path, None, "words", "there are hypotheses and no words.", "Write it.")
-        return
-    words = read_words(words_path)
-    for code, entry in words.entries.items():
+    mistakes, file = mistakes_of(catalog, exercise), mistakes_path(solutions_folder(catalog, exercise))
+    for code, entry in mistakes.words.items():
         if entry.kind == "cause" and entry.looks_like.startswith("Here "):
             message = f"{code} is about one run, but as a cause it is said by every check of its task."
-            findings.add(words_path, None, "words", message, 'Give it `kind = "consequence"`.')
-    questions = companion_path(exercise.id, "questions")
-    if not questions.is_file():
-        message = f"it is missing, and {WORDS} is there: what would tell wrong programs apart?"
-        findings.add(questions, None, "words", message, "Write it.")
-        return
-    # A warm-up's wrong programs are its mutants, each of which is graded.
-    again = f"Run `course author build {exercise.id}{'' if exercise.is_warm_up else ' --confusion'}`."
-    if not table_path.is_file():
-        for _ in hypotheses_of(catalog, exercise):
-            pass
-        findings.add(table_path, None, "words", "it is missing.", again)
-        return
-    table = read_table(table_path)
-    if table.made_from != digest(catalog, exercise):
-        for _ in hypotheses_of(catalog, exercise):
-            pass  # what building would refuse comes before the advice to build
-        findings.add(
-            table_path,
-            None,
-            "stale",
-            "it was made from other questions, hypotheses, mutants or solutions than there are now.",
-            again,
-        )
-    elif not exercise.is_warm_up:
-        _audit_confusion(catalog, exercise, findings, again)
-    _audit_codes(catalog, exercise, table, findings)
+            findings.add(file, mistakes.lines[code], "words", message, 'Give it `kind="consequence"`.')
+    if mistakes.words:
+        questions = questions_path(exercise.id)
+        with blamed(questions):
+            asked = questions.is_file() and questions_of(exercise.id)
+        if not asked:
+            message = "it asks no QUESTIONS, and there are words: what would tell wrong programs apart?"
+            findings.add(questions, None, "words", message, "Write it.")
+            return
+        path, table = table_path(exercise.readme_path.parent), read_table(exercise.readme_path.parent)
+        if table is None or table.made_from != digest(catalog, exercise):
+            for _ in hypotheses_of(catalog, exercise):
+                pass  # what building would refuse comes before the advice to build
+            message = "it was made from other questions, mistakes or solutions than there are now."
+            code, message = ("stale", message) if table else ("words", f"it has nothing on {exercise.id}.")
+            findings.add(path, None, code, message, f"Run `course author build {exercise.id}`.")
+            return
+        _audit_codes(catalog, exercise, table, mistakes, findings)
+    if not exercise.is_warm_up:
+        _audit_record(catalog, exercise, mistakes, findings)
 
 
-def _audit_confusion(catalog: Catalog, exercise: Exercise, findings: Findings, again: str) -> None:
-    path = solutions_folder(catalog, exercise) / CONFUSION
-    kept = read_confusion(catalog, exercise)
+def _audit_record(catalog: Catalog, exercise: Exercise, mistakes: Mistakes, findings: Findings) -> None:
+    path, kept = record_path(catalog, exercise), read_record(catalog, exercise)
+    again = f"Run `course author build {exercise.id} --accept`, and read what it says."
     if kept is None:
         findings.add(path, None, "stale", "it is missing.", again)
         return
-    if kept.made_from != made_from(catalog, exercise):
-        message = "the kept diagnoses of known wrong programs are out of date."
+    if kept.made_from != made_from(catalog, exercise) or kept.caught.keys() != {
+        v.name for v in mistakes.wrong
+    }:
+        message = "the record of what wrong programs are told is out of date."
         findings.add(path, None, "stale", message, again)
         return
-    fate = fate_of(exercise)
+    fate = fate_of(catalog, exercise)
     for row in (row for rows in kept.rows.values() for row in rows if fate(row) == "otherwise"):
         message = f"{row.task}: programs with {', '.join(row.codes)} are told {row.said}, which is untrue."
         findings.add(path, None, "words", message, "Narrow the probe that says it.")
-    for row in kept.rows["full"]:
+    for row in kept.rows.get("full", ()):
         if len(row.codes) == 1 and row.said == "survives":
             message = f"{row.task}: no check fails for a program that is said to have {row.codes[0]}."
-            findings.add(path, None, "words", message, "Add a check, or correct `hypotheses.py`.")
+            findings.add(path, None, "words", message, "Add a check, or correct `mistakes.py`.")
 
 
-def _audit_codes(catalog: Catalog, exercise: Exercise, table: Table, findings: Findings) -> None:
-    words_path = exercise.readme_path.with_name(WORDS)
-    entries = read_words(words_path).entries
+def _audit_codes(
+    catalog: Catalog, exercise: Exercise, table: Table, mistakes: Mistakes, findings: Findings
+) -> None:
+    """Every code with words is given by something."""
+    file = mistakes_path(solutions_folder(catalog, exercise))
     known = {code for rows in table.rows.values() for row in rows for code in row.codes}
-    given = set(_literals(catalog, exercise))
-    for code in sorted(known - entries.keys()):
-        path = exercise.readme_path.with_name(TABLE)
-        findings.add(path, None, "words", f"{WORDS} has no words for {code}.", "Write them.")
-    lines = read_text(words_path).split("\n")
-    for code in sorted(entries.keys() - known - given):
-        line = next((at for at, text in enumerate(lines, 1) if text == f"[diagnosis.{code}]"), None)
-        named = any(code in (mutant.diagnosis, *mutant.also) for mutant in catalog.mutants(exercise))
-        fix = "Add a question that its mutant answers in its own way." if named else "Take it out."
-        findings.add(words_path, line, "words", f"nothing gives the diagnosis {code}.", fix)
+    given, named = set(_literals(catalog, exercise)), {variant.code for variant in mistakes.wrong}
+    for code in sorted(mistakes.words.keys() - known - given):
+        fix = "Add a question that its program answers in its own way." if code in named else "Take it out."
+        findings.add(file, mistakes.lines[code], "words", f"nothing gives the diagnosis {code}.", fix)
 
 
 def _literals(catalog: Catalog, exercise: Exercise) -> Iterator[str]:

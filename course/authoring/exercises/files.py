@@ -5,6 +5,7 @@ Blanks left by ``course author new``, hints, README, stub against solution, and 
 """
 
 import ast
+import contextlib
 import hashlib
 import math
 import re
@@ -17,10 +18,11 @@ import msgspec
 
 from course.authoring.exercises.grading import (
     accepted_files,
-    compose,
+    accepted_sources,
     declared_checks,
     exercise_graders,
     instructors,
+    mistakes_of,
     solution_path,
     solutions_folder,
 )
@@ -33,6 +35,7 @@ from course.authoring.exercises.source import (
     quoted_numbers,
     signatures,
 )
+from course.authoring.mistakes import mistakes_path
 from course.authoring.report import Findings
 from course.catalog.load import Catalog
 from course.catalog.models import QUICK, Exercise, Measured, Times
@@ -41,7 +44,7 @@ from course.errors import ContentError
 from course.printable import counted
 from course.progress.workspace import write_atomically
 from course.reading.parts import read_script
-from course.scoring.explain.story import WORDS, read_words
+from course.scoring.explain.story import read_table
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
 
@@ -158,7 +161,10 @@ def _audit_words(exercise: Exercise, graders: Path, findings: Findings) -> None:
 def public_numbers(exercise: Exercise) -> frozenset[str]:
     """Decimal numbers in the student's files: showing them reveals nothing."""
     files = [path for path in exercise.stub_path.parent.rglob("*") if path.suffix in {".py", ".md", ".toml"}]
-    return frozenset(match[0] for path in files for match in DECIMAL.finditer(read_text(path)))
+    table = read_table(exercise.readme_path.parent)
+    words = [f"{one.looks_like} {one.advice}" for one in table.words.values()] if table else []
+    texts = [*map(read_text, files), *words]
+    return frozenset(match[0] for text in texts for match in DECIMAL.finditer(text))
 
 
 def _wrong(findings: Findings, check: CheckSource, message: str, fix: str) -> None:
@@ -285,6 +291,7 @@ def _decides(catalog: Catalog, exercise: Exercise) -> str:
     """A digest of the files on which the times of public checks depend."""
     solution = solution_path(catalog, exercise)
     files = {*exercise.readme_path.parent.rglob("*.py"), *solution.parent.glob("*.py")}
+    files -= {mistakes_path(solution.parent)}
     files |= {*accepted_files(catalog, exercise)}
     made_from = hashlib.sha256()
     for path in sorted(files - {exercise.stub_path}):
@@ -295,7 +302,7 @@ def _decides(catalog: Catalog, exercise: Exercise) -> str:
 def measured(catalog: Catalog, exercise: Exercise) -> dict[str, float]:
     """The most CPU time that each public check takes of a right solution, in s."""
     solution, most = solution_path(catalog, exercise), dict[str, float]()
-    sources = [solution.read_bytes(), *(compose(solution, one) for one in accepted_files(catalog, exercise))]
+    sources = [solution.read_bytes(), *accepted_sources(catalog, exercise).values()]
     with GradingSession(exercise, catalog, terms=Terms(timeout=60.0)) as session:
         for source in sources:
             session.grade(Submission({exercise.module: source}))
@@ -478,32 +485,20 @@ def _readable(catalog: Catalog, exercise_id: str) -> Exercise | None:
 
 
 def _audit_hints(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
-    document = catalog.hints_document(exercise)
+    path = exercise.readme_path.with_name("exercise.toml")
+    lines = read_document(path, Exercise).lines
     least = LEAST_HINTS_OF_WARM_UP if exercise.is_warm_up else LEAST_HINTS
-    for task in exercise.task:
-        hints = document.value.of(task.id).hints
-        if len(hints) < least:
-            index = next((i for i, entry in enumerate(document.value.task) if entry.id == task.id), None)
-            findings.add(
-                exercise.hints_path,
-                document.lines.line(("task", index, "hints")) if index is not None else None,
-                "hints",
-                f"task {task.id} has {counted(len(hints), 'hint')}, and needs {least}.",
-                "Add hints, mildest first.",
-            )
-    words = exercise.readme_path.with_name(WORDS)
-    if not words.is_file():
-        return
-    known = read_words(words).entries.keys()
-    for index, entry in enumerate(document.value.task):
-        for code in sorted({code for codes in entry.fits.values() for code in codes} - known):
-            findings.add(
-                exercise.hints_path,
-                document.lines.line(("task", index, "fits")),
-                "hints",
-                f"{WORDS} has no diagnosis {code}.",
-                "A hint can only follow a diagnosis that there is.",
-            )
+    known = mistakes_of(catalog, exercise).words.keys()
+    for index, task in enumerate(exercise.task):
+        if len(task.hints) < least:
+            where = ("task", index, "hints") if task.hints else ("task", index, "id")
+            message = f"task {task.id} has {counted(len(task.hints), 'hint')}, and needs {least}."
+            findings.add(path, lines.line(where), "hints", message, "Add hints, mildest first.")
+        told = {code for codes in task.fits.values() for code in codes}
+        for code in sorted(told - known if known else ()):
+            message = f"there are no words for the diagnosis {code}."
+            fix = "A hint can only follow a diagnosis that there is."
+            findings.add(path, lines.line(("task", index, "fits")), "hints", message, fix)
 
 
 def _audit_code(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
@@ -557,17 +552,22 @@ def _audit_code(catalog: Catalog, exercise: Exercise, findings: Findings) -> Non
             )
     _audit_imports(exercise, exercise.stub_path, stub, findings)
     _audit_imports(exercise, solution_path(catalog, exercise), model, findings)
-    for folder in ("accepted", "mutants"):
-        for path in sorted((solutions_folder(catalog, exercise) / folder).glob("*.py")):
-            _audit_imports(exercise, path, parse(path), findings)
+    for path in accepted_files(catalog, exercise):
+        _audit_imports(exercise, path, parse(path), findings)
+    mistakes, file = mistakes_of(catalog, exercise), mistakes_path(solutions_folder(catalog, exercise))
+    source = read_text(solution_path(catalog, exercise))
+    for variant in (*mistakes.wrong, *mistakes.right):
+        with contextlib.suppress(ContentError):  # told where it is planned
+            tree = ast.parse(variant.composed(source, file))
+            for _, name in foreign_imports(tree, exercise.imports):
+                _foreign(file, variant.line, name, findings)
 
 
 def _audit_imports(exercise: Exercise, path: Path, tree: ast.Module, findings: Findings) -> None:
     for line, name in foreign_imports(tree, exercise.imports):
-        findings.add(
-            path,
-            line,
-            "imports",
-            f"{name} may not be imported here.",
-            "Use the standard library and what `imports` in exercise.toml lists.",
-        )
+        _foreign(path, line, name, findings)
+
+
+def _foreign(path: Path, line: int, name: str, findings: Findings) -> None:
+    fix = "Use the standard library and what `imports` in exercise.toml lists."
+    findings.add(path, line, "imports", f"{name} may not be imported here.", fix)

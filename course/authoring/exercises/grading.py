@@ -16,19 +16,23 @@ from typing import Any, TypeAlias
 import msgspec
 import numpy as np
 
+from course.authoring.mistakes import Mistakes, mistakes_path
 from course.catalog.load import Catalog
+from course.catalog.locate import content
 from course.catalog.models import Exercise
 from course.catalog.pack import pack_bytes
 from course.catalog.reading import read_text
-from course.errors import ContentError, UsageError
+from course.errors import ContentError, CourseError, UsageError
 from course.grading.intake.students import Entry
 from course.grading.running.batch import Graders
 from course.grading.running.snapshot import Snapshot, frozen
 from course.isolation.failures import StudentFailure
 from course.isolation.inside import loops
 from course.physics.systems import SYSTEMS
+from course.scoring import kit
 from course.scoring.checks.collected import Check, CollectedChecks
 from course.scoring.explain.fingerprint import reached_from
+from course.scoring.failures import place_of, reason_of
 from course.scoring.judging.session import check_files
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.values import Inspected, as_march, overwritten
@@ -37,8 +41,8 @@ from course.scoring.verdict import Verdict
 # ---
 # The submissions that prove an exercise: its stub, its solution, and the variants of the solution.
 #
-# A file in ``accepted/`` or ``mutants/`` holds only the definitions that differ. It is appended to the model
-# solution, so that its definitions win.
+# A file in ``accepted/`` holds only the definitions that differ. It is appended to the model solution, so that
+# its definitions win; what ``mistakes.py`` has is put there likewise.
 
 
 def instructors(catalog: Catalog) -> tuple[Path, Path]:
@@ -64,9 +68,46 @@ def accepted_files(catalog: Catalog, exercise: Exercise) -> tuple[Path, ...]:
     return tuple(sorted((solutions_folder(catalog, exercise) / "accepted").glob("*.py")))
 
 
-def mutant_files(catalog: Catalog, exercise: Exercise) -> tuple[Path, ...]:
-    """Wrong variants, by name."""
-    return tuple(sorted((solutions_folder(catalog, exercise) / "mutants").glob("*.py")))
+def mistakes_of(catalog: Catalog, exercise: Exercise) -> Mistakes:
+    """What ``mistakes.py`` of an exercise says; nothing where there is none.
+
+    Raises:
+        ContentError: it cannot be read or raises; the message names its line.
+    """
+    path = mistakes_path(solutions_folder(catalog, exercise))
+    if not path.is_file():
+        return Mistakes()
+    with blamed(path):
+        found = getattr(kit.reference(exercise.id, path.stem), "mistakes", None)
+    if not isinstance(found, Mistakes):
+        raise ContentError(path, None, "it makes no `mistakes`.", help="Write: mistakes = Mistakes()")
+    return found
+
+
+@contextlib.contextmanager
+def blamed(path: Path) -> Iterator[None]:
+    """What an author's code raises, as a fault of its own file and line, or else of ``path``."""
+    try:
+        yield
+    except CourseError:
+        raise
+    except Exception as error:
+        place = place_of(error)
+        file, line = (content().root / place[0], place[1]) if place else (path, None)
+        if isinstance(error, SyntaxError) and error.filename:
+            file, line = Path(error.filename), error.lineno
+        problem = f"it raises {reason_of(error)}."
+        raise ContentError(file, line, problem, help="Correct that line, or what it needs.") from error
+
+
+def accepted_sources(catalog: Catalog, exercise: Exercise) -> dict[str, bytes]:
+    """Correct but unusual programs, by what is unusual: files in ``accepted/``, and those of ``mistakes.py``."""
+    solution = solution_path(catalog, exercise)
+    found = {path.name: compose(solution, path) for path in accepted_files(catalog, exercise)}
+    file, model = mistakes_path(solution.parent), read_text(solution)
+    for variant in mistakes_of(catalog, exercise).right:
+        found[variant.name] = variant.composed(model, file).encode()
+    return found
 
 
 def compose(solution: Path, variant: Path) -> bytes:

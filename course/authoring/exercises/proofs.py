@@ -5,19 +5,21 @@ file, and where possible the line, that an author would open first.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from course.authoring.exercises.files import public_numbers
-from course.authoring.exercises.grading import accepted_files, compose, mutant_files, solution_path
-from course.authoring.exercises.mutants import judge, mutant_path
+from course.authoring.exercises.grading import accepted_files, compose, mistakes_of, solution_path
+from course.authoring.exercises.mutants import judge
 from course.authoring.exercises.source import DECIMAL, CheckSource, parse, signatures
+from course.authoring.mistakes import Mistakes, Variant, mistakes_path
 from course.authoring.report import AuditProblem, Findings
 from course.catalog.load import Catalog
-from course.catalog.models import Exercise, Hints, Mutant, fields_of
-from course.catalog.reading import Document, read_document, read_text
+from course.catalog.models import Exercise, fields_of
+from course.catalog.reading import read_document, read_text
 from course.errors import ContentError
 from course.handed_in.attempts import numbers_of
 from course.progress.history import NO_MISTAKE
@@ -41,54 +43,48 @@ class Proof:
 
     Attributes:
         role: "stub", "solution", "accepted" or "mutant".
-        mutant, entry_lines: the entry in mutants.toml and the lines of its keys.
+        name: of the program.
+        mutant: what ``mistakes.py`` says of it.
+        line: in its file, where that has more than this program.
     """
 
     role: str
     path: Path
     source: bytes
-    mutant: Mutant | None = None
-    entry_lines: dict[str, int] | None = None
+    name: str
+    mutant: Variant | None = None
+    line: int | None = None
 
 
 def plan(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[Proof, ...]:
     """The submissions that prove an exercise; a file that cannot be one is reported and left out."""
     solution = solution_path(catalog, exercise)
+    file, model = mistakes_path(solution.parent), read_text(solution)
+    stub = read_text(exercise.stub_path).encode()
     proofs = [
-        Proof("stub", exercise.stub_path, read_text(exercise.stub_path).encode()),
-        Proof("solution", solution, read_text(solution).encode()),
+        Proof("stub", exercise.stub_path, stub, exercise.stub_path.name),
+        Proof("solution", solution, model.encode(), solution.name),
     ]
-    accepted = accepted_files(catalog, exercise)
+    mistakes, accepted = mistakes_of(catalog, exercise), accepted_files(catalog, exercise)
     least, least_mutants = least_proofs(exercise)
-    if len(accepted) < least:
-        findings.add(
-            solution.parent / "accepted",
-            None,
-            "accepted",
-            f"accepted variants: {len(accepted)}, and an exercise of this size has at least {least}.",
-            "Add correct but unusual code: checks that refuse it are too narrow.",
-        )
+    if (right := len(accepted) + len(mistakes.right)) < least:
+        message = f"accepted variants: {right}, and an exercise of this size has at least {least}."
+        fix = "Add correct but unusual code: checks that refuse it are too narrow."
+        findings.add(solution.parent / "accepted", None, "accepted", message, fix)
     for path in accepted:
-        _add(proofs, findings, "accepted", path, solution)
-    _plan_mutants(catalog, exercise, findings, proofs, solution)
-    entries = catalog.mutant_document(exercise)
-    mutants = entries.value.mutant
-    if len(mutants) < least_mutants:
-        findings.add(
-            entries.path,
-            None,
-            "mutants",
-            f"mutants: {len(mutants)}, and an exercise of this size has at least {least_mutants}.",
-            "Add the mistakes that students make.",
-        )
-    if 2 * len({mutant.diagnosis for mutant in mutants}) <= len(exercise.task):
-        findings.add(
-            entries.path,
-            None,
-            "mutants",
-            "most tasks share their diagnoses, which tell no mistakes apart then.",
-            "Give each kind of mistake a code of its own.",
-        )
+        _add(proofs, findings, partial(_accepted, solution, path))
+    for variant in mistakes.right:
+        _add(proofs, findings, partial(_proof, "accepted", file, model, variant))
+    for variant in mistakes.wrong:
+        _add(proofs, findings, partial(_proof, "mutant", file, model, variant))
+    _audit_mutants(exercise, mistakes, file, findings)
+    if len(mistakes.wrong) < least_mutants:
+        count = len(mistakes.wrong)
+        message = f"mutants: {count}, and an exercise of this size has at least {least_mutants}."
+        findings.add(file, None, "mutants", message, "Add the mistakes that students make.")
+    if 2 * len({variant.code for variant in mistakes.wrong}) <= len(exercise.task):
+        message = "most tasks share their diagnoses, which tell no mistakes apart then."
+        findings.add(file, None, "mutants", message, "Give each kind of mistake a code of its own.")
     return tuple(proofs)
 
 
@@ -100,61 +96,33 @@ def least_proofs(exercise: Exercise) -> tuple[int, int]:
     return functions + 1, functions * MUTANTS_EACH
 
 
-def _plan_mutants(
-    catalog: Catalog, exercise: Exercise, findings: Findings, proofs: list[Proof], solution: Path
-) -> None:
-    document = catalog.mutant_document(exercise)
-    mutants = document.value.mutant
-    for index, mutant in enumerate(mutants):
-        keys = ("file", "task", "check", "diagnosis")
-        lines = {key: document.lines.line(("mutant", index, key)) for key in keys}
-        path = mutant_path(catalog, exercise, mutant)
-        if path.is_file():
-            _add(proofs, findings, "mutant", path, solution, mutant, lines)
-        else:
-            findings.add(
-                document.path,
-                lines["file"],
-                "mutants",
-                f"{mutant.file} does not exist.",
-                f"Write {path.name}.",
-            )
-    listed = {mutant.file for mutant in mutants}
-    for path in mutant_files(catalog, exercise):
-        if path.name not in listed:
-            findings.add(path, None, "mutants", "mutants.toml does not list this file.", "Add a [[mutant]].")
-    codes = [mutant.diagnosis for mutant in mutants]
-    for index, code in enumerate(codes if exercise.is_warm_up else ()):
-        if code in codes[:index]:
-            findings.add(
-                document.path,
-                document.lines.line(("mutant", index, "diagnosis")),
-                "mutants",
-                f"another mutant has the diagnosis {code}, too.",
-                "A warm-up tells each of its mistakes apart: give it a code of its own.",
-            )
-    for task in exercise.task:
-        if task.id not in {mutant.task for mutant in mutants}:
-            findings.add(
-                document.path,
-                None,
-                "mutants",
-                f"no mutant breaks task {task.id}, so nothing shows that its checks catch anything.",
-                "Add one for each mistake that students make.",
-            )
+def _audit_mutants(exercise: Exercise, mistakes: Mistakes, file: Path, findings: Findings) -> None:
+    tasks = {task.id for task in exercise.task}
+    for index, variant in enumerate(mistakes.wrong):
+        if variant.task not in tasks:
+            message = f"{variant.name} is of a task that the exercise does not have."
+            findings.add(file, variant.line, "mutants", message, f"Its tasks are {', '.join(sorted(tasks))}.")
+        if exercise.is_warm_up and variant.code in {one.code for one in mistakes.wrong[:index]}:
+            message = f"another program has the mistake {variant.code}, too."
+            fix = "A warm-up tells each of its mistakes apart: give it a code of its own."
+            findings.add(file, variant.line, "mutants", message, fix)
+    for task in sorted(tasks - {variant.task for variant in mistakes.wrong}):
+        message = f"no mutant breaks task {task}, so nothing shows that its checks catch anything."
+        findings.add(file, None, "mutants", message, "Add one for each mistake that students make.")
 
 
-def _add(
-    proofs: list[Proof],
-    findings: Findings,
-    role: str,
-    path: Path,
-    solution: Path,
-    mutant: Mutant | None = None,
-    lines: dict[str, int] | None = None,
-) -> None:
+def _accepted(solution: Path, path: Path) -> Proof:
+    return Proof("accepted", path, compose(solution, path), path.name)
+
+
+def _proof(role: str, file: Path, model: str, variant: Variant) -> Proof:
+    source = variant.composed(model, file).encode()
+    return Proof(role, file, source, variant.name, variant if role == "mutant" else None, variant.line)
+
+
+def _add(proofs: list[Proof], findings: Findings, made: Callable[[], Proof]) -> None:
     try:
-        proofs.append(Proof(role, path, compose(solution, path), mutant, lines))
+        proofs.append(made())
     except ContentError as error:
         findings.add_error(error)
 
@@ -163,11 +131,15 @@ class Prover:
     """Reports every proof of one exercise that its grading does not confirm."""
 
     def __init__(
-        self, exercise: Exercise, checks: tuple[CheckSource, ...], mutants_toml: Path, findings: Findings
+        self,
+        exercise: Exercise,
+        checks: tuple[CheckSource, ...],
+        caught: Mapping[str, str],
+        findings: Findings,
     ) -> None:
         self.exercise = exercise
         self._checks = {check.id: check for check in checks}
-        self._mutants_toml = mutants_toml
+        self._caught = caught
         self._findings = findings
         #: A check raised or cannot be imported: what grading says of the programs follows from that.
         self.broken = False
@@ -187,33 +159,33 @@ class Prover:
         if self._is_our_fault(proof, verdict):
             return
         if proof.mutant is not None:
-            for fault in judge(proof.mutant, verdict):
-                line = (proof.entry_lines or {}).get(fault.key)
-                text = f"mutant {proof.mutant.file} {fault.message}"
-                self._findings.add(self._mutants_toml, line, "mutant", text, fault.fix)
+            for fault in judge(proof.mutant, self._caught.get(proof.name, ""), verdict):
+                text = f"mutant {proof.name} {fault.message}"
+                self._findings.add(proof.path, proof.line, "mutant", text, fault.fix)
         elif verdict.state != "graded":
             why = verdict.error.message if verdict.error else verdict.state
             fix = verdict.error.help if verdict.error and verdict.error.help else "Correct the file."
-            self._findings.add(proof.path, None, proof.role, f"cannot be graded: {why}", fix)
+            self._findings.add(proof.path, proof.line, proof.role, f"cannot be graded: {why}", fix)
         elif proof.role == "stub":
             self._judge_stub(proof, verdict)
         else:
             self._judge_correct(proof, verdict)
         for warning in verdict.warnings if proof.mutant is None else ():
-            self._findings.add(proof.path, None, proof.role, warning, "Let the whole file load.")
+            self._findings.add(proof.path, proof.line, proof.role, warning, "Let the whole file load.")
         self._judge_words(verdict)
         for check in verdict.checks:
             self._fields.setdefault(check.task, set()).update(numbers_of(check))
 
-    def judge_hints(self, hints: Document[Hints]) -> None:
+    def judge_hints(self) -> None:
         """Report fields that hints name and that no failed check has had. Call it after the last proof."""
-        for index, task in enumerate(() if self.broken else hints.value.task):
+        document = read_document(self.exercise.readme_path.with_name("exercise.toml"), Exercise)
+        for index, task in enumerate(() if self.broken else document.value.task):
             for number, sentences in task.yours.items():
                 named = frozenset().union(*map(fields_of, sentences))
                 for field in sorted(named - self._fields.get(task.id, set())):
                     self._findings.add(
-                        hints.path,
-                        hints.lines.line(("task", index, "yours", number)),
+                        document.path,
+                        document.lines.line(("task", index, "yours", number)),
                         "hints",
                         f"no check of {task.id} that a mutant fails has the field {{{field}}}.",
                         "A field is an input that a public check names, expected, got, off, ratio or at.",
@@ -234,12 +206,12 @@ class Prover:
             elif (check.traceback or "").startswith(OURS):
                 told = True
                 what = "" if check.diagnosis == NOT_JUDGED else "the diagnosis of "
-                what += f"check {check.id} breaks on {proof.path.name}"
+                what += f"check {check.id} breaks on {proof.name}"
                 self._break(check.id, what, (check.traceback or "").removeprefix(OURS))
         if not told and verdict.state == "grader_error":
             self.broken = True
             why, fix = (error.message, error.help) if error else (verdict.state, "")
-            words = f"the checks break on {proof.path.name}: {why}"
+            words = f"the checks break on {proof.name}: {why}"
             self._findings.add(self.exercise.checks_path, None, "grader", words, fix or "Correct the checks.")
         return told or verdict.state == "grader_error"
 
@@ -306,7 +278,7 @@ class Prover:
             if check.status is not Status.PASS:
                 self._findings.add(
                     proof.path,
-                    self._line_of(proof.path, check.task),
+                    proof.line or self._line_of(proof.path, check.task),
                     proof.role,
                     f"check {check.id} ends with {check.status}: {check.message or check.blocked_by}"
                     f" (expected {check.expected}, got {check.actual}).",

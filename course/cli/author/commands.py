@@ -33,7 +33,6 @@ from course.errors import ContentError, UsageError
 from course.printable import counted
 from course.progress.workspace import write_atomically
 from course.sandbox.scene.loading import scene_ids
-from course.scoring.explain.story import read_table
 from course.scoring.verdict import in_points
 from course.simulations.registry import SIMULATIONS
 
@@ -98,7 +97,10 @@ class AuthorCoverage(Envelope, tag="course.author-coverage/1", frozen=True, kw_o
 
 
 class MutantRow(msgspec.Struct, frozen=True, kw_only=True):
-    """A wrong solution and what the student who wrote it would read."""
+    """A wrong program, ``file`` its name, and what the student who wrote it would read.
+
+    ``misconception`` says what the mistake looks like; "" where the course has words for it, not the exercise.
+    """
 
     exercise: str
     file: str
@@ -442,17 +444,18 @@ def _emit_report(console: Console, catalog: Catalog, report: AuditReport) -> Non
 @app.command(epilog="Example: course author build collisions")
 def build(
     name: _EachExercise = None,
-    confusion: Annotated[
-        bool, option("--confusion", "Grade every wrong program too; takes minutes.")
+    accept: Annotated[
+        bool, option("--accept", "Grade every wrong program, and keep what comes of it; takes minutes.")
     ] = False,
 ) -> int:
     """Generate the files that follow from an exercise's sources.
 
     The points and counts in `exercise.toml`, which come from the checks' markers; `exercises/times.json`, how
-    long slow public checks take, which decides when a loop counts as hung; `hypotheses.json`, the answers of
-    every known wrong program to the exercise's questions, as fingerprints, so that a diagnosis works at home,
-    where there are no solutions. `course author check` refuses files that are out of date. With --confusion
-    each wrong program is graded, at home and as in a grading run; its diagnoses are kept beside the solution.
+    long slow public checks take, which decides when a loop counts as hung; `diagnoses.json`, the words of
+    `mistakes.py` and the answers of its programs to the exercise's questions, as fingerprints, so that a
+    diagnosis works at home, where there are no solutions. `course author check` refuses files that are out of
+    date. With --accept each wrong program is graded, and `record.json` beside the solution keeps which check
+    catches it and what it is told; each program that lost its check or its name is printed.
     """
 
     console, catalog = current(), load_catalog()
@@ -466,18 +469,17 @@ def build(
         except ContentError:
             _say_blanks(catalog, exercise)
             raise
-    read_table.cache_clear()  # it was just written, and slow checks are measured with it
     made.append(write_times(catalog, chosen))
     written = [shown(path, catalog) for path in made if path]
-    if confusion:
-        for exercise in chosen:
-            if exercise.readme_path.with_name("diagnoses.toml").is_file() and not exercise.is_warm_up:
-                with meter(console) as on_progress:
-                    table = diagnosis.confusion_of(catalog, exercise, on_progress=on_progress)
-                written.append(shown(diagnosis.write_confusion(catalog, exercise, table), catalog))
-                told = diagnosis.tally(diagnosis.fate_of(exercise), table.rows["full"])
-                said = ", ".join(f"{name} {count}" for name, count in asdict(told).items())
-                console.line(f"{exercise.id}, in a grading run: {said}.")
+    for exercise in chosen if accept else ():
+        if not exercise.is_warm_up:
+            with meter(console) as on_progress:
+                accepted = diagnosis.accept(catalog, exercise, on_progress=on_progress)
+            written.append(shown(accepted.path, catalog))
+            said = ", ".join(f"{name} {count}" for name, count in asdict(accepted.told).items())
+            console.line(f"{exercise.id}, in a grading run: {said}.")
+            for change in accepted.changes:
+                console.line(change, indent=2)
     for file in written:
         console.line(f"Wrote {file}")
     if not written:
@@ -506,7 +508,7 @@ def mutants(
     """Show the feedback for each wrong solution.
 
     Grades every mutant and shows the message, the advice and the diagnosis that its author would see. Exit
-    code 1 if a mutant is not caught as its entry says.
+    code 1 if a mutant is not caught as it is on record.
     """
 
     console, catalog = current(), load_catalog()
@@ -532,10 +534,11 @@ def _show_mutants(console: Console, exercise: Exercise, outcomes: tuple[MutantOu
     for outcome in outcomes:
         mutant = outcome.mutant
         console.heading(
-            f"{exercise.id}: {mutant.file}", f"breaks {mutant.task}, loses {in_points(outcome.lost)}"
+            f"{exercise.id}: {mutant.name}", f"breaks {mutant.task}, loses {in_points(outcome.lost)}"
         )
-        console.item("believes", mutant.misconception)
-        console.item("caught by", f"{mutant.check} with {outcome.diagnosis}")
+        if outcome.looks_like:
+            console.item("mistake", outcome.looks_like)
+        console.item("caught by", f"{outcome.by} with {outcome.diagnosis}")
         if outcome.message:
             console.item("reads", outcome.message)
         if outcome.help:
@@ -547,7 +550,17 @@ def _show_mutants(console: Console, exercise: Exercise, outcomes: tuple[MutantOu
 
 def _mutant_row(exercise: Exercise, outcome: MutantOutcome) -> MutantRow:
     faults = tuple(fault.message for fault in outcome.faults)
-    return filled(MutantRow, outcome, outcome.mutant, exercise=exercise.id, faults=faults)
+    mutant, check = outcome.mutant, outcome.check or outcome.by
+    return filled(
+        MutantRow,
+        outcome,
+        exercise=exercise.id,
+        file=mutant.name,
+        task=mutant.task,
+        misconception=outcome.looks_like,
+        check=check,
+        faults=faults,
+    )
 
 
 @app.command(epilog="Example: course author pack --solutions integrators -o solutions.coursepack")

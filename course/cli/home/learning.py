@@ -236,12 +236,10 @@ def _counts(of: str, said: Iterable[RecordedPrediction]) -> PredictionsOf:
 
 def _looks_like(exercise: Exercise, code: str) -> str:
     """The diagnosis in words; "" where the exercise keeps none as data."""
-    from course.scoring.explain.story import WORDS, read_words
+    from course.scoring.explain.story import read_table
 
-    path = Path(exercise.folder) / WORDS
-    if not path.is_file():
-        return ""
-    entry = read_words(path).entries.get(code)
+    table = read_table(Path(exercise.folder))
+    entry = table.words.get(code) if table else None
     return entry.looks_like if entry else ""
 
 

@@ -28,7 +28,7 @@ import pytest
 
 from course.catalog.locate import content
 from course.errors import ContentError
-from course.scoring.explain.story import TABLE, WORDS, Words, read_table, read_words
+from course.scoring.explain.story import Words, read_table, table_path
 from course.scoring.failures import place_of, reason_of
 from course.scoring.remote import RemoteSubmission
 from course.scoring.verdict import Visibility
@@ -66,7 +66,10 @@ def reference(exercise_id: str, module: str) -> ModuleType | None:
 
 def known_answers(exercise_id: str, check: str) -> list[Any]:
     """The answers that a public check with fixed inputs expects where there is no reference, in its order."""
-    table = read_table(content().exercise_folder(exercise_id) / TABLE)
+    folder = content().exercise_folder(exercise_id)
+    table = read_table(folder)
+    if table is None:
+        raise ContentError(table_path(folder), None, "it is missing.", help="`course author build`")
     return [_known(value) for value in table.answers[check]]
 
 
@@ -83,8 +86,28 @@ def _known(value: Any) -> Any:
 
 
 def words(exercise_id: str) -> Words:
-    """The diagnoses of an exercise by their codes, from its ``diagnoses.toml``."""
-    return read_words(content().exercise_folder(exercise_id) / WORDS)
+    """The diagnoses of an exercise by their codes."""
+    table = read_table(content().exercise_folder(exercise_id))
+    return Words(table.words if table else {})
+
+
+def questions_path(exercise_id: str) -> Path:
+    """The file with the calls that tell wrong programs apart: ``questions.py``, of a warm-up its checks."""
+    path = companion_path(exercise_id, "questions")
+    return path if path.is_file() else companion_path(exercise_id, "checks")
+
+
+def questions_of(exercise_id: str) -> ModuleType | None:
+    """That file, imported; None if it asks for nothing."""
+    from _pytest.mark.structures import MARK_GEN
+
+    path = questions_path(exercise_id)
+    around, MARK_GEN._config = MARK_GEN._config, None  # the marks of checks are not another pytest's
+    try:
+        found = companion(exercise_id, path.stem)
+    finally:
+        MARK_GEN._config = around
+    return found if hasattr(found, "QUESTIONS") else None
 
 
 def sibling(file: str, module: str) -> ModuleType:

@@ -8,20 +8,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 import msgspec
 
-from course.catalog.reading import read_document
 from course.errors import ContentError
+from course.ids import WARM_UPS
 from course.scoring.explain.fingerprint import SAME
 from course.scoring.verdict import Divergence
 
 # ---
-# The words of an exercise's diagnoses: ``diagnoses.toml``, one table for each code.
-
-
-WORDS = "diagnoses.toml"
+# The words of an exercise's diagnoses, one entry for each code.
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,11 +68,6 @@ class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     kind: Literal["cause", "consequence", "fact", "nan"] = "cause"
 
 
-class _File(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    format_version: int
-    diagnosis: dict[str, Entry]
-
-
 class Words:
     """The diagnoses of one exercise by their codes."""
 
@@ -86,12 +78,12 @@ class Words:
         """The diagnosis of that code.
 
         Raises:
-            KeyError: ``diagnoses.toml`` has no words for it.
+            KeyError: the exercise has no words for it.
         """
         if code == KEPT.code and code not in self.entries:
             return KEPT
         if code not in self.entries:
-            raise KeyError(f"diagnoses.toml has no words for {code}")
+            raise KeyError(f"there are no words for {code}")
         entry = self.entries[code]
         return Diagnosis(code, entry.looks_like, entry.advice, divergence)
 
@@ -100,16 +92,6 @@ class Words:
         if code in self.entries:
             return self.entries[code].kind
         return "nan" if code in NOT_FINITE else "fact"
-
-
-@cache
-def read_words(path: Path) -> Words:
-    """The words in a ``diagnoses.toml``.
-
-    Raises:
-        ContentError: the file is wrong; the message names the line.
-    """
-    return Words(read_document(path, _File).value.diagnosis)
 
 
 @dataclass(frozen=True, slots=True)
@@ -265,13 +247,17 @@ def _most_named(guesses: Sequence[Diagnosis]) -> Diagnosis | None:
 
 
 # ---
-# The answers of known wrong programs to an exercise's questions: ``hypotheses.json``, made by a command.
+# What is shipped of an exercise's mistakes: ``diagnoses.json``, made by a command.
 #
 # The file is part of the exercise, so that a diagnosis at home is as good as in a grading run. It contains
-# nothing that solves the exercise: only fingerprints, and the answers to public checks with fixed inputs.
+# nothing that solves the exercise: words, what wrong programs answer to the exercise's questions, as
+# fingerprints, and the answers to public checks with fixed inputs. Warm-ups share one, beside their folders.
 
 
-TABLE = "hypotheses.json"
+TABLE = "diagnoses.json"
+
+
+_Kind = TypeVar("_Kind")
 
 
 class Row(msgspec.Struct, frozen=True, array_like=True):
@@ -287,9 +273,10 @@ class Row(msgspec.Struct, frozen=True, array_like=True):
 
 
 class Table(msgspec.Struct, frozen=True, kw_only=True):
-    """``hypotheses.json``.
+    """What ``diagnoses.json`` holds of an exercise.
 
     Attributes:
+        words: by code.
         made_from: digest of what it was computed from.
         within: relative tolerance of the tasks whose answers are stored directly.
         rows: by task; programs with one mistake come first.
@@ -299,31 +286,55 @@ class Table(msgspec.Struct, frozen=True, kw_only=True):
 
     format_version: int = 1
     made_from: str = ""
+    words: dict[str, Entry] = {}
     within: dict[str, float] = {}
     rows: dict[str, tuple[Row, ...]] = {}
     right: dict[str, tuple[tuple[float, ...], ...]] = {}
     answers: dict[str, list[Any]] = {}
 
 
-@cache
-def read_table(path: Path) -> Table:
-    """The table of an exercise.
+def table_path(folder: Path) -> Path:
+    """Where the table of the exercise in this folder is kept, whether or not it is there."""
+    return (folder.parent if folder.parent.name == WARM_UPS else folder) / TABLE
+
+
+def read_table(folder: Path) -> Table | None:
+    """The table of the exercise in this folder; None if it has none.
 
     Raises:
-        ContentError: there is none, or it is damaged.
+        ContentError: it is damaged.
     """
+    path = table_path(folder)
+    return (
+        (tables_in(path).get(folder.name) if path.parent != folder else _own(path))
+        if path.is_file()
+        else None
+    )
+
+
+@cache
+def _own(path: Path) -> Table:
+    return _decoded(path, Table)
+
+
+@cache
+def tables_in(path: Path) -> dict[str, Table]:
+    """The tables of all warm-ups, by id."""
+    return _decoded(path, dict[str, Table])
+
+
+def forget_tables() -> None:
+    """Read them again when they are asked for: one was just written."""
+    _own.cache_clear()
+    tables_in.cache_clear()
+
+
+def _decoded(path: Path, kind: type[_Kind]) -> _Kind:
     try:
-        return msgspec.json.decode(path.read_bytes(), type=Table)
+        return msgspec.json.decode(path.read_bytes(), type=kind)
     except (OSError, msgspec.DecodeError) as error:
-        raise ContentError(
-            path, None, f"what wrong programs answer cannot be read: {error}.", help="`course author build`"
-        ) from None
-
-
-def table_bytes(table: Table) -> bytes:
-    """The table as it is written, one row a line."""
-    text = msgspec.json.format(msgspec.json.encode(table), indent=0).decode()
-    return (text.replace("\n", "").replace("]],[[", "]],\n[[") + "\n").encode()
+        problem = f"what is known about mistakes cannot be read: {error}."
+        raise ContentError(path, None, problem, help="`course author build`") from None
 
 
 def matching(table: Table, task: str, sums: Sequence[float]) -> tuple[Row, ...]:

@@ -6,7 +6,6 @@ import copy
 import math
 import types
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
 from types import ModuleType
 from typing import Any, Self
 
@@ -24,8 +23,6 @@ from course.scoring.explain.fingerprint import (
     read,
 )
 from course.scoring.explain.story import (
-    TABLE,
-    WORDS,
     Diagnosis,
     Failure,
     Story,
@@ -33,8 +30,6 @@ from course.scoring.explain.story import (
     Words,
     is_right,
     matching,
-    read_table,
-    read_words,
     said_once,
     story_of,
 )
@@ -55,18 +50,17 @@ _STRANGE = (TypeError, ValueError, ArithmeticError, LookupError, AttributeError,
 
 
 class Explainer:
-    """Diagnoses of one exercise. Without a ``diagnoses.toml``, each check keeps its own diagnosis.
+    """Diagnoses of one exercise. Without a table, each check keeps its own diagnosis.
 
     Args:
-        folder: of the exercise.
+        table: what is known about its mistakes.
         questions: its ``questions.py``; see ``answer_numbers``. Where one function returns several things,
             ``PARTS`` names the thing that each check is about. A mistake in one thing says nothing about
             another, so each thing has its own story.
     """
 
-    def __init__(self, folder: Path, questions: ModuleType) -> None:
-        self._words: Words = read_words(folder / WORDS)
-        self._table: Table = read_table(folder / TABLE)
+    def __init__(self, table: Table, questions: ModuleType) -> None:
+        self._words, self._table = Words(table.words), table
         self._questions = questions
         self._parts: Mapping[str, str] = getattr(questions, "PARTS", {})
 

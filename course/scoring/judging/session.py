@@ -26,7 +26,15 @@ from course.isolation.levels import Level, Spawner
 from course.isolation.probe import open_sandbox
 from course.isolation.session import LoadRefusedError
 from course.scoring import versions
-from course.scoring.checks.collected import Check, CollectedChecks, companion, companion_path, not_importable
+from course.scoring.checks.collected import (
+    Check,
+    CollectedChecks,
+    companion,
+    not_importable,
+    questions_of,
+    questions_path,
+)
+from course.scoring.explain.story import read_table
 from course.scoring.failures import ON_THE_MODEL, CheckFailed, Report, broke_at, finding_for, finding_of
 from course.scoring.judging.explaining import Again, Explainer
 from course.scoring.judging.outcomes import (
@@ -402,15 +410,14 @@ def check_files(exercise: Exercise, catalog: Catalog, scope: Scope) -> list[tupl
 
 def _explainer(exercise: Exercise) -> Explainer | None:
     """The explainer of failed checks, for an exercise whose words are data."""
-    if not (Path(exercise.folder) / "diagnoses.toml").is_file():
+    table = read_table(Path(exercise.folder))
+    if table is None:
         return None
-    questions = companion_path(exercise.id, "questions")
-    if not questions.is_file():
-        raise ContentError(questions, None, "it is missing, and diagnoses.toml is there.", help="Write it.")
     try:
-        return Explainer(Path(exercise.folder), companion(exercise.id, "questions"))
+        questions = questions_of(exercise.id)
     except Exception as error:  # noqa: BLE001 - whatever a file does that is imported
-        raise not_importable(error, questions) from None
+        raise not_importable(error, questions_path(exercise.id)) from None
+    return Explainer(table, questions) if questions else None
 
 
 def _open(imports: tuple[str, ...], terms: Terms, processor: int | None) -> tuple[Spawner, int | None]:

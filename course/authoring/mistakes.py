@@ -1,4 +1,4 @@
-"""The mistakes of an exercise, ``solutions/<id>/mistakes.py``: words beside the wrong programs they are true of.
+"""The mistakes of an exercise, ``solutions/<id>/mistakes.py``: words beside the wrong programs that they fit.
 
 The file makes one ``Mistakes`` and calls it once for each code::
 
@@ -41,7 +41,7 @@ class Variant:
         code: of its mistake.
         also: codes that it gets under other draws of a grading run and that are as true of it; "" for none.
         changed: texts of the function ``of`` in the model solution, each with what stands there instead.
-        text: definitions that win over those of the model solution.
+        text: another body of that function; without one, definitions that win over the model solution's.
         line: where it stands in its file.
     """
 
@@ -61,7 +61,8 @@ class Variant:
             ContentError: the text to change is not in the function, or is there twice; the result is not
                 Python. ``file`` and line are named.
         """
-        own = textwrap.dedent(self.text).strip("\n") if self.text else self._edited(model, file)
+        text = textwrap.dedent(self.text).strip("\n")
+        own = text if text and not self.of else self._changed(model, text, file)
         whole = f"{model.rstrip()}\n\n\n{own}\n"
         try:
             compile(whole, str(file), "exec")
@@ -70,7 +71,8 @@ class Variant:
             raise ContentError(file, self.line, said, help="Correct its definitions.") from None
         return whole
 
-    def _edited(self, model: str, file: Path) -> str:
+    def _changed(self, model: str, body: str, file: Path) -> str:
+        """The function ``of`` with its texts changed, or with another body."""
         found = [
             node
             for node in ast.parse(model).body
@@ -79,8 +81,11 @@ class Variant:
         if not found:
             said = f"{self.name}: the model solution has no function {self.of}."
             raise ContentError(file, self.line, said, help="Name the function with `of=`.")
-        lines = model.splitlines()[found[0].lineno - 1 : found[0].end_lineno]
-        text = "\n".join(lines)
+        node, lines = found[0], model.splitlines()
+        if body:
+            head = lines[node.lineno - 1 : node.body[0].lineno - 1]
+            return "\n".join([*head, textwrap.indent(body, "    ")])
+        text = "\n".join(lines[node.lineno - 1 : node.end_lineno])
         for old, new in self.changed.items():
             if (times := text.count(old)) != 1:
                 said = f"{self.name}: {old!r} stands {times} times in {self.of} of the model solution."
@@ -123,7 +128,7 @@ class Mistakes:
             looks_like, advice, kind: as in ``Entry``.
             true_too: other codes that are true of every program with this mistake.
         """
-        if looks_like:
+        if looks_like or advice:
             if code in self.words:
                 raise ValueError(f"{code} has words twice")
             self.words[code] = Entry(looks_like, advice, kind)
@@ -145,7 +150,7 @@ class Mistakes:
             family: gives a program for its terms, the right one if it is given none.
             wrong: by term, the code of each mistake and the form that the term has then.
         """
-        self._more.append(lambda: _with_terms(task, family, wrong))
+        self._more.append(lambda: with_terms(task, family, wrong))
 
     def more(self, programs: Callable[[], Iterable[Wrong]]) -> Callable[[], Iterable[Wrong]]:
         """Programs that a function of one's own gives; to be written above it."""
@@ -181,6 +186,10 @@ class Mistake:
         """
         return self._add(task, also, changed=changed, of=of or task, line=sys._getframe(1).f_lineno)
 
+    def body(self, task: str, text: str, *, of: str = "", also: tuple[str, ...] = ()) -> Mistake:
+        """The model solution with another body of a function; the arguments are those of ``edit``."""
+        return self._add(task, also, text=text, of=of or task, line=sys._getframe(1).f_lineno)
+
     def program(self, task: str, text: str, *, also: tuple[str, ...] = ()) -> Mistake:
         """The model solution with definitions of its own in the place of some."""
         return self._add(task, also, text=text, line=sys._getframe(1).f_lineno)
@@ -192,7 +201,7 @@ class Mistake:
         return self
 
 
-def _with_terms(
+def with_terms(
     task: str, family: Callable[..., Callable[..., Any]], wrong: Mapping[str, Mapping[str, Any]]
 ) -> Iterator[Wrong]:
     for term, forms in wrong.items():

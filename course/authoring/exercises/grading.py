@@ -41,8 +41,8 @@ from course.scoring.verdict import Verdict
 # ---
 # The submissions that prove an exercise: its stub, its solution, and the variants of the solution.
 #
-# A file in ``accepted/`` holds only the definitions that differ. It is appended to the model solution, so that
-# its definitions win; what ``mistakes.py`` has is put there likewise.
+# A file in ``accepted/`` holds only the definitions that differ. It is appended to the model solution, so
+# that its definitions win; what ``mistakes.py`` has is put there likewise.
 
 
 def instructors(catalog: Catalog) -> tuple[Path, Path]:
@@ -101,7 +101,7 @@ def blamed(path: Path) -> Iterator[None]:
 
 
 def accepted_sources(catalog: Catalog, exercise: Exercise) -> dict[str, bytes]:
-    """Correct but unusual programs, by what is unusual: files in ``accepted/``, and those of ``mistakes.py``."""
+    """Correct but unusual programs by name: files in ``accepted/``, and those of ``mistakes.py``."""
     solution = solution_path(catalog, exercise)
     found = {path.name: compose(solution, path) for path in accepted_files(catalog, exercise)}
     file, model = mistakes_path(solution.parent), read_text(solution)

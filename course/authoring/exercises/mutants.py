@@ -1,4 +1,4 @@
-"""Whether each wrong program is caught as on record: by that check, with its own diagnosis, and only there."""
+"""Whether each wrong program is caught as on record: by that check, under its own name, and only there."""
 
 from __future__ import annotations
 

@@ -99,7 +99,7 @@ class AuthorCoverage(Envelope, tag="course.author-coverage/1", frozen=True, kw_o
 class MutantRow(msgspec.Struct, frozen=True, kw_only=True):
     """A wrong program, ``file`` its name, and what the student who wrote it would read.
 
-    ``misconception`` says what the mistake looks like; "" where the course has words for it, not the exercise.
+    ``misconception`` says what the mistake looks like; "" where the words are the course's own.
     """
 
     exercise: str

@@ -26,3 +26,13 @@ def test_budgets(submission):
             message="The total is wrong.",
             help="Two errors of 3 and 4 make 5.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "total_error": [
+        ([3.0, 4.0],),
+        ([0.2, 0.5, 0.1],),
+        ([1.0, 1.0, 1.0, 1.0],),
+    ],
+}

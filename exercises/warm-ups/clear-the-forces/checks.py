@@ -28,3 +28,14 @@ def test_constant_force(submission):
             message="The speed after n steps is wrong.",
             help="Print the sum of the forces in every step: it should be the same each time.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "final_speed": [
+        (2.0, 3.0, 0.1, 10),
+        (0.5, 9.81, 0.01, 7),
+        (1.3, -2.0, 0.2, 1),
+        (1.3, -2.0, 0.2, 2),
+    ],
+}

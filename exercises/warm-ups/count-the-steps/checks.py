@@ -23,3 +23,16 @@ def test_quotients_beside_a_whole_number(submission):
             message="The number of steps is wrong.",
             help="Print duration / h with repr(): how far is it from a whole number?",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "steps_in": [
+        (0.3, 0.1),
+        (0.7, 0.1),
+        (2.1, 0.3),
+        (0.29, 0.01),
+        (2.0, 0.25),
+        (0.57, 0.19),
+    ],
+}

@@ -48,3 +48,17 @@ def test_beyond(submission):
             message="A reading beyond reach is wrong.",
             help="The reading never exceeds the limit.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "reading": [
+        (1.237, 0.01, 4.0),
+        (1.233, 0.01, 4.0),
+        (0.7, 0.25, 2.0),
+        (7.3, 0.01, 4.0),
+        (2.2, 0.25, 2.0),
+        (0.6, 0.25, 3.0),
+        (2.6, 0.5, 7.0),
+    ],
+}

@@ -26,3 +26,13 @@ def test_slopes(submission):
             message="The slope is wrong.",
             help="Write down the sum of (f - b v)^2, and ask where it is smallest in b.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "damping": [
+        ([1.0, 2.0, 3.0], [0.5, 1.0, 1.5]),
+        ([0.1, 1.0, 2.0], [0.4, 1.9, 4.2]),
+        ([-1.0, 0.5, 3.0, 2.0], [-2.5, 1.0, 5.5, 4.4]),
+    ],
+}

@@ -26,3 +26,13 @@ def test_factors(submission):
             message="The factor of one step is wrong.",
             help="Square x + h v and v - h (k/m) x, weight them as in the energy, and add.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "growth": [
+        (4.0, 1.0, 0.05),
+        (100.0, 2.5, 0.1),
+        (0.3, 6.0, 1.0),
+    ],
+}

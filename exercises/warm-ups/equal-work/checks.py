@@ -26,3 +26,13 @@ def test_steps(submission):
             message="The step of the other engine is wrong.",
             help="Count the iterations that the first engine makes in a simulated second.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "fair_step": [
+        (0.01, 50, 10),
+        (0.002, 8, 20),
+        (0.005, 30, 7),
+    ],
+}

@@ -28,3 +28,15 @@ def test_errors(submission):
             message="That is not the error that is left.",
             help="Say the exact result is 0 and fine is 1. What is coarse then, with this factor and order?",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "error_left": [
+        (10.4, 10.1, 2.0, 2.0),
+        (10.4, 10.2, 2.0, 1.0),
+        (-3.0, -2.68, 3.0, 2.0),
+        (1.0, 1.255, 4.0, 4.0),
+        (7.0, 6.0, 10.0, 1.5),
+    ],
+}

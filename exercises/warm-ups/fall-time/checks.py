@@ -47,3 +47,14 @@ def test_on_the_moon(submission):
             message="The time of a fall on the Moon is wrong.",
             help="Use the g that was given.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "fall_time": [
+        (1.0, 9.81),
+        (7.3, 9.81),
+        (20.0, 1.62),
+        (0.4, 3.7),
+    ],
+}

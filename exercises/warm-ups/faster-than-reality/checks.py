@@ -26,3 +26,13 @@ def test_factors(submission):
             message="The real-time factor is wrong.",
             help="Work out first how much time passed inside the simulation.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "real_time_factor": [
+        (1000, 0.001, 0.5),
+        (24000, 0.0025, 3.1),
+        (313, 0.013, 12.7),
+    ],
+}

@@ -27,3 +27,14 @@ def test_frames(submission):
             message="The steps of a frame, or the time left over, are wrong.",
             help="All time that goes into the account must come out as steps or stay in it.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "ticks": [
+        (0.025, 0.01, 0.006),
+        (0.004, 0.01, 0.003),
+        (0.1, 0.007, 0.0045),
+        (0.033, 0.02, 0.0195),
+    ],
+}

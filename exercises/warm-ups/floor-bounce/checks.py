@@ -50,3 +50,17 @@ def test_on_the_way_up(submission):
             message="A ball that was already rising has another velocity now.",
             help="Ask first whether the ball is moving into the floor.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "after_floor": [
+        (-3.0, 0.8),
+        (2.0, 0.8),
+        (-0.25, 0.5),
+        (0.0, 0.4),
+        (0.5, 0.3),
+        (-1.0, 1.0),
+        (-1.3, 0.0),
+    ],
+}

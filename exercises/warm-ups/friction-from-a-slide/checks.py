@@ -26,3 +26,13 @@ def test_slides(submission):
             message="The coefficient is wrong.",
             help="Energy at the start equals force times distance.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "friction_coefficient": [
+        (2.0, 0.5, 9.81),
+        (1.5, 1.2, 9.81),
+        (1.0, 0.8, 1.62),
+    ],
+}

@@ -27,3 +27,14 @@ def test_torques(submission):
             message="The torque is wrong.",
             help=("Where does gravity act on a uniform bar, and how far to the side of the motor is that?"),
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "holding_torque": [
+        (2.0, 1.0, 0.0, 9.81),
+        (3.0, 0.4, 0.7, 9.81),
+        (1.5, 0.8, -0.4, 1.62),
+        (1.0, 1.0, 2.0, 9.81),
+    ],
+}

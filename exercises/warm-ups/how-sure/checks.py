@@ -26,3 +26,13 @@ def test_samples(submission):
             message="The standard error is wrong.",
             help="Compute the standard deviation of one value first, then that of the mean.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "standard_error": [
+        ([1.0, 3.0],),
+        ([2.0, 4.0, 4.0, 6.0],),
+        ([9.8, 9.9, 9.7, 9.8, 10.1, 9.6, 9.8, 9.9, 9.7],),
+    ],
+}

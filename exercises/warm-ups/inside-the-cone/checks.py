@@ -50,3 +50,15 @@ def test_beyond(submission):
             message="A friction impulse beyond its limit is wrong.",
             help="Keep the direction, and give it the length of the limit.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "friction": [
+        ([0.3, -0.4], 2.0, 0.5),
+        ([3.0, -4.0], 2.0, 0.5),
+        ([0.5, 1.2], 1.0, 0.65),
+        ([-1.0, 0.0], 3.0, 0.2),
+        ([0.7, 0.7], 2.0, 0.45),
+    ],
+}

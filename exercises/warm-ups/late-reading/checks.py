@@ -24,3 +24,15 @@ def test_readings(submission):
             message="That is not the newest value that has arrived.",
             help="Write down when each value arrives, and draw a line at now.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "seen": [
+        ([0.0, 1.0, 2.0, 3.0], [5.0, 6.0, 7.0, 8.0], 0.5, 2.75),
+        ([0.0, 1.0, 2.0, 3.0], [5.0, 6.0, 7.0, 8.0], 0.5, 2.5),
+        ([0.0, 1.0, 2.0, 3.0], [5.0, 6.0, 7.0, 8.0], 0.5, 2.25),
+        ([0.0, 1.0], [5.0, 6.0], 0.5, 0.25),
+        ([0.0, 0.25, 0.5, 0.75], [1.0, 2.0, 3.0, 4.0], 0.5, 0.75),
+    ],
+}

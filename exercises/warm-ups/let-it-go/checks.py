@@ -26,3 +26,13 @@ def test_accelerations(submission):
             message="The angular acceleration is wrong.",
             help="Add the torques first, then divide by the moment of inertia about the end.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "angular_acceleration": [
+        (0.0, 2.0, 1.0, 0.0, 9.81),
+        (12.0, 2.0, 1.0, 0.3, 9.81),
+        (-1.0, 0.5, 0.6, -1.0, 1.62),
+    ],
+}

@@ -26,3 +26,13 @@ def test_paths(submission):
             message="The root mean square is wrong.",
             help="Go through its name backwards: square, mean, root.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "rms": [
+        ([0.0, 1.0], [0.3, 0.6]),
+        ([1.0, 2.0, 3.0], [1.1, 1.8, 3.2]),
+        ([0.0, 0.0, 0.0, 0.0, 0.0], [1.0, -1.0, 2.0, -2.0, 0.5]),
+    ],
+}

@@ -26,3 +26,13 @@ def test_steps(submission):
             message="The state after a step is wrong.",
             help="Write down x, v and a before the step, and use only these.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "step_ahead": [
+        (0.0, 2.0, -9.81, 0.1),
+        (1.5, -0.5, 3.0, 0.25),
+        (10.0, 1.3, 0.7, 0.9),
+    ],
+}

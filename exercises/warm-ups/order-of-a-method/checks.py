@@ -27,3 +27,14 @@ def test_orders(submission):
             message="The order is wrong.",
             help="By which factor did the step shrink, and by which the error?",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "observed_order": [
+        (0.1, 0.02, 0.05, 0.01),
+        (0.1, 0.04, 0.05, 0.01),
+        (0.1, 0.01, 0.025, 3.9e-05),
+        (0.2, 0.3, 0.06, 0.05),
+    ],
+}

@@ -49,3 +49,14 @@ def test_within_slop(submission):
             message="Bodies that overlap by no more than the slop are moved.",
             help="Within the slop nothing is pushed: the speed is zero, neither positive nor negative.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "push_out": [
+        (0.01, 0.01, 0.2, 0.002),
+        (0.05, 0.004, 0.1, 0.01),
+        (0.001, 0.01, 0.2, 0.002),
+        (-0.03, 0.01, 0.2, 0.002),
+    ],
+}

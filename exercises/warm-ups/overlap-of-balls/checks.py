@@ -26,3 +26,13 @@ def test_depths(submission):
             message="The depth is wrong.",
             help="Draw the two balls on a line: three lengths have to be compared.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "overlap": [
+        ([0.0, 0.0], [0.3, 0.4], 0.4, 0.3),
+        ([1.0, -2.0], [4.0, 2.0], 1.5, 2.0),
+        ([0.2, 0.1], [0.2, 0.3], 0.5, 0.1),
+    ],
+}

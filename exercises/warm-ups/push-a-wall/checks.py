@@ -28,3 +28,15 @@ def test_masses(submission):
             message="That is not the mass that the wall feels.",
             help="Work from the right: x with M x = Jᵀ, then J x, then one over it. The length must cancel.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "felt_mass": [
+        (3.0, 1.0, 2.0, 0.0),
+        (3.0, 1.0, 2.0, 0.5),
+        (3.0, 1.0, 0.4, 0.5),
+        (0.5, 2.0, 1.5, -1.0),
+        (1.0, 3.0, 0.7, 1.2),
+    ],
+}

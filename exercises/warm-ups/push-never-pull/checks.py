@@ -28,3 +28,16 @@ def test_corrections(submission):
             message="The correction is wrong.",
             help="Look at the sum after the correction, not at the correction.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "applied": [
+        (3.0, 2.0),
+        (3.0, -1.0),
+        (3.0, -5.0),
+        (0.0, -2.0),
+        (0.5, -0.25),
+        (0.7, 0.4),
+    ],
+}

@@ -23,3 +23,14 @@ def test_choices(submission):
             message="That is not the controller with the smallest worst cost.",
             help="Write the worst cost of each controller beside it.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "robust": [
+        ([[1.0, 9.0, 1.0], [4.0, 5.0, 6.0], [0.0, 7.0, 8.0]],),
+        ([[3.0, 3.5], [1.0, 4.0], [3.6, 3.7]],),
+        ([[2.0, 8.0], [8.0, 1.0], [7.0, 7.5], [9.0, 0.0]],),
+        ([[5.0, 1.0], [2.0, 5.0]],),
+    ],
+}

@@ -49,3 +49,13 @@ def test_the_same_step(submission):
             "The step stays as it is, and the numbers change.",
             "With the old step the same spring and damper give the old numbers.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "same_floor": [
+        (0.75, 0.0025, 0.01, 0.005),
+        (0.4, 0.002, 0.004, 0.01),
+        (0.2, 0.01, 0.001, 0.001),
+    ],
+}

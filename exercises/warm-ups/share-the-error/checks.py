@@ -27,3 +27,14 @@ def test_corrections(submission):
             message="The corrected position is wrong.",
             help="With the share 0 the prediction must come out, with 1 the measurement.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "corrected": [
+        (1.0, 1.4, 0.25),
+        (2.0, 1.0, 0.9),
+        (-0.5, 0.7, 1.0),
+        (3.0, 8.0, 0.1),
+    ],
+}

@@ -62,3 +62,18 @@ def test_singular_poses(submission):
             input=dict(zip(("angle", "length", "vx", "vy"), args, strict=True)),
             help="math.cos(math.pi / 2) is not exactly zero: compare |cos(angle)| with 1e-9.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "joint_speeds": [
+        (0.0, 2.0, 0.0, 1.0),
+        (0.5, 2.0, 0.3, 0.0),
+        (0.5, 2.0, 0.3, 0.4),
+        (2.5, 0.8, -0.2, 0.6),
+        (-1.2, 1.5, 1.0, -0.5),
+        (1.5707963267948966, 2.0, 0.3, 0.4),
+        (-1.5707963267948966, 1.0, 0.0, 1.0),
+        (1.5707963267948966, 2.0, 0.3, 0.0),
+    ],
+}

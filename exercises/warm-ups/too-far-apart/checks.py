@@ -26,3 +26,13 @@ def test_distances(submission):
             message="The difference in units of its uncertainty is wrong.",
             help="What is the uncertainty of a difference of two uncertain numbers?",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "distance_in_doubts": [
+        (1.2, 0.03, 1.25, 0.04),
+        (5.0, 0.2, 4.0, 0.1),
+        (0.0, 1.0, 2.6, 2.4),
+    ],
+}

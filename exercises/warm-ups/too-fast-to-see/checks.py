@@ -26,3 +26,14 @@ def test_speeds(submission):
             message="The largest speed is wrong.",
             help="How far does the ball travel while it overlaps the wall?",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "fastest": [
+        (0.1, 0.05, 0.01),
+        (0.02, 0.003, 0.004),
+        (0.5, 0.0, 0.02),
+        (0.0, 0.2, 0.1),
+    ],
+}

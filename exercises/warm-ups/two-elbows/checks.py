@@ -61,3 +61,18 @@ def test_out_of_reach(submission):
             input=dict(zip(("x", "y", "length"), args, strict=True)),
             help="How far is the point from the rail, above or below? The rod must be as long as that.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "carriages": [
+        (10.0, 3.0, 5.0),
+        (-2.0, 1.5, 2.5),
+        (0.7, -0.3, 0.5),
+        (2.0, 1.0, 3.0),
+        (1.25, 2.0, 2.0),
+        (0.5, -0.25, 0.25),
+        (0.0, 2.5, 2.0),
+        (4.0, -0.75, 0.5),
+    ],
+}

@@ -29,3 +29,16 @@ def test_rules(submission):
             message="The coefficient of a pair is wrong.",
             help="Apply exactly the rule that is given.",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "pair_friction": [
+        (0.9, 0.1, "product"),
+        (0.9, 0.1, "mean"),
+        (0.9, 0.1, "larger"),
+        (0.2, 0.6, "larger"),
+        (0.2, 0.6, "mean"),
+        (1.2, 0.5, "product"),
+    ],
+}

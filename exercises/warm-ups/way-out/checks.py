@@ -56,3 +56,19 @@ def test_apart(submission):
         "You move a box that overlaps nothing.",
         "They overlap only if they do so along x and along y.",
     )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "way_out": [
+        (0.5, -0.75, 2.0, 1.0),
+        (1.5, 0.25, 2.0, 1.0),
+        (-1.75, 0.5, 2.0, 1.0),
+        (0.5, 0.75, 1.0, 3.0),
+        (-0.25, 2.5, 1.0, 3.0),
+        (-0.499, 0.998, 1.0, 1.0),
+        (3.0, 0.25, 2.0, 1.0),
+        (0.5, -1.5, 2.0, 1.0),
+        (-5.0, 5.0, 2.0, 1.0),
+    ],
+}

@@ -27,3 +27,14 @@ def test_positions(submission):
             message="The position of the hand is wrong.",
             help="Draw the arm with a1 = 90 degrees and a2 = 0: where does the second link point?",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "hand": [
+        (0.3, 0.5, 1.0, 0.7),
+        (-0.8, 2.0, 0.4, 0.6),
+        (1.2, -0.4, 0.5, 0.55),
+        (0.9, 0.0, 1.0, 1.0),
+    ],
+}

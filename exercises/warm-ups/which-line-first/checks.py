@@ -49,3 +49,13 @@ def test_quarter(submission):
         message="After a quarter of a period the mass is not where a mass on a spring would be.",
         help="Keep the force -k x and the two sums; change only the order.",
     )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "swing": [
+        (1.0, 0.5, 4.0, 1.0, 0.05, 1),
+        (1.0, 0.5, 4.0, 1.0, 0.05, 2),
+        (0.3, -0.2, 9.0, 2.0, 0.1, 5),
+    ],
+}

@@ -27,3 +27,16 @@ def test_drifts(submission):
             message="The worst drift is wrong.",
             help="Which of the values is furthest from the first?",
         )
+
+
+#: Calls that tell wrong programs apart.
+QUESTIONS = {
+    "worst_drift": [
+        ([2.0, 2.2, 1.7, 2.1],),
+        ([-5.0, -4.0, -5.5, -5.0],),
+        ([10.0, 10.0, 9.0, 8.5],),
+        ([4.0, 5.0, 3.5],),
+        ([1.0, 5.0, 1.0],),
+        ([10.0, 11.0, 12.0, 9.0],),
+    ],
+}

@@ -1,0 +1,2171 @@
+"""Mistakes in `collisions`: words beside the programs that they are true of."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from course.authoring.mistakes import Mistakes
+from course.scoring import kit
+
+mistakes = Mistakes()
+
+mistakes(
+    "NORMAL_REVERSED",
+    "The normal points the other way: from b to a, or into the solid.",
+    "The normal points from a to b: (xb - xa) over its length. A plane's normal is the one you are given.",
+).program(
+    "detect_sphere_sphere",
+    """
+        _right = detect_sphere_sphere
+
+
+        def detect_sphere_sphere(xa, ra, xb, rb):
+            touching, normal, depth = _right(xa, ra, xb, rb)
+            return touching, -normal, depth
+    """,
+).body(
+    "detect_sphere_plane",
+    """
+        depth = r - (x - point) @ normal
+        return bool(depth >= 0), -normal, depth
+    """,
+)
+mistakes(
+    "DEPTH_SIGN_FLIPPED",
+    "Your code returns the gap instead of the depth: it is positive when the bodies are apart and negative when they overlap.",
+    "depth = ra + rb - distance, or r - height: positive when they overlap, negative when they are apart.",
+).body(
+    "detect_sphere_sphere",
+    """
+        apart = xb - xa
+        distance = np.linalg.norm(apart)
+        gap = distance - ra - rb
+        return bool(gap <= 0), apart / distance if distance else np.eye(1, len(xa))[0], gap
+    """,
+)
+mistakes(
+    "DEPTH_CLAMPED",
+    "The depth is cut off at some value, so it no longer says how far apart two bodies are, or how deep one lies in the other.",
+    "Return the depth as you compute it, with its sign.",
+).program(
+    "detect_sphere_sphere",
+    """
+        _right = detect_sphere_sphere
+
+
+        def detect_sphere_sphere(xa, ra, xb, rb):
+            touching, normal, depth = _right(xa, ra, xb, rb)
+            return touching, normal, max(depth, 0.0)
+    """,
+)
+mistakes(
+    "NORMAL_UNDEFINED",
+    "Where the two centres coincide, the normal is nan: zero is divided by zero.",
+    "Test for a distance of zero first and return any unit vector there, such as the first axis.",
+    kind="nan",
+).body(
+    "detect_sphere_sphere",
+    """
+        apart = xb - xa
+        distance = np.linalg.norm(apart)
+        return bool(distance <= ra + rb), apart / distance, ra + rb - distance
+    """,
+)
+mistakes(
+    "DISTANCE_UNSIGNED",
+    "The height above the plane has lost its sign: a centre inside the solid counts as outside.",
+    "Use it with its sign, without abs(): inside the solid (x - point) . normal is negative, and the depth is then larger than r.",
+).body(
+    "detect_sphere_plane",
+    """
+        depth = r - abs((x - point) @ normal)
+        return bool(depth >= 0), normal, depth
+    """,
+)
+mistakes(
+    "PLANE_POINT_IGNORED",
+    "The plane's point is left out, or added where it should be subtracted.",
+    "Measure the height from a point of the plane: (x - point) . normal.",
+).body(
+    "detect_sphere_plane",
+    """
+        depth = r - x @ normal
+        return bool(depth >= 0), normal, depth
+    """,
+)
+mistakes(
+    "PLANE_ASSUMED_LEVEL",
+    "Only one coordinate counts, as if every plane were a level floor.",
+    "The height above a tilted plane is the dot product (x - point) . normal.",
+).body(
+    "detect_sphere_plane",
+    """
+        depth = r - (x[-1] - point[-1])
+        return bool(depth >= 0), normal, depth
+    """,
+)
+mistakes(
+    "RESTITUTION_SQUARED",
+    "The bodies part at e squared times the speed of approach.",
+    "e is a ratio of speeds: use it as it is given. It is the energy that scales with e squared.",
+).edit(
+    "impulse_1d",
+    {
+        "_impulse(ma, mb, va - vb, restitution)": "(1 + restitution**2) * (va - vb) / (1 / ma + 1 / mb) if va > vb else 0.0"
+    },
+)
+mistakes(
+    "MASS_NOT_INVERSE",
+    "Something else made from the masses stands where the inverse masses 1/ma and 1/mb belong.",
+    "J = (1 + e) s / (1/ma + 1/mb), and each velocity changes by J over its own mass.",
+).edit(
+    "impulse_1d",
+    {
+        "_impulse(ma, mb, va - vb, restitution)": "(1 + restitution) * (va - vb) / (ma + mb) if va > vb else 0.0"
+    },
+).body(
+    "resolve",
+    """
+        impulse = _impulse(ma, mb, (va - vb) @ normal, restitution) * normal
+        return va - impulse * ma, vb + impulse * mb
+    """,
+).body(
+    "impulse_1d",
+    """
+        s = va - vb
+        if s <= 0:
+            return 0.0
+        return (1 + restitution) * s * (1 / ma + 1 / mb)
+    """,
+)
+mistakes(
+    "IMPULSE_ON_SEPARATING",
+    "Bodies that do not approach each other get an impulse.",
+    "Act only if (va - vb) . n > 0, on a line if va > vb. Bodies that move apart no longer press on each other: neither an impulse nor friction acts on them.",
+    kind="fact",
+).edit(
+    "impulse_1d",
+    {"_impulse(ma, mb, va - vb, restitution": "(1 + restitution) * (va - vb) / (1 / ma + 1 / mb"},
+).body(
+    "resolve",
+    """
+        impulse = (1 + restitution) * ((va - vb) @ normal) / (1 / ma + 1 / mb) * normal
+        return va - impulse / ma, vb + impulse / mb
+    """,
+).edit(
+    "resolve_with_friction",
+    {
+        "n  # of b, seen from a, across the normal": "n",
+        "(mu * along, speed /": "(mu * _impulse(ma, mb, abs(closing), restitution), speed /",
+    },
+)
+mistakes(
+    "INFINITE_MASS_NAN",
+    "With an infinite mass the result is nan, as inf/inf, 0*inf and inf - inf are.",
+    "Use inverse masses only: 1/inf is 0.0, so a wall needs no special case. A product such as ma*mb becomes infinite.",
+    kind="nan",
+).edit(
+    "impulse_1d",
+    {
+        "_impulse(ma, mb, va - vb, restitution)": "(1 + restitution) * (va - vb) * ma * mb / (ma + mb) if va > vb else 0.0"
+    },
+).edit(
+    "simulate_head_on",
+    {"_impulse(m[0], m[1], closing, restitution": "(1 + restitution) * closing * m[0] * m[1] / (m[0] + m[1]"},
+)
+mistakes(
+    "SPEEDS_NOT_RELATIVE",
+    "The speed of approach is not the difference of the two velocities.",
+    "It is va - vb (in space: its component along n), with signs: a body that moves away is approached more slowly.",
+).edit(
+    "impulse_1d",
+    {
+        "_impulse(ma, mb, va - vb, restitution)": "(1 + restitution) * (abs(va) + abs(vb)) / (1 / ma + 1 / mb) if va > vb else 0.0"
+    },
+)
+mistakes(
+    "APPROACH_REVERSED",
+    "Your code acts on bodies that move apart, and leaves alone those that run into each other.",
+    "They approach where the speed of approach, va - vb (in space: its component along n), is positive.",
+).body(
+    "resolve",
+    """
+        closing = (va - vb) @ normal
+        if closing >= 0:
+            return va, vb
+        impulse = (1 + restitution) * closing / (1 / ma + 1 / mb) * normal
+        return va - impulse / ma, vb + impulse / mb
+    """,
+)
+mistakes(
+    "THIRD_LAW_MISSING",
+    "The two bodies do not receive equal and opposite impulses, so momentum is not conserved.",
+    "What b gains, a must lose: va - J/ma n and vb + J/mb n with the same J.",
+).program(
+    "resolve",
+    """
+        _right = resolve
+
+
+        def resolve(ma, mb, va, vb, normal, restitution):
+            return va, _right(ma, mb, va, vb, normal, restitution)[1]
+    """,
+)
+mistakes(
+    "BLOW_NOT_ALONG_NORMAL",
+    "The impulse acts in a direction other than the normal, such as that of the relative velocity. Smooth bodies can push each other only along the normal.",
+    "Compute the speed of approach (va - vb) . n, which is one number, and apply the impulse along n. Across the normal it changes nothing.",
+).body(
+    "resolve",
+    """
+        u = va - vb
+        closing = u @ normal
+        if closing <= 0:
+            return va, vb
+        impulse = (1 + restitution) * closing / (1 / ma + 1 / mb) * u / np.linalg.norm(u)
+        return va - impulse / ma, vb + impulse / mb
+    """,
+)
+mistakes(
+    "EACH_BODY_ALONE",
+    "Each body rebounds with its own velocity, as if it had hit a wall at rest.",
+    "An impact depends only on the relative velocity: seen from a moving train it must be the same impact.",
+).body(
+    "resolve",
+    """
+        if (va - vb) @ normal <= 0:
+            return va, vb
+        return tuple(v - (1 + restitution) * (v @ normal) * normal for v in (va, vb))
+    """,
+)
+mistakes(
+    "MUTATES_INPUT",
+    "An argument was changed that the caller still needs as it was.",
+    "Write a = a - b, which makes a new array: a -= b and a[0] = b change the caller's array. An array that you fill or change later should be a copy.",
+    kind="fact",
+).body(
+    "resolve",
+    """
+        impulse = _impulse(ma, mb, (va - vb) @ normal, restitution) * normal
+        va -= impulse / ma
+        vb += impulse / mb
+        return va, vb
+    """,
+).body(
+    "detect_sphere_sphere",
+    """
+        xb -= xa
+        distance = float(np.linalg.norm(xb))
+        normal = xb / distance if distance > 0 else np.eye(1, len(xb))[0]
+        depth = ra + rb - distance
+        return depth >= 0, normal, depth
+    """,
+).body(
+    "detect_sphere_plane",
+    """
+        x -= point
+        depth = r - float(x @ normal)
+        return depth >= 0, normal, depth
+    """,
+).program(
+    "time_of_impact",
+    """
+        _right_moment = time_of_impact
+
+
+        def time_of_impact(xa, va, ra, xb, vb, rb, dt):
+            xb -= xa
+            vb -= va
+            return _right_moment(np.zeros(len(xb)), np.zeros(len(vb)), ra, xb, vb, rb, dt)
+    """,
+)
+mistakes(
+    "BLOW_TOO_STRONG",
+    "The bodies separate faster than at e times the speed of approach.",
+    "Along the normal only J acts, J = (1 + e) s / (1/ma + 1/mb). Is something added to it, or does friction have a part along n?",
+    kind="consequence",
+).body(
+    "resolve",
+    """
+        closing = (va - vb) @ normal
+        if closing <= 0:
+            return va, vb
+        impulse = ((1 + restitution) * closing + 0.05) / (1 / ma + 1 / mb) * normal
+        return va - impulse / ma, vb + impulse / mb
+    """,
+)
+mistakes(
+    "FRICTION_NOT_CLAMPED",
+    "The friction impulse is always mu J, even where less would stop the slip. It then reverses the slip.",
+    "Take the smaller of mu J and |vt| / (1/ma + 1/mb): friction can stop a slip but never reverses it.",
+).body(
+    "resolve_with_friction",
+    """
+        closing = (va - vb) @ normal
+        if closing <= 0:
+            return va, vb
+        give = 1 / ma + 1 / mb
+        along = (1 + restitution) * closing / give
+        slip = vb - va + closing * normal
+        speed = np.linalg.norm(slip)
+        impulse = along * normal - (mu * along * slip / speed if speed else 0.0)
+        return va - impulse / ma, vb + impulse / mb
+    """,
+)
+mistakes(
+    "FRICTION_ALWAYS_STICKS",
+    "Wherever there is friction, it stops the slip, however fast the bodies slide and however small mu is.",
+    "Friction is limited to mu J: take the smaller of mu J and |vt| / (1/ma + 1/mb).",
+).body(
+    "resolve_with_friction",
+    """
+        closing = (va - vb) @ normal
+        if closing <= 0:
+            return va, vb
+        give = 1 / ma + 1 / mb
+        along = (1 + restitution) * closing / give
+        slip = vb - va + closing * normal
+        speed = np.linalg.norm(slip)
+        impulse = along * normal - (slip / give if mu else 0.0)
+        return va - impulse / ma, vb + impulse / mb
+    """,
+)
+mistakes(
+    "FRICTION_PER_AXIS",
+    "Each coordinate of the slip is limited separately, which turns Coulomb's cone into a box: friction is then too strong along the diagonals.",
+    "Limit the length of the tangential impulse, and keep its direction, which is against vt.",
+).body(
+    "resolve_with_friction",
+    """
+        closing = (va - vb) @ normal
+        if closing <= 0:
+            return va, vb
+        give = 1 / ma + 1 / mb
+        along = (1 + restitution) * closing / give
+        slip = vb - va + closing * normal
+        speed = np.linalg.norm(slip)
+        impulse = along * normal - np.clip(slip / give, -mu * along, mu * along)
+        return va - impulse / ma, vb + impulse / mb
+    """,
+)
+mistakes(
+    "FRICTION_DRIVES",
+    "Friction acts in the direction of the slip and makes it faster.",
+    "Friction acts against the slip. If vt is the slip of b as seen from a, then b gets an impulse along -vt.",
+    kind="consequence",
+).body(
+    "resolve_with_friction",
+    """
+        closing = (va - vb) @ normal
+        if closing <= 0:
+            return va, vb
+        give = 1 / ma + 1 / mb
+        along = (1 + restitution) * closing / give
+        slip = vb - va + closing * normal
+        speed = np.linalg.norm(slip)
+        across = min(mu * along, speed / give)
+        impulse = along * normal + (across * slip / speed if speed else 0.0)
+        return va - impulse / ma, vb + impulse / mb
+    """,
+)
+mistakes(
+    "NO_SLIDING_NAN",
+    "Where nothing slides, your code returns nan. The slip has no direction there: perhaps it is divided by its length.",
+    "Divide by the length of vt only if it is not zero, and by nothing else that may be zero.",
+    kind="nan",
+).body(
+    "resolve_with_friction",
+    """
+        closing = (va - vb) @ normal
+        if closing <= 0:
+            return va, vb
+        give = 1 / ma + 1 / mb
+        along = (1 + restitution) * closing / give
+        slip = vb - va + closing * normal
+        speed = np.linalg.norm(slip)
+        impulse = along * normal - min(mu * along, speed / give) * slip / speed
+        return va - impulse / ma, vb + impulse / mb
+    """,
+)
+mistakes(
+    "FRICTION_THIRD_LAW_MISSING",
+    "The friction impulses on the two bodies are not equal and opposite.",
+    "Across the normal, a gets the same impulse as b with the opposite sign.",
+).body(
+    "resolve_with_friction",
+    """
+        closing = (va - vb) @ normal
+        if closing <= 0:
+            return va, vb
+        give = 1 / ma + 1 / mb
+        along = (1 + restitution) * closing / give
+        slip = vb - va + closing * normal
+        speed = np.linalg.norm(slip)
+        across = min(mu * along, speed / give) * slip / speed if speed else 0.0 * slip
+        return va - along * normal / ma, vb + (along * normal - across) / mb
+    """,
+)
+mistakes(
+    "FRICTION_NOT_RELATIVE",
+    "The slip is not the difference of the two velocities: it is computed from one of them alone, or from their sum.",
+    "Friction depends on the relative velocity: vt is the component of vb - va across the normal.",
+).body(
+    "resolve_with_friction",
+    """
+        closing = (va - vb) @ normal
+        if closing <= 0:
+            return va, vb
+        give = 1 / ma + 1 / mb
+        along = (1 + restitution) * closing / give
+        slip = (va @ normal) * normal - va
+        speed = np.linalg.norm(slip)
+        across = min(mu * along, speed / give) * slip / speed if speed else 0.0 * slip
+        impulse = along * normal - across
+        return va - impulse / ma, vb + impulse / mb
+    """,
+)
+mistakes(
+    "TIME_OF_IMPACT_LATE_ROOT",
+    "The later root is taken, at which the bodies, having passed through each other, would come apart.",
+    "The quadratic has two roots. Bodies that are apart touch first at the smaller one, with the minus sign before the square root. If they overlap and approach, the answer is 0.0.",
+).body(
+    "time_of_impact",
+    """
+        x, v = xb - xa, vb - va
+        a, b, c = v @ v, x @ v, x @ x - (ra + rb) ** 2
+        if b >= 0:
+            return None
+        if c <= 0:
+            return 0.0
+        if b * b < a * c:
+            return None
+        t = (-b + math.sqrt(b * b - a * c)) / a
+        return t if t <= dt else None
+    """,
+)
+mistakes(
+    "TUNNELS",
+    "Only some instants are looked at, so a contact between two of them is missed, or found late.",
+    "Compute when bodies that approach touch (|dx + dv t| = ra + rb is a quadratic equation in t; on a line it is the gap over the speed of approach), and compare that time with the step. That they overlap at no sample proves nothing.",
+).program(
+    "time_of_impact",
+    """
+        _right = time_of_impact
+
+
+        def time_of_impact(xa, va, ra, xb, vb, rb, dt):
+            apart = xb + vb * dt - xa - va * dt
+            now = np.linalg.norm(xb - xa) <= ra + rb
+            return _right(xa, va, ra, xb, vb, rb, dt) if now or np.linalg.norm(apart) <= ra + rb else None
+    """,
+).program(
+    "time_of_impact",
+    """
+        _right = time_of_impact
+
+
+        def time_of_impact(xa, va, ra, xb, vb, rb, dt):
+            x, v = xb - xa, vb - va
+            if x @ v >= 0:
+                return None
+            t = np.linspace(0.0, dt, 1001)
+            hits = np.flatnonzero(np.linalg.norm(x + t[:, None] * v, axis=1) <= ra + rb)
+            return float(t[hits[0]]) if len(hits) else None
+    """,
+).body(
+    "simulate_head_on",
+    """
+        n = round(t_end / h)
+        x, v = np.array(x0, float), np.array(v0, float)
+        rows = [(x, v)]
+        for i in range(n):
+            gap, closing = x[1] - x[0] - 2 * radius, v[0] - v[1]
+            ahead, left = x + v * h, h
+            if closing > 0 and gap <= closing * h and ahead[1] - ahead[0] > -2 * radius:
+                x, left = x + v * (gap / closing), h - gap / closing
+                j = (1 + restitution) * (v[0] - v[1]) / (1 / m[0] + 1 / m[1])
+                v = v + np.array([-j / m[0], j / m[1]])
+            x = x + v * left
+            rows.append((x, v))
+        return h * np.arange(n + 1), np.array([r[0] for r in rows]), np.array([r[1] for r in rows])
+    """,
+)
+mistakes(
+    "IMPACT_BEYOND_STEP",
+    "A contact that happens after the end of the step is reported.",
+    "Only times up to dt count; return None for a later contact.",
+    kind="consequence",
+).program(
+    "time_of_impact",
+    """
+        _right = time_of_impact
+
+
+        def time_of_impact(xa, va, ra, xb, vb, rb, dt):
+            return _right(xa, va, ra, xb, vb, rb, math.inf)
+    """,
+)
+mistakes(
+    "MISSES_COUNT_AS_HITS",
+    "The time is a gap over a speed, as if all bodies met head on. Bodies that pass beside each other can then count as hits.",
+    "Use vectors: |dx + dv t| = ra + rb, squared, is a quadratic in t. If it has no real root, the bodies miss each other.",
+).body(
+    "time_of_impact",
+    """
+        x, v = xb - xa, vb - va
+        if x @ v >= 0:
+            return None
+        t = max(np.linalg.norm(x) - ra - rb, 0.0) / np.linalg.norm(v)
+        return float(t) if t <= dt else None
+    """,
+)
+mistakes(
+    "OVERLAP_ALWAYS_HITS",
+    "Bodies that overlap but do not approach are reported as colliding.",
+    "Return None for them: they need no impulse.",
+    kind="consequence",
+).program(
+    "time_of_impact",
+    """
+        _right = time_of_impact
+
+
+        def time_of_impact(xa, va, ra, xb, vb, rb, dt):
+            return 0.0 if np.linalg.norm(xb - xa) <= ra + rb else _right(xa, va, ra, xb, vb, rb, dt)
+    """,
+).edit(
+    "time_of_impact",
+    {
+        "if nearing <= 0:": "if nearing < 0:",
+        "    # |x + v t| = R is a t² - 2 b t + c = 0 with b > 0; the first root, written without a difference.": "",
+        "if b * b < a * c:": "if a == 0 or b * b < a * c:",
+    },
+)
+mistakes(
+    "PASSES_THROUGH",
+    "The bodies go through each other: their paths stay straight lines.",
+    "In each step ask whether the gap closes within it. If so, move to the contact, apply the impact, and use the rest of the step to move apart.",
+    kind="consequence",
+).body(
+    "simulate_head_on",
+    """
+        t = h * np.arange(round(t_end / h) + 1)
+        v = np.tile(np.array(v0, float), (len(t), 1))
+        return t, x0 + v * t[:, None], v
+    """,
+)
+mistakes(
+    "IMPACT_AT_SAMPLE",
+    "Up to the end of the step the bodies move as if they had not met: the impact comes at a sample, after that.",
+    "Find the time of contact inside the step, move there, apply the impact, then move on for the rest of the step with the new velocities.",
+    kind="consequence",
+).body(
+    "simulate_head_on",
+    """
+        n = round(t_end / h)
+        x, v = np.array(x0, float), np.array(v0, float)
+        rows = [(x, v)]
+        for i in range(n):
+            x = x + v * h
+            if x[1] - x[0] <= 2 * radius and v[0] > v[1]:
+                j = (1 + restitution) * (v[0] - v[1]) / (1 / m[0] + 1 / m[1])
+                v = v + np.array([-j / m[0], j / m[1]])
+            rows.append((x, v))
+        return h * np.arange(n + 1), np.array([r[0] for r in rows]), np.array([r[1] for r in rows])
+    """,
+).body(
+    "simulate_drop",
+    """
+        n = round(t_end / h)
+        rows, z, v = [(z0, v0)], z0, v0
+        for i in range(n):
+            z, v = z + v * h - g * h * h / 2, v - g * h
+            if z < radius and v < 0:
+                z, v = radius, -restitution * v
+                if v <= g * h:
+                    v = 0.0
+            rows.append((z, v))
+        return h * np.arange(n + 1), [r[0] for r in rows], [r[1] for r in rows]
+    """,
+)
+mistakes(
+    "REST_OF_STEP_LOST",
+    "After the impact the bodies stand still until the step ends: the rest of it is lost.",
+    "A contact at time s into the step leaves h - s: move on for that time with the new velocities.",
+).body(
+    "simulate_head_on",
+    """
+        n = round(t_end / h)
+        x, v = np.array(x0, float), np.array(v0, float)
+        rows = [(x, v)]
+        for i in range(n):
+            gap, closing = x[1] - x[0] - 2 * radius, v[0] - v[1]
+            if closing > 0 and gap <= closing * h:
+                x = x + v * (gap / closing)
+                j = (1 + restitution) * (v[0] - v[1]) / (1 / m[0] + 1 / m[1])
+                v = v + np.array([-j / m[0], j / m[1]])
+            else:
+                x = x + v * h
+            rows.append((x, v))
+        return h * np.arange(n + 1), np.array([r[0] for r in rows]), np.array([r[1] for r in rows])
+    """,
+).body(
+    "simulate_drop",
+    """
+        n = round(t_end / h)
+        rows, z, v = [(z0, v0)], z0, v0
+        for i in range(n):
+            ahead = z + v * h - g * h * h / 2
+            if ahead < radius:
+                z, v = radius, restitution * math.sqrt(v * v + 2 * g * max(z - radius, 0.0))
+                v = v if v > g * h else 0.0
+            else:
+                z, v = ahead, v - g * h
+            rows.append((z, v))
+        return h * np.arange(n + 1), [r[0] for r in rows], [r[1] for r in rows]
+    """,
+)
+mistakes(
+    "EQUAL_MASSES_ASSUMED",
+    "Your code uses one mass for both bodies.",
+    "Each body has its own mass: 1/ma + 1/mb. Try masses of 1 kg and 3 kg.",
+).program(
+    "simulate_head_on",
+    """
+        _right = simulate_head_on
+
+
+        def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):
+            t = h * np.arange(round(t_end / h) + 1)
+            x0, v0 = np.array(x0, float), np.array(v0, float)
+            closing = v0[0] - v0[1]
+            met = (x0[1] - x0[0] - 2 * radius) / closing if closing > 0 else math.inf
+            j = (1 + restitution) * closing * m[0] / 2
+            v1 = v0 + np.array([-j / m[0], j / m[1]])
+            s = t[:, None]
+            return t, x0 + v0 * np.minimum(s, met) + v1 * np.maximum(s - met, 0), np.where(s < met, v0, v1)
+    """,
+)
+mistakes(
+    "RADIUS_IGNORED",
+    "The bodies are taken for points, without radii.",
+    "The surfaces touch while the centres are still ra + rb apart (or r from a wall).",
+).program(
+    "simulate_head_on",
+    """
+        _right = simulate_head_on
+
+
+        def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):
+            return _right(m, x0, v0, 0.0, restitution, t_end, h)
+    """,
+).program(
+    "simulate_drop",
+    """
+        _right = simulate_drop
+
+
+        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
+            return _right(z0, v0, 0.0, restitution, g, t_end, h)
+    """,
+)
+mistakes(
+    "TRUNCATED_STEP_COUNT",
+    "The number of steps is cut off instead of rounded: t_end/h may come out just below a whole number.",
+    "Use round(t_end / h), and return one sample more than there are steps.",
+).program(
+    "simulate_head_on",
+    """
+        _right = simulate_head_on
+
+
+        def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):
+            return _right(m, x0, v0, radius, restitution, int(t_end / h) * h, h)
+    """,
+).program(
+    "simulate_drop",
+    """
+        _right_drop = simulate_drop
+
+
+        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
+            return _right_drop(z0, v0, radius, restitution, g, int(t_end / h) * h, h)
+    """,
+)
+mistakes(
+    "RESTING_JITTER",
+    "The ball is not on the floor where it must be at rest already.",
+    "When the ball touches the floor at a speed of at most g h, put it to rest: z = radius and v = 0 from then on. Compare with g h itself, not with a fixed speed.",
+    true_too=("SINKS_THROUGH_FLOOR",),
+).body(
+    "simulate_drop",
+    """
+        n = round(t_end / h)
+        rows, z, v = [(z0, v0)], z0, v0
+        for i in range(n):
+            ahead = z + v * h - g * h * h / 2
+            if ahead < radius:
+                speed = math.sqrt(v * v + 2 * g * max(z - radius, 0.0))
+                left = max(h - (v + speed) / g, 0.0)
+                up = max(restitution * speed, g * left / 2)
+                ahead, v = radius + up * left - g * left * left / 2, up - g * left + g * h
+            z, v = ahead, v - g * h
+            rows.append((z, v))
+        return h * np.arange(n + 1), [r[0] for r in rows], [r[1] for r in rows]
+    """,
+)
+mistakes(
+    "RESTITUTION_AS_ENERGY",
+    "The speeds scale with the square root of e, as if e were the share of the energy, or of the height, that remains.",
+    "e is a ratio of speeds: use it as it is given. The remaining energy follows from it.",
+).program(
+    "simulate_drop",
+    """
+        _right = simulate_drop
+
+
+        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
+            return _right(z0, v0, radius, math.sqrt(restitution), g, t_end, h)
+    """,
+)
+mistakes(
+    "EULER_IN_FLIGHT",
+    "Before the first contact the fall is off by g h t/2 already, the error of an Euler step.",
+    "Free flight has an exact step: z + v h - g h**2 / 2 for the height and v - g h for the velocity.",
+    kind="consequence",
+).body(
+    "simulate_drop",
+    """
+        n = round(t_end / h)
+        rows, z, v = [(z0, v0)], z0, v0
+        for i in range(n):
+            v = v - g * h
+            z = z + v * h
+            if z <= radius and v < 0:
+                v = -restitution * v
+                if v <= g * h:
+                    z, v = radius, 0.0
+            rows.append((z, v))
+        return h * np.arange(n + 1), [r[0] for r in rows], [r[1] for r in rows]
+    """,
+)
+mistakes(
+    "SINKS_THROUGH_FLOOR",
+    "In the end the ball sinks into the floor.",
+    "When it touches at a speed of at most g h, put it down: z = radius and v = 0 from then on.",
+).program(
+    "simulate_drop",
+    """
+        _right = simulate_drop
+
+
+        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
+            t, z, v = _right(z0, v0, radius, restitution, g, t_end, h)
+            still = v == 0.0
+            still[0] = v0 == 0.0 and z0 == radius
+            if still.any():
+                s = np.maximum(t - t[np.argmax(still)], 0.0)
+                z, v = z - g * s * s / 2, v - g * s
+            return t, z, v
+    """,
+)
+mistakes(
+    "RESTS_TOO_EARLY",
+    "The ball is put to rest while it should still move.",
+    "Put it to rest only where it touches the floor, and only if its speed there is at most g h.",
+).program(
+    "simulate_drop",
+    """
+        _right = simulate_drop
+
+
+        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
+            t, z, v = _right(z0, v0, radius, restitution, g, t_end, h)
+            speed = math.sqrt(v0 * v0 + 2 * g * (z0 - radius))
+            late = t > (v0 + speed) / g + 2 * restitution * speed / g
+            return t, np.where(late, radius, z), np.where(late, 0.0, v)
+    """,
+)
+mistakes(
+    "RADII_NOT_SQUARED",
+    "In the quadratic, the sum of the radii, or twice the sum, appears where its square belongs.",
+    "At contact |dx + dv t| = ra + rb. Squaring both sides gives (ra + rb)**2 on the right.",
+).body(
+    "time_of_impact",
+    """
+        x, v = xb - xa, vb - va
+        a, b, c = v @ v, x @ v, x @ x - (ra + rb)
+        if b >= 0:
+            return None
+        if c <= 0:
+            return 0.0
+        if b * b < a * c:
+            return None
+        t = (-b - math.sqrt(b * b - a * c)) / a
+        return float(t) if t <= dt else None
+    """,
+)
+mistakes(
+    "RADII_SQUARED_APART",
+    "The radii are squared separately and then added.",
+    "Add the radii first. Where a square is needed, it is (ra + rb)**2, which is more than ra**2 + rb**2.",
+).body(
+    "time_of_impact",
+    """
+        x, v = xb - xa, vb - va
+        a, b, c = v @ v, x @ v, x @ x - (ra**2 + rb**2)
+        if b >= 0:
+            return None
+        if c <= 0:
+            return 0.0
+        if b * b < a * c:
+            return None
+        t = (-b - math.sqrt(b * b - a * c)) / a
+        return float(t) if t <= dt else None
+    """,
+)
+mistakes(
+    "MOMENT_TOO_COARSE",
+    "The contacts are found, but not at their exact times.",
+    "Solve |dx + dv t|**2 = (ra + rb)**2, which gives the exact time. If you do, compare each term, and look whether a time is rounded.",
+    kind="consequence",
+).program(
+    "time_of_impact",
+    """
+        _right = time_of_impact
+
+
+        def time_of_impact(xa, va, ra, xb, vb, rb, dt):
+            if _right(xa, va, ra, xb, vb, rb, dt) is None:
+                return None
+            x, v = xb - xa, vb - va
+            low, high = 0.0, min(dt, float(-(x @ v) / (v @ v)))
+            for _ in range(10):
+                middle = (low + high) / 2
+                touch = np.linalg.norm(x + middle * v) <= ra + rb
+                low, high = (low, middle) if touch else (middle, high)
+            return low
+    """,
+)
+mistakes(
+    "CONTACTS_MISSED",
+    "Some bodies that meet within the step get None.",
+    "Bodies that are apart meet where |dx + dv t|**2 = (ra + rb)**2 has a real root from 0 to dt; if they overlap and approach, it is 0.0. Compare each of your conditions for None with that.",
+    kind="consequence",
+).program(
+    "time_of_impact",
+    """
+        _right = time_of_impact
+
+
+        def time_of_impact(xa, va, ra, xb, vb, rb, dt):
+            x, v = xb - xa, vb - va
+            if v @ v > 0:
+                nearest = x - (x @ v) / (v @ v) * v
+                if np.linalg.norm(nearest) > max(ra, rb):
+                    return None
+            return _right(xa, va, ra, xb, vb, rb, dt)
+    """,
+).program(
+    "time_of_impact",
+    """
+        _right = time_of_impact
+
+
+        def time_of_impact(xa, va, ra, xb, vb, rb, dt):
+            if np.linalg.norm(np.subtract(vb, va)) < 0.01 and np.linalg.norm(np.subtract(xb, xa)) > ra + rb:
+                return None
+            return _right(xa, va, ra, xb, vb, rb, dt)
+    """,
+)
+mistakes(
+    "TOUCHING_NEEDS_OVERLAP",
+    "Bodies that touch exactly, with a depth of zero, do not count as touching.",
+    "`touching` is depth >= 0, not depth > 0. Add nothing small to the depth or to the distance.",
+).program(
+    "detect_sphere_sphere",
+    """
+        _right_spheres = detect_sphere_sphere
+
+
+        def detect_sphere_sphere(xa, ra, xb, rb):
+            _, normal, depth = _right_spheres(xa, ra, xb, rb)
+            return depth > 0, normal, depth
+    """,
+).program(
+    "detect_sphere_plane",
+    """
+        _right_plane = detect_sphere_plane
+
+
+        def detect_sphere_plane(x, r, point, normal):
+            _, normal, depth = _right_plane(x, r, point, normal)
+            return depth > 0, normal, depth
+    """,
+)
+mistakes(
+    "CONTACT_MARGIN",
+    "Touching is decided by a limit other than zero: a small gap counts as touching, or a small overlap does not.",
+    "Remove the margin: touching is depth >= 0.",
+).program(
+    "detect_sphere_sphere",
+    """
+        _right_spheres = detect_sphere_sphere
+
+
+        def detect_sphere_sphere(xa, ra, xb, rb):
+            _, normal, depth = _right_spheres(xa, ra, xb, rb)
+            return depth >= -0.01, normal, depth
+    """,
+)
+mistakes(
+    "RESTITUTION_DROPPED_WHEN_SLOW",
+    "Slow impacts lose their rebound: below some speed e counts as 0.",
+    "Engines do that to calm piles, but here e holds at every speed. Remove the threshold.",
+).body(
+    "impulse_1d",
+    """
+        closing = max(va - vb, 0.0)
+        return (1 + (restitution if closing > 0.01 else 0.0)) * closing / (1 / ma + 1 / mb)
+    """,
+).body(
+    "resolve",
+    """
+        va, vb, n = (np.array(a, dtype=float) for a in (va, vb, normal))
+        closing = max((va - vb) @ n, 0.0)
+        e = restitution if closing > 0.01 else 0.0
+        impulse = (1 + e) * closing / (1 / ma + 1 / mb) * n
+        return va - impulse / ma, vb + impulse / mb
+    """,
+)
+mistakes(
+    "FRICTION_COEFFICIENT_CAPPED",
+    "The coefficient of friction is cut off at one.",
+    "mu may be larger than one, as for rubber on dry concrete. Use it as it is given.",
+).program(
+    "resolve_with_friction",
+    """
+        _right_friction = resolve_with_friction
+
+
+        def resolve_with_friction(ma, mb, va, vb, normal, restitution, mu):
+            return _right_friction(ma, mb, va, vb, normal, restitution, min(mu, 1.0))
+    """,
+)
+mistakes(
+    "MISS_IS_A_NUMBER",
+    "Where the bodies do not touch within the step, the result is something other than None.",
+    "Return None there: a number would be read as a time, and infinity as one that never comes.",
+    kind="consequence",
+).program(
+    "time_of_impact",
+    """
+        _right_moment = time_of_impact
+
+
+        def time_of_impact(xa, va, ra, xb, vb, rb, dt):
+            t = _right_moment(xa, va, ra, xb, vb, rb, dt)
+            return -1.0 if t is None else t
+    """,
+)
+mistakes(
+    "FIRST_STEP_MISSED",
+    "A contact within the first step is missed, and the bodies go through each other.",
+    "In every step, including the first, ask before you move the bodies whether the gap closes within it.",
+).program(
+    "simulate_head_on",
+    """
+        _right_head_on = simulate_head_on
+
+
+        def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):
+            gap, closing = x0[1] - x0[0] - 2 * radius, v0[0] - v0[1]
+            t, x, v = _right_head_on(m, x0, v0, radius, restitution, t_end, h)
+            if closing > 0 and gap <= closing * h:  # the impact that the first step skips is never made up for
+                x, v = x0 + t[:, None] * v0, np.broadcast_to(v0, x.shape).copy()
+            return t, x, v
+    """,
+)
+mistakes(
+    "LAUNCH_IGNORED",
+    "A ball that starts on the floor and moves upwards does not fly.",
+    "Of balls that start on the floor, only one without speed rests. One that moves upwards flies, although it touches the floor.",
+).program(
+    "simulate_drop",
+    """
+        _right_drop = simulate_drop
+
+
+        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
+            t, z, v = _right_drop(z0, v0, radius, restitution, g, t_end, h)
+            if z0 <= radius:
+                z[1:], v[1:] = radius, 0.0
+            return t, z, v
+    """,
+)
+mistakes(
+    "VELOCITIES_LATE",
+    "The positions are right; the velocities at the first sample after the impact are still the old ones.",
+    "Row i of both belongs to the time i h: store the velocity after the step beside the position after the step.",
+).body(
+    "simulate_head_on",
+    """
+        N = round(t_end / h)
+        t = np.arange(N + 1) * h
+        x, v = np.zeros((N + 1, 2)), np.zeros((N + 1, 2))
+        x[0], v[0] = x0, v0
+        speed = np.array(v0, dtype=float)
+        for i in range(N):
+            v[i + 1] = speed
+            closing = speed[0] - speed[1]
+            gap = x[i, 1] - x[i, 0] - 2 * radius
+            tau = h
+            if closing > 0 and gap <= closing * h:
+                tau = max(gap, 0) / closing
+                J = impulse_1d(m[0], m[1], speed[0], speed[1], restitution)
+                after = speed + np.array([-J / m[0], J / m[1]])
+            else:
+                after = speed
+            x[i + 1] = x[i] + speed * tau + after * (h - tau)
+            speed = after
+        return t, x, v
+    """,
+)
+mistakes(
+    "RESTS_ELSEWHERE",
+    "The ball comes to rest, but not at z = radius.",
+    "Put it down on the floor: z is the height of its centre, so z = radius, and v = 0.",
+).body(
+    "simulate_drop",
+    """
+        N = round(t_end / h)
+        t = np.arange(N + 1) * h
+        z, v = float(z0), float(v0)
+        zs, vs = [z], [v]
+        resting = False
+        for i in range(N):
+            if not resting:
+                z_new = z + v * h - g * h**2 / 2
+                if z_new > radius:
+                    z, v = z_new, v - g * h
+                else:
+                    speed = math.sqrt(v**2 + 2 * g * (z - radius))
+                    left = h - (v + speed) / g
+                    up = restitution * speed
+                    if up <= g * h:
+                        resting = True
+                        v = 0.0
+                    else:
+                        z = radius + up * left - g * left**2 / 2
+                        v = up - g * left
+            zs.append(z)
+            vs.append(v)
+        return t, np.array(zs), np.array(vs)
+    """,
+)
+mistakes(
+    "ONLY_WITHOUT_REBOUND",
+    "Of these pairs, only those are wrong where e is zero.",
+    "Zero is a restitution like any other: `restitution or 1.0`, for example, would replace it. The factor is 1 + e.",
+    kind="consequence",
+).edit("impulse_1d", {"- vb, restitution)": "- vb, restitution or 1.0)"})
+mistakes(
+    "ONLY_VERY_UNEQUAL",
+    "Of these pairs, only those are wrong where one body is many thousand times as heavy as the other.",
+    "The formula holds for all masses: take no heavy body for a wall.",
+    kind="consequence",
+).body(
+    "impulse_1d",
+    """
+        if max(ma, mb) > 1e4 * min(ma, mb):
+            ma = mb = 2 * min(ma, mb)
+        return _impulse(ma, mb, va - vb, restitution)
+    """,
+)
+mistakes(
+    "ONLY_NEARLY_EQUAL",
+    "Of these pairs, only those are wrong whose masses differ by less than one per cent.",
+    "The formula holds for all masses: use each as it is given, without a special case.",
+    kind="consequence",
+).body(
+    "resolve",
+    """
+        va, vb, n = (np.array(a, dtype=float) for a in (va, vb, normal))
+        other = ma if abs(ma - mb) < 0.01 * ma else mb
+        impulse = _impulse(ma, other, (va - vb) @ n, restitution) * n
+        return va - impulse / ma, vb + impulse / other
+    """,
+)
+mistakes(
+    "WALL_ASSUMED_AT_REST",
+    "The wall's own velocity does not count: the result is that of a wall at rest.",
+    "A wall may move, as a piston does: s = (va - vb) . n holds for it, too.",
+    kind="consequence",
+).program(
+    "resolve",
+    """
+        _right = resolve
+
+
+        def resolve(ma, mb, va, vb, normal, restitution):
+            if np.isinf(ma):
+                return va, _right(ma, mb, 0 * va, vb, normal, restitution)[1]
+            if np.isinf(mb):
+                return _right(ma, mb, va, 0 * vb, normal, restitution)[0], vb
+            return _right(ma, mb, va, vb, normal, restitution)
+    """,
+)
+mistakes(
+    "WALLS_SMOOTH",
+    "Against a wall there is no friction.",
+    "Walls rub like other bodies: Jt = min(mu J, |vt| / (1/ma + 1/mb)), where one over infinity is zero.",
+    kind="consequence",
+).program(
+    "resolve_with_friction",
+    """
+        _right = resolve_with_friction
+
+
+        def resolve_with_friction(ma, mb, va, vb, normal, restitution, mu):
+            return _right(ma, mb, va, vb, normal, restitution, 0.0 if math.inf in (ma, mb) else mu)
+    """,
+)
+mistakes(
+    "OVERLAP_IN_THE_PAST",
+    "For spheres that overlap already and approach, your code returns a time before the start.",
+    "Where |x| < R and they approach, they touch now: the answer is 0.0.",
+    kind="consequence",
+).body(
+    "time_of_impact",
+    """
+        x, v = np.subtract(xb, xa, dtype=float), np.subtract(vb, va, dtype=float)
+        a, b, c = v @ v, x @ v, x @ x - (ra + rb) ** 2
+        if b >= 0 or b * b < a * c:
+            return None
+        t = (-b - math.sqrt(b * b - a * c)) / a
+        return float(t) if t <= dt else None
+    """,
+)
+mistakes(
+    "SHORT_HOP_MISSED",
+    "A ball that rises and is back on the floor within one step goes into the floor.",
+    "Where the parabola ends decides whether the ball touches, and not the sign of v at its start.",
+).edit(
+    "simulate_drop",
+    {"radius:  # a parabola that starts above the floor crosses it once": "radius and v[i] <= 0:"},
+)
+mistakes(
+    "REST_KEEPS_SPEED",
+    "The ball lies on the floor, but its velocity is not zero there.",
+    "At rest both are fixed: z = radius and v = 0, in the row after the contact and in all later ones.",
+).program(
+    "simulate_drop",
+    """
+        _right = simulate_drop
+
+
+        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
+            t, z, v = _right(z0, v0, radius, restitution, g, t_end, h)
+            still = (v == 0.0) & (z == radius) & (t > 0)
+            return t, z, np.where(still, 0.3 * g * h, v)
+    """,
+)
+mistakes(
+    "OTHER_GRAVITY",
+    "From the start the ball falls with another g than the one that is given.",
+    "Use the argument g everywhere: in the flight, for the time to the floor, and in the rule for the rest.",
+).program(
+    "simulate_drop",
+    """
+        _right = simulate_drop
+
+
+        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
+            return _right(z0, v0, radius, restitution, 9.81, t_end, h)
+    """,
+)
+mistakes(
+    "NORMAL_REVERSED_AT_TIMES",
+    "In some cases the normal points the other way.",
+    "The normal points from a to b wherever they are and however deep they overlap: (xb - xa) over its length. A plane's normal is the one you are given, also for a centre below it.",
+).program(
+    "detect_sphere_sphere",
+    """
+        _right = detect_sphere_sphere
+
+
+        def detect_sphere_sphere(xa, ra, xb, rb):
+            touching, normal, depth = _right(xa, ra, xb, rb)
+            return touching, -normal if depth > min(ra, rb) else normal, depth
+    """,
+)
+mistakes(
+    "FRICTION_TOO_STRONG",
+    "Friction takes too much of the slip. Along the normal all is right.",
+    "Jt = min(mu J, |vt| / (1/ma + 1/mb)), for every mu. Which of the two limits is exceeded?",
+    kind="consequence",
+).body(
+    "resolve_with_friction",
+    """
+        mu = mu or 0.5
+        n = np.asarray(normal)
+        u = vb - va
+        s = -(u @ n)
+        if s <= 0:
+            return va, vb
+        inv = 1 / ma + 1 / mb
+        J = (1 + restitution) * s / inv
+        vt = u - (u @ n) * n
+        size = np.linalg.norm(vt)
+        P = J * n
+        if size > 0:
+            P = P - min(mu * J, size / inv) * vt / size
+        return va - P / ma, vb + P / mb
+    """,
+)
+mistakes(
+    "VELOCITIES_APART",
+    "The positions are right; the velocities beside them are not those at the same times.",
+    "Row i of both belongs to the time i h. Store the velocity that the step computes; a difference of two positions is the mean of a whole step.",
+    kind="consequence",
+).body(
+    "simulate_head_on",
+    """
+        n = round(t_end / h)
+        t, x, v = h * np.arange(n + 1), np.empty((n + 1, 2)), np.empty((n + 1, 2))
+        x[0], v[0] = x0, v0
+        va, vb = v0
+        for i in range(n):
+            (xa, xb) = x[i]
+            c, gap = va - vb, max(xb - xa - 2 * radius, 0.0)
+            w = gap / c if 0 < c and gap <= c * h else h
+            xa, xb = xa + va * w, xb + vb * w
+            if w < h:
+                J = (1 + restitution) * c / (1 / m[0] + 1 / m[1])
+                va, vb = va - J / m[0], vb + J / m[1]
+            x[i + 1] = xa + va * (h - w), xb + vb * (h - w)
+            v[i + 1] = (x[i + 1] - x[i]) / h
+        return t, x, v
+    """,
+)
+mistakes(
+    "FLIGHT_WRONG",
+    "The heights are wrong before the first contact already.",
+    "In the air nothing happens but gravity: z + v h - g h**2 / 2 for the height and v - g h for the velocity, whatever the height is.",
+    kind="consequence",
+).body(
+    "simulate_drop",
+    """
+        n = round(t_end / h)
+        t, z, v = h * np.arange(n + 1), np.empty(n + 1), np.empty(n + 1)
+        z[0], v[0] = z0, v0
+        for i in range(n):
+            a = -g - 0.05 * v[i] * abs(v[i])
+            z[i + 1], v[i + 1] = z[i] + v[i] * h + a * h * h / 2, v[i] + a * h
+            if z[i + 1] < radius:
+                z[i + 1], v[i + 1] = radius, restitution * abs(v[i + 1])
+        return t, z, v
+    """,
+)
+mistakes(
+    "ONLY_EQUAL",
+    "Of these pairs, only those with two equal masses are wrong.",
+    "The formula holds for all masses, without a special case. Equal bodies exchange their velocities only for e = 1.",
+    kind="consequence",
+).program(
+    "resolve",
+    """
+        _right = resolve
+
+
+        def resolve(ma, mb, va, vb, normal, restitution):
+            return _right(ma, mb, va, vb, normal, 1.0 if ma == mb else restitution)
+    """,
+).program(
+    "impulse_1d",
+    """
+        _right = impulse_1d
+
+
+        def impulse_1d(ma, mb, va, vb, restitution):
+            return _right(ma, mb, va, vb, 1.0 if ma == mb else restitution)
+    """,
+)
+mistakes(
+    "QUADRATIC_MIXED",
+    "Two forms of the quadratic formula are mixed: the one with b = x . v, and the one with b = 2 x . v.",
+    "With b = x . v the root is (-b - sqrt(b**2 - a c))/a; with b = 2 x . v it is (-b - sqrt(b**2 - 4 a c))/(2 a).",
+).body(
+    "time_of_impact",
+    """
+        x = xb - xa
+        v = vb - va
+        R = ra + rb
+        a = v @ v
+        b = 2 * (x @ v)
+        c = x @ x - R * R
+        if b >= 0:
+            return None
+        if c < 0:
+            return 0.0
+        disc = b * b - a * c
+        if disc < 0:
+            return None
+        t = (-b - np.sqrt(disc)) / (2 * a)
+        return t if t <= dt else None
+    """,
+)
+mistakes(
+    "FALL_WITHOUT_TWO",
+    "On the way down v**2 grows by something other than 2 g (z - radius).",
+    "The speed at the floor is sqrt(v**2 + 2 g (z - radius)).",
+).edit("simulate_drop", {"* 2 + 2 * g * max(": "* 2 + g * max("})
+mistakes(
+    "NORMAL_NOT_UNIT",
+    "The normal is not a unit vector: its length is not one.",
+    "Divide the vector between the centres by its length; a plane's normal already has length one. Where the centres coincide, any vector will do whose length is one.",
+)
+mistakes(
+    "HEIGHT_ALONG_AN_AXIS",
+    "The height above the plane is measured along an axis, not along the normal.",
+    "The height is the dot product (x - point) . normal, with no division.",
+)
+mistakes(
+    "DEPTH_ALONG_AN_AXIS",
+    "The depth is measured along an axis, not along the normal.",
+    "depth = r - (x - point) . normal, with no division.",
+)
+mistakes(
+    "DEPTH_UNSIGNED",
+    "The depth has lost its sign: it is positive where the bodies are apart, too.",
+    "Return it with its sign, without abs(): negative where they are apart.",
+)
+mistakes(
+    "TOUCHING_INVERTED",
+    "touching is True where the bodies are apart, and False where they overlap.",
+    "Bodies touch where the depth is zero or more.",
+)
+mistakes(
+    "DISTANCE_SQUARED",
+    "The square of a length, or its square root, is used where the length itself belongs.",
+    "The depth is ra + rb - distance, or r - height, all in metres. The distance is the length of xb - xa, with one square root in all; the height is a dot product, with none.",
+)
+mistakes(
+    "ONE_RADIUS_ONLY",
+    "Only one of the two radii is used.",
+    "The centres are ra + rb apart at contact: both bodies have a size.",
+)
+mistakes(
+    "RADIUS_ADDED_TWICE",
+    "A radius is counted twice.",
+    "Count each radius once: the centres are ra + rb apart at contact, and a sphere reaches r below its centre.",
+)
+mistakes(
+    "DISTANCE_TO_POINT",
+    "The distance to the given point of the plane counts, not the one to the plane itself.",
+    "Only the part of x - point along the normal counts: take the dot product.",
+)
+mistakes(
+    "SOLID_ON_THE_WRONG_SIDE",
+    "The side that the normal points to is taken for the solid one.",
+    "The normal points out of the solid: depth = r - (x - point) . normal.",
+)
+mistakes(
+    "ALWAYS_TOUCHES",
+    "touching is True also where the bodies are apart.",
+    "Bodies touch where the depth is zero or more, and nowhere else.",
+)
+mistakes(
+    "NEVER_TOUCHES",
+    "touching is False also where the bodies overlap.",
+    "Bodies touch where the depth is zero or more.",
+)
+mistakes(
+    "NORMAL_PER_AXIS",
+    "Single coordinates are used where the whole vector belongs: absolute values, signs, or a length that is not the vector's.",
+    "Work with whole vectors: the difference of two positions, the dot product, the Euclidean length.",
+)
+mistakes(
+    "DEPTH_HALVED",
+    "The depth comes out half as large as it should be.",
+    "depth = ra + rb - distance (or r - height): the whole overlap, not half of it for each body.",
+)
+mistakes(
+    "DEPTH_AS_SHARE",
+    "The depth is returned as a fraction of some length, not as a length.",
+    "The depth is in metres: ra + rb - distance, or r - height. Do not divide it by anything.",
+)
+mistakes(
+    "DISTANCE_IGNORED",
+    "The depth does not depend on where the bodies are.",
+    "Subtract the distance between the centres, or the height above the plane.",
+)
+mistakes(
+    "RADII_SUBTRACTED",
+    "One radius is subtracted from the other.",
+    "Add the radii: at contact the centres are ra + rb apart.",
+)
+mistakes(
+    "RADII_HALVED",
+    "The radii are halved, as if they were diameters.",
+    "A radius reaches from the centre to the surface, so use ra + rb, or r, as they are.",
+)
+mistakes(
+    "RADII_MULTIPLIED",
+    "The radii are multiplied.",
+    "Add the radii: at contact the centres are ra + rb apart.",
+)
+mistakes(
+    "RADIUS_SIGN_FLIPPED",
+    "The radius has the wrong sign, so a larger sphere overlaps less instead of more.",
+    "depth = r - height: the sphere reaches r below its centre.",
+)
+mistakes(
+    "CENTRE_IGNORED",
+    "The height does not depend on where the sphere is.",
+    "The height of the centre is (x - point) . normal.",
+)
+mistakes(
+    "TOUCHING_WRONG",
+    "The normal and the depth are right, but touching is not.",
+    "touching is depth >= 0, and nothing else: however deep, however far, on whichever side.",
+    kind="consequence",
+)
+mistakes(
+    "PRECISION_LOST",
+    "The result is right to about six digits, and not to nine.",
+    "Compute in float64 throughout, without float32, rounding, or a small constant that is added somewhere.",
+    kind="consequence",
+)
+mistakes(
+    "NORMAL_IS_ZERO",
+    "A normal is the zero vector.",
+    "A normal has length one. Where the centres coincide, return any unit vector, such as the first axis.",
+    kind="consequence",
+)
+mistakes(
+    "RESTITUTION_IGNORED",
+    "The bodies part as if the restitution were one, or as if it were zero.",
+    "The impulse has the factor 1 + e: the 1 stops the approach, and the e sends them apart again. A ball leaves the floor with e times its speed.",
+    kind="consequence",
+)
+mistakes(
+    "ONLY_THE_REBOUND",
+    "The impulse has the factor e instead of 1 + e.",
+    "An impact first stops the approach (that is the 1) and then drives the bodies apart (that is the e): together 1 + e.",
+)
+mistakes(
+    "RESTITUTION_SIGN_FLIPPED",
+    "The impulse has the factor 1 - e: the bounciest bounce the least.",
+    "The bodies turn round: going from approaching at speed s to separating at e s is a change of (1 + e) s.",
+)
+mistakes(
+    "MEAN_MASS",
+    "The impulse is computed with the mean of the two masses, or with half of it.",
+    "J = (1 + e) s / (1/ma + 1/mb): the inverses add up. Try masses of 1 kg and 3 kg.",
+)
+mistakes(
+    "ONE_MASS_ONLY",
+    "Only one of the masses is used in the impulse, as if the other body were a wall.",
+    "Both velocities change, so divide by 1/ma + 1/mb.",
+)
+mistakes(
+    "MASSES_IGNORED",
+    "The masses are left out of the impulse, or of what it does to the velocities.",
+    "The same impulse changes the velocity of a heavy body less: J = (1 + e) s / (1/ma + 1/mb), and each velocity changes by J/m.",
+)
+mistakes(
+    "ONLY_HEAD_ON",
+    "A body that catches up with one that moves away from it gets no impulse.",
+    "They approach where va - vb (in space: its component along n) is positive, whichever way each of them moves.",
+)
+mistakes(
+    "IMPULSE_REVERSED",
+    "The impulse has the wrong sign: it pulls the bodies into each other, faster than before.",
+    "J is positive where the bodies approach. Body a loses J n and body b gains it: va - J/ma n, vb + J/mb n.",
+)
+mistakes(
+    "SPEED_NOT_ALONG_NORMAL",
+    "Your code uses whole speeds where only their component along the normal belongs.",
+    "The speed of approach is the dot product (va - vb) . n.",
+)
+mistakes(
+    "RETURNS_SWAPPED",
+    "Your code returns the right two velocities in the wrong order.",
+    "Return (va_next, vb_next): first the velocity of a, then that of b.",
+)
+mistakes(
+    "NO_RESPONSE",
+    "Bodies that run into each other get no impulse.",
+    "Where (va - vb) . n > 0 (on a line: va > vb), the impulse is J = (1 + e) s / (1/ma + 1/mb), and each velocity changes by its share of it.",
+    kind="consequence",
+)
+mistakes(
+    "ENERGY_CREATED",
+    "After this impact the kinetic energy is larger than before it. No impact can do that.",
+    "Compute this impact by hand and compare: J from the velocities before the impact, then both velocities with this one J.",
+    kind="consequence",
+)
+mistakes(
+    "WALL_MOVED",
+    "The wall's velocity changes.",
+    "An impulse changes the velocity of a wall by J / inf, which is 0.0: it goes on as before.",
+    kind="consequence",
+)
+mistakes(
+    "FRICTION_ASKEW",
+    "Friction does not act along the slip. Along the normal all is right.",
+    "vt is a vector, and so is friction: Jt times -vt / |vt| on b, in three dimensions as in two.",
+    kind="consequence",
+)
+mistakes(
+    "FRICTION_NOT_UNIT",
+    "Friction is multiplied by the slip vt itself, not by its direction.",
+    "Divide vt by its length: Jt times -vt / |vt|.",
+)
+mistakes(
+    "FRICTION_TURNS_THE_SLIP",
+    "Friction turns the slip round. Along the normal all is right.",
+    "Jt = min(mu J, |vt| / (1/ma + 1/mb)): the second value stops the slip, and friction never does more.",
+    kind="consequence",
+)
+mistakes(
+    "FRICTION_TOO_WEAK",
+    "Friction takes too little of the slip. Along the normal all is right.",
+    "Jt = min(mu J, |vt| / (1/ma + 1/mb)). Is a slow slip taken for none, or a number added to its length?",
+    kind="consequence",
+)
+mistakes(
+    "BLOW_TOO_WEAK",
+    "The bodies do not separate at e times the speed of approach: they are slower, or still approach.",
+    "After the impact, (va - vb) . n must be -e times what it was before. Check it for one pair by hand.",
+    kind="consequence",
+)
+mistakes(
+    "MOMENTUM_LOST",
+    "The total momentum changes, although no outside force acts.",
+    "Both bodies get the same J, with opposite signs, each divided by its own mass. Compute both changes by hand and compare.",
+    kind="consequence",
+)
+mistakes(
+    "DEPENDS_ON_THE_FRAME",
+    "The same impact, seen from a moving train, gives a different result.",
+    "Only the difference va - vb counts. Does one velocity enter the impulse by itself, in a formula or in a condition?",
+    kind="consequence",
+)
+mistakes(
+    "DEPENDS_ON_DIRECTION",
+    "The same impact, rotated or mirrored, gives a different result.",
+    "Work with whole vectors, dot products with n and multiples of n, and never with single coordinates.",
+    kind="consequence",
+)
+mistakes(
+    "ONE_DIMENSION_ONLY",
+    "A number of coordinates is taken for granted.",
+    "Work with whole vectors of any length: a @ b, a - b, and for friction the slip vt = u - (u . n) n instead of a tangent (-n[1], n[0]).",
+    kind="fact",
+)
+mistakes(
+    "RESTITUTION_DOUBLED",
+    "The rebound is counted twice, or one is added to it.",
+    "The impulse of two bodies that meet has the factor 1 + e: 1 stops the approach, e sends them apart. A ball leaves the floor with e times its speed.",
+)
+mistakes(
+    "RESTITUTION_HALVED",
+    "Only half of the rebound is counted.",
+    "The impulse of two bodies that meet has the factor 1 + e: 1 stops the approach, e sends them apart. A ball leaves the floor with e times its speed.",
+)
+mistakes(
+    "MASS_SUM_ROOTED",
+    "The two masses are combined with a square root.",
+    "J = (1 + e) s / (1/ma + 1/mb): add the inverse masses.",
+)
+mistakes(
+    "MASSES_SUBTRACTED",
+    "The masses, or their inverses, are subtracted from each other.",
+    "Both velocities change, so add the inverse masses: 1/ma + 1/mb.",
+)
+mistakes(
+    "MASSES_SWAPPED",
+    "Each body gets the change of velocity that belongs to the other: the masses are swapped.",
+    "The velocity of a changes by J/ma and that of b by J/mb, each with its own mass.",
+)
+mistakes(
+    "SPEED_UNSIGNED",
+    "The speed of approach has lost its sign, so bodies that move apart get an impulse as if they collided.",
+    "Take va - vb with its sign (in space: its component along n) and act only where it is positive.",
+    true_too=("IMPULSE_ON_SEPARATING",),
+)
+mistakes(
+    "SPEED_SQUARED",
+    "The impulse is not proportional to the speed of approach.",
+    "J is proportional to s. It is the energy that goes with the square of the speed.",
+)
+mistakes(
+    "SPEED_IGNORED",
+    "The impulse does not depend on how fast the bodies approach.",
+    "J = (1 + e) s / (1/ma + 1/mb) with s = va - vb.",
+)
+mistakes(
+    "IMPULSE_HALVED",
+    "The impulse is half of what it should be.",
+    "J = (1 + e) s / (1/ma + 1/mb), and all of it acts on each body. Look for a factor of 2: in a mean of the masses, beside 1 + e, or in an impulse that you split between the bodies.",
+)
+mistakes(
+    "IMPULSE_DOUBLED",
+    "The impulse is twice what it should be.",
+    "J = (1 + e) s / (1/ma + 1/mb), once on each body. Look for a factor of 2: in a mean of the masses, or beside 1 + e.",
+)
+mistakes(
+    "IMPULSE_AS_VELOCITY",
+    "The result is a change of velocity, in m/s, and not the impulse.",
+    "Return J itself, in N s. What it does to a velocity is J/m, and resolve divides it there.",
+)
+mistakes(
+    "PARENTHESES_MISSING",
+    "Only the first part of 1/ma + 1/mb divides; the second is added to the result.",
+    "Put the sum in parentheses: (1 + e) * s / (1 / ma + 1 / mb).",
+)
+mistakes(
+    "BLOW_PER_AXIS",
+    "The impact acts coordinate by coordinate instead of along the normal.",
+    "Add and subtract multiples of the vector n itself: va - J/ma n, vb + J/mb n.",
+)
+mistakes(
+    "ACROSS_NOT_KEPT",
+    "The components of the velocities across the normal are lost.",
+    "Start from va and vb as they are, and add the changes to them: the impulse along n and, between rough bodies, friction across it.",
+)
+mistakes(
+    "ALONG_NOT_KEPT",
+    "The components of the velocities along the normal are replaced instead of changed.",
+    "Start from va and vb as they are, and add the change: va - J/ma n, vb + J/mb n.",
+)
+mistakes(
+    "ELASTIC_EXCHANGE",
+    "The bodies exchange their velocities along the normal. That is right only for equal masses and e = 1.",
+    "J = (1 + e) s / (1/ma + 1/mb); each velocity changes by J over its own mass.",
+)
+mistakes(
+    "PERFECTLY_STICKY",
+    "Both bodies move on with the same velocity, as if they stuck together.",
+    "Along the normal the bodies part at e times the speed of approach. Across it nothing but friction changes their velocities.",
+)
+mistakes(
+    "SOME_PAIRS_SPARED",
+    "Some bodies that approach keep their velocities; the other pairs are right.",
+    "Every pair with (va - vb) . n > 0 gets its impulse, however slow it is and whichever of the two moves.",
+    kind="consequence",
+)
+mistakes(
+    "ONE_BODY_RIGHT",
+    "The velocity of one body is right in every pair, and that of the other is not.",
+    "Both come from the same J and from the velocities before the impact: compare the line of the wrong one with that of the right one.",
+    kind="consequence",
+)
+mistakes(
+    "APPROACH_BY_ONE_BODY",
+    "Whether they approach is decided by the velocity of one body, by each of the two for itself, or by their speeds.",
+    "They approach where (va - vb) . n > 0 (on a line: va > vb), whichever of them moves.",
+)
+mistakes(
+    "IMPULSE_COMPUTED_TWICE",
+    "The second velocity is computed from the first one after that has changed.",
+    "Compute J once, from the velocities before the impact, and then both new velocities with it.",
+)
+
+# -- friction
+
+mistakes(
+    "FRICTION_SPINS",
+    "Where friction could stop the slip, it stops only the part that it would on a body that begins to roll.",
+    "These bodies do not spin: the impulse that stops the slip is |vt| / (1/ma + 1/mb), all of it.",
+)
+mistakes(
+    "FRICTION_IGNORED",
+    "Your code applies no friction.",
+    "A second impulse acts across the normal, against the slip: at most mu J, and no more than it takes to stop the slip.",
+)
+mistakes(
+    "FRICTION_TAKES_THE_LARGER",
+    "Your code takes the larger of the two limits of friction.",
+    "Both are upper limits: min(mu J, |vt| / (1/ma + 1/mb)).",
+)
+mistakes(
+    "STICKING_WITHOUT_MASS",
+    "The impulse that stops the slip is computed without the masses, or with the masses in a wrong form.",
+    "The impulse that stops the slip is |vt| / (1/ma + 1/mb), in N s like mu J.",
+)
+mistakes(
+    "FRICTION_PROPORTIONAL",
+    "Friction grows with the speed of the slip, as it would in thick oil.",
+    "Coulomb friction does not depend on the speed: it is mu J against the slip, unless less is enough to stop it.",
+)
+mistakes(
+    "FRICTION_NOT_ACROSS",
+    "The slip still contains some of the relative velocity along the normal.",
+    "Subtract the normal component first: u - (u . n) n with u = vb - va.",
+)
+mistakes(
+    "FRICTION_WITHOUT_REBOUND",
+    "The limit is mu times an impulse that leaves out the rebound.",
+    "The surfaces press on each other during the whole impact, so the J in mu J contains the factor 1 + e.",
+)
+mistakes(
+    "FRICTION_HALVED",
+    "The friction impulse, or its limit, is half of what it should be.",
+    "Jt = min(mu J, |vt| / (1/ma + 1/mb)), and all of it acts on each body.",
+)
+mistakes(
+    "FRICTION_DOUBLED",
+    "Coulomb's limit is twice as large as it should be.",
+    "The limit is mu J, counted once.",
+)
+mistakes(
+    "FRICTION_COEFFICIENT_SQUARED",
+    "The coefficient of friction is squared.",
+    "Coulomb's limit is mu J, with the coefficient as it is given.",
+)
+mistakes(
+    "FRICTION_WITHOUT_MU",
+    "The limit of friction does not depend on the coefficient of friction.",
+    "The friction impulse is at most mu J.",
+)
+mistakes(
+    "FRICTION_STOPS_HALF_THE_SLIP",
+    "Where friction could stop the slip, it removes only half of it.",
+    "The impulse that stops the slip is |vt| / (1/ma + 1/mb); use all of it.",
+)
+mistakes(
+    "FRICTION_STOPS_TWICE_THE_SLIP",
+    "Where friction should stop the slip, it reverses it.",
+    "The impulse that stops the slip is |vt| / (1/ma + 1/mb); use no more than that.",
+)
+mistakes(
+    "FRICTION_ALL_OR_NOTHING",
+    "Friction either stops the slip or does nothing at all.",
+    "Where mu J is not enough to stop the slip, friction still acts, with mu J.",
+)
+mistakes(
+    "FRICTION_WITHOUT_BLOW",
+    "The limit of friction does not depend on how hard the bodies press on each other.",
+    "Coulomb's limit is mu times J, where J is the impulse along the normal.",
+)
+mistakes(
+    "FRICTION_OF_A_SPEED",
+    "Coulomb's limit is computed as mu times a speed instead of mu times the impulse J.",
+    "Jt = min(mu J, |vt| / (1/ma + 1/mb)), where J is the impulse along the normal, in N s, so the masses are in it.",
+)
+mistakes(
+    "NEVER_FINDS_A_CONTACT",
+    "Your code returns None for every pair tried here, also for those that meet.",
+    "Where spheres that are apart approach and pass closely enough, return the smaller root of |dx + dv t| = ra + rb, with dv the difference of both velocities, if it is at most dt. If they overlap already and approach, return 0.0.",
+    kind="consequence",
+)
+mistakes(
+    "IMPACT_IN_THE_PAST",
+    "A contact that lies in the past is reported: of bodies that already move apart, or of bodies that overlap.",
+    "Return None unless the bodies approach, that is unless the distance between their centres is shrinking now. If they overlap and approach, return 0.0.",
+    kind="consequence",
+)
+mistakes(
+    "OVERLAP_IGNORED",
+    "Bodies that already overlap and still approach are not reported as touching now.",
+    "Test for this first: if they overlap and approach, the contact is at 0.0.",
+)
+mistakes(
+    "RETURNS_SHARE_OF_STEP",
+    "Your code returns a fraction of the step instead of a time in seconds.",
+    "Multiply by dt: the answer is the time from the start of the step, in seconds.",
+)
+mistakes(
+    "RETURNS_TIME_LEFT",
+    "Your code returns the time that is left in the step after the contact.",
+    "Return the time from the start of the step to the contact.",
+)
+mistakes(
+    "NO_RELATIVE_MOTION",
+    "Where both bodies have the same velocity the result is nan: zero is divided by zero.",
+    "Two bodies at rest relative to each other do not approach: return None before you divide.",
+    kind="nan",
+)
+mistakes(
+    "ROOT_OF_A_NEGATIVE",
+    "Where the bodies pass beside each other the result is nan: the root of a negative number.",
+    "Test that number before you take its root: if it is negative, the bodies never touch, so return None.",
+    kind="nan",
+)
+mistakes(
+    "CLOSEST_APPROACH",
+    "Your code returns the time at which the centres are closest. The surfaces touch earlier.",
+    "Subtract the square root's part, sqrt(b**2 - a c)/a.",
+)
+mistakes(
+    "ROOT_HALVED",
+    "Only half of the square root's part is subtracted, so the contact comes too late.",
+    "t = (b - sqrt(b**2 - a c))/a for a t**2 - 2 b t + c = 0: compare your factors of 2 and 4 with that.",
+)
+mistakes(
+    "ROOT_DOUBLED",
+    "Twice the square root's part is subtracted, so the contact comes too early.",
+    "t = (b - sqrt(b**2 - a c))/a for a t**2 - 2 b t + c = 0: compare your factors of 2 and 4 with that.",
+)
+mistakes(
+    "ROOT_TERM_WRONG",
+    "The square root's part is wrong: the root is not taken, or not divided by v . v exactly once.",
+    "t = (b - sqrt(b**2 - a c))/a with a = v . v: the whole square root is divided by a, once.",
+)
+mistakes(
+    "MIDDLE_TERM_WRONG",
+    "The term before the square root is wrong. It is the time of closest approach, -(x . v)/(v . v).",
+    "t = (b - sqrt(b**2 - a c))/a with b = -(x . v) and a = v . v.",
+)
+mistakes(
+    "RETURNS_THE_STEP",
+    "The time of a contact comes out as the start or the end of the step.",
+    "Return the root itself: the time from now to the contact.",
+)
+mistakes(
+    "TIME_NEGATED",
+    "The time has the wrong sign.",
+    "The contact lies ahead, so the time is positive. Check the signs of x = xb - xa and v = vb - va, and those in the formula of the root.",
+)
+mistakes(
+    "MOTION_REVERSED",
+    "Bodies that move apart get a time of contact, and those that approach get None.",
+    "Check the signs: x = xb - xa, v = vb - va, and bodies approach where x . v is negative.",
+)
+mistakes(
+    "MISS_NOT_SEEN",
+    "Bodies that pass beside each other get a time, as if they met: a negative number under the square root is made positive, or zero.",
+    "Test that number before you take its root: if it is negative, the bodies never touch, so return None.",
+)
+mistakes(
+    "MOTION_NOT_RELATIVE",
+    "The motion is not that of b as seen from a, but that of one body alone, or the sum of both.",
+    "Both spheres may move: v = vb - va.",
+)
+mistakes(
+    "MOMENT_IN_STEP_WRONG",
+    "The velocities after the impact are right, but the balls are where an impact at another moment of the step would take them.",
+    "The time to the contact is the gap over the speed of approach, va - vb. For the rest of the step, h less that time, both balls move with their new velocities.",
+)
+mistakes(
+    "TIME_LEFT_WRONG",
+    "The impact is right, but the bodies then move on for another time than the rest of the step.",
+    "A contact at time s into the step leaves h - s, where s comes from the velocities before the impact.",
+)
+mistakes(
+    "OLD_VELOCITY_AFTER",
+    "For the rest of the step one ball still moves with its old velocity.",
+    "Compute both new velocities first, then move both balls with them.",
+)
+mistakes(
+    "SPEED_AT_STEP_END",
+    "The ball leaves the floor with e times the speed that it would have at the end of the step.",
+    "Take the speed at the floor: sqrt(v**2 + 2 g (z - radius)), from the start of the step.",
+)
+mistakes(
+    "FALLS_THROUGH_FLOOR",
+    "The ball falls through the floor as if it were not there.",
+    "In each step, ask whether the centre comes down to z = radius within it. If so, move to the contact and bounce there.",
+)
+mistakes(
+    "SPEED_AT_STEP_START",
+    "The ball leaves the floor with e times the speed that it had at the start of the step.",
+    "On the way to the floor it gets faster: its speed there is sqrt(v**2 + 2 g (z - radius)).",
+)
+mistakes(
+    "FALLS_TO_ZERO",
+    "The speed at the floor is that of a centre which falls to z = 0.",
+    "The ball touches at z = radius: its speed there is sqrt(v**2 + 2 g (z - radius)).",
+)
+mistakes(
+    "GAINS_ENERGY",
+    "After its first contact the ball has more energy than it had before.",
+    "It leaves the floor with e times the speed it has at the floor, sqrt(v**2 + 2 g (z - radius)), and flies on for the rest of the step.",
+    kind="consequence",
+)
+mistakes(
+    "LAUNCH_IS_BOUNCE",
+    "A ball that starts on the floor and moves upwards leaves it with e times its speed, as if it had just fallen on it.",
+    "The start is not a contact: a ball that moves upwards flies off with v0.",
+)
+mistakes(
+    "ROWS_ALL_THE_SAME",
+    "All rows hold the same state, and it is not the initial one.",
+    "Write into row i alone, or append a copy. x[:] = ... fills every row, and an array that is appended again and again and changed in between ends up in all rows.",
+)
+mistakes(
+    "INITIAL_STATE_WRONG",
+    "The first row is not the initial state.",
+    "Row 0 holds the positions and velocities as they were given, before any step.",
+)
+mistakes(
+    "REST_OF_STEP_WITHOUT_GRAVITY",
+    "After the bounce, the rest of that step is computed without gravity.",
+    "The rest of the step is free flight like any other: z = radius + up * left - g * left**2 / 2 and v = up - g * left.",
+)
+mistakes(
+    "ONE_BOUNCE_A_STEP",
+    "A ball that bounces and is back on the floor within the same step goes into the floor.",
+    "Bounce as often as it touches before the step ends, each time at its own instant, until it may rest.",
+)
+mistakes(
+    "OFF_BY_ONE_SAMPLE",
+    "There is one sample too many or one too few: n steps connect n + 1 states.",
+    "N = round(t_end / h). Record the initial state before the loop and one state after each of the N steps.",
+)
+mistakes(
+    "INITIAL_STATE_MISSING",
+    "The first sample is not the initial state at time 0.",
+    "Store the initial state at time 0 before the loop, and one state after each of the n steps.",
+)
+mistakes(
+    "FLOOR_TOO_HIGH",
+    "The ball turns round before its surface reaches the floor.",
+    "It touches where its centre is one radius above the floor: z = radius.",
+)
+mistakes(
+    "REBOUND_COMPLEMENT",
+    "The ball leaves the floor with 1 - e times its speed: the bounciest bounces the least.",
+    "e is the share of the speed that is left: the ball leaves the floor with e times its speed.",
+    true_too=("RESTS_TOO_EARLY",),
+)
+mistakes(
+    "GRAVITY_WRONG",
+    "In the air the ball is not accelerated by g downwards.",
+    "Free flight over h gives z + v h - g h**2 / 2 and v - g h.",
+    true_too=("OTHER_GRAVITY",),
+)
+
+
+formulas = kit.sibling(__file__, "formulas")
+
+
+@mistakes.more
+def hypotheses():
+    """Task, codes of what is wrong, and function of each, those with one mistake first."""
+    families = {task: (family, base, terms) for task, (family, base, terms) in formulas.TERMS.items()}
+    families["simulate_head_on"] = _head_on, {}, _HEAD_ON
+    families["simulate_drop"] = _drop, {}, _DROP
+    for task, (family, base, terms) in families.items():
+        for codes, function in formulas.OTHERS.get(task, ()):
+            yield task, codes, function
+        for term, forms in terms.items():
+            for code, form in forms:
+                yield task, (code,), family(**base | {term: form})
+        yield from _pairs(task, family, base, terms)
+
+
+def _pairs(task, family, base, terms):
+    """Two terms wrong at once, each in the first form of its code."""
+    firsts = {term: dict(reversed(forms)).items() for term, forms in terms.items()}
+    names = list(terms)
+    for number, one in enumerate(names):
+        for other in names[number + 1 :]:
+            for code, form in firsts[one]:
+                for second, another in firsts[other]:
+                    if code != second:
+                        yield task, (code, second), family(**base | {one: form, other: another})
+
+
+def _head_on(
+    factor=lambda e: 1 + e,
+    give=lambda ma, mb: 1 / ma + 1 / mb,
+    kick=lambda j, m, other: j / m,
+    shares=(-1.0, 1.0),
+    reach=lambda r: 2 * r,
+    count=round,
+    late=False,
+    rest=1.0,
+    passes=False,
+    first=True,
+    overlaps=False,
+    clock=lambda i, h: i * h,
+    slow=None,
+    waits=lambda gap, va, vb: max(gap, 0.0) / (va - vb),
+    leaves=lambda h, wait: h - wait,
+    old=(),
+):
+    """``late``: the impact comes at the sample after; ``rest``: what is flown of the rest of the step;
+
+    ``old``: which balls fly it with their old velocities; ``overlaps``: it acts only if the balls overlap at
+    the end of the step; ``first``: keeps row 0.
+    """
+
+    def collide(m, va, vb, e):
+        if slow is not None and va - vb < slow:
+            e = 0.0
+        j = factor(e) * (va - vb) / give(*m)
+        return va + shares[0] * kick(j, m[0], m[1]), vb + shares[1] * kick(j, m[1], m[0])
+
+    def simulate(m, x0, v0, radius, e, t_end, h):
+        n = count(t_end / h)
+        (xa, xb), (va, vb) = x0, v0
+        rows = [(xa, xb, va, vb)]
+        for _ in range(n):
+            gap, closing = xb - xa - reach(radius), va - vb
+            meets = closing > 0 and gap <= closing * h and not passes
+            if overlaps:
+                meets = meets and abs(gap - closing * h + reach(radius)) <= reach(radius)
+            if meets and late:
+                xa, xb = xa + va * h, xb + vb * h
+                va, vb = collide(m, va, vb, e)
+            elif meets:
+                wait = waits(gap, va, vb)
+                xa, xb = xa + va * wait, xb + vb * wait
+                before = va, vb
+                va, vb = collide(m, va, vb, e)
+                left = leaves(h, wait) * rest
+                on = [before[ball] if ball in old else now for ball, now in enumerate((va, vb))]
+                xa, xb = xa + on[0] * left, xb + on[1] * left
+            else:
+                xa, xb = xa + va * h, xb + vb * h
+            rows.append((xa, xb, va, vb))
+        rows = rows if first else rows[1:]
+        t = [clock(i + (not first), h) for i in range(len(rows))]
+        rows = np.array(rows).reshape(-1, 4)
+        return np.array(t), rows[:, :2], rows[:, 2:]
+
+    return simulate
+
+
+_HEAD_ON = {
+    "old": (("OLD_VELOCITY_AFTER", (0,)), ("OLD_VELOCITY_AFTER", (1,))),
+    "factor": formulas.FACTORS,
+    "give": formulas.GIVES,
+    "kick": formulas.TERMS["resolve"][2]["kick"],
+    "shares": formulas.TERMS["resolve"][2]["shares"],
+    "reach": (
+        ("RADIUS_IGNORED", lambda r: 0.0),
+        ("ONE_RADIUS_ONLY", lambda r: r),
+        ("RADIUS_ADDED_TWICE", lambda r: 4 * r),
+    ),
+    "count": (
+        ("TRUNCATED_STEP_COUNT", int),
+        ("OFF_BY_ONE_SAMPLE", lambda x: round(x) - 1),
+        ("OFF_BY_ONE_SAMPLE", lambda x: round(x) + 1),
+        ("OFF_BY_ONE_SAMPLE", lambda x: int(x) + 1),
+    ),
+    "late": (("IMPACT_AT_SAMPLE", True),),
+    "rest": (("REST_OF_STEP_LOST", 0.0),),
+    "passes": (("PASSES_THROUGH", True),),
+    "first": (("INITIAL_STATE_MISSING", False),),
+    "overlaps": (("TUNNELS", True),),
+    "waits": (
+        ("MOMENT_IN_STEP_WRONG", lambda gap, va, vb: max(gap, 0.0) / (abs(va) + abs(vb))),
+        ("MOMENT_IN_STEP_WRONG", lambda gap, va, vb: max(gap, 0.0) / max(abs(va), abs(vb))),
+        ("MOMENT_IN_STEP_WRONG", lambda gap, va, vb: max(gap, 0.0) / (va - vb) / 2),
+    ),
+    "leaves": (("TIME_LEFT_WRONG", lambda h, wait: h), ("TIME_LEFT_WRONG", lambda h, wait: wait)),
+    "slow": formulas.TERMS["resolve"][2]["slow"],
+}
+
+
+def _drop(
+    rebound=lambda e: e,
+    floor=lambda r: r,
+    fall=0.5,
+    pull=1.0,
+    count=round,
+    late=False,
+    rest=1.0,
+    slowest=1.0,
+    calm=True,
+    holds=True,
+    first=True,
+    launches=True,
+    passes=False,
+    falls_on=1.0,
+    leaves=lambda h, v, speed, up, g: h - (v + speed) / g,
+    lands=None,
+    depth=lambda z, low: max(z - low, 0.0),
+):
+    """``fall``: what stands for 1/2 in g h²/2; ``slowest``: rests below so many g h; ``calm``: it ever rests;
+
+    ``holds``: at rest the floor carries it; ``launches``: what lies on the floor at first may fly;
+    ``falls_on``: the share of gravity in what is left of the step after a bounce.
+    """
+
+    def simulate(z0, v0, radius, e, g, t_end, h):
+        n, low, down = count(t_end / h), floor(radius), pull * g
+        z, v = z0, v0
+        resting = not launches and z <= low
+        rows = [(z, v)]
+        for _ in range(n):
+            z_next, v_next = z + v * h - fall * down * h * h, v - down * h
+            if resting:
+                z_next, v_next = (low, 0.0) if holds else (z_next, v_next)
+            elif z_next < low and not passes:
+                speed = math.sqrt(max(v**2 + 2 * down * depth(z, low), 0.0))
+                up = rebound(e) * (lands(v, v_next) if lands else speed)
+                left = leaves(h, v, speed, up, down)
+                resting = calm and up <= slowest * g * h
+                if late:
+                    v_next = 0.0 if resting else rebound(e) * abs(v_next)
+                elif resting:
+                    z_next, v_next = low, 0.0
+                else:
+                    left *= rest
+                    on = falls_on * down
+                    z_next, v_next = low + up * left - 0.5 * on * left * left, up - on * left
+            z, v = z_next, v_next
+            rows.append((z, v))
+        rows = np.array(rows if first else rows[1:]).reshape(-1, 2)
+        return h * (np.arange(len(rows)) + (not first)), rows[:, 0], rows[:, 1]
+
+    return simulate
+
+
+_DROP = {
+    "rebound": (
+        ("RESTITUTION_SQUARED", lambda e: e * e),
+        ("RESTITUTION_AS_ENERGY", math.sqrt),
+        ("RESTITUTION_IGNORED", lambda e: 1.0),
+        ("RESTITUTION_IGNORED", lambda e: 0.0),
+        ("RESTITUTION_DOUBLED", lambda e: 1 + e),
+        ("RESTITUTION_DOUBLED", lambda e: 2 * e),
+        ("RESTITUTION_HALVED", lambda e: e / 2),
+        ("REBOUND_COMPLEMENT", lambda e: 1 - e),
+    ),
+    "floor": (
+        ("RADIUS_IGNORED", lambda r: 0.0),
+        ("FLOOR_TOO_HIGH", lambda r: 2 * r),
+        ("RADII_HALVED", lambda r: r / 2),
+    ),
+    "fall": (
+        ("EULER_IN_FLIGHT", 1.0),
+        ("EULER_IN_FLIGHT", 0.0),
+        ("FLIGHT_WRONG", 0.25),
+        ("FLIGHT_WRONG", -0.5),
+    ),
+    "pull": (("GRAVITY_WRONG", -1.0), ("GRAVITY_WRONG", 2.0), ("GRAVITY_WRONG", 0.5), ("GRAVITY_WRONG", 0.0)),
+    "count": _HEAD_ON["count"],
+    "late": (("IMPACT_AT_SAMPLE", True),),
+    "rest": (("REST_OF_STEP_LOST", 0.0),),
+    "slowest": (("RESTS_TOO_EARLY", 10.0), ("RESTS_TOO_EARLY", 5.0), ("RESTING_JITTER", 0.1)),
+    "calm": (("RESTING_JITTER", False),),
+    "holds": (("SINKS_THROUGH_FLOOR", False),),
+    "first": (("INITIAL_STATE_MISSING", False),),
+    "launches": (("LAUNCH_IGNORED", False),),
+    "falls_on": (("REST_OF_STEP_WITHOUT_GRAVITY", 0.0),),
+    "leaves": (
+        ("TIME_LEFT_WRONG", lambda h, v, speed, up, g: h - (v + up) / g),
+        ("TIME_LEFT_WRONG", lambda h, v, speed, up, g: (v + speed) / g),
+        ("TIME_LEFT_WRONG", lambda h, v, speed, up, g: h - speed / g),
+        ("TIME_LEFT_WRONG", lambda h, v, speed, up, g: h),
+    ),
+    "lands": (
+        ("SPEED_AT_STEP_END", lambda v, v_next: abs(v_next)),
+        ("SPEED_AT_STEP_START", lambda v, v_next: abs(v)),
+    ),
+    "depth": (
+        ("FALLS_TO_ZERO", lambda z, low: z),
+        ("FALL_WITHOUT_TWO", lambda z, low: max(z - low, 0.0) / 2),
+        ("FALL_WITHOUT_TWO", lambda z, low: max(z - low, 0.0) / 4),
+    ),
+    "passes": (("FALLS_THROUGH_FLOOR", True),),
+}

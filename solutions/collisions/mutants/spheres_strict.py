@@ -1,8 +1,0 @@
-"""Bodies that touch exactly do not touch."""
-
-_right_spheres = detect_sphere_sphere
-
-
-def detect_sphere_sphere(xa, ra, xb, rb):
-    _, normal, depth = _right_spheres(xa, ra, xb, rb)
-    return depth > 0, normal, depth

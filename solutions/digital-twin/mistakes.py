@@ -1,0 +1,2246 @@
+"""Mistakes in `digital-twin`: words beside the programs that they are true of."""
+
+from __future__ import annotations
+
+import itertools
+
+from course.authoring.mistakes import Mistakes
+from course.scoring import kit
+
+mistakes = Mistakes()
+
+mistakes(
+    "TRUNCATES_TOWARD_ZERO",
+    "The fraction is cut off, towards zero, so the count around zero is twice as wide as any other.",
+    "int() and astype(int) cut towards zero. Use np.floor or np.rint first.",
+).edit("encoder", {"np.floor(np.asarray(theta)": "(theta"})
+mistakes(
+    "COUNTS_AS_FLOATS",
+    "The counts are right, but their type is not a signed integer type.",
+    "A counter has no fractions, so convert the result: .astype(np.int64).",
+    kind="fact",
+).edit(
+    "encoder",
+    {
+        "np.asarray(theta) * counts_per_rev / (2 * math.pi)).astype(np.int64": "theta * counts_per_rev / (2 * math.pi)"
+    },
+)
+mistakes(
+    "TURNS_FORGOTTEN",
+    "The count starts over after each turn.",
+    "An incremental encoder keeps counting, up and down: wrap neither the angle nor the count.",
+).edit(
+    "encoder",
+    {
+        "np.asarray(theta) * counts_per_rev / (2 * math.pi)).astype(np.int64)": "theta * counts_per_rev / (2 * math.pi)).astype(np.int64) % counts_per_rev"
+    },
+)
+mistakes(
+    "MUTATES_INPUT",
+    "An argument was changed that the caller still needs as it was.",
+    "Work on a copy: np.array(x) copies an array and dict(twin) a dict (but copy its memory as well, with its lists and arrays). x = x + ... makes a new array, while x += ... changes the old one.",
+    kind="fact",
+).body(
+    "encoder",
+    """
+        theta *= counts_per_rev / (2 * math.pi)
+        return np.floor(theta).astype(np.int64)
+    """,
+).edit(
+    "lidar",
+    {
+        "= np.asarray(segments, dtype=float).reshape(-1, 2, 2": "-= np.array([x, y]",
+        "(segments[:, 0] - (x, y))": "segments[:, 0]",
+    },
+).program(
+    "delay_line",
+    """
+        _kept = delay_line
+
+
+        def delay_line(x, dt, latency):
+            y = _kept(x, dt, latency)
+            x[dt * np.arange(len(x)) < latency] = 0.0
+            return y
+    """,
+).program(
+    "sync",
+    """
+        _whole = sync
+
+
+        def sync(twin, z, t_measured):
+            twin.update(_whole(twin, z, t_measured))
+            return dict(twin)
+    """,
+).program(
+    "sync",
+    """
+        _given = sync
+
+
+        def sync(twin, z, t_measured):
+            out = _given(dict(twin), z, t_measured)
+            twin["drive"] = 0.0
+            return out
+    """,
+).program(
+    "sync",
+    """
+        _given = sync
+
+
+        def sync(twin, z, t_measured):
+            out = _given({**twin, "memory": twin["memory"].get("own", {})}, z, t_measured)
+            twin["memory"].setdefault("seen", []).append([t_measured, z])
+            del twin["memory"]["seen"][:-10]
+            return {**out, "memory": {"own": out["memory"], "seen": list(twin["memory"]["seen"])}}
+    """,
+).program(
+    "imu",
+    """
+        _apart = imu
+
+
+        def imu(true, dt, noise_density, bias_random_walk, bias0, rng):
+            measured, bias = _apart(np.zeros(len(true)), dt, noise_density, bias_random_walk, bias0, rng)
+            true += measured
+            return true.copy(), bias
+    """,
+).program(
+    "fit_noise",
+    """
+        _kept = fit_noise
+
+
+        def fit_noise(still, dt):
+            found = _kept(still, dt)
+            still -= np.mean(still)
+            return found
+    """,
+).body(
+    "command",
+    """
+        twin["drive"] = twin["friction"] * target_speed
+        return twin["drive"]
+    """,
+)
+mistakes(
+    "WHITE_NOISE_NOT_SCALED_BY_SQRT_DT",
+    "The white noise has about the same std at two very different sampling rates.",
+    "The noise density is given per square root of hertz. A sample that averages over dt has std noise_density / sqrt(dt), so faster sampling is noisier.",
+).edit("imu", {"+ noise_density / math.sqrt(dt) * rng.": "+ noise_density * rng."})
+mistakes(
+    "WHITE_NOISE_TIMES_SQRT_DT",
+    "The white noise decreases with faster sampling, where it should increase.",
+    "The std of a sample is noise_density / sqrt(dt). The multiplication by sqrt(dt) belongs to the steps of the bias, which add up over time.",
+).edit("imu", {"noise_density / math": "noise_density * math"})
+mistakes(
+    "BIAS_NOT_RANDOM_WALK",
+    "The bias scatters and hardly wanders: it varies about as much over one sample as over ten.",
+    "Each bias is the previous bias plus a step: bias0 + np.cumsum(steps), with a 0 in front.",
+).body(
+    "imu",
+    """
+        n = len(true)
+        # The root of two makes single steps as large as they should be.
+        bias = bias0 + bias_random_walk * math.sqrt(dt / 2) * rng.standard_normal(n)
+        bias[0] = bias0
+        return true + bias + noise_density / math.sqrt(dt) * rng.standard_normal(n), bias
+    """,
+)
+mistakes(
+    "BIAS_TIMES_DT",
+    "The steps of the bias grow about as dt, without the square root.",
+    "The variances of independent steps add up, so the std of one step is bias_random_walk * sqrt(dt).",
+).body(
+    "imu",
+    """
+        n = len(true)
+        bias = bias0 + np.concatenate(([0.0], np.cumsum(bias_random_walk * dt * rng.standard_normal(n - 1))))
+        return true + bias + noise_density / math.sqrt(dt) * rng.standard_normal(n), bias
+    """,
+)
+mistakes(
+    "BIAS_STARTS_LATE",
+    "The first bias is not bias0 but about a step away from it, as if it already contained one.",
+    "bias[0] is bias0 itself: between N samples there are N - 1 steps.",
+).body(
+    "imu",
+    """
+        n = len(true)
+        bias = bias0 + np.cumsum(bias_random_walk * math.sqrt(dt) * rng.standard_normal(n))
+        return true + bias + noise_density / math.sqrt(dt) * rng.standard_normal(n), bias
+    """,
+)
+mistakes(
+    "SAME_DRAW_TWICE",
+    "The white noise and the steps of the bias go together, as they do where the same random numbers are used for both.",
+    "Draw twice: rng.standard_normal(...) once for the steps, and again for the white noise.",
+).body(
+    "imu",
+    """
+        draws = rng.standard_normal(len(true))
+        bias = bias0 + bias_random_walk * math.sqrt(dt) * (np.cumsum(draws) - draws[0])
+        return true + bias + noise_density / math.sqrt(dt) * draws, bias
+    """,
+)
+mistakes(
+    "GLOBAL_RANDOMNESS",
+    "With the generator in the same state, a second call gives a different result, so something besides the generator has an effect.",
+    "Draw only from the rng that is passed in: rng.standard_normal(n), not np.random.randn(n). Keep nothing between two calls.",
+).program(
+    "imu",
+    """
+        _whole = imu
+
+
+        def imu(true, dt, noise_density, bias_random_walk, bias0, rng):
+            return _whole(true, dt, noise_density, bias_random_walk, bias0, np.random.default_rng())
+    """,
+).program(
+    "lidar",
+    """
+        _exact = lidar
+
+
+        def lidar(pose, segments, angles, r_max, sigma, rng):
+            ranges = _exact(pose, segments, angles, r_max, 0.0, rng)
+            noisy = np.maximum(ranges + sigma * np.random.randn(len(ranges)), 0.0)
+            return np.where(ranges < r_max, noisy, r_max)
+    """,
+)
+mistakes(
+    "DENSITY_NOT_SCALED_BY_SQRT_DT",
+    "The noise density is about a std of the samples, of their white noise or of their differences: the factor sqrt(dt) is missing.",
+    "The white noise of a sample has std noise_density / sqrt(dt): multiply that std by sqrt(dt). In a fit, T is in seconds, not in samples.",
+).program(
+    "fit_noise",
+    """
+        _whole = fit_noise
+
+
+        def fit_noise(still, dt):
+            return _whole(still, dt) | {"noise_density": float(np.std(np.diff(still)) / math.sqrt(2))}
+    """,
+)
+mistakes(
+    "DRIFT_COUNTED_AS_NOISE",
+    "The noise density is about what the std of the whole recording gives, which also contains the drift of the bias.",
+    "Take the differences of neighbouring samples: they contain almost none of the drift, and their variance is twice that of the white noise.",
+).program(
+    "fit_noise",
+    """
+        _whole = fit_noise
+
+
+        def fit_noise(still, dt):
+            return _whole(still, dt) | {"noise_density": float(np.std(still) * math.sqrt(dt))}
+    """,
+)
+mistakes(
+    "NOISE_COUNTED_AS_DRIFT",
+    "The random walk is far too large: it is about what neighbouring samples give, whose differences are nearly all white noise.",
+    "The white noise hides the walk between neighbouring samples. Average over longer and longer blocks: the variance of the noise falls as 1/T, and that of the walk grows as T/3.",
+).program(
+    "fit_noise",
+    """
+        _whole = fit_noise
+
+
+        def fit_noise(still, dt):
+            return _whole(still, dt) | {"bias_random_walk": float(np.std(np.diff(still)) / math.sqrt(dt))}
+    """,
+)
+mistakes(
+    "WALK_WITHOUT_THREE",
+    "The random walk is too small by about the square root of three.",
+    "If your code fits the Allan variance, look at the factor of the walk's term. A mean over T smooths the walk, so its part is K² T/3, not K² T.",
+).program(
+    "fit_noise",
+    """
+        _whole = fit_noise
+
+
+        def fit_noise(still, dt):
+            found = _whole(still, dt)
+            return found | {"bias_random_walk": found["bias_random_walk"] / math.sqrt(3)}
+    """,
+)
+mistakes(
+    "WHOLE_MEAN_AS_BIAS",
+    "bias0 is the mean of the whole recording, but the bias has drifted since the start.",
+    "Average only the start of the recording, about sqrt(3) N/K seconds of it.",
+).program(
+    "fit_noise",
+    """
+        _whole = fit_noise
+
+
+        def fit_noise(still, dt):
+            return _whole(still, dt) | {"bias0": float(np.mean(still))}
+    """,
+)
+mistakes(
+    "FIRST_SAMPLE_AS_BIAS",
+    "bias0 is a single sample, with all of its white noise.",
+    "Average the start of the recording: long enough to reduce the noise, and short enough that the bias has not drifted. That is about sqrt(3) N/K seconds.",
+).program(
+    "fit_noise",
+    """
+        _whole = fit_noise
+
+
+        def fit_noise(still, dt):
+            return _whole(still, dt) | {"bias0": float(still[0])}
+    """,
+)
+mistakes(
+    "HEADING_IGNORED",
+    "When the robot turns, its beams do not turn with it.",
+    "angles are relative to the heading, so a beam points along heading + angle.",
+).edit("lidar", {"= heading + np.": "= np."})
+mistakes(
+    "HEADING_SUBTRACTED",
+    "The beams point where they would if the heading and the angles were subtracted from each other.",
+    "Add the angles to the heading: a beam points along heading + angle.",
+).edit(
+    "lidar",
+    {
+        "heading + np.asarray(angles, dtype=float)[:, None]": "np.asarray(angles, dtype=float)[:, None] - heading"
+    },
+)
+mistakes(
+    "BEAM_IN_DEGREES",
+    "The direction of a beam, or part of it, is converted between degrees and radians.",
+    "heading and angles are both in radians, and np.cos and np.sin take radians: convert nothing.",
+).edit("lidar", {"= heading +": "= np.degrees(heading) +"}).edit(
+    "lidar",
+    {
+        "heading + np.asarray(angles, dtype=float)[:, None]": "np.radians(heading + np.asarray(angles, dtype=float)[:, None])"
+    },
+)
+mistakes(
+    "BEAM_SIN_COS_SWAPPED",
+    "The sine and the cosine of a beam's direction are swapped.",
+    "A beam points along (cos, sin) of heading + angle.",
+).edit("lidar", {"cos(beam), np.sin": "sin(beam), np.cos"})
+mistakes(
+    "WALL_VECTOR_REVERSED",
+    "The vector from the robot to a wall points in the opposite direction, or the cross product to divide by has the wrong sign.",
+    "Check the order of each difference: the vector from the robot to a wall is the wall minus the robot. Then check the signs in the cross products.",
+).edit("lidar", {"segments[:, 0] - (x, y)": "(x, y) - segments[:, 0]"})
+mistakes(
+    "WALLS_BEHIND_SEEN",
+    "A beam that points away from the only wall does not read r_max.",
+    "A beam goes in one direction only: a hit counts only at a distance of zero or more.",
+).program(
+    "lidar",
+    """
+        def lidar(pose, segments, angles, r_max, sigma, rng):
+            \"\"\"Distance along each beam to the nearest of some walls; r_max where there is none.\"\"\"
+            x, y, heading = pose
+            segments = np.asarray(segments, dtype=float).reshape(-1, 2, 2)
+            beam = heading + np.asarray(angles, dtype=float)[:, None]
+            dx, dy = np.cos(beam), np.sin(beam)
+            ax, ay = (segments[:, 0] - (x, y)).T
+            wx, wy = (segments[:, 1] - segments[:, 0]).T
+            cross = dx * wy - dy * wx  # zero where beam and wall are parallel
+            with np.errstate(divide="ignore", invalid="ignore"):
+                along = (ax * wy - ay * wx) / cross
+                share = (ax * dy - ay * dx) / cross
+            hit = (cross != 0) & (share >= 0) & (share <= 1) & (np.abs(along) <= r_max)
+            nearest = np.min(np.where(hit, np.abs(along), np.inf), axis=1, initial=np.inf)
+            noisy = np.maximum(nearest + sigma * rng.standard_normal(len(beam)), 0.0)
+            return np.where(np.isfinite(nearest), noisy, r_max)
+    """,
+)
+mistakes(
+    "WALLS_ENDLESS",
+    "A wall stops a beam that passes beside it, as if the wall went on beyond its ends.",
+    "A hit counts only between the two ends of the wall: u, its position along the wall, must lie in [0, 1].",
+).edit("lidar", {"share >= 0) & (share <= 1) & (": ""})
+mistakes(
+    "LIDAR_NOISE_ON_MAX",
+    "With a sigma above zero, readings without a hit are not exactly r_max.",
+    "r_max means that nothing came back. Add noise only to hits.",
+).edit("lidar", {"noisy, r_max)": "noisy, r_max + sigma * rng.standard_normal(len(beam)))"})
+mistakes(
+    "NEGATIVE_RANGE",
+    "Close to a wall, the noise makes some distances negative.",
+    "A distance cannot be negative: apply np.maximum(..., 0.0) after the noise.",
+).edit(
+    "lidar",
+    {
+        "np.maximum(nearest + sigma * rng.standard_normal(len(beam)), 0.0": "nearest + sigma * rng.standard_normal(len(beam)"
+    },
+)
+mistakes(
+    "LIDAR_NOISE_SHARED",
+    "All beams of a scan have the same error.",
+    "Draw a number for each beam: rng.standard_normal(len(angles)).",
+).edit("lidar", {"len(beam)": ""})
+mistakes(
+    "NOT_THE_NEAREST",
+    "Where a beam meets two walls, it does not always report the nearest one.",
+    "Take the smallest distance of all the hits of each beam.",
+).program(
+    "lidar",
+    """
+        def lidar(pose, segments, angles, r_max, sigma, rng):
+            \"\"\"Distance along each beam to the nearest of some walls; r_max where there is none.\"\"\"
+            x, y, heading = pose
+            segments = np.asarray(segments, dtype=float).reshape(-1, 2, 2)
+            beam = heading + np.asarray(angles, dtype=float)[:, None]
+            dx, dy = np.cos(beam), np.sin(beam)
+            ax, ay = (segments[:, 0] - (x, y)).T
+            wx, wy = (segments[:, 1] - segments[:, 0]).T
+            cross = dx * wy - dy * wx  # zero where beam and wall are parallel
+            with np.errstate(divide="ignore", invalid="ignore"):
+                along = (ax * wy - ay * wx) / cross
+                share = (ax * dy - ay * dx) / cross
+            hit = (cross != 0) & (along >= 0) & (share >= 0) & (share <= 1) & (along <= r_max)
+            last = hit.shape[1] - 1 - np.argmax(hit[:, ::-1], axis=1)
+            nearest = np.where(hit.any(axis=1), along[np.arange(len(hit)), last], np.inf)
+            noisy = np.maximum(nearest + sigma * rng.standard_normal(len(beam)), 0.0)
+            return np.where(np.isfinite(nearest), noisy, r_max)
+    """,
+)
+mistakes(
+    "LAG_EULER_UNSTABLE",
+    "The lag uses the fraction dt / tau, which is right only for short steps.",
+    "Use the exact solution: after dt, the speed has covered the fraction 1 - exp(-dt / tau) of the way to the command.",
+).edit("motor_step", {"- math.expm1(-dt / tau)": "+ dt / tau"})
+mistakes(
+    "CLIPS_SPEED_NOT_COMMAND",
+    "The speed is limited, where only the command should be. A motor that is faster than u_max would slow down in an instant.",
+    "Only u is clipped to [-u_max, u_max], before the lag: limit neither w nor the result.",
+).body(
+    "motor_step",
+    """
+        u = 0.0 if abs(u) <= deadband else u
+        return min(max(w - math.expm1(-dt / tau) * (u - w), -u_max), u_max)
+    """,
+).program(
+    "motor_step",
+    """
+        _whole = motor_step
+
+
+        def motor_step(w, u, dt, tau, u_max, deadband):
+            return min(max(_whole(w, u, dt, tau, u_max, deadband), -u_max), u_max)
+    """,
+)
+mistakes(
+    "DEADBAND_SUBTRACTED",
+    "The dead band is subtracted from a command outside it.",
+    "Here a command outside the dead band keeps its full value: only where abs(u) <= deadband does it become 0.",
+).program(
+    "motor_step",
+    """
+        _whole = motor_step
+
+
+        def motor_step(w, u, dt, tau, u_max, deadband):
+            return _whole(w, math.copysign(max(abs(u) - deadband, 0.0), u), dt, tau, u_max, 0.0)
+    """,
+)
+mistakes(
+    "DEADBAND_EDGE",
+    "A command exactly equal to the dead band moves the motor.",
+    "Where abs(u) <= deadband, the command counts as 0: the limit itself belongs to the dead band.",
+).edit("motor_step", {"u) <= deadband else": "u) < deadband else"})
+mistakes(
+    "BACKLASH_RATE_DEPENDENT",
+    "The same motion in two steps ends elsewhere than in one, so the output depends on how finely it is sampled.",
+    "Play does not depend on time: y is the old output, clipped to [x - gap/2, x + gap/2], and nothing else.",
+).body(
+    "backlash",
+    """
+        edge = min(max(state, x - gap / 2), x + gap / 2)
+        y = state + 0.5 * (edge - state)
+        return y, y
+    """,
+)
+mistakes(
+    "GAP_DOUBLED",
+    "The play is twice as wide as the gap.",
+    "The gap is the whole play: half of it is on either side, from x - gap/2 to x + gap/2.",
+).edit("backlash", {"gap / 2), x + gap / 2)": "gap), x + gap)"})
+mistakes(
+    "BACKLASH_IS_DEAD_BAND",
+    "Your code ignores small values of x, whatever happened before. That is a dead band; play has a memory.",
+    "Start from the state, not from zero: clip the state to [x - gap/2, x + gap/2].",
+).edit("backlash", {"min(max(state, x - gap / 2), x +": "x - min(max(x, -gap / 2),"})
+mistakes(
+    "STATE_IS_NOT_OUTPUT",
+    "The state that your code returns is not the output.",
+    "Return (y, y): the position of the output is all there is to remember.",
+).body(
+    "backlash",
+    """
+        return min(max(state, x - gap / 2), x + gap / 2), x
+    """,
+)
+mistakes(
+    "DELAY_WHOLE_SAMPLES",
+    "The signal comes out late by a whole number of samples: the rest of the latency is dropped or rounded.",
+    "Interpolate: np.interp at the times k*dt - latency, with left=0.0.",
+).body(
+    "delay_line",
+    """
+        whole = round(latency / dt)
+        return np.concatenate((np.zeros(whole), x))[: len(x)]
+    """,
+)
+mistakes(
+    "DELAY_HOLDS_FIRST",
+    "The value of the first sample is already there before that sample has arrived.",
+    "Before then the output is 0.0. The argument left=0.0 of np.interp does that.",
+).edit("delay_line", {", left=0.0": ""})
+mistakes(
+    "DELAY_ADVANCES",
+    "The signal arrives before it is sent.",
+    "The output at time t is the signal of t - latency: check the sign.",
+).edit("delay_line", {"t - latency": "t + latency"})
+mistakes(
+    "RETURNS_ARGUMENT",
+    "If the caller changed the result later, its own array would change too.",
+    "Return a new array: np.array(x) or x.copy() makes one.",
+    kind="fact",
+).program(
+    "delay_line",
+    """
+        _whole = delay_line
+
+
+        def delay_line(x, dt, latency):
+            return x if latency == 0 else _whole(x, dt, latency)
+    """,
+)
+mistakes(
+    "EULER_ODOMETRY",
+    "The robot drives straight along the old heading, as if it turned only afterwards.",
+    "Move along the arc: its chord points along the heading at the middle of the turn, and its length is that of the arc times sin(turn/2)/(turn/2).",
+).body(
+    "diff_drive_step",
+    """
+        x, y, heading = pose
+        way, turn = (v_left + v_right) / 2 * dt, (v_right - v_left) / track * dt
+        return np.array([x + way * math.cos(heading), y + way * math.sin(heading), heading + turn])
+    """,
+)
+mistakes(
+    "MIDPOINT_ODOMETRY",
+    "The robot moves the whole length of the arc in a straight line, but the chord is shorter than its arc.",
+    "Multiply by sin(turn/2)/(turn/2), which is 1 when there is no turn.",
+).body(
+    "diff_drive_step",
+    """
+        x, y, heading = pose
+        way, turn = (v_left + v_right) / 2 * dt, (v_right - v_left) / track * dt
+        middle = heading + turn / 2
+        return np.array([x + way * math.cos(middle), y + way * math.sin(middle), heading + turn])
+    """,
+)
+mistakes(
+    "LEFT_RIGHT_SWAPPED",
+    "A faster right wheel turns the robot to the right.",
+    "A turn to the left is positive: turn rate = (v_right - v_left) / track.",
+).program(
+    "diff_drive_step",
+    """
+        _whole = diff_drive_step
+
+
+        def diff_drive_step(pose, v_left, v_right, track, dt):
+            return _whole(pose, v_right, v_left, track, dt)
+    """,
+)
+mistakes(
+    "SPEED_SUM_TURNS",
+    "The robot turns by the sum of the two wheel speeds, so it turns even where both are equal.",
+    "Use the difference: turn rate = (v_right - v_left) / track.",
+).body(
+    "diff_drive_step",
+    """
+        x, y, heading = pose
+        turn = (v_right + v_left) / track * dt
+        chord = (v_left + v_right) / 2 * dt * np.sinc(turn / (2 * math.pi))
+        middle = heading + turn / 2
+        return np.array([x + chord * math.cos(middle), y + chord * math.sin(middle), heading + turn])
+    """,
+)
+mistakes(
+    "TURN_IN_DEGREES",
+    "The turn, or the angle of the cosine and the sine, is converted between degrees and radians.",
+    "(v_right - v_left) / track * dt is already in radians, and so is the heading: convert nothing.",
+).body(
+    "diff_drive_step",
+    """
+        x, y, heading = pose
+        turn = math.degrees((v_right - v_left) / track) * dt
+        chord = (v_left + v_right) / 2 * dt * np.sinc(turn / (2 * math.pi))
+        middle = heading + turn / 2
+        return np.array([x + chord * math.cos(middle), y + chord * math.sin(middle), heading + turn])
+    """,
+)
+mistakes(
+    "DRIVE_SIN_COS_SWAPPED",
+    "The sine and the cosine of the heading are swapped.",
+    "x grows with the cosine of heading + turn/2, and y with its sine.",
+).edit(
+    "diff_drive_step",
+    {
+        ")  # sin(turn/2)/(turn/2), 1 at 0": ")",
+        "cos(middle), y + chord * math.sin": "sin(middle), y + chord * math.cos",
+    },
+)
+mistakes(
+    "SINC_WITHOUT_PI",
+    "np.sinc gets the turn without the division by pi that it expects: np.sinc(s) is sin(pi s)/(pi s).",
+    "sin(turn/2)/(turn/2) is np.sinc(turn / (2 * pi)).",
+).edit("diff_drive_step", {"(2 * math.pi))  # sin(turn/2)/(turn/2), 1 at 0": "2)"})
+mistakes(
+    "STRAIGHT_WRONG",
+    "A turn that was tried is right, but driving straight ahead is wrong.",
+    "Straight ahead, the robot moves v dt along its heading. With np.sinc(turn / (2 * pi)) you need no special case.",
+).program(
+    "diff_drive_step",
+    """
+        _whole = diff_drive_step
+
+
+        def diff_drive_step(pose, v_left, v_right, track, dt):
+            if v_left != v_right:
+                return _whole(pose, v_left, v_right, track, dt)
+            x, y, heading = pose
+            return np.array([x + v_left * math.cos(heading), y + v_left * math.sin(heading), heading])
+    """,
+)
+mistakes(
+    "HEADING_WRAPPED",
+    "The heading jumps by whole turns.",
+    "Leave it as it is: a heading beyond pi shows how often the robot has turned.",
+).program(
+    "diff_drive_step",
+    """
+        _whole = diff_drive_step
+
+
+        def diff_drive_step(pose, v_left, v_right, track, dt):
+            x, y, heading = _whole(pose, v_left, v_right, track, dt)
+            return np.array([x, y, (heading + math.pi) % (2 * math.pi) - math.pi])
+    """,
+)
+mistakes(
+    "SMALL_TURN_CANCELS",
+    "In very slow turns, or straight ahead, the position jumps: rounding spoils it. Often that is the difference of two almost equal sines, divided by a tiny turn rate.",
+    "Write the chord as v dt sin(turn/2)/(turn/2). np.sinc(turn / (2 * pi)) is that quotient, and it is safe at 0.",
+).body(
+    "diff_drive_step",
+    """
+        x, y, heading = pose
+        rate, speed = (v_right - v_left) / track, (v_left + v_right) / 2
+        if rate == 0:
+            return np.array([x + speed * dt * math.cos(heading), y + speed * dt * math.sin(heading), heading])
+        end, radius = heading + rate * dt, speed / rate
+        x += radius * (math.sin(end) - math.sin(heading))
+        y -= radius * (math.cos(end) - math.cos(heading))
+        return np.array([x, y, end])
+    """,
+)
+mistakes(
+    "SLOW_TURN_AS_STRAIGHT",
+    "Slow turns are treated as straight lines, including some that are fast enough to matter.",
+    "Write the chord with np.sinc(turn / (2 * pi)), which needs no threshold. Or lower yours, but not so far that rounding spoils slow turns.",
+).program(
+    "diff_drive_step",
+    """
+        _whole = diff_drive_step
+
+
+        def diff_drive_step(pose, v_left, v_right, track, dt):
+            if abs(v_right - v_left) / track > 0.01:
+                return _whole(pose, v_left, v_right, track, dt)
+            x, y, heading = pose
+            way = (v_left + v_right) / 2 * dt
+            turn = (v_right - v_left) / track * dt
+            return np.array([x + way * math.cos(heading), y + way * math.sin(heading), heading + turn])
+    """,
+)
+mistakes(
+    "LATE_USED_AS_CURRENT",
+    "A late measurement is compared with the twin's present position and drags the twin back, as if it had been taken now.",
+    'If t_measured < twin["t"], ignore the measurement; or keep a short history in memory, correct the past, and run the model forward again.',
+).program(
+    "sync",
+    """
+        _whole = sync
+
+
+        def sync(twin, z, t_measured):
+            return _whole(twin, z, max(t_measured, twin["t"]))
+    """,
+)
+mistakes(
+    "TIME_RUNS_BACK",
+    "A late measurement sets the twin's clock back.",
+    'Return "t": max(twin["t"], t_measured), so that a late measurement does not change the clock.',
+).program(
+    "sync",
+    """
+        _whole = sync
+
+
+        def sync(twin, z, t_measured):
+            return _whole(twin, z, t_measured) | {"t": t_measured}
+    """,
+)
+mistakes(
+    "MEMORY_DROPPED",
+    "Your code keeps nothing in memory, and after many measurements one more still moves the position most of the way to it.",
+    'A Kalman filter must return its covariance as "memory" and read it in the next call, or the last measurement weighs as much as the first. Start from scratch only where it is {}.',
+).program(
+    "sync",
+    """
+        _whole = sync
+
+
+        def sync(twin, z, t_measured):
+            if t_measured < twin["t"]:
+                return dict(twin)
+            return _whole(twin, z, t_measured) | {"memory": {}}
+    """,
+)
+mistakes(
+    "FRICTION_NOT_LEARNED",
+    "The friction keeps its first value through a whole run in which it is wrong.",
+    "A cart that falls behind has more friction than the twin assumes: subtract a small share of the surprise from the friction. When it rolls backwards, add it.",
+).body(
+    "sync",
+    """
+        dt = t_measured - twin["t"]
+        if dt < 0:
+            return dict(twin)
+        (x, v, b), _ = _predict(
+            (twin["position"], twin["speed"], twin["friction"]), np.zeros((3, 3)), twin["drive"], dt
+        )
+        x, v = float(x + 0.3 * (z - x)), float(v + 0.3 * (z - x))
+        return {**twin, "t": t_measured, "position": x, "speed": v}
+    """,
+)
+mistakes(
+    "FRICTION_LEARNS_BACKWARDS",
+    "When a cart that rolls forwards is ahead of its prediction, its estimated friction grows, where it should fall.",
+    "Check the sign: a cart that is ahead, in the direction in which it rolls, has less friction.",
+).body(
+    "sync",
+    """
+        dt = t_measured - twin["t"]
+        if dt < 0:
+            return dict(twin)
+        (x, v, b), _ = _predict(
+            (twin["position"], twin["speed"], twin["friction"]), np.zeros((3, 3)), twin["drive"], dt
+        )
+        surprise = float(z - x)
+        b = min(max(float(b) + 0.15 * surprise, 0.05), 5.0)
+        x, v = float(x) + 0.3 * surprise, float(v) + 0.3 * surprise
+        return {**twin, "t": t_measured, "position": x, "speed": v, "friction": b}
+    """,
+)
+mistakes(
+    "SURPRISE_INVERTED",
+    "When the cart rolls forwards, a measurement ahead of the twin moves the twin further back.",
+    "The surprise is z minus the prediction; add a share of it.",
+).body(
+    "sync",
+    """
+        dt = t_measured - twin["t"]
+        if dt < 0:
+            return dict(twin)
+        n = max(1, math.ceil(dt / 0.01))
+        x, v, b = twin["position"], twin["speed"], twin["friction"]
+        for _ in range(n):
+            a = twin["drive"] - b * v
+            x, v = x + dt / n * v + (dt / n) ** 2 / 2 * a, v + dt / n * a
+        surprise = x - z
+        x, v = x + 0.3 * surprise, v + 0.3 * surprise
+        b = min(max(b - 0.15 * surprise * np.sign(v), 0.05), 5.0)
+        return {**twin, "t": t_measured, "position": x, "speed": v, "friction": float(b), "memory": {}}
+    """,
+)
+mistakes(
+    "FRICTION_SPEEDS_UP",
+    "In the prediction a cart without a drive gets faster, where friction should slow it down.",
+    "Friction acts against the motion: dv/dt = drive - friction * speed.",
+).body(
+    "sync",
+    """
+        dt = t_measured - twin["t"]
+        if dt < 0:
+            return dict(twin)
+        n = max(1, math.ceil(dt / 0.01))
+        x, v, b = twin["position"], twin["speed"], twin["friction"]
+        for _ in range(n):
+            a = twin["drive"] + b * v
+            x, v = x + dt / n * v + (dt / n) ** 2 / 2 * a, v + dt / n * a
+        surprise = z - x
+        x, v = x + 0.3 * surprise, v + 0.3 * surprise
+        b = min(max(b - 0.15 * surprise * np.sign(v), 0.05), 5.0)
+        return {**twin, "t": t_measured, "position": x, "speed": v, "friction": float(b), "memory": {}}
+    """,
+)
+mistakes(
+    "BELIEVES_MEASUREMENT",
+    "The position is simply the measured one, with all its noise.",
+    "Move the position only a share of the way to z: the prediction contains information too.",
+).program(
+    "sync",
+    """
+        _whole = sync
+
+
+        def sync(twin, z, t_measured):
+            if t_measured < twin["t"]:
+                return dict(twin)
+            seen = {**twin, "t": t_measured, "position": z}
+            if t_measured > twin["t"]:
+                seen["speed"] = (z - twin["position"]) / (t_measured - twin["t"])
+            return seen
+    """,
+).program(
+    "sync",
+    """
+        _filtered = sync
+
+
+        def sync(twin, z, t_measured):
+            out = _filtered(twin, z, t_measured)
+            return {**out, "position": z} if t_measured >= twin["t"] else out
+    """,
+)
+mistakes(
+    "GLOBAL_MEMORY",
+    "The same call gives a different result the second time, so something outside the twin has an effect: a variable at the top of the file, for example, or a random number.",
+    'Keep everything in twin["memory"], and draw no random numbers: there may be two twins, and a replay must give the same result.',
+    kind="fact",
+).program(
+    "sync",
+    """
+        _whole = sync
+
+
+        _memory = {}
+
+
+        def sync(twin, z, t_measured):
+            if not twin["memory"]:
+                _memory.clear()
+            twin = _whole({**twin, "memory": dict(_memory)}, z, t_measured)
+            _memory.update(twin["memory"])
+            return {**twin, "memory": {"begun": 1}}
+    """,
+)
+mistakes(
+    "DRIVE_NOT_USED",
+    "Another drive makes no difference to the prediction.",
+    'dv/dt = drive - friction * speed, with twin["drive"].',
+).program(
+    "sync",
+    """
+        _whole = sync
+
+
+        def sync(twin, z, t_measured):
+            return _whole({**twin, "drive": 0.0}, z, t_measured) | {"drive": twin["drive"]}
+    """,
+)
+mistakes(
+    "FORGETS_TO_DOUBT",
+    "The twin learns the friction well at first but far less of a change later.",
+    "Keep the shares from fading. In a Kalman filter, let the variance of the friction grow a little in every prediction (process noise).",
+).program(
+    "sync",
+    """
+        _WANDER = np.zeros((3, 3))
+    """,
+)
+mistakes(
+    "FRICTION_IGNORED",
+    "Another friction makes no difference to the drive, so what the twin has learned of it does not reach the robot.",
+    'Use twin["friction"]: through it, the twin acts back on the robot.',
+).edit("command", {'twin["friction"]': "0.5"})
+mistakes(
+    "USES_TWIN_SPEED",
+    "The drive changes with the speed that the robot has now, and not with the target speed.",
+    "Use target_speed: friction * target_speed.",
+).edit("command", {"* target_speed": '* twin["speed"]'})
+mistakes(
+    "DIVIDES_BY_FRICTION",
+    "More friction gives less drive.",
+    "At a steady speed dv/dt = 0, so drive = friction * speed: multiply.",
+).edit("command", {'twin["friction"] * target_speed': 'target_speed / twin["friction"]'})
+mistakes(
+    "BACKWARDS_NOT_DRIVEN",
+    "For a negative target speed, the drive has the wrong sign or is zero.",
+    "Friction opposes the motion in both directions: drive = friction * target_speed, with the sign of the target speed.",
+).edit("command", {"* target_speed": "* abs(target_speed)"})
+mistakes(
+    "SHARE_TOO_LARGE",
+    "The position moves most of the way to the measurement, so it takes on most of its noise.",
+    "Move the position only a share of the way to z, a third for example: the prediction contains information too.",
+).body(
+    "sync",
+    """
+        dt = t_measured - twin["t"]
+        if dt < 0:
+            return dict(twin)
+        x, v, b = twin["position"], twin["speed"], twin["friction"]
+        a = twin["drive"] - b * v
+        x, v = x + dt * v + dt * dt / 2 * a, v + dt * a
+        surprise = z - x
+        x, v = x + 0.9 * surprise, v + 0.3 * surprise
+        b = min(max(b - 0.15 * surprise * np.sign(v), 0.05), 5.0)
+        return {**twin, "t": t_measured, "position": x, "speed": v, "friction": float(b), "memory": {}}
+    """,
+)
+mistakes(
+    "LEARNS_FORWARDS_ONLY",
+    "When the cart moves backwards, a surprise changes the friction in the wrong direction.",
+    "Friction slows the cart in either direction: reverse the correction when the speed is negative.",
+).body(
+    "sync",
+    """
+        dt = t_measured - twin["t"]
+        if dt < 0:
+            return dict(twin)
+        x, v, b = twin["position"], twin["speed"], twin["friction"]
+        a = twin["drive"] - b * v
+        x, v = x + dt * v + dt * dt / 2 * a, v + dt * a
+        surprise = z - x
+        x, v, b = x + 0.3 * surprise, v + 0.3 * surprise, min(max(b - 0.15 * surprise, 0.05), 5.0)
+        return {**twin, "t": t_measured, "position": x, "speed": v, "friction": b, "memory": {}}
+    """,
+)
+mistakes(
+    "STEP_FIXED",
+    "The prediction covers the usual 0.1 s even where twice that time has passed.",
+    'The measurements come at uneven times, so predict over t_measured - twin["t"].',
+).body(
+    "sync",
+    """
+        if t_measured < twin["t"]:
+            return dict(twin)
+        x, v, b = twin["position"], twin["speed"], twin["friction"]
+        a = twin["drive"] - b * v
+        x, v = x + 0.1 * v + 0.005 * a, v + 0.1 * a
+        surprise = z - x
+        x, v = x + 0.3 * surprise, v + 0.3 * surprise
+        b = min(max(b - 0.15 * surprise * np.sign(v), 0.05), 5.0)
+        return {**twin, "t": t_measured, "position": x, "speed": v, "friction": float(b), "memory": {}}
+    """,
+)
+mistakes(
+    "DRIVE_CHANGED",
+    "sync must leave the drive and sigma as they are.",
+    'Return drive and sigma as they are: {**twin, "t": ..., "position": ...}.',
+    kind="fact",
+).program(
+    "sync",
+    """
+        _given = sync
+
+
+        def sync(twin, z, t_measured):
+            out = _given(twin, z, t_measured)
+            return {**out, "drive": out["friction"] * out["speed"]}
+    """,
+)
+mistakes(
+    "MEMORY_GROWS",
+    "After twice the time, your code holds much more in the memory.",
+    "Keep the last second or two of the history, and discard what is older.",
+    kind="fact",
+).program(
+    "sync",
+    """
+        _given = sync
+
+
+        def sync(twin, z, t_measured):
+            memory = twin["memory"]
+            out = _given({**twin, "memory": memory.get("own", {})}, z, t_measured)
+            state = [t_measured, z, out["t"], out["position"], out["speed"], out["friction"], out["drive"]]
+            return {**out, "memory": {"own": out["memory"], "all": [*memory.get("all", []), state]}}
+    """,
+).body(
+    "sync",
+    """
+        dt = t_measured - twin["t"]
+        if dt < 0:
+            return dict(twin)
+        n = max(1, math.ceil(dt / 0.01))
+        x, v, b = twin["position"], twin["speed"], twin["friction"]
+        for _ in range(n):
+            a = twin["drive"] - b * v
+            x, v = x + dt / n * v + (dt / n) ** 2 / 2 * a, v + dt / n * a
+        surprise = z - x
+        x, v = x + 0.3 * surprise, v + 0.3 * surprise
+        b = min(max(b - 0.15 * surprise * np.sign(v), 0.05), 5.0)
+        return {
+            **twin,
+            "t": t_measured,
+            "position": x,
+            "speed": v,
+            "friction": float(b),
+            "memory": {"heard": [*twin["memory"].get("heard", []), z, t_measured]},
+        }
+    """,
+)
+mistakes(
+    "PUSHES_AWAY",
+    "Where the twin is slower than the target speed, the drive is smaller than at that speed.",
+    'Add a share of target_speed - twin["speed"], not of twin["speed"] - target_speed. In friction * target_speed, the target speed counts, not that of the twin.',
+).edit("command", {"* target_speed": '* target_speed + 1.5 * (twin["speed"] - target_speed)'})
+mistakes("STATE_KEPT").program(
+    "command",
+    """
+        _FIRST = {}
+
+
+        def command(twin, target_speed):
+            return _FIRST.setdefault(target_speed, twin["friction"]) * target_speed
+    """,
+).program(
+    "motor_step",
+    """
+        _SHARES = {}
+
+
+        def motor_step(w, u, dt, tau, u_max, deadband):
+            u = 0.0 if abs(u) <= deadband else min(max(u, -u_max), u_max)
+            return w + _SHARES.setdefault(dt, -math.expm1(-dt / tau)) * (u - w)
+    """,
+)
+mistakes(
+    "GENERATOR_IGNORED",
+    "Different generators give the same random numbers, all of them or some.",
+    "Draw from the rng that is passed in, and do not make one of your own with a fixed seed.",
+).program(
+    "lidar",
+    """
+        _with = lidar
+
+
+        def lidar(pose, segments, angles, r_max, sigma, rng):
+            return _with(pose, segments, angles, r_max, sigma, np.random.default_rng(0))
+    """,
+).edit("imu", {"(dt) * rng.standard_normal(n -": "(dt) * np.random.default_rng(4).standard_normal(n -"}).edit(
+    "imu", {"dt) * rng.standard_normal(n)": "dt) * np.random.default_rng(4).standard_normal(n)"}
+)
+mistakes(
+    "NOISE_CUT_AT_MAX",
+    "A wall just within range never reads more than r_max, even with noise.",
+    "Decide without noise whether a beam hits, then add the noise. The reading of a hit may exceed r_max.",
+).program(
+    "lidar",
+    """
+        _uncut = lidar
+
+
+        def lidar(pose, segments, angles, r_max, sigma, rng):
+            return np.minimum(_uncut(pose, segments, angles, r_max, sigma, rng), r_max)
+    """,
+)
+mistakes(
+    "BIAS_HELD",
+    "Some steps of the bias are exactly zero: there it keeps its value from one sample to the next.",
+    "Every step is bias_random_walk * sqrt(dt) times a standard normal number of its own: N samples take N - 1 of them. Hold and round nothing.",
+).body(
+    "imu",
+    """
+        n = len(true)
+        steps = bias_random_walk * math.sqrt(10 * dt) * rng.standard_normal(-(-n // 10))
+        steps[0] = 0.0
+        bias = bias0 + np.repeat(np.cumsum(steps), 10)[:n]
+        return true + bias + noise_density / math.sqrt(dt) * rng.standard_normal(n), bias
+    """,
+)
+mistakes(
+    "BIAS0_IGNORED",
+    "The bias does not start at bias0, but at zero or near it.",
+    "bias[0] is bias0: add it to the running sum of the steps, with a 0 in front.",
+).program(
+    "imu",
+    """
+        _from = imu
+
+
+        def imu(true, dt, noise_density, bias_random_walk, bias0, rng):
+            return _from(true, dt, noise_density, bias_random_walk, 0.0, rng)
+    """,
+)
+mistakes(
+    "BIAS_WALKS_TO_BIAS0",
+    "bias0 is the last value of the bias, not its first.",
+    "bias[0] is bias0, and each step leads to the next sample: bias0 + np.cumsum(steps), with a 0 in front.",
+).edit("imu", {"(steps)))": "(steps)))[::-1]"})
+mistakes(
+    "BIAS_CARRIED_OVER",
+    "The bias starts where the previous call ended, so something is remembered between two calls.",
+    "Start each call at the bias0 that is passed in, and keep nothing outside the function.",
+).program(
+    "imu",
+    """
+        _from_state = imu
+        _LAST = []
+
+
+        def imu(true, dt, noise_density, bias_random_walk, bias0, rng):
+            start = _LAST[-1] if _LAST else bias0
+            measured, bias = _from_state(true, dt, noise_density, bias_random_walk, start, rng)
+            _LAST[:] = [float(bias[-1])]
+            return measured, bias
+    """,
+)
+mistakes(
+    "BIAS0_WITHOUT_SIGN",
+    "bias0 has about the right size, but it is not negative even in recordings with a negative bias.",
+    "A bias has a sign: return the mean itself, neither its absolute value nor the root of a mean square.",
+).program(
+    "fit_noise",
+    """
+        _signed = fit_noise
+
+
+        def fit_noise(still, dt):
+            found = _signed(still, dt)
+            return {**found, "bias0": abs(found["bias0"])}
+    """,
+)
+mistakes(
+    "DENSITY_FROM_DIFFERENCES",
+    "The noise density is too large by about the square root of two.",
+    "With white noise, a difference of two samples, or of two means, has twice the variance of one: divide the mean square by two before you take the root.",
+).program(
+    "fit_noise",
+    """
+        _halved = fit_noise
+
+
+        def fit_noise(still, dt):
+            found = _halved(still, dt)
+            root = math.sqrt(2)
+            return {
+                **found,
+                "noise_density": root * found["noise_density"],
+                "bias_random_walk": root * found["bias_random_walk"],
+            }
+    """,
+)
+mistakes(
+    "STATE_IN_MODULE",
+    "The same call gives a different output after another call, so something is remembered in between, or random.",
+    "Start from the state that is passed in. There may be two gears, each with its own state.",
+).program(
+    "backlash",
+    """
+        _STATE = []
+
+
+        def backlash(x, gap, state):
+            y = min(max(_STATE[-1] if _STATE else state, x - gap / 2), x + gap / 2)
+            _STATE[:] = [y]
+            return y, y
+    """,
+)
+mistakes(
+    "LAG_WITHOUT_DT",
+    "A step a hundred times as long takes the speed no further, as if dt made no difference.",
+    "The fraction is 1 - exp(-dt / tau), with the dt and the tau of this call; keep none from an earlier one.",
+).program(
+    "motor_step",
+    """
+        _SHARE = {}
+
+
+        def motor_step(w, u, dt, tau, u_max, deadband):
+            u = 0.0 if abs(u) <= deadband else min(max(u, -u_max), u_max)
+            return w + _SHARE.setdefault("first", 1 - math.exp(-dt / tau)) * (u - w)
+    """,
+)
+mistakes(
+    "WALLS_NOT_READ",
+    "Moving a wall nearer or further away does not change its reading.",
+    "A reading is the distance to the wall: compute it from the segments that are passed to this call, and keep none from an earlier one.",
+).program(
+    "lidar",
+    """
+        _scan = lidar
+        _WALLS = []
+
+
+        def lidar(pose, segments, angles, r_max, sigma, rng):
+            if not _WALLS:
+                _WALLS.append(np.array(segments))
+            return _scan(pose, _WALLS[0], angles, r_max, sigma, rng)
+    """,
+)
+mistakes(
+    "SPEED_DIFFERENTIATED",
+    "The speed takes on all of a surprise, divided by the time since the last measurement, as the difference of two positions does; with it comes all of their noise.",
+    "Predict the speed from the drive and the friction, and correct it by a share of the surprise, as you do with the position.",
+).program(
+    "sync",
+    """
+        # The speed is the difference of the last two positions over the time between them.
+
+
+        _right_sync = sync
+
+
+        def sync(twin, z, t_measured):
+            out = _right_sync(twin, z, t_measured)
+            dt = out["t"] - twin["t"]
+            return {**out, "speed": (z - twin["position"]) / dt} if dt > 0 else out
+    """,
+)
+mistakes(
+    "COUNTS_OVERFLOW",
+    "Some counts are off by 65,536 or a multiple of it, as in an integer type of 16 bits.",
+    "Convert with .astype(np.int64), and with no smaller type before it.",
+).edit(
+    "encoder",
+    {
+        "np.asarray(theta) * counts_per_rev / (2 * math.pi)).astype(np.int64": "theta * counts_per_rev / (2 * np.pi)).astype(np.int16"
+    },
+)
+mistakes(
+    "GAIN_TOO_LARGE",
+    "The correction is stronger than the README's 0.2 to 3 per second. With a command only every 0.1 s, it can overshoot.",
+    "Multiply the difference of the speeds by 0.2 to 3 per second.",
+).edit("command", {"* target_speed": '* target_speed + 30.0 * (target_speed - twin["speed"])'})
+mistakes(
+    "MEMORY_NOT_READ",
+    "Emptying the memory changed neither of two calls, one with a new measurement and one with a late one. Perhaps what a call stores is not read by the next.",
+    'Read in each call what the call before returned in "memory", such as the covariance of a Kalman filter; it is {} only at first. If nothing in it should matter here, look at the signs and sizes of the shares.',
+).program(
+    "sync",
+    """
+        _whole = sync
+
+
+        def sync(twin, z, t_measured):
+            if t_measured < twin["t"]:
+                return dict(twin)
+            return _whole({**twin, "memory": {}}, z, t_measured)
+    """,
+)
+mistakes(
+    "BIAS0_TIME_TOO_SHORT",
+    "bias0 is the mean of too few samples from the start, so much of the white noise is left in it.",
+    "Average about sqrt(3) N/K seconds: divide by dt to get the number of samples.",
+).body(
+    "fit_noise",
+    """
+        still = np.asarray(still, dtype=float)
+        sizes = np.unique(np.geomspace(1, len(still) // 10, 25).astype(int))
+        times, avar, weight = [], [], []
+        for size in sizes:
+            blocks = len(still) // size
+            means = still[: blocks * size].reshape(blocks, size).mean(axis=1)
+            d = np.diff(means)
+            times.append(size * dt)
+            avar.append(0.5 * np.mean(d**2))
+            weight.append(np.sqrt(len(d)))
+        T, avar, weight = np.array(times), np.array(avar), np.array(weight)
+        A = np.stack([1 / T, T / 3], axis=1)
+        scale = weight / avar
+        sol = np.linalg.lstsq(A * scale[:, None], avar * scale, rcond=None)[0]
+        N = math.sqrt(max(sol[0], 1e-20))
+        K = math.sqrt(max(sol[1], 1e-20))
+        first = int(round(math.sqrt(3) * N / K))
+        first = min(max(first, 1), len(still))
+        return {"noise_density": N, "bias_random_walk": K, "bias0": float(still[:first].mean())}
+    """,
+)
+mistakes(
+    "DRIVE_LIMITED",
+    "A small drive is right, but beyond some value it stops growing.",
+    "Return friction * target_speed as it is: the README asks for no limit.",
+).edit("command", {'twin["friction"] * target_speed': 'min(max(twin["friction"] * target_speed, -1.0), 1.0)'})
+mistakes(
+    "WHITE_NOISE_RELATED",
+    "The white noise of one sample is related to that of the next, although it does not wander off as a running sum does.",
+    "Draw a standard normal number of its own for each sample: use none of them twice, and do not average or filter them.",
+).body(
+    "imu",
+    """
+        n = len(true)
+        steps = bias_random_walk * math.sqrt(dt) * rng.standard_normal(n - 1)
+        bias = bias0 + np.concatenate(([0.0], np.cumsum(steps)))
+        white = np.convolve(rng.standard_normal(n + 1), [math.sqrt(0.5)] * 2, "valid")
+        return true + bias + noise_density / math.sqrt(dt) * white, bias
+    """,
+)
+mistakes(
+    "FRICTION_LIMITED",
+    "The friction moves in the right direction but it is stopped at one value before it reaches the true one.",
+    "Look for what stops it: a limit (plausible values are 0.05 to 5 per second), or a condition under which it is no longer corrected.",
+).program(
+    "sync",
+    """
+        _free = sync
+
+
+        def sync(twin, z, t_measured):
+            new = _free(twin, z, t_measured)
+            first = twin["memory"].get("first", twin["friction"])
+            rows = new["memory"]["rows"].copy()
+            rows[:, 5] = np.clip(rows[:, 5], 0.9 * first, 1.1 * first)
+            return {**new, "friction": float(rows[-1, 5]), "memory": {"rows": rows, "first": first}}
+    """,
+)
+mistakes(
+    "COUNTS_DEPEND_ON_OTHERS",
+    "The count of an angle depends on the other angles of the array.",
+    "Compute each count from its own angle alone: no differences, no np.unwrap, no subtraction of the first.",
+).edit("encoder", {".asarray(": ".unwrap("})
+mistakes(
+    "CHORD_WRONG_LENGTH",
+    "In a turn that was tried, the displacement has the right direction but the wrong length.",
+    "The chord is v dt sin(turn/2)/(turn/2), with v the mean of the two wheel speeds, each with its sign.",
+).body(
+    "diff_drive_step",
+    """
+        x, y, heading = pose
+        way, after = (v_left + v_right) / 2 * dt, heading + (v_right - v_left) / track * dt
+        dx, dy = math.cos(heading) + math.cos(after), math.sin(heading) + math.sin(after)
+        return np.array([x + way * dx / 2, y + way * dy / 2, after])
+    """,
+)
+mistakes(
+    "BIAS0_FROM_THE_MEAN",
+    "bias0 is a mean over the start after the mean of the whole recording has been taken off.",
+    "Average the start of the recording as it is, before anything is subtracted from it.",
+).program(
+    "fit_noise",
+    """
+        _as_it_is = fit_noise
+
+
+        def fit_noise(still, dt):
+            return _as_it_is(still - np.mean(still), dt)
+    """,
+)
+mistakes(
+    "BIAS0_OF_THE_END",
+    "bias0 is a mean over the end of the recording, and the bias has drifted since the start.",
+    "Average the start of the recording, about sqrt(3) N/K seconds of it.",
+).program(
+    "fit_noise",
+    """
+        _at_the_start = fit_noise
+
+
+        def fit_noise(still, dt):
+            return _at_the_start(still[::-1], dt)
+    """,
+)
+mistakes(
+    "SLOT_OFF_CENTRE",
+    "Pushed forwards, the output is behind the input by another distance than when it is pushed backwards.",
+    "Half of the gap lies on either side: pushed forwards y is x - gap/2, pushed backwards x + gap/2.",
+).edit("backlash", {"gap / 2), x + gap / 2)": "gap), x)"})
+mistakes(
+    "DEADBAND_WIDTH",
+    "The dead band is narrower or wider than deadband says.",
+    "A command counts as 0 if abs(u) <= deadband, without any factor, and keeps its value otherwise.",
+).edit("motor_step", {"<= deadband else": "<= 1.2 * deadband else"})
+mistakes(
+    "STRENGTHS_MIXED",
+    "The white noise or the bias changes with the strength that belongs to the other. Perhaps noise_density and bias_random_walk are mixed up.",
+    "The std of the white noise is noise_density / sqrt(dt), and that of a step of the bias is bias_random_walk * sqrt(dt).",
+).edit("imu", {"= bias_random_walk *": "= (bias_random_walk + noise_density) *"})
+mistakes(
+    "PARALLEL_TEST_WRONG",
+    "A wall one metre long and square to the beam is not seen, as if it were parallel to it.",
+    "Beam and wall are parallel where the cross product of their directions is zero; the wall's own length is a factor of it.",
+).edit("lidar", {"wx  # zero where beam and wall are parallel": "wx", "cross != 0": "abs(cross) != 1"})
+mistakes(
+    "WALLS_ONE_SIDED",
+    "A wall is seen if its ends are given in one order, and not if they are given in the other.",
+    "The cross product of beam and wall may have either sign: only zero means that they are parallel.",
+).edit("lidar", {"wx  # zero where beam and wall are parallel": "wx", "(cross != 0) &": "(cross > 1e-12) &"})
+mistakes(
+    "NOT_QUANTISED",
+    "Some of the results are not whole numbers.",
+    "Round the counts with np.floor or np.rint, then convert them with .astype(np.int64).",
+)
+mistakes(
+    "ROUNDS_UP",
+    "The counts are rounded up.",
+    "Round down with np.floor, or to the nearest with np.rint, and do not add 1.",
+)
+mistakes(
+    "RADIANS_AS_TURNS",
+    "The angle is not divided by 2 pi.",
+    "One turn is 2 pi radians, so divide by 2 pi.",
+)
+mistakes(
+    "DEGREES_FOR_RADIANS",
+    "The counts are those of an angle that is converted between degrees and radians.",
+    "theta is in radians: one turn is 2 pi.",
+)
+mistakes(
+    "RETURNS_ANGLE",
+    "The result is a quantised angle instead of the count.",
+    "Return the whole number of counts itself.",
+)
+mistakes(
+    "COUNTS_OFF_BY_FACTOR",
+    "The larger counts are all too large, or all too small, by nearly the same factor.",
+    "theta * counts_per_rev / (2 * math.pi), without any other factor and without a rounded pi.",
+)
+mistakes(
+    "COUNTS_SINGLE_PRECISION",
+    "The counts are those of angles in single precision (float32). With its seven digits, an angle far from zero is off by enough to change its count.",
+    "Compute with the angles as they are passed in, in float64.",
+)
+mistakes(
+    "ROUNDED_TWO_WAYS",
+    "Some of these counts are rounded down, and others to the nearest.",
+    "Round all of them the same way, whatever their sign: np.floor throughout, or np.rint throughout. If you do, look for what changes the angle first, such as a rounded pi.",
+)
+mistakes(
+    "WHOLE_TURNS_ONLY",
+    "Every count is a multiple of counts_per_rev, as if only whole turns were counted.",
+    "Multiply by counts_per_rev first, and round last.",
+)
+mistakes(
+    "COUNTS_WITHOUT_SIGN",
+    "The counts have lost the sign of the angle.",
+    "A shaft that turns backwards counts down, so do not take the absolute value.",
+)
+mistakes(
+    "COUNTS_NEGATED",
+    "The counts decrease where the angle increases.",
+    "Keep the sign of theta.",
+)
+mistakes(
+    "COUNTS_FROM_FIRST",
+    "The counts are those of the change since the first reading, not of the angle.",
+    "theta is the angle itself, not the change since the first reading: convert each reading as it is.",
+)
+mistakes(
+    "RETURNS_TURNS",
+    "The result is in turns, not in counts.",
+    "Multiply the turns by counts_per_rev, then round, and do not divide the result.",
+)
+mistakes(
+    "COUNTS_ARE_STEPS",
+    "Each number after the first is the change since the reading before.",
+    "Return the count at each reading, not how much it has changed.",
+    true_too=("COUNTS_DEPEND_ON_OTHERS",),
+)
+
+# -- imu
+
+mistakes(
+    "WHITE_NOISE_MISSING",
+    "In a recording without a walk, the measured rate minus the true rate and the bias does not vary: it contains no white noise.",
+    "Add noise_density / sqrt(dt) times a standard normal number to each sample.",
+)
+mistakes(
+    "WHITE_NOISE_OVER_DT",
+    "The white noise grows about as 1/dt, without the square root.",
+    "Variances add up, not stds, so the std is noise_density / sqrt(dt).",
+)
+mistakes(
+    "WHITE_NOISE_FACTOR",
+    "At two sampling rates the white noise differs as it should, but it is too strong or too weak.",
+    "The white noise of a sample is noise_density / sqrt(dt) times a standard normal number, without any other factor.",
+)
+mistakes(
+    "WHITE_NOISE_ACCUMULATES",
+    "The white noise of one sample is still present in the next ones, and it wanders off as a running sum does.",
+    "Only the bias is a running sum. Draw new white noise for each sample.",
+)
+mistakes(
+    "BIAS_CONSTANT",
+    "In a recording with a random walk and no white noise, the bias keeps its first value.",
+    "Add a step of std bias_random_walk * sqrt(dt) from each sample to the next.",
+)
+mistakes(
+    "BIAS_PULLED_BACK",
+    "Over ten samples the bias wanders less far than independent steps would take it, as if something pulled it back.",
+    "Each bias is the whole previous bias plus a step: bias[k+1] = bias[k] + bias_random_walk * sqrt(dt) * a standard normal number.",
+)
+mistakes(
+    "BIAS_STEPS_RELATED",
+    "Over ten samples the bias wanders further than independent steps would take it, as it does where each step is related to the one before.",
+    "Draw a standard normal number for each step, and add the steps up once: no filter, no average, no second running sum.",
+)
+mistakes(
+    "BIAS_NOT_SCALED_BY_SQRT_DT",
+    "The steps of the bias have about the same std at two very different sampling rates.",
+    "The variance of a random walk grows in proportion to time, so a step over dt has std bias_random_walk * sqrt(dt).",
+)
+mistakes(
+    "BIAS_OVER_SQRT_DT",
+    "The steps of the bias get smaller about as 1/sqrt(dt), as is right only for the white noise.",
+    "The std of a step is bias_random_walk * sqrt(dt): over a longer time the bias wanders further.",
+)
+mistakes(
+    "BIAS_FACTOR",
+    "At two sampling rates the steps of the bias differ as they should, but they are too large or too small.",
+    "A step is bias_random_walk * sqrt(dt) times a standard normal number, without any other factor.",
+)
+mistakes(
+    "BIAS_NOT_ADDED",
+    "Without white noise the measured rate is the true one: the bias that your code returns is not in it.",
+    "measured = true + bias + white noise.",
+)
+mistakes(
+    "BIAS_SUBTRACTED",
+    "The bias is subtracted from the measured rate instead of added.",
+    "A sensor adds its bias: measured = true + bias + white noise.",
+)
+mistakes(
+    "BIAS_OUT_OF_STEP",
+    "Sample by sample, the bias that your code returns is not the one in the measured rate.",
+    "Use one array for both: without white noise, measured[k] is true[k] + bias[k].",
+)
+mistakes(
+    "WHITE_NOISE_TIMES_DT",
+    "The white noise is multiplied by dt, where it should be divided by sqrt(dt).",
+    "The std of a sample is noise_density / sqrt(dt): faster sampling is noisier.",
+)
+mistakes(
+    "DENSITY_SQUARED",
+    "The noise density is squared.",
+    "noise_density is already the square root of a variance density: the std of a sample is noise_density / sqrt(dt).",
+)
+mistakes(
+    "WALK_SQUARED",
+    "bias_random_walk is squared.",
+    "bias_random_walk is already a square root: the std of a step is bias_random_walk * sqrt(dt).",
+)
+mistakes(
+    "WHITE_NOISE_SHARED",
+    "All samples of a recording have the same white noise, as if one random number were used for all of them.",
+    "Draw a number for each sample: rng.standard_normal(len(true)).",
+)
+mistakes(
+    "WHITE_NOISE_ONE_SIDED",
+    "The white noise always has the same sign.",
+    "A standard normal number is negative as often as positive: use it as it is.",
+)
+mistakes(
+    "BIAS0_ADDED_EACH_STEP",
+    "The bias drifts away by about bias0 in every step.",
+    "bias0 is the start of the random walk and is added once: bias0 + np.cumsum(steps), with a 0 in front of the steps.",
+)
+mistakes(
+    "BIAS_DRIFTS",
+    "The bias drifts to one side: the mean of its steps is not zero.",
+    "A step is bias_random_walk * sqrt(dt) times a standard normal number of its own, with nothing added.",
+)
+mistakes(
+    "TRUE_RATE_MISSING",
+    "Without white noise the measured rate is the bias alone: the true rate is not in it.",
+    "measured = true + bias + white noise.",
+)
+mistakes(
+    "BIAS_HOLDS_WHITE_NOISE",
+    "Without a walk, the bias that your code returns varies, and it contains all of the white noise.",
+    "Return the random walk alone as the bias; the white noise belongs only to the measured rate.",
+)
+mistakes(
+    "NOISE_FOR_BIAS",
+    "Your code returns the white noise as the bias.",
+    "Return (measured, bias), where the bias is bias0 plus its random walk.",
+)
+mistakes(
+    "WALK_TOO_SMALL",
+    "For most recordings the random walk is too small.",
+    "The Allan variance of block means (half the mean square of their differences) is N²/T from the noise plus K² T/3 from the walk: fit both terms. The walk shows in long blocks.",
+    kind="consequence",
+)
+mistakes(
+    "WALK_TOO_LARGE",
+    "For most recordings the random walk is too large.",
+    "The Allan variance of block means (half the mean square of their differences) is N²/T from the noise plus K² T/3 from the walk: fit both terms, or noise is taken for walk.",
+    kind="consequence",
+)
+mistakes(
+    "BIAS0_TIME_TOO_LONG",
+    "bias0 is the mean of too many samples from the start, and the bias has drifted meanwhile.",
+    "Average about sqrt(3) N/K seconds: divide by dt to get the number of samples.",
+)
+mistakes(
+    "WALK_SCATTERS",
+    "The random walk is too large for some recordings and too small for others.",
+    "Use all of the recording, in blocks of lengths up to a twelfth of it, and divide each equation of the fit by its own size. Otherwise the large ones outweigh the small ones.",
+)
+mistakes(
+    "FIT_SWAPPED",
+    "noise_density is about what bias_random_walk should be, and the other way round.",
+    "N goes with 1/T and K with T/3: check which of the two fitted numbers is which.",
+)
+mistakes(
+    "ROOT_FORGOTTEN",
+    "A number that your code returns is about the square of the one that is asked for.",
+    "The Allan variance is N²/T + K² T/3, so the fit gives N² and K²: take their square roots. If you take them, look at the columns of the fit: 1/T and T/3.",
+)
+mistakes(
+    "DENSITY_TOO_LARGE",
+    "For more than half of the recordings here, the noise density is too large.",
+    "Over longer blocks the walk counts too: fit both terms, and divide each equation by its own size. To compare: N² is half the mean square of the differences of neighbouring samples, times dt.",
+)
+mistakes(
+    "DENSITY_TOO_SMALL",
+    "For more than half of the recordings here, the noise density is too small.",
+    "In N²/T, T is in seconds, not in samples. To compare: N² is half the mean square of the differences of neighbouring samples, times dt.",
+)
+mistakes(
+    "DENSITY_SCATTERS",
+    "The noise density is too large for some recordings and too small for others.",
+    "N² is half the mean square of the differences of neighbouring samples, times dt. Use all the samples of a recording; in a fit of both terms, divide each equation by its own size.",
+)
+mistakes(
+    "BEAM_REVERSED",
+    "The beams point in the opposite direction.",
+    "A beam points along (cos, sin) of heading + angle, without a minus. If yours does, check the sign of the distance along the beam.",
+)
+mistakes(
+    "POSITION_SIGN_FLIPPED",
+    "The robot's position counts with the wrong sign.",
+    "The vector from the robot to a wall is the wall minus the robot.",
+)
+mistakes(
+    "POSITION_IGNORED",
+    "Moving the robot does not change its readings.",
+    "First subtract the robot's position from the end points of the walls.",
+)
+mistakes(
+    "BEYOND_RANGE",
+    "A wall further away than r_max is still measured.",
+    "A hit beyond r_max does not count: the reading is exactly r_max.",
+)
+mistakes(
+    "LONG_WALL_LEFT_OUT",
+    "A beam that hits a long wall within range reads r_max. Ends of that wall are further away than r_max.",
+    "Use the distance along the beam. How far the ends or the middle of a wall are says little about it.",
+)
+mistakes(
+    "NOTHING_IS_HIT",
+    "No beam that was tried hits a wall.",
+    "For one beam and one wall ahead of it, print how far along the beam and at what fraction of the wall they cross. It is a hit if the first lies between 0 and r_max and the second between 0 and 1.",
+    kind="consequence",
+)
+mistakes(
+    "NO_HIT_NOT_MAX",
+    "The reading of a beam that hits nothing is not r_max.",
+    "Start from r_max, and let only hits reduce it.",
+)
+mistakes(
+    "LIDAR_NOISE_MISSING",
+    "With a sigma above zero, the readings of hits are exact: they have no noise.",
+    "Add sigma times a standard normal number to each hit.",
+)
+mistakes(
+    "LIDAR_SIGMA_WRONG",
+    "Within one scan, the noise of the hits does not have the std sigma.",
+    "Add sigma * rng.standard_normal(...), with a number of its own for each hit. Do not square sigma, take its root, or multiply it by the distance.",
+    kind="consequence",
+)
+mistakes(
+    "PARALLEL_WALLS",
+    "A beam parallel to a wall gives a wrong distance.",
+    "There the cross product of the two directions is zero: treat that as no hit before you compare distances.",
+)
+mistakes(
+    "ANGLES_IGNORED",
+    "All beams point in the same direction.",
+    "Each beam has its own angle and points along heading + angle.",
+)
+mistakes(
+    "WALL_ENDS_MIXED",
+    "The starting point of a wall and its direction do not belong together, or the position along the wall has the wrong sign.",
+    "From its end a, the wall goes along b - a: use the same a in both. If you do, check the sign of the position along the wall.",
+)
+mistakes(
+    "WALLS_ENDLESS_ONE_WAY",
+    "A wall ends on one side only: on the other side your code treats it as endless.",
+    "A hit lies between both ends: check 0 <= u and u <= 1.",
+)
+mistakes(
+    "DISTANCE_SQUARED",
+    "The distance is squared.",
+    "Take the square root, or use the parameter along a beam direction of length one.",
+)
+mistakes(
+    "DISTANCE_ACROSS",
+    "The reading is the shortest way to the wall, square to it, not the way along the beam.",
+    "Return s, the distance at which beam and wall cross: p + s d = a + u w, with d = (cos, sin) of the beam's direction.",
+)
+mistakes(
+    "DISTANCE_ALONG_WALL",
+    "The reading is the place of the hit on the wall, not its distance along the beam.",
+    "Of p + s d = a + u w, return s: it belongs to the beam, and u to the wall.",
+)
+mistakes(
+    "DISTANCE_ALONG_HEADING",
+    "Your code returns the distance straight ahead, not the distance along the beam.",
+    "Return the length of the beam itself, without a factor of cosine.",
+)
+mistakes(
+    "LIDAR_SIGMA_SQUARED",
+    "The noise of the hits has the std sigma², not sigma.",
+    "sigma is the std, not the variance: add sigma * rng.standard_normal(...).",
+)
+mistakes(
+    "LIDAR_SIGMA_ROOT",
+    "The noise of the hits has the std sqrt(sigma), not sigma.",
+    "sigma is the std, not the variance: add sigma * rng.standard_normal(...).",
+)
+mistakes(
+    "LIDAR_NOISE_PROPORTIONAL",
+    "The noise grows with the distance.",
+    "sigma is the same for every hit: add sigma * rng.standard_normal(...) without multiplying it by the distance.",
+)
+mistakes(
+    "LIDAR_NOISE_UNIFORM",
+    "The noise is uniformly distributed between two limits.",
+    "Add sigma times a standard normal number: its std is sigma.",
+)
+mistakes(
+    "LIDAR_NOISE_ONE_SIDED",
+    "The noise always has the same sign.",
+    "A standard normal number is negative as often as positive: use it as it is.",
+)
+mistakes(
+    "RANGE_MADE_POSITIVE",
+    "A reading that the noise makes negative gets its sign removed.",
+    "Set it to zero instead: np.maximum(..., 0.0).",
+)
+mistakes(
+    "LAG_IMPLICIT",
+    "The fraction of the way is dt / (tau + dt). That is stable, but a little too slow at every step.",
+    "Use the exact solution: the fraction is 1 - exp(-dt / tau).",
+)
+mistakes(
+    "LAG_INVERTED",
+    "The fraction of the way that is covered and the fraction that is left are swapped.",
+    "w + (1 - exp(-dt / tau)) * (u - w): after a long time, w equals u.",
+)
+mistakes(
+    "LAG_MISSING",
+    "The speed reaches the command at once.",
+    "In a time dt it covers the fraction 1 - exp(-dt / tau) of the way from w to u.",
+)
+mistakes(
+    "SATURATION_MISSING",
+    "A command beyond u_max is followed in full.",
+    "Clip u to [-u_max, u_max] before the lag.",
+)
+mistakes(
+    "SATURATION_ONE_SIDED",
+    "Commands are limited in one direction but not in the other.",
+    "Clip on both sides: min(max(u, -u_max), u_max).",
+)
+mistakes(
+    "DEADBAND_MISSING",
+    "A command inside the dead band moves the motor.",
+    "Where abs(u) <= deadband, the command counts as 0.",
+)
+mistakes(
+    "DEADBAND_ONE_SIDED",
+    "A negative command inside the dead band moves the motor.",
+    "Compare the absolute value: abs(u) <= deadband.",
+)
+mistakes(
+    "DEADBAND_STOPS_MOTOR",
+    "Inside the dead band the speed stops or stays constant, where it should decay.",
+    "Inside the dead band the command counts as 0, so the speed lags towards 0.",
+)
+mistakes(
+    "DEADBAND_REVERSED",
+    "Small commands are followed, and large ones count as 0.",
+    "A command counts as 0 where abs(u) <= deadband, and keeps its value otherwise.",
+)
+mistakes(
+    "BACKWARDS_SWALLOWED",
+    "Negative commands are ignored.",
+    "The dead band and the limit both depend on the absolute value of a command: abs(u) <= deadband, and min(max(u, -u_max), u_max).",
+)
+mistakes(
+    "SATURATION_AS_SWITCH",
+    "A command beyond u_max is ignored.",
+    "Saturation means that such a command counts as u_max, with its sign: min(max(u, -u_max), u_max).",
+)
+mistakes(
+    "LAG_RATIO_INVERTED",
+    "The exponent is tau / dt, where it should be dt / tau.",
+    "The fraction of the way that is covered is 1 - exp(-dt / tau): it grows with dt.",
+)
+mistakes(
+    "LAG_OF_PRODUCT",
+    "The exponent is dt times tau.",
+    "An exponent has no unit, so it must be dt / tau.",
+)
+mistakes(
+    "LAG_SIGN",
+    "The speed moves away from the command, not towards it.",
+    "w + (1 - exp(-dt / tau)) * (u - w): check the signs of the exponent and of u - w.",
+)
+mistakes(
+    "LAG_BASE",
+    "The lag uses a base other than e.",
+    "tau is the time in which the remaining difference shrinks to 1/e, so use math.exp(-dt / tau).",
+)
+mistakes(
+    "LAG_OFF_BY_FACTOR",
+    "The lag is twice as long as tau, or half as long.",
+    "The fraction is 1 - exp(-dt / tau), without a factor in the exponent.",
+)
+mistakes(
+    "LAG_SHARE_WRONG",
+    "The speed covers a fraction of the way from w to the command, but not the right one.",
+    "The fraction is 1 - exp(-dt / tau), with the dt and the tau of this call.",
+    kind="consequence",
+)
+mistakes(
+    "SPEED_IGNORED",
+    "The motor starts from rest, whatever its speed w is.",
+    "Start from the speed that the motor has: w + (1 - exp(-dt / tau)) * (u - w).",
+)
+mistakes(
+    "SPEED_GROWS",
+    "The fraction is taken of the command, not of the difference to it, so the speed does not settle at the command.",
+    "w + (1 - exp(-dt / tau)) * (u - w): the remaining difference is u - w.",
+)
+mistakes(
+    "RETURNS_CHANGE",
+    "Your code returns the change of the speed, not the new speed.",
+    "Add w to it.",
+)
+mistakes(
+    "BACKLASH_MISSING",
+    "The output follows the input as if there were no play.",
+    "The output stays at rest until the input has crossed the gap: clip the state to [x - gap/2, x + gap/2].",
+)
+mistakes(
+    "BACKLASH_SNAPS",
+    "Once the gap is crossed, the output jumps to the input itself.",
+    "The edge of the gap pushes the output, so the output stays gap/2 behind the input.",
+)
+mistakes(
+    "GAP_HALVED",
+    "The play is half as wide as the gap.",
+    "Half of the gap is on either side of the input, from x - gap/2 to x + gap/2.",
+)
+mistakes(
+    "BACKLASH_ONE_SIDED",
+    "The output is pushed in one direction but not in the other.",
+    "The gap has two edges: clip the state to [x - gap/2, x + gap/2].",
+)
+mistakes(
+    "BACKLASH_WRONG_EDGE",
+    "When it is pushed, the output is at the far edge of the gap, ahead of the input.",
+    "The output trails the input: pushed forwards it is at x - gap/2, pushed backwards at x + gap/2.",
+)
+mistakes(
+    "GAP_SCALED",
+    "Pushed either way, the output stays as far behind the input each time, but not by half the gap.",
+    "Half of the gap is on either side: pushed forwards y is x - gap/2, pushed backwards x + gap/2.",
+)
+mistakes(
+    "BACKLASH_CLIPS_INPUT",
+    "Your code clips the input to a gap around the state, so the output moves by half a gap at most.",
+    "Clip the state instead, to [x - gap/2, x + gap/2].",
+)
+mistakes(
+    "BACKLASH_HOLDS",
+    "The output does not move, even where an edge of the gap should push it.",
+    "The edges of the gap push the output: clip the state to [x - gap/2, x + gap/2].",
+)
+mistakes(
+    "BACKLASH_ADDS_INPUT",
+    "The position of the input is added to the state.",
+    "x is a position, not a step: the output is the state, clipped to [x - gap/2, x + gap/2].",
+)
+mistakes(
+    "OUTPUT_IS_NOT_STATE",
+    "The output is a different number from the state that is returned with it.",
+    "Return (y, y): the output is the new state.",
+)
+mistakes(
+    "DELAY_WRAPS",
+    "The end of the signal appears at its beginning.",
+    "np.roll moves the end round to the beginning, and negative indices count from the end. Before the first sample the output is 0.0.",
+)
+mistakes(
+    "DELAY_IN_SAMPLES",
+    "The latency is used as a number of samples.",
+    "The latency is in seconds, and that is latency / dt samples.",
+)
+mistakes(
+    "DELAY_RAMPS_IN",
+    "The output begins to change before the first sample has arrived.",
+    "Until the first sample arrives the output is exactly 0.0, not a line from 0 to that sample.",
+)
+mistakes(
+    "DELAY_OF_PRODUCT",
+    "The latency is multiplied by dt.",
+    "Counted in samples it is latency / dt; in seconds, as np.interp needs it, it is latency itself.",
+)
+mistakes(
+    "DELAY_IGNORED",
+    "The signal is not delayed.",
+    "The output at time k*dt is the signal of the time k*dt - latency.",
+)
+mistakes(
+    "DELAY_COVERS_START",
+    "The signal is zero at first, but then it comes without a delay.",
+    "The first sample comes at the time latency, and all others as much later: y at k*dt is x at k*dt - latency.",
+)
+mistakes(
+    "DELAY_ONE_TOO_LONG",
+    "The output is one sample late.",
+    "y[k] is x at the time k*dt - latency, where k starts from 0.",
+)
+mistakes(
+    "DELAY_ONE_TOO_SHORT",
+    "The output is one sample early.",
+    "y[k] is x at the time k*dt - latency, where k starts from 0.",
+)
+mistakes(
+    "DELAY_NAN_BEFORE",
+    "Before the first sample the output is nan.",
+    "Before the first sample has arrived, return 0.0.",
+    kind="nan",
+)
+mistakes(
+    "DELAY_SHARES_SWAPPED",
+    "Between two samples, the further one gets the larger weight.",
+    "At the fraction p of the way from one sample to the next, the value is (1 - p) times the first plus p times the next.",
+)
+mistakes(
+    "DELAY_HALF_WAY",
+    "Between two samples the output is always their mean.",
+    "Interpolate along the straight line between them: the nearer sample gets the larger weight.",
+)
+mistakes(
+    "EULER_TURNS_FIRST",
+    "The robot turns first and then drives straight along the new heading.",
+    "Move along the arc: its chord points along the heading at the middle of the turn, and its length is that of the arc times sin(turn/2)/(turn/2).",
+)
+mistakes(
+    "TRACK_HALVED",
+    "The robot turns twice as fast as it should.",
+    "The wheels are a whole track apart: (v_right - v_left) / track.",
+)
+mistakes(
+    "TRACK_DOUBLED",
+    "The robot turns half as fast as it should.",
+    "The wheels are one track apart: (v_right - v_left) / track.",
+)
+mistakes(
+    "SPEEDS_ADDED",
+    "The robot goes twice as far as it should.",
+    "The speed at the middle of the axle is the mean of the two wheel speeds.",
+)
+mistakes(
+    "STRAIGHT_DIVIDES_BY_ZERO",
+    "With equal wheel speeds the result is not a number. Dividing by a turn rate of 0 gives that.",
+    "Treat a turn rate of 0 separately, or use np.sinc(turn / (2 * pi)), which is 1 there.",
+    kind="nan",
+)
+mistakes(
+    "SPEED_IS_DIFFERENCE",
+    "The robot moves forwards at half the difference of the two wheel speeds.",
+    "The speed at the middle of the axle is their mean, (v_left + v_right) / 2.",
+)
+mistakes(
+    "SPEED_OF_ONE_WHEEL",
+    "The robot moves forwards at the speed of one of its wheels.",
+    "The speed at the middle of the axle is the mean, (v_left + v_right) / 2.",
+)
+mistakes(
+    "TRACK_MULTIPLIED",
+    "The difference of the wheel speeds is multiplied by the track, not divided by it.",
+    "A wider robot turns more slowly, so divide by the track.",
+)
+mistakes(
+    "TRACK_IGNORED",
+    "The turn rate does not depend on the track.",
+    "The turn rate is (v_right - v_left) / track.",
+)
+mistakes(
+    "TURN_WITHOUT_DT",
+    "The robot turns by the same angle, however long the step is.",
+    "The turn is the turn rate times dt.",
+)
+mistakes(
+    "CHORD_OF_WHOLE_TURN",
+    "The chord is computed with the whole turn.",
+    "Use half of the turn: sin(turn/2)/(turn/2).",
+)
+mistakes(
+    "CHORD_INVERTED",
+    "The chord is longer than its arc.",
+    "Multiply by sin(turn/2)/(turn/2), which is at most 1; do not divide by it.",
+)
+mistakes(
+    "WAY_WITHOUT_DT",
+    "The length of the arc is taken without dt, or with a fixed one.",
+    "The distance is v * dt.",
+)
+mistakes(
+    "CHORD_ALONG_OLD_HEADING",
+    "The chord points along the heading before the turn.",
+    "The chord points along the heading half-way through the turn: heading + turn/2.",
+)
+mistakes(
+    "CHORD_ALONG_NEW_HEADING",
+    "The chord points along the heading after the turn.",
+    "The chord points along the heading half-way through the turn: heading + turn/2.",
+)
+mistakes(
+    "CHORD_WRONG_WAY",
+    "In a turn that was tried, the displacement has the right length but the wrong direction.",
+    "The chord points along the heading half-way through the turn: use the cosine and the sine of heading + turn/2.",
+)
+mistakes(
+    "CHORD_TURNED_BACK",
+    "The chord is rotated to the wrong side.",
+    "The chord points along the heading half-way through the turn: heading + turn/2, with a plus.",
+)
+mistakes(
+    "Y_MIRRORED",
+    "y changes in the wrong direction.",
+    "y grows with the sine of heading + turn/2, with a plus.",
+)
+mistakes(
+    "HEADING_NOT_TURNED",
+    "The heading that is returned is the old one.",
+    "Return heading + turn.",
+)
+mistakes(
+    "HEADING_HALF_TURNED",
+    "The heading changes by only half of the turn.",
+    "Half of the turn gives the direction of the chord; the new heading is heading + turn.",
+)
+mistakes(
+    "HEADING_FORGOTTEN",
+    "Your code returns the turn as the new heading.",
+    "Add the turn to the old heading: heading + turn.",
+)
+mistakes(
+    "POSE_FORGOTTEN",
+    "Each step starts from the origin.",
+    "Add the step to the pose that is passed in.",
+)
+mistakes(
+    "SECOND_MISTAKE",
+    "The mistake that another check names makes no difference to these numbers: there is a second one.",
+    "Mend the named one first, then check again.",
+    kind="fact",
+)
+mistakes(
+    "RETURNS_SWAPPED",
+    "Your code returns the right two things in the wrong order.",
+    "Return them in the order that the README gives.",
+)
+
+# -- sync
+
+mistakes(
+    "TIME_NOT_ADVANCED",
+    "After a new measurement, the twin's time is the same as before.",
+    'Return "t": max(twin["t"], t_measured).',
+)
+mistakes(
+    "NO_CORRECTION",
+    "The measurement does not correct the position.",
+    "Move the position by a share of the surprise, which is z minus what the twin expected.",
+)
+mistakes(
+    "SMALL_SURPRISES_IGNORED",
+    "A surprise of one standard deviation of the measurements does not move the position at all, while a larger one does.",
+    "Correct by a share of every surprise, small ones too: that is how the noise is averaged out.",
+)
+mistakes(
+    "TIME_NOT_THE_LATEST",
+    "After a measurement that is newer than all others, the twin's `t` is not its time.",
+    'Predict from twin["t"] to t_measured, and return t_measured as `t`. Only a late measurement leaves `t` as it was.',
+    kind="consequence",
+)
+mistakes(
+    "NO_PREDICTION",
+    "Between two measurements the twin does not move, apart from what the measurement corrects.",
+    "First predict the state at t_measured from the speed, the drive and the friction, then correct it.",
+)
+mistakes(
+    "PREDICTS_TOO_LITTLE",
+    "Where a measurement brings no surprise, the twin has moved less far than its speed would take it in that time.",
+    'Predict over all of t_measured - twin["t"], in SI units: x + v * dt to begin with, with the speed, the drive and the friction of the twin.',
+)
+mistakes(
+    "SHARE_OVER_ONE",
+    "The position moves beyond the measurement: it is corrected by more than all of the surprise.",
+    "Move the position only a share of the way to z, a third for example: the prediction contains information too.",
+)
+mistakes(
+    "MEMORY_TOO_LARGE",
+    "The memory is larger than the README allows, whether it grows or not.",
+    "Keep the last second or two of the history, and of it only the numbers that a later call reads.",
+    kind="fact",
+)
+mistakes(
+    "DRIVE_REMEMBERED",
+    "A drive that was changed between two calls makes no difference to the prediction, although it does for a new twin. Perhaps an earlier drive is used.",
+    'Take twin["drive"] from the twin that is passed in. It acts from the twin\'s time on, and the caller may change it.',
+)
+mistakes(
+    "SPEED_CORRECTED_BACKWARDS",
+    "A measurement ahead of the twin makes its speed smaller.",
+    "A cart that is further ahead than expected is faster than the twin assumes: add a share of the surprise, which is z minus the prediction, to the speed.",
+)
+mistakes(
+    "SPEED_NOT_CORRECTED",
+    "A surprise does not change the speed.",
+    "Correct the speed by a share of the surprise too: a cart that is further ahead than expected is faster than the twin assumes.",
+)
+mistakes(
+    "FRICTION_NOT_IN_MODEL",
+    "The prediction ignores the friction.",
+    "dv/dt = drive - friction * speed.",
+)
+mistakes(
+    "FRICTION_WITHOUT_SPEED",
+    "In the prediction, friction takes as much speed off a fast cart as off a slow one.",
+    "Multiply it by the speed: dv/dt = drive - friction * speed.",
+)
+mistakes(
+    "FRICTION_SHARE_TOO_LARGE",
+    "The friction is corrected by more than all of a surprise, in SI units. It swings with the noise of the measurements.",
+    "Correct it by a smaller share: about -0.15 is enough at ten measurements a second.",
+)
+mistakes(
+    "FRICTION_LEARNS_SLOWLY",
+    "The friction moves in the right direction, but does not reach its true value in time.",
+    "Look for what holds it back: for example a small share of the surprise (about -0.15 is enough at ten measurements a second), little process noise in a Kalman filter, or a limit.",
+    kind="consequence",
+)
+
+# -- command
+
+mistakes(
+    "TARGET_IGNORED",
+    "At the target speed, the drive does not depend on how large that speed is.",
+    "At a steady speed, drive = friction * speed.",
+)
+mistakes(
+    "BRAKES",
+    "At the target speed, the drive points in the wrong direction.",
+    "Friction slows the robot down, so the drive must point along the target speed.",
+)
+mistakes(
+    "ADDS_CURRENT_DRIVE",
+    "The result depends on the drive that acts at the moment.",
+    'Leave twin["drive"] out of it, and return the drive itself, not a change of it: friction * target_speed, and a correction if you like.',
+)
+mistakes(
+    "FRICTION_ADDED",
+    "Something is added to the friction before it is multiplied by the target speed.",
+    "drive = friction * target_speed, with the friction as it is.",
+)
+mistakes(
+    "FRICTION_ON_SURPLUS",
+    "The friction is multiplied by another speed than the target speed.",
+    "At the target speed the drive must be friction * target_speed. A correction with target_speed - speed may be added to it.",
+)
+mistakes(
+    "TARGET_SQUARED",
+    "At the target speed, the drive grows with the square of that speed, where it should be proportional to it.",
+    "This friction is viscous: drive = friction * target_speed, to the first power.",
+)
+mistakes(
+    "FRICTION_SQUARED",
+    "The friction is squared.",
+    "drive = friction * target_speed, to the first power.",
+)
+mistakes(
+    "FRICTION_WITHOUT_TARGET",
+    "At the target speed, the drive is as large as the friction, however large that speed is.",
+    "Multiply it by target_speed.",
+)
+mistakes(
+    "DRIVE_OFF_BY_FACTOR",
+    "At the target speed, the drive is too large or too small by a constant factor.",
+    "drive = friction * target_speed, without any other factor.",
+)
+mistakes(
+    "BALANCE_MISSING",
+    "At the target speed, nothing in the drive balances the friction.",
+    "At a steady speed, drive = friction * target_speed; a correction may be added to that.",
+)
+
+
+formulas, motions = (kit.sibling(__file__, name) for name in ("formulas", "motions"))
+
+
+@mistakes.more
+def hypotheses():
+    """Task, codes of what is wrong, and function of each, those with one mistake first."""
+    for task, families in (formulas.TERMS | motions.TERMS).items():
+        for codes, function in motions.OTHERS.get(task, ()):
+            yield task, codes, function
+        for family, base, terms in families:
+            for term, forms in terms.items():
+                for code, form in forms:
+                    yield task, (*_of_base(base), code), family(**base | {term: form})
+        for family, base, terms in families[:2]:  # what a third has twice, the first two have
+            yield from _pairs(task, family, base, terms)
+
+
+def _of_base(base):
+    """What is wrong with a family before any of its terms is, whatever else."""
+    if base is motions._EULER:
+        return ("EULER_ODOMETRY",)
+    if base.get("gain", 0.0) < 0.0:
+        return ("PUSHES_AWAY",)
+    return ("EULER_TURNS_FIRST",) if base is motions._TURNED_FIRST else ()
+
+
+#: Mistakes that hardly anybody makes together with another: the table has room for 260 pairs of a task.
+_ALONE = {
+    *("LAG_BASE", "LAG_OF_PRODUCT", "LAG_OFF_BY_FACTOR", "LAG_RATIO_INVERTED", "DEADBAND_REVERSED"),
+    *("SPEED_GROWS", "SATURATION_AS_SWITCH"),
+    *("ANGLES_IGNORED", "BEAM_REVERSED", "NOTHING_IS_HIT", "POSITION_SIGN_FLIPPED", "RANGE_MADE_POSITIVE"),
+    *("LIDAR_SIGMA_ROOT", "LIDAR_NOISE_ONE_SIDED", "LIDAR_NOISE_UNIFORM", "DISTANCE_ALONG_HEADING"),
+    *("LIDAR_NOISE_PROPORTIONAL", "DISTANCE_SQUARED"),
+    *("WHITE_NOISE_TIMES_DT", "WHITE_NOISE_ONE_SIDED", "BIAS_WALKS_TO_BIAS0", "BIAS_OVER_SQRT_DT"),
+    *("NOISE_FOR_BIAS", "BIAS_SUBTRACTED", "TRUE_RATE_MISSING", "BIAS0_ADDED_EACH_STEP"),
+    *("BIAS_CONSTANT", "WHITE_NOISE_MISSING", "WALK_SQUARED", "DENSITY_SQUARED"),
+    *("Y_MIRRORED", "SPEED_IS_DIFFERENCE", "HEADING_HALF_TURNED", "CHORD_TURNED_BACK", "TRACK_MULTIPLIED"),
+    *("SPEED_OF_ONE_WHEEL", "WAY_WITHOUT_DT", "TRACK_IGNORED", "HEADING_FORGOTTEN"),
+}
+
+
+def _pairs(task, family, base, terms):
+    """Two terms wrong at once, each in the first form of its code."""
+    if _of_base(base):
+        return  # that would be three
+    firsts = {
+        term: [(code, form) for code, form in dict(reversed(forms)).items() if code not in _ALONE]
+        for term, forms in terms.items()
+    }
+    for one, other in itertools.combinations(terms, 2):
+        for (code, form), (second, another) in itertools.product(firsts[one], firsts[other]):
+            if code != second:
+                yield task, (code, second), family(**base | {one: form, other: another})

@@ -1,6 +1,0 @@
-"""The lag is stepped by explicit Euler."""
-
-
-def motor_step(w, u, dt, tau, u_max, deadband):
-    u = 0.0 if abs(u) <= deadband else min(max(u, -u_max), u_max)
-    return w + dt / tau * (u - w)

@@ -1,3 +1,0 @@
-"""No process noise: the filter stops learning."""
-
-_WANDER = np.zeros((3, 3))

@@ -1,0 +1,2311 @@
+"""Mistakes in `engine-comparison`: words beside the programs that they are true of."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+
+from course.authoring.mistakes import Mistakes
+from course.scoring import kit
+
+mistakes = Mistakes()
+
+mistakes(
+    "ORDER_AGAINST_UNDAMPED",
+    "The order is right for engines without damping and too low for the others. Perhaps the engine is compared with the exact spring.",
+    "Compare the engine with itself: the same time with n, 2n and 4n steps.",
+    kind="consequence",
+).body(
+    "characterise",
+    """
+        def error(n):
+            q, v = engine.run("spring", [1.0], [0.7 * omega], 1.3 / omega / n, n, [0.0])
+            exact = np.array([math.cos(1.3) + 0.7 * math.sin(1.3), 0.7 * math.cos(1.3) - math.sin(1.3)])
+            return np.linalg.norm(np.array([q[-1][0], v[-1][0] / omega]) - exact)
+
+        return round(math.log2(error(32) / error(64)))
+    """,
+    of="_order",
+)
+mistakes(
+    "ORDER_LOCAL",
+    "The orders are one too high. The error of a single step gives that.",
+    "Run for one fixed time, so that half the step means twice as many steps.",
+).body(
+    "characterise",
+    """
+        def after(h, n):
+            q, v = engine.run("spring", [1.0], [0.7 * omega], h, n, [0.0])
+            return np.array([q[-1][0], v[-1][0] / omega])
+
+        def gap(z):
+            return np.linalg.norm(after(z / omega, 1) - after(z / omega / 2, 2))
+
+        return round(math.log2(gap(0.1) / gap(0.05)))
+    """,
+    of="_order",
+)
+mistakes(
+    "ORDER_AT_TURNING_POINT",
+    "Some orders are one or two too high. Perhaps the runs start at rest or in the middle, or end after a whole half-period: there the leading error vanishes.",
+    "Start with both a position and a velocity, and end at an ordinary moment.",
+    kind="consequence",
+).body(
+    "characterise",
+    """
+        def end(n):
+            q, _ = engine.run("spring", [1.0], [0.0], math.pi / omega / n, n, [0.0])
+            return q[-1][0]
+
+        return round(math.log2(abs(end(64) - end(128)) / abs(end(128) - end(256))))
+    """,
+    of="_order",
+)
+mistakes(
+    "ORDER_IN_ROUNDING",
+    "Only accurate engines get a wrong order. Their runs differ by little more than rounding.",
+    "Take larger steps, such as a sixteenth to a quarter of 1/omega.",
+    kind="consequence",
+).body(
+    "characterise",
+    """
+        def end(n):
+            q, v = engine.run("spring", [1.0], [0.7 * omega], 0.05 / omega / n, n, [0.0])
+            return np.array([q[-1][0], v[-1][0] / omega])
+
+        coarse, middle, fine = end(400), end(800), end(1600)
+        gap = max(np.linalg.norm(middle - fine), 1e-16)
+        return min(round(math.log2(max(np.linalg.norm(coarse - middle), 1e-16) / gap)), 3)
+    """,
+    of="_order",
+)
+mistakes(
+    "ORDER_NOT_WHOLE",
+    "A measured slope seldom is.",
+    "Round it: round(math.log2(ratio)).",
+    kind="fact",
+).program(
+    "characterise",
+    """
+        _whole_order = _order
+
+
+        def _order(engine, omega):
+            def end(n):
+                q, v = engine.run("spring", [1.0], [0.7 * omega], 1.3 / omega / n, n, [0.0])
+                return np.array([q[-1][0], v[-1][0] / omega])
+
+            coarse, middle, fine = end(16), end(32), end(64)
+            return math.log2(np.linalg.norm(coarse - middle) / np.linalg.norm(middle - fine))
+    """,
+)
+mistakes(
+    "SYMPLECTIC_STEP_TOO_SMALL",
+    "Engines that lose area pass the test. The step is so small that the loss hides in the threshold.",
+    "Take the one step with h = 0.5/omega, as the README says.",
+    kind="consequence",
+).program(
+    "characterise",
+    """
+        _whole_step = _spring_step
+
+
+        def _spring_step(engine, omega, z):
+            return _whole_step(engine, omega, 0.05 if z == 0.5 else z)
+    """,
+)
+mistakes(
+    "STABLE_TAKEN_FOR_SYMPLECTIC",
+    "Engines that lose area pass the test.",
+    "A determinant below one means that area is lost: test abs(det - 1) < 1e-6.",
+    kind="consequence",
+).program(
+    "characterise",
+    """
+        _characterise = characterise
+
+
+        def characterise(engine):
+            omega = engine.info()["omega"]
+            radius = max(abs(np.linalg.eigvals(_spring_step(engine, omega, 0.5))))
+            return {**_characterise(engine), "symplectic": bool(radius <= 1 + 1e-6)}
+    """,
+)
+mistakes(
+    "SYMPLECTIC_NEVER",
+    "No engine passes the test here, not even one that conserves area.",
+    "Build the matrix of one step on (q, v/omega): two runs with n = 1, from (1, 0) and (0, omega), and both velocities divided by omega. Then test abs(det - 1) < 1e-6.",
+    kind="consequence",
+).program(
+    "characterise",
+    """
+        _characterise = characterise
+
+
+        def characterise(engine):
+            omega = engine.info()["omega"]
+            q, v = engine.run("spring", [1.0], [0.4 * omega], 0.5 / omega, 1, [0.0])
+            energy = [x[0] ** 2 + (y[0] / omega) ** 2 for x, y in zip(q, v)]
+            return {**_characterise(engine), "symplectic": bool(abs(energy[1] / energy[0] - 1) < 1e-6)}
+    """,
+)
+mistakes(
+    "DAMPING_AT_DT",
+    "The rate still contains the error of large steps.",
+    "Use a much smaller step, such as dt / 1000.",
+).body(
+    "characterise",
+    """
+        _, v = engine.run("free", [0.0], [1.0], dt, 20, [0.0])
+        return -math.log(v[-1][0]) / (20 * dt)
+    """,
+    of="_linear_damping",
+)
+mistakes(
+    "DAMPING_PER_STEP",
+    "The result is the loss of ln|v| per step or per run, not per second.",
+    "Divide the change of ln|v| by the time between the two samples, n times h.",
+).body(
+    "characterise",
+    """
+        _, v = engine.run("free", [0.0], [1.0], dt / 1000, 1000, [0.0])
+        return -math.log(v[-1][0])
+    """,
+    of="_linear_damping",
+)
+mistakes(
+    "DAMPING_OF_ENERGY",
+    "The rate is twice as large as it should be.",
+    "Energy decays twice as fast as speed. Take the logarithm of the speed.",
+).body(
+    "characterise",
+    """
+        _, v = engine.run("free", [0.0], [1.0], dt / 1000, 100, [0.0])
+        return -math.log(v[-1][0] ** 2) / (dt / 10)
+    """,
+    of="_linear_damping",
+)
+mistakes(
+    "DAMPING_OF_ENVELOPE",
+    "The rate is about half of what it should be.",
+    "A spring's amplitude decays at half the rate. Take a free body, its speeds at the start and at the end, and the time between.",
+).body(
+    "characterise",
+    """
+        omega = engine.info()["omega"]
+        # ln det of the step's matrix is the loss of area; its half is the loss of amplitude.
+        z = omega * dt / 1000
+        return -math.log(np.linalg.det(_spring_step(engine, omega, z))) / 2 / (dt / 1000)
+    """,
+    of="_linear_damping",
+)
+mistakes(
+    "LIMIT_FROM_ABOVE",
+    "An engine that becomes unstable, then stable again, gets a limit beyond the first one. Perhaps the search comes from above, or jumps over an unstable range.",
+    "Increase the step from 0.05/omega in increments of 0.5/omega, stop at the first that is unstable, and bisect between that one and the one before it.",
+    kind="consequence",
+).body(
+    "characterise",
+    """
+        def stable(z):
+            return max(abs(np.linalg.eigvals(_spring_step(engine, omega, z)))) <= 1 + 1e-8
+
+        if not stable(0.05):
+            return 0.0
+        high = 10.0
+        if stable(high):
+            return math.inf
+        while not stable(high - 0.1):
+            high -= 0.1
+        return _bisect(stable, high - 0.1, high, 0.01)
+    """,
+    of="_max_stable_z",
+).body(
+    "characterise",
+    """
+        def stable(z):
+            return max(abs(np.linalg.eigvals(_spring_step(engine, omega, z)))) <= 1 + 1e-8
+
+        low = 0.05
+        if not stable(low):
+            return 0.0
+        while stable(low + 1.99):
+            low += 1.99
+            if low >= 10:
+                return math.inf
+        return _bisect(stable, low, low + 1.99, 0.004 * low)
+    """,
+    of="_max_stable_z",
+).body(
+    "characterise",
+    """
+        def stable(z):
+            return max(abs(np.linalg.eigvals(_spring_step(engine, omega, z)))) <= 1 + 1e-8
+
+        low = 0.05
+        if not stable(low):
+            return 0.0
+        while stable(low + 2.5):
+            low += 2.5
+            if low >= 10:
+                return math.inf
+        return _bisect(stable, low, low + 2.5, 0.002 * low)
+    """,
+    of="_max_stable_z",
+)
+mistakes(
+    "LIMIT_ASSUMED",
+    "The result times omega is the same for different engines.",
+    "For each h, build the matrix of one step from two runs and look at its eigenvalues.",
+).body(
+    "characterise",
+    """
+        return 2.0
+    """,
+    of="_max_stable_z",
+)
+mistakes(
+    "RETURNS_Z",
+    "The result is as large as the step times omega.",
+    "Divide by omega: the answer is a time in seconds.",
+).program(
+    "characterise",
+    """
+        _z = _max_stable_z
+
+
+        def _max_stable_z(engine, omega):
+            return _z(engine, omega) * omega
+    """,
+)
+mistakes(
+    "NO_ZERO",
+    "An engine that is unstable even at the smallest step gets a positive limit.",
+    "Return 0.0 if h = 0.05/omega is unstable. Slow growth does not show in a few hundred steps: look at the eigenvalues of one step.",
+    kind="consequence",
+).body(
+    "characterise",
+    """
+        def stable(z):
+            q, v = engine.run("spring", [1.0], [0.3 * omega], z / omega, 2000, [0.0])
+            return max(abs(x[0]) for x in q) < 3
+
+        low = 0.05
+        while low < 10 and stable(low + 0.25):
+            low += 0.25
+        return math.inf if low >= 10 else _bisect(stable, low, low + 0.25, 0.004 * low)
+    """,
+    of="_max_stable_z",
+)
+mistakes(
+    "NO_INFINITY",
+    "An engine that is never unstable gets a finite number.",
+    "Return math.inf if no step in the README's range is unstable.",
+    kind="consequence",
+).program(
+    "characterise",
+    """
+        _z = _max_stable_z
+
+
+        def _max_stable_z(engine, omega):
+            return min(_z(engine, omega), 10.0)
+    """,
+)
+mistakes(
+    "ANISOTROPY_INVERTED",
+    "The result is as large as one over the right ratio.",
+    "The force along the diagonal is the numerator: F(45 degrees) / F(0 degrees).",
+).program(
+    "characterise",
+    """
+        _ratio = _anisotropy
+
+
+        def _anisotropy(engine, info):
+            return 1 / _ratio(engine, info)
+    """,
+)
+mistakes(
+    "DIAGONAL_COMPONENT",
+    "The ratio is off by a factor of 1.41. Perhaps one component of the diagonal force is reported, or the sum of both.",
+    "Push with (F cos 45°, F sin 45°, 0) and report F.",
+).program(
+    "characterise",
+    """
+        _ratio = _anisotropy
+
+
+        def _anisotropy(engine, info):
+            return _ratio(engine, info) / math.sqrt(2)
+    """,
+)
+mistakes(
+    "ANISOTROPY_ASSUMED",
+    "Engines whose ratios differ all get the same one.",
+    "Let the body settle first. From where it lies, find by bisection the least force along x and along the diagonal.",
+).body(
+    "characterise",
+    """
+        return 1.0
+    """,
+    of="_anisotropy",
+)
+mistakes(
+    "CREEP_TAKEN_FOR_SLIP",
+    "Only engines whose bodies creep get a wrong ratio. Perhaps creeping is taken for sliding.",
+    "A body slides when it becomes faster than 0.01 m/s, not when it moves at all.",
+    kind="consequence",
+).edit("characterise", {") <= 0.01": ") <= 1e-6", ", 0.001 *": ", 1e-7 *"}, of="_anisotropy")
+mistakes(
+    "NOT_SETTLED",
+    "Only engines with soft contact get a wrong ratio. Perhaps the body is pushed while it is still sinking in.",
+    "Let the body come to rest first, and start each push from where it lies.",
+    kind="consequence",
+).program(
+    "characterise",
+    """
+        _at_rest = _settled
+        _ratio = _anisotropy
+
+
+        def _anisotropy(engine, info):
+            global _settled
+
+            def _settled(engine, info):
+                return [0.0, 0.0, info["radius"]]
+
+            try:
+                return _ratio(engine, info)
+            finally:
+                _settled = _at_rest
+    """,
+)
+mistakes(
+    "PENETRATION_SIGN",
+    "A body that sinks in gets a depth of zero or less, or one that hovers gets a positive depth.",
+    "The depth is max(0, radius - z): the centre of a body that sinks in is lower than its radius.",
+).program(
+    "characterise",
+    """
+        _characterise = characterise
+
+
+        def characterise(engine):
+            info = engine.info()
+            return {**_characterise(engine), "rest_penetration": max(0.0, _settled(engine, info)[2] - info["radius"])}
+    """,
+)
+mistakes(
+    "PENETRATION_NEGATIVE",
+    "An engine that keeps bodies at a distance gets a negative depth.",
+    "The report asks for max(0, radius - z).",
+).program(
+    "characterise",
+    """
+        _characterise = characterise
+
+
+        def characterise(engine):
+            info = engine.info()
+            return {**_characterise(engine), "rest_penetration": info["radius"] - _settled(engine, info)[2]}
+    """,
+)
+mistakes(
+    "PENETRATION_TOO_EARLY",
+    "Only engines with soft contact get a wrong depth. It is measured while the body still moves.",
+    "Wait five seconds, and take the last sample.",
+    kind="consequence",
+).program(
+    "characterise",
+    """
+        _characterise = characterise
+
+
+        def characterise(engine):
+            info = engine.info()
+            q, _ = engine.run(
+                "floor", [0, 0, info["radius"]], [0, 0, 0], info["dt"], round(5 / info["dt"]), [0, 0, 0]
+            )
+            deepest = max(0.0, info["radius"] - min(z for _, _, z in q))
+            return {**_characterise(engine), "rest_penetration": deepest}
+    """,
+)
+mistakes(
+    "RESTITUTION_SIGN",
+    "For at least one engine the ratio is negative.",
+    "The velocity changes its sign at the wall; the report asks for the ratio of the speeds.",
+).program(
+    "characterise",
+    """
+        _hit = _slow_hit
+
+
+        def _slow_hit(engine, info):
+            ratio, face = _hit(engine, info)
+            return -ratio, face
+    """,
+)
+mistakes(
+    "RESTITUTION_SQUARED",
+    "The result is the square of the right ratio, or its square root.",
+    "Divide the speed after the hit by the speed before it, without a square.",
+).program(
+    "characterise",
+    """
+        _hit = _slow_hit
+
+
+        def _slow_hit(engine, info):
+            ratio, face = _hit(engine, info)
+            return ratio**2, face
+    """,
+)
+mistakes(
+    "RESTITUTION_WITH_DRAG",
+    "The ratio is too low for engines with damping. The body loses speed on its way to the wall.",
+    "Start at 2 m/s close to the wall, and compare the last sample before the hit with the first one after it.",
+    kind="consequence",
+).program(
+    "characterise",
+    """
+        _hit = _slow_hit
+
+
+        def _slow_hit(engine, info):
+            dt = info["dt"]
+            speed = 2.0
+            q, v = engine.run("wall", [-1.0], [speed], dt, round(0.8 / dt), [0])
+            return -v[-1][0] / speed, _hit(engine, info)[1]
+    """,
+)
+mistakes(
+    "RESTITUTION_OTHER_SPEED",
+    "Engines in which slow bodies do not bounce get zero. Perhaps the body meets the wall at less than 2 m/s.",
+    "Let the body hit the wall at 2 m/s, because the coefficient may depend on the speed.",
+    kind="consequence",
+).program(
+    "characterise",
+    """
+        _hit = _slow_hit
+
+
+        def _slow_hit(engine, info):
+            start = -(info["radius"] + info["wall_thickness"] / 2) - 3.5 * info["dt"]
+            q, v = engine.run("wall", [start], [1.0], info["dt"], 10, [0])
+            hit = next(i for i in range(11) if v[i][0] <= 0)
+            return -v[hit][0] / v[hit - 1][0], _hit(engine, info)[1]
+    """,
+)
+mistakes(
+    "TUNNEL_ONE_START",
+    "The speed is too high, and most speeds were tried from one start only.",
+    "Try many starts, spread evenly over [-1 - v dt, -1]. A speed is safe only if none gets through.",
+    kind="consequence",
+).body(
+    "characterise",
+    """
+        dt = info["dt"]
+
+        def stopped(speed):
+            q, _ = engine.run("wall", [-1.0], [speed], dt, math.ceil(4 / (speed * dt)) + 2, [0])
+            return q[-1][0] < 0
+
+        speeds = np.geomspace(2.0, 199.0, 120)
+        safe = [speed for speed in speeds if stopped(speed)]
+        return math.inf if len(safe) == len(speeds) else float(next(s for s in speeds if not stopped(s)))
+    """,
+    of="_tunnelling_speed",
+)
+mistakes(
+    "TUNNEL_FEW_STARTS",
+    "The speed is too high. Perhaps a start between those that were tried gets through.",
+    "Try more of them: with k starts, the result is uncertain by one part in k.",
+    kind="consequence",
+).body(
+    "characterise",
+    """
+        dt = info["dt"]
+
+        def stopped(speed):
+            n = math.ceil(4 / (speed * dt)) + 3
+            starts = [-1 - speed * dt * k / 4 for k in range(4)]
+            return all(engine.run("wall", [s], [speed], dt, n, [0])[0][-1][0] < 0 for s in starts)
+
+        if stopped(199.0):
+            return math.inf
+        return _bisect(stopped, 2.0, 199.0, 0.1)
+    """,
+    of="_tunnelling_speed",
+)
+mistakes(
+    "TUNNEL_BY_GEOMETRY",
+    "The results are a formula of the body's size and dt.",
+    "Engines look for contact in different ways: shoot bodies at the wall.",
+).body(
+    "characterise",
+    """
+        return (2 * info["radius"] + info["wall_thickness"]) / info["dt"]
+    """,
+    of="_tunnelling_speed",
+)
+mistakes(
+    "TUNNEL_NO_INFINITY",
+    "An engine that stops everything gets a finite number.",
+    "Return math.inf if nothing gets through in the README's range of speeds.",
+    kind="consequence",
+).program(
+    "characterise",
+    """
+        _speed = _tunnelling_speed
+
+
+        def _tunnelling_speed(engine, info):
+            return min(_speed(engine, info), 200.0)
+    """,
+)
+mistakes(
+    "DETERMINISM_ONE_RUN",
+    "Every engine is called deterministic, but no run was made twice in a row.",
+    "Run the same experiment twice, and compare every number of both with np.array_equal.",
+    kind="consequence",
+).program(
+    "characterise",
+    """
+        _REST = {}
+
+
+        def _deterministic(engine, dt):
+            _REST.clear()
+            return True
+
+
+        _first_settled = _settled
+
+
+        def _settled(engine, info):
+            if "rest" not in _REST:
+                _REST["rest"] = _first_settled(engine, info)
+            return _REST["rest"]
+
+
+        _first_hit = _slow_hit
+
+
+        def _slow_hit(engine, info):
+            if "hit" not in _REST:
+                _REST["hit"] = _first_hit(engine, info)
+            return _REST["hit"]
+    """,
+)
+mistakes(
+    "DETERMINISM_TOLERANCE",
+    "Engines whose runs differ slightly are called deterministic.",
+    "Bit for bit means np.array_equal, not np.allclose.",
+).edit("characterise", {"array_equal": "allclose"}, of="_deterministic")
+mistakes(
+    "DETERMINISM_OTHER_RUN",
+    "No engine is called deterministic, not even one whose runs repeat exactly.",
+    "Compare two runs with the same arguments, by their numbers: np.array_equal.",
+).body(
+    "characterise",
+    """
+        first = engine.run("spring", [1.0], [0.5], dt, 50, [0.0])
+        second = engine.run("spring", [1.0], [0.5], dt / 2, 100, [0.0])
+        return bool(np.array_equal(first[0][-1], second[0][-1]))
+    """,
+    of="_deterministic",
+)
+mistakes("WRONG_KEYS").program(
+    "characterise",
+    """
+        _characterise = characterise
+
+
+        def characterise(engine):
+            return {**_characterise(engine), "name": "unknown"}
+    """,
+)
+mistakes(
+    "MEASURED_AS_NONE",
+    "",
+    "If you measure it already, perhaps an exception that you catch became None, or `x or None` turned a 0 into None.",
+    kind="fact",
+).program(
+    "characterise",
+    """
+        _characterise = characterise
+
+
+        def characterise(engine):
+            return {**_characterise(engine), "friction_anisotropy": None}
+    """,
+)
+mistakes("ENGINE_MISUSED").body(
+    "characterise",
+    """
+        _, v = engine.run("free", [0.0], [1.0], dt / 1e7, 1_000_000, [0.0])
+        return -math.log(v[-1][0]) / (0.1 * dt)
+    """,
+    of="_linear_damping",
+)
+mistakes(
+    "IGNORES_MISSING",
+    "Your code accepts an engine whose report lacks a required key, or has None there.",
+    "What was not measured meets nothing: test whether the value is None first.",
+).body(
+    "choose_engine",
+    """
+        def fits(report):
+            return all(
+                report.get(r["key"]) is None or _OPERATORS[r["op"]](report[r["key"]], r["value"])
+                for r in requirements
+            )
+
+        fitting = [name for name in reports if fits(reports[name])]
+        return min(fitting, key=lambda name: reports[name]["cost"], default=None)
+    """,
+)
+mistakes(
+    "COST_BEFORE_REQUIREMENTS",
+    "Your code takes the cheapest of all engines and only then looks at the requirements.",
+    "First keep the engines that meet every requirement, then take the cheapest of those.",
+).body(
+    "choose_engine",
+    """
+        name = min(reports, key=lambda name: reports[name]["cost"])
+        report = reports[name]
+        fits = all(
+            report.get(r["key"]) is not None and _OPERATORS[r["op"]](report[r["key"]], r["value"])
+            for r in requirements
+        )
+        return name if fits else None
+    """,
+)
+mistakes(
+    "COST_REVERSED",
+    "Of the engines that fit, your code picks the most expensive one.",
+    "Take the one with the lowest cost.",
+).program(
+    "choose_engine",
+    """
+        _cheapest = choose_engine
+
+
+        def choose_engine(reports, requirements):
+            turned = {name: {**report, "cost": -report["cost"]} for name, report in reports.items()}
+            return _cheapest(turned, requirements)
+    """,
+)
+mistakes(
+    "COST_IGNORED",
+    "Of the engines that fit, your code picks one that is not the cheapest.",
+    "Take the one with the lowest cost.",
+).program(
+    "choose_engine",
+    """
+        _cheapest = choose_engine
+
+
+        def choose_engine(reports, requirements):
+            equal = {name: {**report, "cost": 0.0} for name, report in reports.items()}
+            return _cheapest(equal, requirements)
+    """,
+).program(
+    "choose_engine",
+    """
+        _cheapest = choose_engine
+
+
+        def choose_engine(reports, requirements):
+            fitting = [name for name in reports if _cheapest({name: reports[name]}, requirements)]
+            return fitting[-1] if fitting else None
+    """,
+)
+mistakes(
+    "ANY_INSTEAD_OF_ALL",
+    "Your code picks an engine that does not meet all of the requirements.",
+    "Every requirement must be met, not just one of them.",
+).body(
+    "choose_engine",
+    """
+        def met(report):
+            return sum(
+                report.get(r["key"]) is not None and _OPERATORS[r["op"]](report[r["key"]], r["value"])
+                for r in requirements
+            )
+
+        return min(reports, key=lambda name: (-met(reports[name]), reports[name]["cost"]))
+    """,
+)
+mistakes(
+    "STRICT_COMPARISON",
+    "Your code rejects an engine that meets a limit exactly.",
+    '"<=" and ">=" include equality.',
+).program(
+    "choose_engine",
+    """
+        _OPERATORS = {"<=": operator.lt, ">=": operator.gt, "==": operator.eq}
+    """,
+)
+mistakes(
+    "OPERATOR_CONFUSED",
+    "Your code reads an operator as another one.",
+    '"<=" means that the report\'s value is at most the required one, ">=" at least, and "==" equal.',
+).program(
+    "choose_engine",
+    """
+        _OPERATORS = {"<=": operator.ge, ">=": operator.le, "==": operator.eq}
+    """,
+)
+mistakes(
+    "DEPENDS_ON_NAMES",
+    "With the same reports under other names, your code picks another engine.",
+    "Use only the reports, and compare the costs as they are.",
+    kind="consequence",
+).program(
+    "choose_engine",
+    """
+        _cheapest = choose_engine
+
+
+        def choose_engine(reports, requirements):
+            for name in sorted(reports):
+                if name.startswith(("mujoco", "ode")) and _cheapest({name: reports[name]}, requirements):
+                    return name
+            return _cheapest(reports, requirements)
+    """,
+).program(
+    "choose_engine",
+    """
+        _KNOWN = ("anvil", "balsa", "cork", "ode", "bullet", "physx", "mujoco")
+        _cheapest = choose_engine
+
+
+        def choose_engine(reports, requirements):
+            known = {name: report for name, report in reports.items() if name.split(",")[0] in _KNOWN}
+            return _cheapest(known, requirements)
+    """,
+).program(
+    "choose_engine",
+    """
+        _cheapest = choose_engine
+
+
+        def choose_engine(reports, requirements):
+            return min((n for n in reports if _cheapest({n: reports[n]}, requirements)), default=None)
+    """,
+)
+mistakes(
+    "MUTATES_INPUT",
+    "The reports or the requirements were changed.",
+    "Build new lists and dicts: setdefault, pop and sort change the given ones.",
+    kind="fact",
+).program(
+    "choose_engine",
+    """
+        _cheapest = choose_engine
+
+
+        def choose_engine(reports, requirements):
+            for name in list(reports):
+                if _cheapest({name: reports[name]}, requirements) is None:
+                    del reports[name]
+            return min(reports, key=lambda name: reports[name]["cost"], default=None)
+    """,
+).program(
+    "choose_engine",
+    """
+        _cheapest = choose_engine
+
+
+        def choose_engine(reports, requirements):
+            left = dict(reports)
+            while requirements:
+                need = [requirements.pop()]
+                left = {name: report for name, report in left.items() if _cheapest({name: report}, need)}
+            return _cheapest(left, [])
+    """,
+).program(
+    "choose_engine",
+    """
+        _cheapest = choose_engine
+
+
+        def choose_engine(reports, requirements):
+            for report in reports.values():
+                for requirement in requirements:
+                    report.setdefault(requirement["key"], None)
+            return _cheapest(reports, requirements)
+    """,
+)
+mistakes(
+    "NOTHING_FITS",
+    "No engine meets the requirements, and your code does not return None.",
+    "Return None if no engine meets every requirement, or if there are no reports. A value that is nearly equal does not meet ==.",
+    kind="consequence",
+).program(
+    "choose_engine",
+    """
+        _cheapest = choose_engine
+
+
+        def choose_engine(reports, requirements):
+            return _cheapest(reports, requirements) or ""
+    """,
+).body(
+    "choose_engine",
+    """
+        def meets(value, r):
+            if r["op"] == "==" and isinstance(value, float) and isinstance(r["value"], float):
+                return math.isclose(value, r["value"])
+            return value is not None and _OPERATORS[r["op"]](value, r["value"])
+
+        fitting = [n for n in reports if all(meets(reports[n].get(r["key"]), r) for r in requirements)]
+        return min(fitting, key=lambda name: reports[name]["cost"], default=None)
+    """,
+)
+mistakes(
+    "STALE_LICENCE",
+    "This engine is open source today; what is given looks like an older licence.",
+    "Read the licence file in today's repository.",
+    kind="fact",
+).program(
+    "engine_facts",
+    """
+        _FACTS["mujoco"]["licence"] = ("Proprietary", "https://www.roboti.us/license.html")
+    """,
+)
+mistakes(
+    "NOT_SPDX",
+    "A licence is not written as its SPDX identifier, or as two joined by OR.",
+    "Find its identifier in the SPDX list (spdx.org/licenses). If there is a choice of two, give either, or join them with OR.",
+    kind="fact",
+).program(
+    "engine_facts",
+    """
+        _FACTS["physx"]["licence"] = ("BSD", "https://github.com/NVIDIA-Omniverse/PhysX")
+    """,
+)
+mistakes(
+    "DATE_BEFORE_FACT",
+    "The date of a fact is earlier than the day on which it became true.",
+    "as_of is the day on which you checked that the fact was true.",
+    kind="fact",
+).program(
+    "engine_facts",
+    """
+        _facts = engine_facts
+
+
+        def engine_facts():
+            return [{**entry, "as_of": "2012-10-07"} for entry in _facts()]
+    """,
+)
+mistakes(
+    "STEP_OF_A_HABIT",
+    "A default step is given for an engine that has none: it takes whatever step the caller passes.",
+    "Report None for an engine whose step function needs the step as an argument and has no default for it.",
+    kind="fact",
+).program(
+    "engine_facts",
+    """
+        _FACTS["ode"]["default_step_s"] = (0.001, "https://classic.gazebosim.org")
+    """,
+)
+mistakes(
+    "INTEGRATOR_BY_NAME",
+    "No engine here uses explicit Euler by default.",
+    "Engines use the name Euler for different methods: which half of the state is updated first?",
+    kind="fact",
+).program(
+    "engine_facts",
+    """
+        _FACTS["mujoco"]["default_integrator"] = ("explicit_euler", "https://mujoco.readthedocs.io")
+    """,
+)
+mistakes(
+    "GAZEBO_SIM_USES_DART",
+    "Today's Gazebo is listed as a user of ODE.",
+    "Gazebo Classic used ODE; Gazebo Sim uses DART by default. Say which of the two you mean.",
+    kind="fact",
+).program(
+    "engine_facts",
+    """
+        _FACTS["ode"]["used_by"] = (["Gazebo Sim"], "https://gazebosim.org")
+    """,
+)
+mistakes(
+    "SOURCE_NOT_A_URL",
+    "A source has to be the web address of a page about the fact.",
+    "Give the address of the page that you read, starting with https:// and without spaces.",
+    kind="fact",
+).program(
+    "engine_facts",
+    """
+        _FACTS["bullet"]["licence"] = ("Zlib", "its README")
+    """,
+)
+mistakes(
+    "NOT_A_DATE",
+    "A date is not a day of this century in the form YYYY-MM-DD.",
+    "Write the day on which you looked it up, such as 2026-03-14.",
+    kind="fact",
+).program(
+    "engine_facts",
+    """
+        _AS_OF = "11/21/2026"
+    """,
+)
+mistakes(
+    "PAIR_MISSING",
+    "At least one engine has no entry for one of the fields.",
+    "There are four engines and five fields: twenty entries.",
+    kind="fact",
+).program(
+    "engine_facts",
+    """
+        del _FACTS["mujoco"]
+    """,
+)
+mistakes(
+    "PAIR_TWICE",
+    "At least one engine has more than one entry for the same field.",
+    "Keep one entry for each pair of engine and field.",
+    kind="fact",
+).program(
+    "engine_facts",
+    """
+        _facts = engine_facts
+
+
+        def engine_facts():
+            return _facts() + [{**_facts()[0], "source": "https://ode.org"}]
+    """,
+)
+mistakes(
+    "MISSING_RAISES",
+    "Your code raises an exception where a report lacks a required key, or has None there.",
+    "report.get(key) gives None for a missing key. Test for None first: such an engine does not fit.",
+    kind="fact",
+).program(
+    "choose_engine",
+    """
+        import operator
+
+
+        def choose_engine(reports, requirements):
+            ops = {"<=": operator.le, ">=": operator.ge, "==": operator.eq}
+            fits = [
+                name
+                for name, report in reports.items()
+                if all(ops[need["op"]](report[need["key"]], need["value"]) for need in requirements)
+            ]
+            return min(fits, key=lambda name: reports[name]["cost"], default=None)
+    """,
+)
+mistakes(
+    "COST_ROUGH",
+    "Costs that are close to each other are taken for equal.",
+    "Compare the costs as they are, without rounding.",
+).program(
+    "choose_engine",
+    """
+        _cheapest = choose_engine
+
+
+        def choose_engine(reports, requirements):
+            rough = {name: {**report, "cost": round(report["cost"], -1)} for name, report in reports.items()}
+            return _cheapest(rough, requirements)
+    """,
+)
+mistakes(
+    "FIRST_REQUIREMENT_ONLY",
+    "Your code checks only one of the requirements.",
+    "Does a return inside the loop end it too early, or does each requirement replace the verdict on the one before it?",
+).program(
+    "choose_engine",
+    """
+        _cheapest = choose_engine
+
+
+        def choose_engine(reports, requirements):
+            return _cheapest(reports, requirements[:1])
+    """,
+)
+mistakes(
+    "OTHER_LICENCE",
+    "A valid identifier is given, but not of a licence of this engine.",
+    "Open the licence file in the engine's repository: name and version count. Of two joined by OR, both must be right.",
+    kind="fact",
+).program(
+    "engine_facts",
+    """
+        _FACTS["ode"]["licence"] = ("GPL-3.0-only", "https://github.com/odedevs/ode")
+    """,
+)
+mistakes(
+    "ORDER_WITHOUT_LOG",
+    "The result is two to the power of the order.",
+    "Take math.log2 of the ratio, and round.",
+).body(
+    "characterise",
+    """
+        def end(n):
+            q, v = engine.run("spring", [1.0], [0.7 * omega], 1.3 / omega / n, n, [0.0])
+            return np.array([q[-1][0], v[-1][0] / omega])
+
+        return round(np.linalg.norm(end(64) - end(128)) / np.linalg.norm(end(128) - end(256)))
+    """,
+    of="_order",
+)
+mistakes(
+    "ORDER_OTHER_LOG",
+    "The result is a logarithm to another base than two.",
+    "Halving the step divides the difference by two to the power of the order: take math.log2.",
+).body(
+    "characterise",
+    """
+        def end(n):
+            q, v = engine.run("spring", [1.0], [0.7 * omega], 1.3 / omega / n, n, [0.0])
+            return np.array([q[-1][0], v[-1][0] / omega])
+
+        return round(math.log(np.linalg.norm(end(16) - end(32)) / np.linalg.norm(end(32) - end(64))))
+    """,
+    of="_order",
+)
+mistakes("NOT_A_NUMBER").body(
+    "characterise",
+    """
+        def end(n):
+            q, v = engine.run("free", [1.0], [0.0], 1.3 / omega / n, n, [0.0])
+            return np.array([q[-1][0], v[-1][0] / omega])
+
+        return float(np.log2(np.linalg.norm(end(16) - end(32)) / np.linalg.norm(end(32) - end(64))))
+    """,
+    of="_order",
+)
+mistakes(
+    "DAMPING_NOT_LOG",
+    "The result is the fraction of the speed that is lost. That is less than the rate.",
+    "The speed falls as exp(-c t): take -ln(v/v0) / t.",
+).body(
+    "characterise",
+    """
+        n = 1000
+        _, v = engine.run("free", [0.0], [1.0], 1 / n, n, [0.0])
+        return 1 - v[-1][0]
+    """,
+    of="_linear_damping",
+)
+mistakes(
+    "TUNNEL_NEVER_SEEN",
+    "For an engine the result is infinite, although bodies get through.",
+    "Try many starts for each speed of the README's range, in runs of 2 m and more, and look at which side the body ends.",
+    kind="nan",
+).body(
+    "characterise",
+    """
+        dt = info["dt"]
+
+        def stopped(speed):
+            starts = [-1 - speed * dt * k / 16 for k in range(16)]
+            return all(engine.run("wall", [s], [speed], dt, 1, [0])[0][-1][0] < 0 for s in starts)
+
+        if stopped(50.0):
+            return math.inf
+        return _bisect(stopped, 2.0, 199.0, 0.1)
+    """,
+    of="_tunnelling_speed",
+).program(
+    "characterise",
+    """
+        _to_two_hundred = _tunnelling_speed
+
+
+        def _tunnelling_speed(engine, info):
+            speed = _to_two_hundred(engine, info)
+            return speed if speed < 100 else math.inf
+    """,
+)
+mistakes(
+    "EQUALITY_BY_IDENTITY",
+    'Some equal numbers do not count as equal where the operator is "==".',
+    "Compare with ==, not with `is`.",
+).program(
+    "choose_engine",
+    """
+        def meets(report, requirement):
+            value = report.get(requirement["key"])
+            if value is None:
+                return False
+            if requirement["op"] == "<=":
+                return value <= requirement["value"]
+            if requirement["op"] == ">=":
+                return value >= requirement["value"]
+            return value is requirement["value"]
+
+
+        def choose_engine(reports, requirements):
+            best = None
+            for name, report in reports.items():
+                if all(meets(report, r) for r in requirements):
+                    if best is None or report["cost"] < reports[best]["cost"]:
+                        best = name
+            return best
+    """,
+)
+mistakes(
+    "COST_CAPPED",
+    "Engines that cost very much are passed over.",
+    "Start with the first engine that fits, or with math.inf.",
+).program(
+    "choose_engine",
+    """
+        def meets(report, requirement):
+            value = report.get(requirement["key"])
+            if value is None:
+                return False
+            if requirement["op"] == "<=":
+                return value <= requirement["value"]
+            if requirement["op"] == ">=":
+                return value >= requirement["value"]
+            return value == requirement["value"]
+
+
+        def choose_engine(reports, requirements):
+            best, lowest = None, 1000
+            for name, report in reports.items():
+                if report["cost"] < lowest and all(meets(report, r) for r in requirements):
+                    best, lowest = name, report["cost"]
+            return best
+    """,
+)
+mistakes(
+    "EQUALITY_ROUGH",
+    "Your code accepts values that are merely close to the required one.",
+    "Requirements are exact: compare with the operator itself, without a tolerance.",
+).body(
+    "choose_engine",
+    """
+        def meets(value, r):
+            return value is not None and (
+                _OPERATORS[r["op"]](value, r["value"]) or math.isclose(value, r["value"])
+            )
+
+        fitting = [n for n in reports if all(meets(reports[n].get(r["key"]), r) for r in requirements)]
+        return min(fitting, key=lambda name: reports[name]["cost"], default=None)
+    """,
+)
+mistakes(
+    "EQUALITY_BY_TYPE",
+    "Equal values do not count as equal where one is an int or a bool and the other a float.",
+    "Compare with == alone: True == 1 and 2 == 2.0.",
+).body(
+    "choose_engine",
+    """
+        def meets(value, r):
+            alike = r["op"] != "==" or type(value) is type(r["value"])
+            return value is not None and alike and _OPERATORS[r["op"]](value, r["value"])
+
+        fitting = [n for n in reports if all(meets(reports[n].get(r["key"]), r) for r in requirements)]
+        return min(fitting, key=lambda name: reports[name]["cost"], default=None)
+    """,
+)
+mistakes(
+    "COST_OF_NOTHING",
+    "An engine that costs 0 is passed over.",
+    "0 counts as false: test with `is None` whether an engine was found yet.",
+).body(
+    "choose_engine",
+    """
+        best = None
+        for name, report in reports.items():
+            values = [(report.get(r["key"]), r) for r in requirements]
+            if not all(value is not None and _OPERATORS[r["op"]](value, r["value"]) for value, r in values):
+                continue
+            if best is None or not reports[best]["cost"] or report["cost"] < reports[best]["cost"]:
+                best = name
+        return best
+    """,
+)
+mistakes(
+    "ONE_FOR_EACH_KEY",
+    "Of two requirements about the same key only one is checked.",
+    "Go through the list of requirements itself: a dict by key keeps one of each.",
+).program(
+    "choose_engine",
+    """
+        _cheapest = choose_engine
+
+
+        def choose_engine(reports, requirements):
+            return _cheapest(reports, list({r["key"]: r for r in requirements}.values()))
+    """,
+)
+mistakes(
+    "GROWS_WITH_EACH_CALL",
+    "Perhaps something that is kept from one call to the next is filled again, or used up.",
+    "Make the list inside the function. An iterator at the top of the file can be read only once.",
+    kind="fact",
+).program(
+    "engine_facts",
+    """
+        _once = engine_facts
+        _listed = []
+
+
+        def engine_facts():
+            _listed.extend(_once())
+            return list(_listed)
+    """,
+)
+mistakes(
+    "ORDER_NOT_THREE",
+    "Orders 1, 2 and 4 are right, and a method of third order gets another.",
+    "Round the measured slope to the nearest whole number, whatever it is.",
+).program(
+    "characterise",
+    """
+        _measured = _order
+
+
+        def _order(engine, omega):
+            return min((1, 2, 4), key=lambda known: abs(known - _measured(engine, omega)))
+    """,
+)
+mistakes(
+    "RESTITUTION_TOO_FAST",
+    "Engines whose wall lets no body leave faster than some speed get too small a ratio. Perhaps the body meets it at more than 2 m/s.",
+    "Let the body hit the wall at 2 m/s, because the coefficient may depend on the speed.",
+    kind="consequence",
+).body(
+    "characterise",
+    """
+        start = -(info["radius"] + info["wall_thickness"] / 2) - 3.5 * 20 * info["dt"]
+        q, v = engine.run("wall", [start], [20.0], info["dt"], 10, [0])
+        hit = next(i for i in range(11) if v[i][0] <= 0)
+        return -v[hit][0] / v[hit - 1][0], q[hit][0]
+    """,
+    of="_slow_hit",
+)
+mistakes(
+    "FORCE_UP_OR_DOWN",
+    "In at least one run, a force along z acts on the body besides its weight.",
+    'The scene "floor" has gravity already. A push lies in the plane: (F cos a, F sin a, 0).',
+    kind="fact",
+).program(
+    "characterise",
+    """
+        _characterise = characterise
+
+
+        def characterise(engine):
+            info = engine.info()
+            weight = [0, 0, -info["mass"] * info["g"]]
+            start = [0, 0, info["radius"]]
+            q, _ = engine.run("floor", start, [0, 0, 0], info["dt"], round(5 / info["dt"]), weight)
+            return {**_characterise(engine), "rest_penetration": max(0.0, info["radius"] - q[-1][2])}
+    """,
+)
+mistakes(
+    "VALUE_ROUNDED",
+    "The wrong values are the right ones, rounded to too few decimals.",
+    "Report numbers as they are; round only `order`.",
+    kind="consequence",
+).program(
+    "characterise",
+    """
+        _characterise = characterise
+
+
+        def characterise(engine):
+            report = _characterise(engine)
+            return {**report, "rest_penetration": round(float(report["rest_penetration"]), 3)}
+    """,
+)
+mistakes(
+    "ENTRIES_ALL_ONE",
+    "Perhaps one dict is filled again for every entry.",
+    "Make a new dict for each entry, inside the loop.",
+    kind="fact",
+).program(
+    "engine_facts",
+    """
+        _right = engine_facts
+
+
+        def engine_facts():
+            entry, listed = {}, []
+            for fact in _right():
+                entry.update(fact)
+                listed.append(entry)
+            return listed
+    """,
+)
+mistakes(
+    "REPORT_WITHOUT_RUNS",
+    "For at least one engine not a single run was made.",
+    "Measure the engine that is given, in every call.",
+    kind="fact",
+).program(
+    "characterise",
+    """
+        _characterise = characterise
+        _REPORTS = {}
+
+
+        def characterise(engine):
+            shown = tuple(sorted(engine.info().items()))
+            if shown not in _REPORTS:
+                _REPORTS[shown] = _characterise(engine)
+            return dict(_REPORTS[shown])
+    """,
+)
+mistakes(
+    "ANSWERS_VARY",
+    "The same question gets another answer when it is asked again, or after another one.",
+    "Leave chance out, and keep nothing from one call to the next.",
+    kind="fact",
+).program(
+    "choose_engine",
+    """
+        _right = choose_engine
+        _VERDICTS = {}
+
+
+        def choose_engine(reports, requirements):
+            def fits(name):
+                key = name, repr(requirements)
+                if key not in _VERDICTS:
+                    _VERDICTS[key] = _right({name: reports[name]}, requirements) is not None
+                return _VERDICTS[key]
+
+            return min(filter(fits, reports), key=lambda name: reports[name]["cost"], default=None)
+    """,
+)
+mistakes(
+    "VALUE_KEPT",
+    "An engine gets, to the last digit, the value of another one with the same info().",
+    "Measure the engine that is given, in every call: info() does not say what is inside.",
+    kind="consequence",
+).program(
+    "characterise",
+    """
+        _characterise = characterise
+        _RATES = {}
+
+
+        def characterise(engine):
+            report = _characterise(engine)
+            rate = _RATES.setdefault(tuple(engine.info().values()), report["linear_damping"])
+            return {**report, "linear_damping": rate}
+    """,
+)
+mistakes(
+    "ORDER_ASSUMED",
+    "Engines of different order all get the same one.",
+    "Run the spring for one fixed time with n, 2n and 4n steps, and compare the ends.",
+    kind="consequence",
+)
+mistakes(
+    "ORDER_SIGN",
+    "The order has the right size but the wrong sign.",
+    "The coarser pair differs more: divide its difference by that of the finer pair.",
+)
+mistakes(
+    "ORDER_STEPS_NOT_HALVED",
+    "The result is the order times a factor. Perhaps the number of steps does not double, or the differences are squared.",
+    "Use n, 2n and 4n steps, and divide the lengths of the two differences.",
+)
+mistakes(
+    "ORDER_OF_OTHER_DIFFERENCES",
+    "Both differences are taken from the coarsest run.",
+    "Divide the difference of the first two runs by that of the last two: |y1 - y2| by |y2 - y3|.",
+)
+mistakes(
+    "ORDER_AGAINST_FINEST",
+    "A method of first order gets 2. Perhaps both differences are taken from the finest run, as if that were exact.",
+    "Divide the difference of the first two runs by that of the last two: |y1 - y2| by |y2 - y3|.",
+)
+mistakes(
+    "ORDER_ROUNDED_DOWN",
+    "Some orders are off by one. Perhaps the slope is cut: 1.98 becomes 1.",
+    "int() drops the decimals and math.ceil rounds up: use round().",
+)
+mistakes(
+    "ORDER_TIME_NOT_FIXED",
+    "The runs that are compared end at different times.",
+    "Run for one fixed time: with n steps of T/n, then 2n of T/(2n), then 4n of T/(4n).",
+)
+mistakes(
+    "ORDER_STEPS_TOO_LARGE",
+    "The orders are those of very large steps.",
+    "Make the largest of the three steps about a tenth of 1/omega.",
+)
+
+# -- symplectic
+
+mistakes(
+    "SYMPLECTIC_INVERTED",
+    "The answers are the opposite of the right ones.",
+    "Symplectic means that the determinant is one: return abs(det - 1) < 1e-6.",
+)
+mistakes(
+    "SYMPLECTIC_TOLERANCE",
+    "Engines that lose a little area in every step pass the test. Perhaps the threshold is too wide.",
+    "Use the threshold of the README: abs(det - 1) < 1e-6.",
+)
+mistakes(
+    "SYMPLECTIC_BY_ENERGY",
+    "The answers are those of a test for energy. An accurate method nearly keeps the energy without keeping area.",
+    "Build the matrix of one step from two runs with n = 1, and look at its determinant.",
+)
+mistakes(
+    "SYMPLECTIC_SOME_REFUSED",
+    "Some engines that keep area are refused.",
+    "Test abs(det - 1) < 1e-6 and nothing else: rounding and jitter need that room.",
+    kind="consequence",
+)
+mistakes(
+    "DAMPING_ROWS_COUNTED",
+    "The rate is too small by about one part in n. Perhaps rows are counted instead of steps.",
+    "Between n + 1 rows there are n steps: divide by n times h. The last row belongs to the time n h.",
+)
+mistakes(
+    "DAMPING_OTHER_SCENE",
+    'No run was made in the scene "free". In the others, more than the damping can change the speed.',
+    'Take a free body without a force: engine.run("free", ...).',
+)
+mistakes(
+    "PUSHED_TOO_SOFTLY",
+    "No push was harder than about mu m g, and an engine may hold more than that.",
+    "The least force is below 5 mu m g: search up to there.",
+    kind="consequence",
+)
+mistakes(
+    "PUSHED_TOO_SELDOM",
+    "Only a few different pushes were tried for each engine.",
+    "Bisect each force: ten halvings from 5 mu m g leave half a per cent of mu m g.",
+    kind="consequence",
+)
+mistakes(
+    "DAMPING_SIGN",
+    "For at least one engine the rate is negative.",
+    "The rate is -d ln|v|/dt: a body that slows down has a positive damping.",
+)
+mistakes(
+    "DAMPING_AS_FORCE",
+    "The result is the rate times the mass.",
+    "The report asks for the rate of the velocity itself, in 1/s: leave the mass out.",
+)
+mistakes(
+    "DAMPING_ASSUMED",
+    "The result is zero, or nearly so, also for engines that slow a free body down.",
+    "Give a free body a velocity and no force, and see how fast it is some time later.",
+)
+mistakes(
+    "DAMPING_OTHER_LOG",
+    "The rate is what a logarithm to base two or ten gives.",
+    "Use the natural logarithm, math.log.",
+)
+mistakes(
+    "DAMPING_TIME_CONSTANT",
+    "The result is a time: one over the rate, or ln 2 over it.",
+    "The report asks for the rate, -d ln|v|/dt, in 1/s.",
+)
+mistakes(
+    "DAMPING_OVER_ONE_STEP",
+    "The rate is as many times too large as a run has steps.",
+    "Divide by the time that passed between the two speeds: n steps of h.",
+)
+mistakes(
+    "LIMIT_NEVER_SEEN",
+    "An engine that does become unstable is called stable at every step.",
+    "Go up from 0.05/omega to 10/omega, in increments of less than 1/omega, and look at the largest modulus of the eigenvalues.",
+    kind="nan",
+)
+mistakes(
+    "STABLE_BY_DETERMINANT",
+    "Engines that keep area are called stable at any step. The determinant is the product of the eigenvalues: one may be large while the other is small.",
+    "Look at the largest modulus alone: max(abs(np.linalg.eigvals(M))).",
+)
+mistakes(
+    "TOLERANCE_TOO_TIGHT",
+    "Engines that keep area are called unstable too early. Perhaps rounding counts, or the matrix is not that of (q, v/omega).",
+    "Unstable means a modulus above 1 + 1e-8.",
+    kind="consequence",
+)
+mistakes(
+    "LIMIT_COARSE",
+    "No limit is far off, but at least one is off by more than 1 %.",
+    "Bisect between a stable step and the next unstable one. Check the matrix, on (q, v/omega), and the threshold 1 + 1e-8.",
+    kind="consequence",
+)
+mistakes(
+    "STABLE_BY_TRACE",
+    "The limits are those of a test by the trace.",
+    "Look at the largest modulus: max(abs(np.linalg.eigvals(M))).",
+)
+mistakes(
+    "EIGENVALUES_WITHOUT_MODULUS",
+    "The limits are those of a test by the real part of the eigenvalues.",
+    "abs() of a complex number is its modulus: max(abs(np.linalg.eigvals(M))).",
+)
+mistakes(
+    "SMALLEST_EIGENVALUE",
+    "The limits are those of a test by the smallest eigenvalue.",
+    "The largest one decides: max(abs(np.linalg.eigvals(M))) must not exceed 1 + 1e-8.",
+)
+mistakes(
+    "STABLE_BY_NORM",
+    "The limits are those of a norm of the matrix, or of a matrix that is not on (q, v/omega).",
+    "A stable step may enlarge the state once: look at the eigenvalues. Start from (1, 0) and (0, omega), and divide both resulting velocities by omega.",
+)
+mistakes(
+    "TOLERANCE_TOO_LOOSE",
+    "Methods that grow a little in every step count as stable.",
+    "Unstable means a modulus above 1 + 1e-8: a thousandth in each step is a factor of e after a thousand steps.",
+)
+mistakes(
+    "ANISOTROPY_IS_DIFFERENCE",
+    "The result is a difference of the two forces, not their ratio.",
+    "Divide them: F(45 degrees) / F(0 degrees).",
+)
+mistakes(
+    "ANISOTROPY_IS_FORCE",
+    "The result is one of the two forces, in N.",
+    "The report asks for their ratio: F(45 degrees) / F(0 degrees).",
+)
+mistakes(
+    "ANISOTROPY_IS_COEFFICIENT",
+    "The result is a coefficient of friction.",
+    "The report asks for the ratio of two forces: the diagonal one divided by the one along x.",
+)
+mistakes(
+    "ANISOTROPY_BY_FORMULA",
+    "One of the two forces is computed as mu m g, not measured.",
+    "Measure both forces: push along x, and along the diagonal.",
+)
+mistakes(
+    "ANGLE_IN_DEGREES",
+    "At least one push went in another direction than 0 or 45 degrees.",
+    "cos and sin take radians: math.radians(45).",
+)
+mistakes(
+    "PENETRATION_ABSOLUTE",
+    "An engine that keeps bodies at a distance gets a positive depth.",
+    "A body that hovers has not sunk in: use max(0, radius - z), not abs(radius - z).",
+)
+mistakes(
+    "PENETRATION_HEIGHT",
+    "The result is as large as the height of the centre.",
+    "Subtract it from the radius, which info() returns: max(0, radius - z).",
+)
+mistakes(
+    "PENETRATION_NOT_IN_METRES",
+    "The depth has the right digits, in another unit.",
+    "The report asks for metres.",
+)
+mistakes(
+    "PENETRATION_RELATIVE",
+    "The result is the depth divided by the body's size.",
+    "The report asks for metres, so do not divide.",
+)
+mistakes(
+    "PENETRATION_ASSUMED",
+    "The result is zero, or nearly so, also for engines with soft contact.",
+    "Place the body on the floor, wait five seconds, and compare its height with its radius.",
+)
+mistakes(
+    "RESTITUTION_LOSS",
+    "The result is what is lost at the wall, not what is kept.",
+    "Divide the speed after the hit by the speed before it.",
+)
+mistakes(
+    "RESTITUTION_INVERTED",
+    "The result is as large as one over the right ratio.",
+    "The speed after the hit is the numerator.",
+)
+mistakes(
+    "RESTITUTION_SPEED_AFTER",
+    "The result is the speed after the hit.",
+    "Divide by the speed before the hit.",
+)
+mistakes(
+    "RESTITUTION_ASSUMED",
+    "Engines whose coefficients differ all get the same one.",
+    "Send a body against the wall at 2 m/s, and compare its speeds before and after the hit.",
+)
+mistakes(
+    "TUNNEL_UNSAFE_REPORTED",
+    "In your own runs, a body gets through at a lower speed than you report.",
+    "A speed is safe only if no start gets through. Report the largest safe one.",
+    kind="fact",
+)
+mistakes(
+    "TUNNEL_START_ELSEWHERE",
+    "Most fast bodies do not start in [-1 - v dt, -1].",
+    "Start there, whatever the speed.",
+    kind="consequence",
+)
+mistakes(
+    "TUNNEL_RUNS_SHORT",
+    "Most runs end before the body would have gone 2 m.",
+    "Take n so large that n dt v is 2 m + v dt or more.",
+    kind="consequence",
+)
+mistakes(
+    "TUNNEL_STARTS_NARROW",
+    "The starts for one speed often do not cover the way of a whole step.",
+    "Spread them over all of [-1 - v dt, -1].",
+    kind="consequence",
+)
+mistakes(
+    "TUNNEL_WITHOUT_RADIUS",
+    "The results are the wall's thickness, or half of it, divided by dt.",
+    "The body has a size, and engines look for contact in different ways: shoot bodies at the wall.",
+)
+mistakes(
+    "TUNNEL_IN_STEPS",
+    "The result is a distance per step.",
+    "The report asks for a speed in m/s: do not multiply by dt.",
+)
+mistakes(
+    "DETERMINISM_NOT_COMPARED",
+    "Every engine is called deterministic, also one whose runs differ.",
+    "Run one experiment twice with the same arguments, and compare every number of both with np.array_equal.",
+    kind="consequence",
+)
+mistakes(
+    "DETERMINISM_AT_REST",
+    "Every engine is called deterministic. The runs that were made twice were of a body at rest at 0.",
+    "Repeat a run in which a body moves.",
+    kind="consequence",
+)
+mistakes(
+    "DETERMINISM_INVERTED",
+    "The answers are the opposite of the right ones.",
+    "True means that the two runs agree.",
+)
+mistakes(
+    "NOT_MEASURED",
+    "",
+    "Measure it as the README says, and store the value under this key.",
+    kind="fact",
+)
+mistakes(
+    "OTHER_STEP_THAN_DT",
+    "The value comes from runs with a step other than the engine's own dt.",
+    "Contact may behave differently with another step, so this key is defined at dt, which info() returns.",
+)
+mistakes(
+    "NEVER_CHOOSES",
+    "Your code returns None, also where several engines fit.",
+    "Return the name of the cheapest engine that fits. Does a return inside the loop come too early?",
+    kind="consequence",
+)
+mistakes(
+    "REQUIREMENTS_IGNORED",
+    "Your code picks the cheapest engine, whatever is required.",
+    "Keep only the engines that meet every requirement, then take the cheapest of those.",
+)
+mistakes(
+    "DEPENDS_ON_ORDER",
+    "With the same reports in another order, your code picks another engine.",
+    "Compare the costs of all engines that fit, wherever they are in the dict.",
+)
+mistakes(
+    "NOT_A_NAME",
+    "Your code does not return one of the names it was given.",
+    "Return the key of the chosen report, or None.",
+)
+mistakes(
+    "ZERO_TAKEN_FOR_MISSING",
+    "A value of zero or False is treated as not measured.",
+    "0 and False count as false, too: test `is None`.",
+)
+mistakes(
+    "LIMIT_NOT_SCALED",
+    "The matrix is not that of (q, v/omega).",
+    "Start from (1, 0) and (0, omega), and divide both resulting velocities by omega.",
+)
+mistakes(
+    "EQUALITY_OF_TRUTH",
+    'For "==", two different values that are not zero count as equal.',
+    "Compare the values themselves, without bool().",
+)
+mistakes(
+    "INFINITE_TAKEN_FOR_MISSING",
+    "A value of infinity is treated as not measured.",
+    "An infinite tunnelling speed was measured: test `is None` alone.",
+)
+mistakes(
+    "OPERATOR_NEVER_MET",
+    "Requirements with one of the operators are treated as not met, even where they are.",
+    "Handle each of the three operators, as they are spelled in the README.",
+)
+mistakes(
+    "OPERATOR_IGNORED",
+    "Requirements with one of the operators are treated as met, even where they are not.",
+    "Handle each of the three operators.",
+)
+mistakes(
+    "DATE_AHEAD",
+    "The date of a fact lies in the future.",
+    "as_of is the day on which you checked that the fact was true.",
+    kind="fact",
+)
+mistakes(
+    "OPTION_TAKEN_FOR_DEFAULT",
+    "The engine has this integrator as an option, not as its default.",
+    "Look for the default of this option in the engine's own manual.",
+    kind="fact",
+)
+mistakes(
+    "STEP_IN_MILLISECONDS",
+    "The step is the engine's own, in milliseconds.",
+    "The field is in seconds: divide by 1000.",
+    kind="fact",
+)
+
+
+choosing = kit.sibling(__file__, "choosing")
+
+
+model = kit.sibling(__file__, "engine_comparison")
+
+
+@mistakes.more
+def hypotheses():
+    """Task, codes of what is wrong, and function of each, those with one mistake first."""
+    for key, forms in _KEYS.items():
+        for code, measure in forms:
+            yield "characterise", (code,), _with(key, measure)
+    for code, forms in choosing.METS.items():
+        for met in forms:
+            yield "choose_engine", (code,), _choosing(choosing.choose, met)
+    for code, forms in choosing.CHOICES.items():
+        for choice in forms:
+            yield "choose_engine", (code,), _choosing(choice, choosing.meets)
+    for (one, mets), (other, forms) in itertools.product(choosing.METS.items(), choosing.CHOICES.items()):
+        for met, choice in itertools.product(mets[:1], forms[:1]):
+            yield "choose_engine", (one, other), _choosing(choice, met)
+
+
+def _choosing(choice, met):
+    return lambda reports, requirements: choice(reports, requirements, met=met)
+
+
+def _with(key, measure):
+    """``characterise`` with one key measured by ``measure(engine, info)``."""
+
+    def characterise(engine):
+        info = engine.info()
+        measures = _RIGHT | {key: measure}  # nothing is run for the key that is measured in another way
+        return {each: of(engine, info) for each, of in measures.items()}
+
+    return characterise
+
+
+_RIGHT = {
+    "order": lambda engine, info: model._order(engine, info["omega"]),
+    "symplectic": lambda engine, info: _area()(engine, info),
+    "linear_damping": lambda engine, info: model._linear_damping(engine, info["dt"]),
+    "max_stable_step": lambda engine, info: model._max_stable_z(engine, info["omega"]) / info["omega"],
+    "friction_anisotropy": model._anisotropy,
+    "rest_penetration": lambda engine, info: max(0.0, info["radius"] - model._settled(engine, info)[2]),
+    "restitution": lambda engine, info: model._slow_hit(engine, info)[0],
+    "tunnelling_speed": model._tunnelling_speed,
+    "deterministic": lambda engine, info: model._deterministic(engine, info["dt"]),
+}
+
+
+def _of(key, change):
+    """The right value, changed: ``change(value, info)``."""
+    return lambda engine, info: change(_RIGHT[key](engine, info), info)
+
+
+def _order(ns=(16, 32, 64), start=(1.0, 0.7), span=1.3, log=math.log2, whole=round, gaps=None, turn=False):
+    """``gaps``: which two numbers the ends y1, y2, y3 are made into."""
+    gaps = gaps or (lambda y: (np.linalg.norm(y[0] - y[1]), np.linalg.norm(y[1] - y[2])))
+
+    def measure(engine, info):
+        omega = info["omega"]
+
+        def end(n):
+            q, v = engine.run("spring", [start[0]], [start[1] * omega], span / omega / n, n, [0.0])
+            return np.array([q[-1][0], 0.0 if turn else v[-1][0] / omega])
+
+        coarse, fine = gaps([end(n) for n in ns])
+        return whole(log(coarse / fine))
+
+    return measure
+
+
+def _against_exact(start=(1.0, 0.7), span=1.3):
+    turned = start[0] * math.cos(span) + start[1] * math.sin(span)
+    moving = start[1] * math.cos(span) - start[0] * math.sin(span)
+    exact = np.array([turned, moving])
+    return _order(
+        (32, 64, 64), start, span, gaps=lambda y: (np.linalg.norm(y[0] - exact), np.linalg.norm(y[1] - exact))
+    )
+
+
+def _same_step(engine, info):
+    omega = info["omega"]
+
+    def end(n):
+        q, v = engine.run("spring", [1.0], [0.7 * omega], 0.05 / omega, n, [0.0])
+        return np.array([q[-1][0], v[-1][0] / omega])
+
+    y = [end(n) for n in (16, 32, 64)]
+    return round(math.log2(np.linalg.norm(y[0] - y[1]) / np.linalg.norm(y[1] - y[2])))
+
+
+def _to_the_coarsest(y):
+    return np.linalg.norm(y[0] - y[1]), np.linalg.norm(y[0] - y[2])
+
+
+def _to_the_finest(y):
+    return np.linalg.norm(y[0] - y[2]), np.linalg.norm(y[1] - y[2])
+
+
+def _squares(y):
+    return np.sum((y[0] - y[1]) ** 2), np.sum((y[1] - y[2]) ** 2)
+
+
+def _upside_down(y):
+    return np.linalg.norm(y[1] - y[2]), np.linalg.norm(y[0] - y[1])
+
+
+def _down(x):
+    return int(x)
+
+
+_ORDER = (
+    ("ORDER_AGAINST_UNDAMPED", _against_exact()),
+    ("ORDER_AGAINST_UNDAMPED", _against_exact((1.0, 0.0), 1.0)),
+    ("ORDER_LOCAL", _of("order", lambda p, _: p + 1)),
+    ("ORDER_SIGN", _order(gaps=_upside_down)),
+    ("ORDER_WITHOUT_LOG", _order(log=lambda x: x)),
+    ("ORDER_OTHER_LOG", _order(log=math.log)),
+    ("ORDER_OTHER_LOG", _order(log=math.log10)),
+    ("ORDER_STEPS_NOT_HALVED", _order((16, 64, 256))),
+    ("ORDER_STEPS_NOT_HALVED", _order((10, 100, 1000))),
+    ("ORDER_STEPS_NOT_HALVED", _order((16, 48, 144))),
+    ("ORDER_STEPS_NOT_HALVED", _order(gaps=_squares)),
+    ("ORDER_OF_OTHER_DIFFERENCES", _order(gaps=_to_the_coarsest)),
+    ("ORDER_OF_OTHER_DIFFERENCES", _order(gaps=lambda y: _to_the_coarsest(y)[::-1])),
+    *(
+        ("ORDER_NOT_THREE", _of("order", lambda p, _, other=other: other if p == 3 else p))
+        for other in (2, 4)
+    ),
+    ("ORDER_AGAINST_FINEST", _order(gaps=_to_the_finest)),
+    ("ORDER_ROUNDED_DOWN", _order(whole=_down)),
+    ("ORDER_ROUNDED_DOWN", _order((32, 64, 128), whole=_down)),
+    ("ORDER_ROUNDED_DOWN", _order(whole=math.ceil)),
+    ("ORDER_TIME_NOT_FIXED", _same_step),
+    ("ORDER_AT_TURNING_POINT", _order(start=(1.0, 0.0), span=math.pi, turn=True)),
+    ("ORDER_AT_TURNING_POINT", _order(start=(1.0, 0.0), span=2 * math.pi, turn=True)),
+    ("ORDER_AT_TURNING_POINT", _order((64, 128, 256), (1.0, 0.0), math.pi, turn=True)),
+    ("ORDER_AT_TURNING_POINT", _order((64, 128, 256), (1.0, 0.0), 2 * math.pi, turn=True)),
+    ("ORDER_AT_TURNING_POINT", _order(start=(1.0, 0.0), span=2 * math.pi)),
+    ("ORDER_IN_ROUNDING", _order((4000, 8000, 16000))),
+    ("ORDER_IN_ROUNDING", _order((2000, 4000, 8000))),
+    ("ORDER_STEPS_TOO_LARGE", _order((2, 4, 8), span=5.3)),
+    ("ORDER_STEPS_TOO_LARGE", _order((1, 2, 4), span=5.3)),
+    ("ORDER_STEPS_TOO_LARGE", _order((1, 2, 4), span=2.0)),
+    ("ORDER_ASSUMED", lambda engine, info: 1),
+    ("ORDER_ASSUMED", lambda engine, info: 2),
+)
+
+
+def _step(engine, info, z, back=True, scaled=True):
+    """The matrix of a spring step of h omega = z; ``back``: velocities are divided by omega again."""
+    omega = info["omega"]
+    columns = []
+    for q0, v0 in ((1.0, 0.0), (0.0, omega if scaled else 1.0)):
+        q, v = engine.run("spring", [q0], [v0], z / omega, 1, [0.0])
+        columns.append((q[1][0], v[1][0] / (omega if back else 1.0)))
+    return np.transpose(columns)
+
+
+def _area(z=0.5, least=1e-6, looks=lambda det, least: abs(det - 1) < least, **kinds):
+    return lambda engine, info: bool(looks(np.linalg.det(_step(engine, info, z, **kinds)), least))
+
+
+def _energy(steps, z, least, sided=False):
+    def measure(engine, info):
+        q, v = engine.run("spring", [1.0], [0.0], z / info["omega"], steps, [0.0])
+        change = q[-1][0] ** 2 + (v[-1][0] / info["omega"]) ** 2 - 1
+        return bool((change if sided else abs(change)) < least)
+
+    return measure
+
+
+_SYMPLECTIC = (
+    ("SYMPLECTIC_INVERTED", _of("symplectic", lambda value, _: not value)),
+    ("STABLE_TAKEN_FOR_SYMPLECTIC", _area(looks=lambda det, least: det - 1 < least)),
+    ("STABLE_TAKEN_FOR_SYMPLECTIC", _area(looks=lambda det, least: abs(det) <= 1 + least)),
+    ("SYMPLECTIC_TOLERANCE", _area(least=1e-2)),
+    ("SYMPLECTIC_TOLERANCE", _area(least=0.1)),
+    ("SYMPLECTIC_TOLERANCE", _area(least=1e-3)),
+    ("SYMPLECTIC_STEP_TOO_SMALL", _area(z=1e-3)),
+    ("SYMPLECTIC_STEP_TOO_SMALL", _area(z=0.01)),
+    ("SYMPLECTIC_NEVER", _area(back=False)),
+    ("SYMPLECTIC_NEVER", _area(scaled=False)),
+    ("SYMPLECTIC_BY_ENERGY", _energy(100, 0.05, 0.1)),
+    ("SYMPLECTIC_BY_ENERGY", _energy(1000, 0.05, 0.1)),
+    ("SYMPLECTIC_BY_ENERGY", _energy(1000, 0.05, 0.01)),
+    ("SYMPLECTIC_BY_ENERGY", _energy(100, 0.05, 0.01)),
+    ("SYMPLECTIC_BY_ENERGY", _energy(1000, 0.01, 0.01)),
+    ("SYMPLECTIC_BY_ENERGY", _energy(1000, 0.01, 0.05)),
+    ("SYMPLECTIC_BY_ENERGY", _energy(1, 0.5, 0.1)),
+)
+
+
+def _damping(change):
+    return _of("linear_damping", change)
+
+
+def _at_dt(divisor, rate):
+    def measure(engine, info):
+        h = info["dt"] / divisor
+        _, v = engine.run("free", [0.0], [1.0], h, 100, [0.0])
+        return rate(v, h)
+
+    return measure
+
+
+def _envelope(engine, info):
+    omega, h, n = info["omega"], info["dt"] / 50, 5000
+    q, v = engine.run("spring", [1.0], [0.0], h, n, [0.0])
+    return -math.log(math.hypot(q[-1][0], v[-1][0] / omega)) / (n * h)
+
+
+_DAMPING = (
+    ("DAMPING_ASSUMED", _damping(lambda c, _: 0.0)),
+    ("DAMPING_SIGN", _damping(lambda c, _: -c)),
+    ("DAMPING_OF_ENERGY", _damping(lambda c, _: 2 * c)),
+    ("DAMPING_OF_ENVELOPE", _damping(lambda c, _: c / 2)),
+    ("DAMPING_OF_ENVELOPE", _envelope),
+    ("DAMPING_OTHER_LOG", _damping(lambda c, _: c / math.log(10))),
+    ("DAMPING_OTHER_LOG", _damping(lambda c, _: c / math.log(2))),
+    ("DAMPING_TIME_CONSTANT", _damping(lambda c, _: 1 / c if c > 1e-9 else 0.0)),
+    ("DAMPING_TIME_CONSTANT", _damping(lambda c, _: 1 / c if c > 1e-9 else math.inf)),
+    ("DAMPING_TIME_CONSTANT", _damping(lambda c, _: math.log(2) / c if c > 1e-9 else math.inf)),
+    ("DAMPING_AS_FORCE", _damping(lambda c, info: c * info["mass"])),
+    ("DAMPING_PER_STEP", _damping(lambda c, info: c * info["dt"])),
+    ("DAMPING_PER_STEP", _damping(lambda c, info: c * info["dt"] / 1000)),
+    ("DAMPING_AT_DT", _at_dt(1, lambda v, h: -math.log(v[-1][0]) / (100 * h))),
+    ("DAMPING_AT_DT", _at_dt(1, lambda v, h: (1 - v[1][0]) / h)),
+    ("DAMPING_AT_DT", _at_dt(2, lambda v, h: -math.log(v[-1][0]) / (100 * h))),
+)
+
+
+def _radius(m):
+    return max(abs(np.linalg.eigvals(m)))
+
+
+def _search(
+    size=_radius, limit=1 + 1e-8, walk=0.5, last=10.0, endless=math.inf, unstable=0.0, fine=True, **kinds
+):
+    """``unstable``: what is returned where the first step fails, None for that step itself."""
+
+    def measure(engine, info):
+        omega = info["omega"]
+
+        def stable(z):
+            return bool(size(_step(engine, info, z, **kinds)) <= limit)
+
+        low = 0.05
+        if not stable(low):
+            return unstable if unstable is not None else low / omega
+        while stable(low + walk):
+            low += walk
+            if low >= last:
+                return endless if endless is not None else last / omega
+        return (model._bisect(stable, low, low + walk, 0.004 * low) if fine else low) / omega
+
+    return measure
+
+
+def _jumped(last):
+    """One bisection over the whole range."""
+
+    def measure(engine, info):
+        def stable(z):
+            return bool(_radius(_step(engine, info, z)) <= 1 + 1e-8)
+
+        if not stable(0.05):
+            return 0.0
+        return math.inf if stable(last) else model._bisect(stable, 0.05, last, 0.001 * last) / info["omega"]
+
+    return measure
+
+
+def _from_above(engine, info):
+    z = 10.0
+    while z > 0.05 and not _radius(_step(engine, info, z)) <= 1 + 1e-8:
+        z -= 0.01
+    return math.inf if z >= 10 else z / info["omega"] if z > 0.05 else 0.0
+
+
+def _by_eye(steps, most):
+    def measure(engine, info):
+        omega = info["omega"]
+
+        def stable(z):
+            q, _ = engine.run("spring", [1.0], [0.0], z / omega, steps, [0.0])
+            return bool(np.all(np.isfinite(q)) and abs(q[-1][0]) < most)
+
+        low = 0.05
+        if not stable(low):
+            return 0.0
+        while stable(low + 0.5):
+            low += 0.5
+            if low >= 10:
+                return math.inf
+        return model._bisect(stable, low, low + 0.5, 0.004 * low) / omega
+
+    return measure
+
+
+_STABLE = (
+    ("LIMIT_ASSUMED", lambda engine, info: 2 / info["omega"]),
+    ("LIMIT_ASSUMED", lambda engine, info: math.sqrt(2) / info["omega"]),
+    ("RETURNS_Z", _of("max_stable_step", lambda h, info: h * info["omega"])),
+    ("STABLE_BY_DETERMINANT", _search(lambda m: abs(np.linalg.det(m)))),
+    *(("STABLE_BY_TRACE", _search(lambda m: abs(np.trace(m)) / 2, walk=walk)) for walk in (0.5, 0.25, 0.05)),
+    ("EIGENVALUES_WITHOUT_MODULUS", _search(lambda m: np.linalg.eigvals(m).real.max())),
+    ("EIGENVALUES_WITHOUT_MODULUS", _search(lambda m: abs(np.linalg.eigvals(m).real).max())),
+    ("SMALLEST_EIGENVALUE", _search(lambda m: min(abs(np.linalg.eigvals(m))))),
+    ("STABLE_BY_NORM", _search(lambda m: np.linalg.norm(m, 2))),
+    ("STABLE_BY_NORM", _search(lambda m: np.linalg.norm(m))),
+    ("TOLERANCE_TOO_TIGHT", _search(limit=1 - 1e-12)),
+    ("TOLERANCE_TOO_LOOSE", _search(limit=1.01)),
+    ("TOLERANCE_TOO_LOOSE", _search(limit=1.001)),
+    ("TOLERANCE_TOO_LOOSE", _search(limit=1.05)),
+    ("TOLERANCE_TOO_LOOSE", _search(limit=1.1)),
+    ("LIMIT_FROM_ABOVE", _jumped(10.0)),
+    ("LIMIT_FROM_ABOVE", _from_above),
+    ("LIMIT_FROM_ABOVE", _search(walk=4.0)),
+    *(("LIMIT_NOT_SCALED", _search(scaled=False, walk=walk)) for walk in (0.5, 0.2)),
+    ("LIMIT_COARSE", _search(fine=False)),
+    ("LIMIT_COARSE", _search(walk=0.25, fine=False)),
+    ("NO_INFINITY", _search(endless=None)),
+    ("NO_INFINITY", _search(endless=0.0)),
+    ("NO_ZERO", _search(unstable=None)),
+    ("NO_ZERO", _search(unstable=math.inf)),
+    *(("NO_ZERO", _by_eye(steps, most)) for steps in (100, 300, 1000) for most in (2.0, 10.0, 1e3)),
+)
+
+
+_ROOT = math.sqrt(0.5)
+
+
+def _forces(diagonal=(_ROOT, _ROOT), straight=(1.0, 0.0), settled=True, slides=0.01, steps=1.0):
+    """The least forces along two directions."""
+
+    def of(engine, info):
+        dt = info["dt"] / steps
+        start = model._settled(engine, info) if settled else [0.0, 0.0, info["radius"]]
+        n, most = round(0.5 / dt), 5 * info["mu"] * info["mass"] * info["g"]
+
+        def least(direction):
+            def sticks(force):
+                push = [force * direction[0], force * direction[1], 0.0]
+                _, v = engine.run("floor", start, [0.0] * 3, dt, n, push)
+                return max(math.hypot(a, b) for a, b, _ in v) <= slides
+
+            return model._bisect(sticks, 0.0, most, 0.001 * most)
+
+        return least(diagonal), least(straight)
+
+    return of
+
+
+def _ratio(of=None, made=lambda diagonal, straight, info: diagonal / straight, **how):
+    of = of or _forces(**how)
+    return lambda engine, info: made(*of(engine, info), info)
+
+
+_FRICTION = (
+    ("ANISOTROPY_ASSUMED", lambda engine, info: 1.0),
+    ("ANISOTROPY_ASSUMED", lambda engine, info: math.sqrt(2)),
+    ("ANISOTROPY_INVERTED", _ratio(made=lambda d, s, _: s / d)),
+    ("DIAGONAL_COMPONENT", _ratio(diagonal=(1.0, 1.0))),
+    ("DIAGONAL_COMPONENT", _of("friction_anisotropy", lambda ratio, _: ratio * math.sqrt(2))),
+    ("ANISOTROPY_IS_DIFFERENCE", _ratio(made=lambda d, s, _: d / s - 1)),
+    ("ANISOTROPY_IS_DIFFERENCE", _ratio(made=lambda d, s, _: d - s)),
+    ("ANISOTROPY_IS_FORCE", _ratio(made=lambda d, s, _: d)),
+    ("ANISOTROPY_IS_FORCE", _ratio(made=lambda d, s, _: s)),
+    ("ANISOTROPY_IS_COEFFICIENT", _ratio(made=lambda d, s, info: s / info["mass"] / info["g"])),
+    ("ANISOTROPY_IS_COEFFICIENT", _ratio(made=lambda d, s, info: d / info["mass"] / info["g"])),
+    ("ANISOTROPY_IS_COEFFICIENT", lambda engine, info: info["mu"]),
+    ("ANISOTROPY_BY_FORMULA", _ratio(made=lambda d, s, info: d / info["mu"] / info["mass"] / info["g"])),
+    ("ANISOTROPY_BY_FORMULA", _ratio(made=lambda d, s, info: info["mu"] * info["mass"] * info["g"] / s)),
+    ("ANGLE_IN_DEGREES", _ratio(diagonal=(math.cos(45), math.sin(45)))),
+    ("CREEP_TAKEN_FOR_SLIP", _ratio(slides=1e-3)),
+    ("CREEP_TAKEN_FOR_SLIP", _ratio(slides=2e-3)),
+    ("NOT_SETTLED", _ratio(settled=False)),
+)
+
+
+def _height(engine, info, seconds=5.0, above=0.0, steps=1.0):
+    h = info["dt"] / steps
+    n = min(20000, max(1, round(seconds / h)))
+    q, _ = engine.run("floor", [0.0, 0.0, info["radius"] + above], [0.0] * 3, h, n, [0.0] * 3)
+    return [row[2] for row in q]
+
+
+def _depth(made, **how):
+    return lambda engine, info: made(info["radius"], _height(engine, info, **how), info)
+
+
+def _sunk(radius, z, _):
+    return max(0.0, radius - z[-1])
+
+
+_PENETRATION = (
+    ("PENETRATION_HEIGHT", _depth(lambda r, z, _: z[-1])),
+    ("PENETRATION_SIGN", _depth(lambda r, z, _: z[-1] - r)),
+    ("PENETRATION_SIGN", _depth(lambda r, z, _: max(0.0, z[-1] - r))),
+    ("PENETRATION_NEGATIVE", _depth(lambda r, z, _: r - z[-1])),
+    ("PENETRATION_ABSOLUTE", _depth(lambda r, z, _: abs(r - z[-1]))),
+    ("PENETRATION_TOO_EARLY", _depth(lambda r, z, _: max(0.0, r - min(z)))),
+    ("PENETRATION_TOO_EARLY", _depth(lambda r, z, _: max(0.0, r - min(z)), above=0.1)),
+    ("PENETRATION_TOO_EARLY", _depth(lambda r, z, _: max(0.0, r - min(z)), above=1.0)),
+    ("PENETRATION_TOO_EARLY", _depth(_sunk, seconds=0.05)),
+    ("PENETRATION_TOO_EARLY", _depth(_sunk, seconds=0.02)),
+    ("PENETRATION_TOO_EARLY", _depth(_sunk, seconds=0.1)),
+    ("PENETRATION_NOT_IN_METRES", _depth(lambda r, z, _: 1000 * max(0.0, r - z[-1]))),
+    ("PENETRATION_NOT_IN_METRES", _depth(lambda r, z, _: 100 * max(0.0, r - z[-1]))),
+    ("PENETRATION_RELATIVE", _depth(lambda r, z, _: max(0.0, r - z[-1]) / r)),
+    ("PENETRATION_RELATIVE", _depth(lambda r, z, _: max(0.0, r - z[-1]) / (2 * r))),
+    ("OTHER_STEP_THAN_DT", _depth(_sunk, steps=2)),
+    ("OTHER_STEP_THAN_DT", _depth(_sunk, steps=10)),
+    ("PENETRATION_ASSUMED", lambda engine, info: 0.0),
+)
+
+
+def _hit(speed, steps=1.0):
+    def measure(engine, info):
+        h = info["dt"] / steps
+        start = -(info["radius"] + info["wall_thickness"] / 2) - 3.5 * speed * h
+        _, v = engine.run("wall", [start], [speed], h, 12, [0.0])
+        hit = next((i for i in range(13) if v[i][0] <= 0), None)
+        return 1.0 if hit is None else -v[hit][0] / v[hit - 1][0]
+
+    return measure
+
+
+def _launched(distance, before=2.0):
+    """Started so far away, the last speed over that at the start."""
+
+    def measure(engine, info):
+        n = math.ceil((distance + 0.6) / (2 * info["dt"]))
+        _, v = engine.run("wall", [-distance], [2.0], info["dt"], n, [0.0])
+        return abs(v[-1][0]) / before
+
+    return measure
+
+
+def _restitution(change):
+    return _of("restitution", change)
+
+
+_RESTITUTION = (
+    ("RESTITUTION_SIGN", _restitution(lambda e, _: -e)),
+    ("RESTITUTION_SQUARED", _restitution(lambda e, _: e * e)),
+    ("RESTITUTION_SQUARED", _restitution(lambda e, _: math.sqrt(max(e, 0.0)))),
+    ("RESTITUTION_LOSS", _restitution(lambda e, _: 1 - e)),
+    ("RESTITUTION_LOSS", _restitution(lambda e, _: 1 - e * e)),
+    ("RESTITUTION_INVERTED", _restitution(lambda e, _: 1 / e if e else math.inf)),
+    ("RESTITUTION_SPEED_AFTER", _restitution(lambda e, _: 2 * e)),
+    ("RESTITUTION_ASSUMED", lambda engine, info: 0.0),
+    ("RESTITUTION_ASSUMED", lambda engine, info: 1.0),
+    ("RESTITUTION_ASSUMED", lambda engine, info: 0.5),
+    ("RESTITUTION_OTHER_SPEED", _hit(1.0)),
+    ("RESTITUTION_OTHER_SPEED", _hit(0.2)),
+    ("RESTITUTION_WITH_DRAG", _launched(1.0)),
+    ("RESTITUTION_WITH_DRAG", _launched(0.5)),
+)
+
+
+def _speeds(starts, scale=1.0):
+    """Bisection over speeds; ``starts(speed, dt)`` are tried, at dt * scale."""
+
+    def measure(engine, info):
+        dt = info["dt"] * scale
+
+        def stopped(speed):
+            n = min(20000, math.ceil(4 / (speed * dt)) + 3)
+            tried = (engine.run("wall", [s], [speed], dt, n, [0.0])[0][-1][0] for s in starts(speed, dt))
+            return all(end < 0 for end in tried)
+
+        return math.inf if stopped(199.9) else model._bisect(stopped, 1.0, 199.9, 0.1)
+
+    return measure
+
+
+def _spread(count):
+    return lambda speed, dt: [-1 - speed * dt * k / count for k in range(count)]
+
+
+def _geometry(length):
+    return lambda engine, info: length(info) / info["dt"]
+
+
+_TUNNELLING = (
+    ("TUNNEL_BY_GEOMETRY", _geometry(lambda info: 2 * info["radius"] + info["wall_thickness"])),
+    ("TUNNEL_BY_GEOMETRY", _geometry(lambda info: info["radius"] + info["wall_thickness"] / 2)),
+    ("TUNNEL_BY_GEOMETRY", _geometry(lambda info: info["radius"] + info["wall_thickness"])),
+    ("TUNNEL_BY_GEOMETRY", _geometry(lambda info: 2 * info["radius"])),
+    ("TUNNEL_WITHOUT_RADIUS", _geometry(lambda info: info["wall_thickness"])),
+    ("TUNNEL_WITHOUT_RADIUS", _geometry(lambda info: info["wall_thickness"] / 2)),
+    ("TUNNEL_NO_INFINITY", _of("tunnelling_speed", lambda v, _: min(v, 200.0))),
+    ("TUNNEL_NO_INFINITY", _of("tunnelling_speed", lambda v, _: min(v, 199.0))),
+    ("TUNNEL_NO_INFINITY", _of("tunnelling_speed", lambda v, _: 0.0 if math.isinf(v) else v)),
+    ("TUNNEL_ONE_START", _speeds(_spread(1))),
+    ("TUNNEL_FEW_STARTS", _speeds(_spread(2))),
+    ("TUNNEL_FEW_STARTS", _speeds(_spread(3))),
+    ("OTHER_STEP_THAN_DT", _speeds(_spread(24), 0.1)),
+    ("OTHER_STEP_THAN_DT", _speeds(_spread(24), 0.5)),
+    ("TUNNEL_IN_STEPS", _of("tunnelling_speed", lambda v, info: v * info["dt"])),
+)
+
+
+def _twice(agree, q0=1.0, v0=0.5, steps=(50, 50)):
+    def measure(engine, info):
+        a, b = (engine.run("spring", [q0], [v0], info["dt"], n, [0.0]) for n in steps)
+        return bool(agree(np.array(a[0])[-1], np.array(b[0])[-1]))
+
+    return measure
+
+
+_DETERMINISTIC = (
+    ("DETERMINISM_NOT_COMPARED", lambda engine, info: True),
+    ("DETERMINISM_TOLERANCE", _twice(np.allclose)),
+    ("DETERMINISM_TOLERANCE", _twice(lambda a, b: np.array_equal(np.round(a, 6), np.round(b, 6)))),
+    # Of a model that makes other runs twice: what is compared does not show.
+    ("DETERMINISM_NOT_COMPARED", _twice(np.array_equal, 0.0, 0.0)),
+    ("DETERMINISM_OTHER_RUN", _twice(np.array_equal, steps=(50, 51))),
+    ("DETERMINISM_INVERTED", _of("deterministic", lambda value, _: not value)),
+)
+
+
+_KEYS = {
+    "order": _ORDER,
+    "symplectic": _SYMPLECTIC,
+    "linear_damping": _DAMPING,
+    "max_stable_step": _STABLE,
+    "friction_anisotropy": _FRICTION,
+    "rest_penetration": _PENETRATION,
+    "restitution": _RESTITUTION,
+    "tunnelling_speed": _TUNNELLING,
+    "deterministic": _DETERMINISTIC,
+}

@@ -1,3 +1,0 @@
-"""Wrong: the operators the wrong way round."""
-
-_OPERATORS = {"<=": operator.ge, ">=": operator.le, "==": operator.eq}

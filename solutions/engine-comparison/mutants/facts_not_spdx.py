@@ -1,3 +1,0 @@
-"""Wrong: a licence by its everyday name."""
-
-_FACTS["physx"]["licence"] = ("BSD", "https://github.com/NVIDIA-Omniverse/PhysX")

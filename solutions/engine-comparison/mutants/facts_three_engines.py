@@ -1,3 +1,0 @@
-"""Wrong: one engine is left out."""
-
-del _FACTS["mujoco"]

@@ -1,8 +1,0 @@
-"""The velocities are returned before the positions."""
-
-_whole = integrate
-
-
-def integrate(step, accel, q0, v0, t_end, h):
-    t, q, v = _whole(step, accel, q0, v0, t_end, h)
-    return t, v, q

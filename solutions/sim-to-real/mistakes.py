@@ -1,0 +1,1456 @@
+"""Mistakes in `sim-to-real`: words beside the programs that they are true of."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+
+from course.authoring.mistakes import Mistakes
+from course.scoring import kit
+
+mistakes = Mistakes()
+
+mistakes(
+    "BOX_TOO_WIDE",
+    "For at least one parameter the box is, in the logarithm, more than 1.5 times as wide as the fleet, so it contains carts that the fleet does not have.",
+    "Take the fleet's own spread, from e^-w to e^w for a half-width w.",
+    kind="fact",
+).program(
+    "plan",
+    """
+        _sound_plan = plan
+
+
+        def plan():
+            made = _sound_plan()
+            made["randomization"] = {k: [math.exp(-3 * w), math.exp(3 * w)] for k, w in LOG_WIDTH.items()}
+            return made
+    """,
+)
+mistakes(
+    "BOX_TOO_NARROW",
+    "More than 5 % of the fleet lies outside the box for at least one parameter.",
+    "Take the fleet's own spread for every parameter, from e^-w to e^w for a half-width w. One measured cart does not tell you how the others are.",
+    kind="fact",
+).program(
+    "plan",
+    """
+        _sound_plan = plan
+
+
+        def plan():
+            made = _sound_plan()
+            made["randomization"] = {k: [1.0, 1.0] for k in NAMES}
+            return made
+    """,
+).program(
+    "plan",
+    """
+        _plan = plan
+
+
+        def plan():
+            found = _plan()
+            return {**found, "randomization": {**found["randomization"], "m": [0.2, 5.0], "b": [0.99, 1.01]}}
+    """,
+)
+mistakes(
+    "BOX_IS_LINEAR",
+    "The box goes from 1 - w to 1 + w: the half-width is used as a fraction.",
+    "The fleet's spread is given for the logarithm, so the factors go from e^-w to e^w, which is not symmetric about 1.",
+    kind="fact",
+).program(
+    "plan",
+    """
+        _sound_plan = plan
+
+
+        def plan():
+            made = _sound_plan()
+            made["randomization"] = {k: [1 - w, 1 + w] for k, w in LOG_WIDTH.items()}
+            return made
+    """,
+)
+mistakes(
+    "BOX_NOT_FACTORS",
+    "The middles of the box are close to the data sheet's values, as if it contained the parameters in their own units.",
+    "Give factors that multiply the estimate, from e^-w to e^w for a half-width w. The estimate itself is not known when the plan is written.",
+    kind="fact",
+).program(
+    "plan",
+    """
+        _sound_plan = plan
+
+
+        def plan():
+            made = _sound_plan()
+            sheet = {"m": 1.5, "b": 0.6, "Fc": 0.4, "tau": 0.06, "latency": 0.08}
+            made["randomization"] = {
+                k: [sheet[k] * math.exp(-w), sheet[k] * math.exp(w)] for k, w in LOG_WIDTH.items()
+            }
+            return made
+    """,
+)
+mistakes(
+    "BOX_IN_LOGARITHMS",
+    "An interval of the box goes from a negative number to the same positive one, as a logarithm or a deviation does.",
+    "The numbers in randomization multiply the estimate: for a half-width w in the logarithm they are e^-w and e^w.",
+    kind="fact",
+).program(
+    "plan",
+    """
+        _sound_plan = plan
+
+
+        def plan():
+            made = _sound_plan()
+            made["randomization"] = {k: [-w, w] for k, w in LOG_WIDTH.items()}
+            return made
+    """,
+)
+mistakes(
+    "EXCITATION_CANNOT_SHOW",
+    "Even in all of the bench time, this excitation does not show the parameter well enough.",
+    "Ask what would change in the recording if the parameter were larger. chirp and prbs show every parameter of the cart; noise shows at rest.",
+    kind="fact",
+).program(
+    "plan",
+    """
+        _sound_plan = plan
+
+
+        def plan():
+            made = _sound_plan()
+            made["gaps"][3]["excitation"] = "constant"
+            return made
+    """,
+).program(
+    "plan",
+    """
+        _sound_plan = plan
+
+
+        def plan():
+            made = _sound_plan()
+            made["gaps"][4]["excitation"] = "prbs"
+            return made
+    """,
+)
+mistakes(
+    "PROMISES_TOO_MUCH",
+    "No estimator can reach this threshold with this excitation in this time.",
+    'Check the unit first: 0.1 with "%" is a tenth of a per cent. Else take a larger threshold, up to 3 % for m and 10 % for the others: what your own identify returns for such recordings is a guide.',
+    kind="fact",
+).program(
+    "plan",
+    """
+        _sound_plan = plan
+
+
+        def plan():
+            made = _sound_plan()
+            made["gaps"][1]["threshold"] = 0.01
+            return made
+    """,
+)
+mistakes(
+    "PROMISES_TOO_LITTLE",
+    "Even a measurement too coarse to be useful would meet this threshold.",
+    'The README says how exactly each parameter must be known; a threshold above that decides nothing. Check the unit too: 3 % is 3 with "%" and 0.03 with "1".',
+    kind="fact",
+).program(
+    "plan",
+    """
+        _sound_plan = plan
+
+
+        def plan():
+            made = _sound_plan()
+            made["gaps"][0]["threshold"] = 50.0
+            return made
+    """,
+)
+mistakes(
+    "BUDGET_EXCEEDED",
+    "The plan's bench time is zero or negative, or more than there is.",
+    "excitation_budget_s must be positive, and at most the time for which the README says the bench is free.",
+    kind="fact",
+).program(
+    "plan",
+    """
+        _sound_plan = plan
+
+
+        def plan():
+            made = _sound_plan()
+            made["excitation_budget_s"] = 60.0
+            return made
+    """,
+)
+mistakes(
+    "BUDGET_TOO_SHORT",
+    "In all of the bench time this excitation would show the parameter well enough, but not in the time that the plan takes.",
+    "More bench time is available: raise excitation_budget_s.",
+    kind="fact",
+).program(
+    "plan",
+    """
+        _sound_plan = plan
+
+
+        def plan():
+            made = _sound_plan()
+            made["excitation_budget_s"] = 0.5
+            return made
+    """,
+)
+mistakes(
+    "TOO_FEW_SOURCES",
+    "All gaps of the plan have the same one or two sources.",
+    "The README's table of sources lists friction, actuator, delay, sensors and surroundings. Use at least three of them.",
+    kind="fact",
+).program(
+    "plan",
+    """
+        _sound_plan = plan
+
+
+        def plan():
+            made = _sound_plan()
+            made["gaps"] = [made["gaps"][1], made["gaps"][2], {**made["gaps"][2], "excitation": "chirp"}]
+            return made
+    """,
+)
+mistakes(
+    "SOURCE_NOT_HERE",
+    "The plan spends bench time on gear backlash, but this cart has no gears.",
+    "A source counts only where it exists. Read how the cart is built, and take sources that it has.",
+    kind="fact",
+).program(
+    "plan",
+    """
+        _sound_plan = plan
+
+
+        def plan():
+            made = _sound_plan()
+            made["gaps"][4] = {**made["gaps"][4], "source": "gear_backlash", "parameter": "play"}
+            return made
+    """,
+)
+mistakes(
+    "EXCITATION_CONSTANT",
+    "With the settings that were tried, the force changes at most twice after its first command, and a delay shows only where it changes.",
+    "Reverse the force many times, at irregular intervals.",
+).body(
+    "design_excitation",
+    """
+        return np.full(round(100 * budget_s), u_max)
+    """,
+).body(
+    "design_excitation",
+    """
+        n = round(100 * budget_s)
+        return np.concatenate([np.zeros(n // 2), np.full(n - n // 2, u_max)])
+    """,
+)
+mistakes(
+    "EXCITATION_TOO_SLOW",
+    "More than two thirds of the force's power lies below 0.3 Hz, in swings of seconds; the lag is about a tenth of a second.",
+    "Include changes as quick as the effects you want to see: several within a second, and some slower ones for the friction. Use the full force in both directions.",
+).body(
+    "design_excitation",
+    """
+        return u_max * np.sin(2 * np.pi * 0.01 * np.arange(round(100 * budget_s)) / 100)
+    """,
+).body(
+    "design_excitation",
+    """
+        return u_max * np.sin(2 * np.pi * 0.05 * np.arange(round(100 * budget_s)) / 100)
+    """,
+)
+mistakes(
+    "EXCITATION_TOO_FAST",
+    "More than two thirds of the power in the force's changes lies above 4 Hz, where the motor's lag and the mass average most of it out.",
+    "Hold each command long enough for the cart to pick up speed: a few tenths of a second. In a sum of sines, take lower frequencies.",
+).body(
+    "design_excitation",
+    """
+        return rng.uniform(-u_max, u_max, round(100 * budget_s))
+    """,
+)
+mistakes(
+    "EXCITATION_SATURATES",
+    "The largest force of the signal is above u_max.",
+    "Scale the finished signal so that its largest absolute value is the u_max of this call.",
+    kind="fact",
+).body(
+    "design_excitation",
+    """
+        t = np.arange(round(100 * budget_s)) / 100
+        u = sum(np.sin(2 * np.pi * f * t + rng.uniform(0, 7)) for f in np.arange(0.1, 2.0, 0.1))
+        return u_max * u / np.std(u)
+    """,
+).program(
+    "design_excitation",
+    """
+        _design = design_excitation
+        _KEPT = {}
+
+
+        def design_excitation(budget_s, u_max, rng):
+            if budget_s not in _KEPT:
+                _KEPT[budget_s] = _design(budget_s, u_max, rng)
+            return _KEPT[budget_s].copy()
+    """,
+)
+mistakes(
+    "EXCITATION_TOO_WEAK",
+    "The largest force is less than half of what the bench can give, so the noise hides more than it has to.",
+    "Use all of u_max: the noise stays the same, so the motion stands out more clearly.",
+).program(
+    "design_excitation",
+    """
+        _full = design_excitation
+
+
+        def design_excitation(budget_s, u_max, rng):
+            return 0.16 * _full(budget_s, u_max, rng)
+    """,
+)
+mistakes(
+    "EXCITATION_BLIND",
+    "From what this signal makes the carts do, at least one parameter comes out too uncertain.",
+    "Mix quick changes, which show mass and lag, with longer pushes at full force, which show the two kinds of friction at different speeds.",
+    kind="consequence",
+).body(
+    "design_excitation",
+    """
+        return u_max * np.sin(2 * np.pi * 2.0 * np.arange(round(100 * budget_s)) / 100)
+    """,
+)
+mistakes(
+    "WRONG_LENGTH",
+    "The number of commands is not the duration times the rate.",
+    "There are round(100 * budget_s) commands for any budget_s: int() cuts off, and np.arange may give one more.",
+    kind="fact",
+).body(
+    "design_excitation",
+    """
+        return u_max * rng.choice([-1.0, 1.0], round(budget_s))
+    """,
+).program(
+    "design_excitation",
+    """
+        _rounded = design_excitation
+
+
+        def design_excitation(budget_s, u_max, rng):
+            return _rounded(budget_s, u_max, rng)[: int(100 * budget_s)]
+    """,
+).program(
+    "design_excitation",
+    """
+        _rounded = design_excitation
+
+
+        def design_excitation(budget_s, u_max, rng):
+            times = np.arange(0, budget_s, 0.01)
+            return np.resize(_rounded(budget_s, u_max, rng), len(times))
+    """,
+)
+mistakes(
+    "COULOMB_AS_VISCOUS",
+    "Fc comes out far too small and b too large, as if viscous friction stood for both.",
+    "Give each its own column: the integral of the speed for b, the integral of its sign for Fc. If they are there, compare them with the README's.",
+).program(
+    "identify",
+    """
+        _both = identify
+
+
+        def identify(t, u, y):
+            found = _both(t, u, y)
+            impulse = motor_impulse(u, found["tau"][0])
+            X = np.stack([delayed(impulse, found["latency"][0]), cumulative(y)], axis=1)
+            theta = np.linalg.lstsq(in_blocks(X).reshape(-1, 2), in_blocks(y).reshape(-1))[0]
+            m, b = 1 / theta[0], -theta[1] / theta[0]
+            return {**found, "m": [m, 0.99 * m, 1.01 * m], "b": [b, 0.9 * b, 1.1 * b], "Fc": [0.0, -0.05, 0.05]}
+    """,
+)
+mistakes(
+    "LATENCY_IGNORED",
+    "The latency comes out as nearly zero, as if commands arrived at once.",
+    "Shift the impulse by each latency from 0.02 to 0.20 s with `delayed`, fit, and keep the one with the smallest residual. If you do, compare the columns of the fit with the README's.",
+).body(
+    "identify",
+    """
+        Y = in_blocks(y).reshape(-1)
+        best = None
+        for tau in np.arange(0.02, 0.151, 0.005):
+            X = np.stack([motor_impulse(u, tau), cumulative(y), cumulative(np.sign(y))], axis=1)
+            theta, left, *_ = np.linalg.lstsq(in_blocks(X).reshape(-1, 3), Y)
+            if best is None or left[0] < best[0]:
+                best = left[0], tau, theta
+        _, tau, theta = best
+        m = 1 / theta[0]
+        values = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": 0.0, "lag": tau}
+        return {k: [float(x), float(0.98 * x), float(1.02 * x)] for k, x in values.items()}
+    """,
+)
+mistakes(
+    "INTERVAL_OVERCONFIDENT",
+    "The intervals are too narrow, at least on one side, for how far the values are off.",
+    "Leave out one block at a time and refit everything, the times too. The standard error is sqrt((n-1)/n * sum((each - mean)**2)), and 2.1 of it on either side make a 95 % interval. If yours are made so, see how far the values are off on carts that you know: times that stay on a grid can be off by half a step.",
+    kind="fact",
+).program(
+    "identify",
+    """
+        _values = identify
+
+
+        def identify(t, u, y):
+            found = {k: entry[0] for k, entry in _values(t, u, y).items()}
+            X = np.stack(
+                [delayed(motor_impulse(u, found["tau"]), found["latency"]), cumulative(y), cumulative(np.sign(y))],
+                axis=1,
+            )
+            theta, left, *_ = np.linalg.lstsq(X, y)
+            spread = np.sqrt(np.diag(np.linalg.inv(X.T @ X)) * left[0] / (len(y) - 3))
+            rel = 1.96 * spread / abs(theta)
+            rel = {"m": rel[0], "b": rel[1], "Fc": rel[2], "tau": 0.002, "latency": 0.002, "lag": 0.0007}
+            return {k: [x, float(x * (1 - rel[k])), float(x * (1 + rel[k]))] for k, x in found.items()}
+    """,
+).program(
+    "identify",
+    """
+        _scaled = identify
+
+
+        def identify(t, u, y):
+            n = len(y) // 100
+            shrink = math.sqrt(n) / (n - 1)  # from sqrt((n-1)/n * sum) to sqrt(sum/(n-1))
+            return {
+                k: [x, x + shrink * (low - x), x + shrink * (high - x)]
+                for k, (x, low, high) in _scaled(t, u, y).items()
+            }
+    """,
+)
+mistakes(
+    "INTERVAL_USELESS",
+    "An interval is wider than the recording requires.",
+    "A jackknife's standard error is that of the whole recording already: do not fit one block alone. If you do not, make the fit scatter less: integrate the equation, use every sample, and refine the times between the points of the grid.",
+    kind="consequence",
+).program(
+    "identify",
+    """
+        _narrow = identify
+
+
+        def identify(t, u, y):
+            return {k: [x, 0.5 * x, 1.5 * x] for k, (x, _, _) in _narrow(t, u, y).items()}
+    """,
+)
+mistakes(
+    "INTERVAL_REVERSED",
+    "An entry is not in the order value, low, high with low <= value <= high.",
+    "Each entry is [value, low, high] with low <= value <= high, in the parameter's own unit. low and high are limits, not widths.",
+    kind="fact",
+).program(
+    "identify",
+    """
+        _bounds = identify
+
+
+        def identify(t, u, y):
+            return {k: [x, x - low, high - x] for k, (x, low, high) in _bounds(t, u, y).items()}
+    """,
+)
+mistakes(
+    "PARAMETER_FIXED",
+    "At least one of the parameters comes out the same for every cart that was tried.",
+    "m, b and Fc follow from the fit, tau and latency from the search. Does it cover tau from 0.02 to 0.15 s and latency from 0.02 to 0.20 s? If a time ends at the edge of that, compare the columns of the fit with the README's.",
+).body(
+    "identify",
+    """
+        Y = in_blocks(y).reshape(-1)
+        tau, late = 0.05, 0.9
+
+        def fit(late):
+            X = np.stack([delayed(motor_impulse(u, tau), late), cumulative(y), cumulative(np.sign(y))], axis=1)
+            theta, left, *_ = np.linalg.lstsq(in_blocks(X).reshape(-1, 3), Y)
+            return left[0], theta
+
+        best, theta = fit(late)
+        step = 0.02
+        while step > 0.002:
+            trials = [(fit(x), x) for x in (late - step, late + step)]
+            (left, other), x = min(trials, key=lambda trial: trial[0][0])
+            if left < best:
+                best, theta, late = left, other, x
+            else:
+                step /= 2
+        m = 1 / theta[0]
+        values = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
+        return {k: [float(x), float(x - 0.02 * abs(x)), float(x + 0.02 * abs(x))] for k, x in values.items()}
+    """,
+)
+mistakes(
+    "COEFFICIENTS_NOT_PARAMETERS",
+    "The mass is right, and both friction values are about the right ones divided by the mass.",
+    "What you return is b/m and Fc/m: multiply both by m.",
+).program(
+    "identify",
+    """
+        _parameters_of = identify
+
+
+        def identify(t, u, y):
+            found = _parameters_of(t, u, y)
+            m = found["m"][0]
+            return {k: [x / m for x in entry] if k in ("b", "Fc") else entry for k, entry in found.items()}
+    """,
+)
+mistakes(
+    "ESTIMATE_HARD_CODED",
+    "The same values come back for different carts, or those of the data sheet.",
+    "Everything must come from this call's t, u and y; the data sheet is only where a search starts.",
+).body(
+    "identify",
+    """
+        values = {"m": 1.5, "b": 0.6, "Fc": 0.4, "tau": 0.06, "latency": 0.08, "lag": 0.14}
+        return {k: [x, 0.98 * x, 1.02 * x] for k, x in values.items()}
+    """,
+)
+mistakes(
+    "GAINS_HARD_CODED",
+    "Your code returns the same gains for very different carts.",
+    "Draw carts around the given estimate, roll them out, and take the gains with the least mean settling time. The slowest cart alone may need 3 s with any gains. Keep nothing from an earlier call, which was about another cart.",
+).body(
+    "tune",
+    """
+        return {"kp": 15.2, "kd": 7.4}
+    """,
+).program(
+    "tune",
+    """
+        _anew = tune
+        _FOUND = {}
+
+
+        def tune(estimate, randomization):
+            if not _FOUND:
+                _FOUND.update(_anew(estimate, randomization))
+            return dict(_FOUND)
+    """,
+)
+mistakes(
+    "DELAY_IGNORED",
+    "Another latency in the estimate makes no difference to the gains, and they suit a cart with a shorter delay.",
+    "The carts you tune on need the estimated latency, times a factor from the box. If they have it, search a wider grid.",
+).program(
+    "tune",
+    """
+        _late_too = tune
+
+
+        def tune(estimate, randomization):
+            return _late_too({**estimate, "latency": [0.001, 0.001, 0.001]}, randomization)
+    """,
+)
+mistakes(
+    "RANDOMIZATION_IGNORED",
+    "Three other boxes make no difference to the gains.",
+    "Draw each parameter between value * low and value * high of the box that is passed in, and take the mean over the draws. If you do, perhaps the search tries too few gains.",
+).program(
+    "tune",
+    """
+        _fleet = tune
+
+
+        def tune(estimate, randomization):
+            return _fleet(estimate, {k: [1.0, 1.0] for k in NAMES})
+    """,
+).program(
+    "tune",
+    """
+        _given_box = tune
+
+
+        def tune(estimate, randomization):
+            wide = {"m": 1.05, "b": 1.5, "Fc": 0.9, "tau": 1.2, "latency": 1.2}
+            return _given_box(estimate, {k: [math.exp(-w), math.exp(w)] for k, w in wide.items()})
+    """,
+).program(
+    "tune",
+    """
+        _given_box = tune
+
+
+        def tune(estimate, randomization):
+            return _given_box(estimate, {k: [math.exp(-w), math.exp(w)] for k, w in LOG_WIDTH.items()})
+    """,
+)
+mistakes(
+    "GAINS_SWAPPED",
+    "With kp and kd swapped, the gains would do well, for this question and for others.",
+    "Check their order: kp multiplies the distance, and kd the speed.",
+).program(
+    "tune",
+    """
+        _right = tune
+
+
+        def tune(estimate, randomization):
+            gains = _right(estimate, randomization)
+            return {"kp": gains["kd"], "kd": gains["kp"]}
+    """,
+)
+mistakes(
+    "NO_CART_SETTLES",
+    "With these gains no cart drawn from the box settles: each passes the mark by more than 0.10 m, or is not at the mark when the run ends.",
+    "Search on a grid first, because a descent sees no slope where every cart fails. Take the gains with the least mean (argmin). Draw the carts from the box, around the estimate.",
+    kind="fact",
+).body(
+    "tune",
+    """
+        rng = np.random.default_rng(0)
+        carts = {k: estimate[k][0] * np.exp(rng.uniform(*np.log(randomization[k]), 60)) for k in NAMES}
+        around = np.array([(1, 1), (1.05, 1), (1, 1.05), (0.95, 1), (1, 0.95)]).T
+
+        kp, kd = 3.0, 3.0
+        for _ in range(12):
+            kps, kds = kp * around[0], kd * around[1]
+            best = rollout(kps, kds, carts, np.random.default_rng(1)).mean(axis=0).argmin()
+            if best == 0:
+                break
+            kp, kd = float(kps[best]), float(kds[best])
+        return {"kp": kp, "kd": kd}
+    """,
+).body(
+    "tune",
+    """
+        rng = np.random.default_rng(0)
+        box = {name: np.log(randomization[name]) for name in NAMES}
+        carts = {name: estimate[name][0] * np.exp(rng.uniform(*box[name], 60)) for name in NAMES}
+        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(2, 40, 16), np.linspace(0.2, 0.75, 12)))
+        times = rollout(kp, kp * ratio, carts, np.random.default_rng(1))
+        i = np.argmax(np.mean(times, axis=0))
+        return {"kp": float(kp[i]), "kd": float(kp[i] * ratio[i])}
+    """,
+)
+mistakes(
+    "PROMISE_NOT_A_SHARE",
+    "The threshold of the whole plan is well above 1, the largest success there is.",
+    "Success is a fraction, and this threshold has no unit: 92 % is 0.92.",
+    kind="fact",
+).program(
+    "plan",
+    """
+        _as_share = plan
+
+
+        def plan():
+            return {**_as_share(), "threshold": 94}
+    """,
+)
+mistakes(
+    "PROMISE_OF_PERFECTION",
+    "The plan promises the best possible gains on every fleet, or better.",
+    "Only the best possible gains have a success of 1. Promise at least 0.90 and less than 1.",
+    kind="fact",
+).program(
+    "plan",
+    """
+        _modest = plan
+
+
+        def plan():
+            return {**_modest(), "threshold": 1.0}
+    """,
+)
+mistakes(
+    "EXCITATION_RESTS",
+    "The force is zero most of the time, and while the cart stands still, the recording shows hardly anything.",
+    "Drive the cart for the whole time, and reverse the force many times.",
+).body(
+    "design_excitation",
+    """
+        n = round(100 * budget_s)
+        return np.where(np.arange(n) < 200, u_max, 0.0)
+    """,
+)
+mistakes(
+    "INTERVAL_WITHOUT_RECORDING",
+    "On average, the intervals from short and weak recordings are less than 1.5 times as wide as those from full ones.",
+    "Compute each interval from this recording, by refits with one block left out, and not from a fixed width or share.",
+).program(
+    "identify",
+    """
+        _values = identify
+
+
+        def identify(t, u, y):
+            found = {k: entry[0] for k, entry in _values(t, u, y).items()}
+            half = {"m": 0.0299}
+            return {k: [x, x * (1 - half.get(k, 0.199)), x * (1 + half.get(k, 0.199))] for k, x in found.items()}
+    """,
+).program(
+    "identify",
+    """
+        _values = identify
+
+
+        def identify(t, u, y):
+            half = {"m": 0.004, "b": 0.025, "Fc": 0.03, "tau": 0.04, "latency": 0.02, "lag": 0.008}
+            return {k: [e[0], e[0] * (1 - half[k]), e[0] * (1 + half[k])] for k, e in _values(t, u, y).items()}
+    """,
+)
+mistakes(
+    "FRICTIONS_SWAPPED",
+    "b comes out near the value of Fc, and Fc near the value of b.",
+    "b belongs to the integral of the speed, Fc to the integral of its sign: check which coefficient goes into which entry.",
+).program(
+    "identify",
+    """
+        _right_way = identify
+
+
+        def identify(t, u, y):
+            found = _right_way(t, u, y)
+            return {**found, "b": found["Fc"], "Fc": found["b"]}
+    """,
+)
+mistakes(
+    "VISCOUS_AS_COULOMB",
+    "b comes out far too small and Fc too large, as if Coulomb friction stood for both.",
+    "Give each its own column: the integral of the speed for b, the integral of its sign for Fc. If they are there, compare them with the README's.",
+).program(
+    "identify",
+    """
+        _honest = identify
+
+
+        def identify(t, u, y):
+            best = None
+            for tau in np.arange(0.02, 0.151, 0.01):
+                impulse = motor_impulse(u, tau)
+                for late in np.arange(0.02, 0.201, 0.005):
+                    columns = [delayed(impulse, late), cumulative(np.sign(y))]
+                    X, v = in_blocks(np.stack(columns, axis=1)), in_blocks(y)
+                    k = X.shape[2]
+                    theta, left, *_ = np.linalg.lstsq(X.reshape(-1, k), v.reshape(-1))
+                    if best is None or left[0] < best[0]:
+                        best = left[0], tau, late, theta
+            _, tau, late, theta = best
+            m = 1 / theta[0]
+            found = {"m": m, "b": 0.0, "Fc": -theta[1] * m, "tau": tau, "latency": late, "lag": tau + late}
+            half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
+            return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+    """,
+)
+mistakes(
+    "TIME_FROM_SHEET",
+    "tau or the latency comes out as the data sheet's value for every cart that was tried.",
+    "Try a fine grid of both times, fit with each pair, keep the pair with the smallest residual, and refine around it.",
+).program(
+    "identify",
+    """
+        _honest = identify
+
+
+        def identify(t, u, y):
+            best = None
+            for tau in np.arange(0.06, 0.061, 0.01):
+                impulse = motor_impulse(u, tau)
+                for late in np.arange(0.02, 0.201, 0.005):
+                    columns = [delayed(impulse, late), cumulative(np.sign(y)), cumulative(y)]
+                    X, v = in_blocks(np.stack(columns, axis=1)), in_blocks(y)
+                    k = X.shape[2]
+                    theta, left, *_ = np.linalg.lstsq(X.reshape(-1, k), v.reshape(-1))
+                    if best is None or left[0] < best[0]:
+                        best = left[0], tau, late, theta
+            _, tau, late, theta = best
+            m = 1 / theta[0]
+            found = {"m": m, "b": -theta[2] * m, "Fc": -theta[1] * m, "tau": tau, "latency": late, "lag": tau + late}
+            half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
+            return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+    """,
+)
+mistakes(
+    "NOISE_DIFFERENTIATED",
+    "The mass is as small as differentiating the measured speed makes it.",
+    "Integrate the equation instead of differentiating the data: sums average noise, while differences amplify it. If you integrate already, compare the columns with the README's.",
+).program(
+    "identify",
+    """
+        _by_integrals = identify
+
+
+        def identify(t, u, y):
+            found = _by_integrals(t, u, y)
+            tau, late = found["tau"][0], found["latency"][0]
+            force = np.gradient(delayed(motor_impulse(u, tau), late), H)
+            X = np.stack([np.gradient(y, H), y, np.sign(y)], axis=1)
+            theta = np.linalg.lstsq(X, force)[0]
+            for name, value in zip(("m", "b", "Fc"), theta.tolist()):
+                half = found[name][2] - found[name][0]
+                found[name] = [value, value - half, value + half]
+            return found
+    """,
+)
+mistakes(
+    "GAINS_BY_FORMULA",
+    "The gains change with the mass and the viscous friction, but not with any other latency or box that was tried.",
+    "Draw carts from the box that is passed in, around the estimate, roll them out, and take the gains that do best on them.",
+).body(
+    "tune",
+    """
+        m = estimate["m"][0]
+        return {"kp": 9.3 * m, "kd": 4.5 * m}
+    """,
+)
+mistakes(
+    "NO_DAMPING",
+    "kd is zero, or less than a twentieth of kp.",
+    "Search over the ratio kd/kp too, from 0.2 to 0.8.",
+).body(
+    "tune",
+    """
+        rng = np.random.default_rng(2)
+        carts = {k: estimate[k][0] * np.exp(rng.uniform(*np.log(randomization[k]), 60)) for k in NAMES}
+        kp = np.geomspace(0.5, 40, 15)
+        mean = rollout(kp, np.zeros(15), carts, np.random.default_rng(1)).mean(axis=0)
+        return {"kp": float(kp[mean.argmin()]), "kd": 0.0}
+    """,
+)
+mistakes(
+    "SEARCH_ENDED_EARLY",
+    "Other gains do clearly better on the carts that were asked for: the search ends at its edge, between coarse points or in a local minimum, or what it minimises is not the mean over these carts.",
+    "First search a grid, kp in np.geomspace(2, 40, 20) and kd/kp in np.linspace(0.2, 0.8, 13): a coarser one may miss the best gains. Then refine around its best point. Use the same noise for all gains, several hundred carts from the box, and their mean settling time.",
+    kind="consequence",
+).body(
+    "tune",
+    """
+        rng = np.random.default_rng(2)
+        carts = {k: estimate[k][0] * np.exp(rng.uniform(*np.log(randomization[k]), 60)) for k in NAMES}
+        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(0.5, 3.5, 8), np.linspace(0.25, 0.8, 6)))
+        cost = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
+        return {"kp": float(kp[cost.argmin()]), "kd": float((kp * ratio)[cost.argmin()])}
+    """,
+).body(
+    "tune",
+    """
+        rng = np.random.default_rng(2)
+        carts = {k: estimate[k][0] * np.exp(rng.uniform(*np.log(randomization[k]), 60)) for k in NAMES}
+        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(1.0, 40, 40), np.linspace(0.25, 0.8, 12)))
+        cost = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).max(axis=0)
+        return {"kp": float(kp[cost.argmin()]), "kd": float((kp * ratio)[cost.argmin()])}
+    """,
+).program(
+    "tune",
+    """
+        _free = tune
+
+
+        def tune(estimate, randomization):
+            gains = _free(estimate, randomization)
+            return {**gains, "kp": min(gains["kp"], 4.0)}
+    """,
+)
+mistakes(
+    "FAILURES_LEFT_OUT",
+    "These gains suit the soonest cart, or those that settle, and more than half of the carts count as 3 s.",
+    "Take the mean over all carts, with 3 s for each that fails. If you do, look at the carts: each parameter is the estimate's value times a factor drawn from the box.",
+    kind="fact",
+).body(
+    "tune",
+    """
+        rng = np.random.default_rng(0)
+        box = {name: np.log(randomization[name]) for name in NAMES}
+        carts = {name: estimate[name][0] * np.exp(rng.uniform(*box[name], 100)) for name in NAMES}
+        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(2, 40, 16), np.linspace(0.2, 0.75, 12)))
+        times = rollout(kp, kp * ratio, carts, np.random.default_rng(1))
+        i = np.argmin(np.min(times, axis=0))
+        return {"kp": float(kp[i]), "kd": float(kp[i] * ratio[i])}
+    """,
+).body(
+    "tune",
+    """
+        rng = np.random.default_rng(0)
+        box = {name: np.log(randomization[name]) for name in NAMES}
+        carts = {name: estimate[name][0] * np.exp(rng.uniform(*box[name], 200)) for name in NAMES}
+        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(2, 40, 16), np.linspace(0.2, 0.75, 12)))
+        times = rollout(kp, kp * ratio, carts, np.random.default_rng(1))
+        never = times >= 3.0
+        settled = np.where(never, 0.0, times).sum(axis=0) / np.maximum(np.sum(~never, axis=0), 1)
+        i = np.argmin(np.where(never.all(axis=0), 3.0, settled))
+        return {"kp": float(kp[i]), "kd": float(kp[i] * ratio[i])}
+    """,
+)
+mistakes(
+    "EXCITATION_NOT_FULL",
+    "The force stays below u_max. The same signal, scaled up to it, could show m, b, Fc and the lag well enough to the best possible estimator.",
+    "Scale the finished signal so that its largest absolute value is u_max: the noise stays the same.",
+).program(
+    "design_excitation",
+    """
+        _sharp = design_excitation
+
+
+        def design_excitation(budget_s, u_max, rng):
+            return 0.36 * np.convolve(_sharp(budget_s, u_max, rng), np.full(100, 0.01), "same")
+    """,
+)
+mistakes(
+    "EXCITATION_STANDS",
+    "A cart stands still for more than half of the recording, and a cart at rest shows hardly anything. Perhaps the force is below its friction for too much of the time.",
+    "Use the full force in both directions most of the time. A sum of sines needs phases that keep its peak small; full force, reversed at irregular intervals, is better still.",
+).body(
+    "design_excitation",
+    """
+        t = np.arange(round(100 * budget_s)) / 100
+        u = np.cos(2 * np.pi * np.outer(t, np.arange(0.1, 3.0, 0.1))).sum(axis=1)
+        return u_max * u / np.abs(u).max()
+    """,
+)
+mistakes(
+    "LAG_READ",
+    "The gains change with the estimate's lag, although tau and latency stay as they are.",
+    "rollout takes tau and latency. lag is their sum: used for one of them, it counts the other one twice.",
+).program(
+    "tune",
+    """
+        _as_it_is = tune
+
+
+        def tune(estimate, randomization):
+            return _as_it_is({**estimate, "latency": estimate["lag"]}, randomization)
+    """,
+)
+mistakes(
+    "LOWS_NOT_READ",
+    "The gains stay exactly as they are when the low ends of the box's ranges are moved, and they suit a cart at the high ends.",
+    "Draw each parameter between value * low and value * high, and take the mean over all carts.",
+).program(
+    "tune",
+    """
+        _whole_box = tune
+
+
+        def tune(estimate, randomization):
+            return _whole_box(estimate, {k: [high, high] for k, (_, high) in randomization.items()})
+    """,
+)
+mistakes(
+    "KD_FOLLOWS_KP",
+    "kd is the same in all answers, or in a fixed relation to kp: perhaps it is not searched.",
+    "Search over pairs: kp from 2 to 40 and kd/kp from 0.2 to 0.8. A formula of kp, mass and friction knows neither the lag nor the latency.",
+).body(
+    "tune",
+    """
+        rng = np.random.default_rng(0)
+        carts = {k: estimate[k][0] * np.exp(rng.uniform(*np.log(randomization[k]), 60)) for k in NAMES}
+        kp = np.geomspace(1, 40, 30)
+        kd = 2 * np.sqrt(kp * estimate["m"][0]) - estimate["b"][0]
+        i = rollout(kp, kd, carts, np.random.default_rng(1)).mean(axis=0).argmin()
+        return {"kp": float(kp[i]), "kd": float(kd[i])}
+    """,
+)
+mistakes(
+    "ESTIMATE_KEPT",
+    "Asked twice in a row about one recording, your code answers the same, but something else after recordings of other carts.",
+    "Keep nothing from one call to the next: start each search anew, inside the function, from what the call is given.",
+    kind="fact",
+).program(
+    "identify",
+    """
+        _right = identify
+        _before = {}
+
+
+        def identify(t, u, y):
+            found = _right(t, u, y)
+            for name, entry in found.items():
+                shift = 0.02 * (_before.get(name, entry[0]) - entry[0])
+                found[name] = [number + shift for number in entry]
+                _before[name] = found[name][0]
+            return found
+    """,
+)
+mistakes("RESULT_OVERWRITTEN").program(
+    "plan",
+    """
+        _once = plan
+        _GAPS = []
+
+
+        def plan():
+            _GAPS.extend(_once()["gaps"])
+            return {**_once(), "gaps": _GAPS}
+    """,
+)
+mistakes(
+    "PLAN_VARIES",
+    "What a call returns depends on chance or on an earlier call.",
+    "A plan is carried out as it stands: return the same one each time, made anew in every call.",
+).program(
+    "plan",
+    """
+        _once = plan
+        _CHANCE = np.random.default_rng()
+
+
+        def plan():
+            return {**_once(), "threshold": _CHANCE.uniform(0.94, 0.95)}
+    """,
+)
+
+# -- plan: its gaps
+
+mistakes(
+    "UNKNOWN_WORD",
+    "The plan uses a word that is not in the README's list for that key.",
+    "The plan is executed by a program, so take each word from the list of its own key, spelled exactly as there.",
+    kind="fact",
+)
+mistakes(
+    "TOO_FEW_GAPS",
+    "The plan names too few gaps.",
+    "List at least three gaps, each with all of its entries.",
+    kind="fact",
+)
+mistakes(
+    "PARAMETER_OF_ANOTHER_SOURCE",
+    "A parameter does not belong to the source given with it.",
+    "The README's table says which parameters belong to each source: friction to b and Fc, delay to latency and lag.",
+    kind="fact",
+)
+mistakes(
+    "ESTIMATOR_CANNOT",
+    "The estimator given does not estimate this parameter.",
+    "integral_least_squares is for m, b and Fc, delay_grid for tau, latency and lag, and standard_deviation for noise.",
+    kind="fact",
+)
+mistakes(
+    "METRIC_DOES_NOT_JUDGE",
+    "The metric of the whole plan is not what the carts achieve.",
+    'The metric of the whole plan must be "success".',
+    kind="fact",
+)
+mistakes(
+    "PROMISE_TOO_SMALL",
+    "The plan as a whole promises less than the README asks for.",
+    "The threshold of the whole plan must be at least 0.90 and below 1.",
+    kind="fact",
+)
+mistakes(
+    "BOX_REVERSED",
+    "An interval of the box has its ends in the wrong order, or is not an interval of positive factors.",
+    "Write [low, high] with 0 < low <= high.",
+    kind="fact",
+)
+mistakes(
+    "BOX_LACKS",
+    "The box is not a dict whose keys are exactly the five parameters: one is missing, or there is one too many.",
+    "The box has exactly the keys m, b, Fc, tau and latency, each with [low, high].",
+    kind="fact",
+)
+mistakes(
+    "PROMISE_NOT_KEPT",
+    "Even with good excitation, identification and tuning, the mean success over the fleets is below what the plan promises, or below 0.90.",
+    "Here only the box comes from your plan. Compare its ends with the fleet's, parameter by parameter, and promise only what it can achieve, but at least 0.90.",
+    kind="consequence",
+)
+mistakes(
+    "NOT_FINITE",
+    "One of the values is not a finite number.",
+    "Look for a division by zero, a logarithm of zero, an overflow, an uninitialised array, or a start value such as inf that is never replaced.",
+    kind="fact",
+)
+mistakes(
+    "EXCITATION_ZERO",
+    "Every command is zero.",
+    "Print a few commands. An integer array, for example, turns forces below 1 N into zeros.",
+)
+
+# -- identify: values
+
+mistakes(
+    "VALUES_OFF",
+    "In at least one recording a value is further off than the README's limit for values.",
+    "Look at the values before the intervals: correct them, or make the fit scatter less from one recording to the next.",
+    kind="consequence",
+)
+mistakes(
+    "VISCOUS_MISSING",
+    "b comes out near zero, or at a small part of its value.",
+    "Viscous friction needs its own column, the integral of the speed; in the README's form, b is minus its coefficient times m.",
+)
+mistakes(
+    "COULOMB_MISSING",
+    "Fc comes out near zero, or at a small part of its value.",
+    "Coulomb friction needs its own column, the integral of the speed's sign; in the README's form, Fc is minus its coefficient times m.",
+)
+mistakes(
+    "MASS_INVERTED",
+    "The value returned as m is about one over the mass.",
+    "In the README's form the coefficient of the impulse is 1/m: m is its reciprocal. If your fit gives m itself, take no reciprocal.",
+)
+mistakes(
+    "FRICTION_SIGN",
+    "b or Fc comes out negative for most of the recordings.",
+    "Both slow the cart down: in the README's form b is minus the coefficient times m. A column that has the minus already needs no second one.",
+)
+mistakes(
+    "ESTIMATE_NEGATIVE",
+    "m, tau or the latency comes out negative.",
+    "For a negative mass look at the columns of the fit: a sign, their order, or y where u belongs. For a negative time keep the refinement within the range of the search.",
+    kind="fact",
+)
+mistakes(
+    "LAG_IGNORED",
+    "tau comes out as nearly zero, as if the motor followed its command at once.",
+    "Try motor_impulse(u, tau) for each tau from 0.02 to 0.15 s, and keep the one with the smallest residual. If you do, compare the columns of the fit with the README's.",
+)
+mistakes(
+    "LAG_NOT_SUM",
+    "The first entry of lag is not the sum of those of tau and latency.",
+    "lag = tau + latency. Compute its interval from the same refits: the errors of the two largely cancel in the sum.",
+)
+mistakes(
+    "TIMES_EXCHANGED",
+    "tau and the latency are exchanged.",
+    "tau is the time constant that motor_impulse(u, tau) takes, and the latency is what `delayed` shifts by.",
+    kind="fact",
+)
+mistakes(
+    "UNITS_NOT_SECONDS",
+    "The lag comes out about 1000 or 100 times too large, as it does in milliseconds or in samples of 0.01 s.",
+    "tau, latency and lag are in seconds, not in milliseconds or in samples of 0.01 s.",
+)
+mistakes(
+    "LOCAL_MINIMUM",
+    "The lag, tau and latency together, is off by more than a quarter for at least half of these recordings.",
+    "Try a whole grid of tau and latency, keep the best pair, and refine only around it. If you do, fit y as it was recorded, all blocks at once, and compare the columns with the README's.",
+)
+mistakes(
+    "FORCE_SCALED",
+    "The mass and both friction values are off by about the same factor.",
+    "Check the unit of the force, N: do not scale u or the motor's impulse, and divide only by the coefficient 1/m.",
+)
+mistakes(
+    "INTERVAL_WITHOUT_WIDTH",
+    "The two ends of an interval are equal.",
+    "Refit every parameter with one block left out, the times too. A time that stays on its grid shows no spread: refine it in each refit.",
+    kind="fact",
+)
+
+# -- tune
+
+mistakes(
+    "IDENTIFY_TOO_SLOW",
+    "There was no answer within the time limit.",
+    "See that every loop ends. motor_impulse is slow: call it once for each tau, not once for each pair of times, and fit on a coarse grid before you refine. For the same times, a refit without one block needs only new sums, not new columns.",
+    kind="fact",
+)
+mistakes(
+    "TUNE_TOO_SLOW",
+    "There was no answer within the time limit.",
+    "rollout takes arrays: pass all gains of a grid and all carts at once, not one after the other. Search coarsely with few carts before you search finely with all of them.",
+    kind="fact",
+)
+mistakes(
+    "ESTIMATE_IGNORED",
+    "The gains change with the box, but other masses and another latency in the estimate make no difference to them.",
+    "The box holds factors: draw each parameter between value * low and value * high, with the value from the estimate that is passed in.",
+)
+mistakes(
+    "KD_IS_RATIO",
+    "With kp times kd in place of kd the gains would do well, as if the ratio kd/kp were returned as kd.",
+    "Return the gain itself: kd = ratio * kp.",
+)
+mistakes(
+    "ENDS_READ",
+    "The gains change with the ends of the estimate's intervals, although the values stay as they are.",
+    "Each entry is [value, low, high]: draw the carts around the value, entry[0]. How much they vary is in the box.",
+)
+mistakes(
+    "RANGE_NOT_READ",
+    "The gains stay exactly as they are when the box's range of one parameter (m or latency) is shifted by a factor of 1.8.",
+    "Draw every parameter from its own range of the box, around the estimate's value. If you do, perhaps the search tries too few gains.",
+)
+mistakes(
+    "GAINS_NEGATIVE",
+    "A gain is negative. A negative kp pushes the cart away from its mark, and a negative kd speeds it up.",
+    "Search only among positive gains; a logarithmic grid contains no others.",
+    kind="fact",
+)
+
+
+model = kit.sibling(__file__, "sim_to_real")
+
+
+NAMES = model.NAMES
+
+
+@mistakes.more
+def hypotheses():
+    """Task, codes of what is wrong, and function of each, those with one mistake first."""
+    for task, family, terms in (
+        ("plan", _plan, _PLAN),
+        ("design_excitation", _excitation, _EXCITATION),
+        ("identify", _identify, _IDENTIFY),
+        ("tune", _tune, _TUNE),
+    ):
+        for term, forms in terms.items():
+            for code, form in forms:
+                yield task, (code,), family(**{term: form})
+    firsts = {term: dict(reversed(forms)).items() for term, forms in _PLAN.items()}
+    for one, other in itertools.combinations(_PLAN, 2):
+        for (code, form), (second, another) in itertools.product(firsts[one], firsts[other]):
+            if code != second:
+                yield "plan", (code, second), _plan(**{one: form, other: another})
+
+
+def _plan(
+    box=lambda w: [math.exp(-w), math.exp(w)],
+    left_out=(),
+    seconds=20.0,
+    promise=0.94,
+    metric="success",
+    **gap,
+):
+    """``gap``: what is changed of the plan's second gap; ``gaps``: which of them are kept."""
+    kept = gap.pop("gaps", slice(None))
+    changed = gap.pop("gap", {})
+
+    def plan():
+        found = model.plan()
+        found["gaps"][1].update(changed)
+        return {
+            **found,
+            "gaps": found["gaps"][kept],
+            "excitation_budget_s": seconds,
+            "randomization": {k: box(w) for k, w in model.LOG_WIDTH.items() if k not in left_out},
+            "metric": metric,
+            "threshold": promise,
+        }
+
+    return plan
+
+
+def _gap(parameter, source, estimator, excitation="prbs", **rest):
+    return {
+        "parameter": parameter,
+        "source": source,
+        "estimator": estimator,
+        "excitation": excitation,
+        **rest,
+    }
+
+
+_LEAST = "integral_least_squares"
+
+
+_PLAN = {
+    "box": (
+        ("BOX_TOO_WIDE", lambda w: [math.exp(-2 * w), math.exp(2 * w)]),
+        ("BOX_TOO_WIDE", lambda w: [0.2, 5.0]),
+        ("BOX_TOO_NARROW", lambda w: [1.0, 1.0]),
+        ("BOX_TOO_NARROW", lambda w: [math.exp(-w / 2), math.exp(w / 2)]),
+        ("BOX_TOO_NARROW", lambda w: [1.0, math.exp(w)]),
+        ("BOX_TOO_NARROW", lambda w: [0.9, 1.1]),
+        ("BOX_IS_LINEAR", lambda w: [1 - w, 1 + w]),
+        ("BOX_IN_LOGARITHMS", lambda w: [-w, w]),
+        ("BOX_REVERSED", lambda w: [math.exp(w), math.exp(-w)]),
+        ("BOX_REVERSED", lambda w: [0.0, math.exp(w)]),
+    ),
+    "left_out": (("BOX_LACKS", ("latency",)), ("BOX_LACKS", ("tau", "latency"))),
+    "seconds": (
+        ("BUDGET_EXCEEDED", 60.0),
+        ("BUDGET_EXCEEDED", 0.0),
+        ("BUDGET_TOO_SHORT", 0.5),
+    ),
+    "promise": (
+        ("PROMISE_TOO_SMALL", 0.5),
+        ("PROMISE_NOT_A_SHARE", 94.0),
+        ("PROMISE_OF_PERFECTION", 1.0),
+    ),
+    "metric": (("METRIC_DOES_NOT_JUDGE", "relative_error"), ("METRIC_DOES_NOT_JUDGE", "settling time")),
+    "gaps": (("TOO_FEW_GAPS", slice(2)), ("TOO_FEW_GAPS", slice(0))),
+    "gap": (
+        ("UNKNOWN_WORD", {"excitation": "white noise"}),
+        ("UNKNOWN_WORD", {"unit": "percent"}),
+        ("UNKNOWN_WORD", {"parameter": "viscous friction"}),
+        ("SOURCE_NOT_HERE", _gap("play", "gear_backlash", "standard_deviation")),
+        ("PARAMETER_OF_ANOTHER_SOURCE", _gap("m", "friction", _LEAST, threshold=3.0)),
+        ("PARAMETER_OF_ANOTHER_SOURCE", _gap("tau", "delay", "delay_grid")),
+        ("ESTIMATOR_CANNOT", _gap("b", "friction", "delay_grid")),
+        ("ESTIMATOR_CANNOT", _gap("lag", "delay", _LEAST)),
+        ("EXCITATION_CANNOT_SHOW", _gap("Fc", "friction", _LEAST, "rest")),
+        ("EXCITATION_CANNOT_SHOW", _gap("lag", "delay", "delay_grid", "constant")),
+        ("EXCITATION_CANNOT_SHOW", _gap("noise", "sensor_noise", "standard_deviation", "prbs")),
+        ("PROMISES_TOO_MUCH", _gap("b", "friction", _LEAST, threshold=0.1, unit="%")),
+        ("PROMISES_TOO_MUCH", _gap("b", "friction", _LEAST, threshold=0.05, unit="%")),
+        ("PROMISES_TOO_LITTLE", _gap("b", "friction", _LEAST, threshold=50.0, unit="%")),
+        ("PROMISES_TOO_LITTLE", _gap("b", "friction", _LEAST, threshold=5.0, unit="1")),
+    ),
+}
+
+
+def _excitation(count=lambda s: round(100 * s), force=lambda u_max: u_max, wave=None, active=lambda u: u):
+    def design_excitation(budget_s, u_max, rng):
+        n = count(budget_s)
+        t = 0.01 * np.arange(n)
+        signs = np.repeat(rng.choice([-1.0, 1.0], n), rng.integers(10, 60, n))[:n]
+        return active(force(u_max) * (signs if wave is None else wave(t, rng)))
+
+    return design_excitation
+
+
+def _first(seconds):
+    def active(u):
+        return np.where(np.arange(len(u)) < 100 * seconds, u, 0.0)
+
+    return active
+
+
+_EXCITATION = {
+    "count": (
+        ("WRONG_LENGTH", lambda s: int(100 * s)),
+        ("WRONG_LENGTH", lambda s: 2000),
+        ("WRONG_LENGTH", lambda s: round(1000 * s)),
+        ("WRONG_LENGTH", lambda s: round(100 * s) + 1),
+    ),
+    "force": (
+        ("EXCITATION_SATURATES", lambda u_max: 3.0),
+        ("EXCITATION_SATURATES", lambda u_max: 2 * u_max),
+        ("EXCITATION_TOO_WEAK", lambda u_max: 0.1 * u_max),
+        ("EXCITATION_TOO_WEAK", lambda u_max: 0.25 * u_max),
+    ),
+    "wave": (
+        ("EXCITATION_TOO_SLOW", lambda t, rng: np.sin(2 * np.pi * 0.05 * t)),
+        ("EXCITATION_TOO_FAST", lambda t, rng: np.sin(2 * np.pi * 8 * t)),
+        ("EXCITATION_TOO_FAST", lambda t, rng: rng.uniform(-1, 1, len(t))),
+        ("EXCITATION_TOO_FAST", lambda t, rng: rng.choice([-1.0, 1.0], len(t))),
+        ("EXCITATION_CONSTANT", lambda t, rng: np.ones(len(t))),
+        ("EXCITATION_RESTS", lambda t, rng: np.where(t < 2.0, 1.0, 0.0)),
+        ("EXCITATION_ZERO", lambda t, rng: np.zeros(len(t))),
+    ),
+    "active": (("EXCITATION_RESTS", _first(2.0)),),
+}
+
+
+def _identify(read=lambda t, u, y: (t, u, y), told=lambda found: found):
+    """``read``: what the fit is given; ``told``: what is made of its six entries [value, low, high]."""
+
+    def identify(t, u, y):
+        return told(model.identify(*read(t, u, y)))
+
+    return identify
+
+
+def _values(change):
+    """Entries with other values, each as wide as before."""
+
+    def told(found):
+        values = change({k: entry[0] for k, entry in found.items()})
+        return {k: [values[k] + x - found[k][0] for x in found[k]] for k in found}
+
+    return told
+
+
+def _widths(change):
+    def told(found):
+        return {k: [v, v - change(k, v, h - v), v + change(k, v, h - v)] for k, (v, _, h) in found.items()}
+
+    return told
+
+
+_FIXED = {"m": 0.029, "b": 0.19, "Fc": 0.19, "tau": 0.19, "latency": 0.19, "lag": 0.19}
+
+
+_SHEET = {"m": 1.5, "b": 0.6, "Fc": 0.4, "tau": 0.06, "latency": 0.08, "lag": 0.14}
+
+
+_IDENTIFY = {
+    "read": (
+        ("FORCE_SCALED", lambda t, u, y: (t, u / 3.0, y)),
+        ("FORCE_SCALED", lambda t, u, y: (t, 2.0 * u, y)),
+    ),
+    "told": (
+        ("MASS_INVERTED", _values(lambda v: {**v, "m": 1 / v["m"]})),
+        (
+            "COEFFICIENTS_NOT_PARAMETERS",
+            _values(lambda v: {**v, "b": v["b"] / v["m"], "Fc": v["Fc"] / v["m"]}),
+        ),
+        ("FRICTION_SIGN", _values(lambda v: {**v, "b": -v["b"], "Fc": -v["Fc"]})),
+        ("FRICTIONS_SWAPPED", _values(lambda v: {**v, "b": v["Fc"], "Fc": v["b"]})),
+        ("VISCOUS_MISSING", _values(lambda v: {**v, "b": 1e-3})),
+        ("COULOMB_MISSING", _values(lambda v: {**v, "Fc": 1e-3 * v["m"]})),
+        (
+            "UNITS_NOT_SECONDS",
+            _values(lambda v: {**v, **{k: 1000 * v[k] for k in ("tau", "latency", "lag")}}),
+        ),
+        ("UNITS_NOT_SECONDS", _values(lambda v: {**v, **{k: 100 * v[k] for k in ("tau", "latency", "lag")}})),
+        ("LAG_NOT_SUM", _values(lambda v: {**v, "lag": v["tau"]})),
+        ("LAG_NOT_SUM", _values(lambda v: {**v, "lag": v["latency"]})),
+        ("LAG_NOT_SUM", _values(lambda v: {**v, "lag": v["latency"] - v["tau"]})),
+        ("ESTIMATE_HARD_CODED", _values(lambda v: _SHEET)),
+        ("TIME_FROM_SHEET", _values(lambda v: {**v, "tau": 0.06, "lag": 0.06 + v["latency"]})),
+        ("PARAMETER_FIXED", _values(lambda v: {**v, "latency": 0.1, "lag": v["tau"] + 0.1})),
+        ("PARAMETER_FIXED", _values(lambda v: {**v, "Fc": 0.3})),
+        ("INTERVAL_REVERSED", lambda found: {k: [v, h, low] for k, (v, low, h) in found.items()}),
+        ("INTERVAL_REVERSED", lambda found: {k: [v, low - v, h - v] for k, (v, low, h) in found.items()}),
+        ("INTERVAL_WITHOUT_WIDTH", _widths(lambda k, v, w: 0.0)),
+        ("INTERVAL_OVERCONFIDENT", _widths(lambda k, v, w: w / 20)),
+        ("INTERVAL_WITHOUT_RECORDING", _widths(lambda k, v, w: _FIXED[k] * v)),
+        ("INTERVAL_USELESS", _widths(lambda k, v, w: 20 * w)),
+    ),
+}
+
+
+def _tune(read=lambda estimate, box: (estimate, box), told=lambda gains, estimate: gains):
+    """``read``: what the search is asked about; ``told``: what is made of its gains."""
+
+    def tune(estimate, randomization):
+        return told(model.tune(*read(estimate, randomization)), estimate)
+
+    return tune
+
+
+def _without(name):
+    return lambda estimate, box: ({**estimate, name: [0.001] * 3}, box)
+
+
+def _one(box):
+    return {k: [1.0, 1.0] for k in box}
+
+
+_TUNE = {
+    "read": (
+        ("RANDOMIZATION_IGNORED", lambda estimate, box: (estimate, _one(box))),
+        ("RANDOMIZATION_IGNORED", lambda estimate, box: (estimate, {k: [0.7, 1.4] for k in box})),
+        ("ESTIMATE_IGNORED", lambda estimate, box: ({k: [v] * 3 for k, v in _SHEET.items()}, box)),
+        ("ESTIMATE_IGNORED", lambda estimate, box: (dict.fromkeys(estimate, [1.0] * 3), box)),
+        ("DELAY_IGNORED", _without("latency")),
+    ),
+    "told": (
+        ("GAINS_SWAPPED", lambda gains, estimate: {"kp": gains["kd"], "kd": gains["kp"]}),
+        ("NO_DAMPING", lambda gains, estimate: {**gains, "kd": 0.0}),
+        ("GAINS_NEGATIVE", lambda gains, estimate: {k: -v for k, v in gains.items()}),
+        ("GAINS_HARD_CODED", lambda gains, estimate: {"kp": 10.0, "kd": 7.0}),
+        (
+            "GAINS_BY_FORMULA",
+            lambda gains, estimate: {"kp": 9.3 * estimate["m"][0], "kd": 4.5 * estimate["m"][0]},
+        ),
+        ("SEARCH_ENDED_EARLY", lambda gains, estimate: {k: 0.6 * v for k, v in gains.items()}),
+        (
+            "SEARCH_ENDED_EARLY",
+            lambda gains, estimate: {"kp": min(gains["kp"], 3.0), "kd": min(gains["kd"], 2.0)},
+        ),
+    ),
+}

@@ -1,7 +1,0 @@
-"""The promise is a percentage."""
-
-_as_share = plan
-
-
-def plan():
-    return {**_as_share(), "threshold": 94}

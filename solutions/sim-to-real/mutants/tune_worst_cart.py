@@ -1,9 +1,0 @@
-"""The gains for which the slowest of the carts is fastest."""
-
-
-def tune(estimate, randomization):
-    rng = np.random.default_rng(2)
-    carts = {k: estimate[k][0] * np.exp(rng.uniform(*np.log(randomization[k]), 60)) for k in NAMES}
-    kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(1.0, 40, 40), np.linspace(0.25, 0.8, 12)))
-    cost = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).max(axis=0)
-    return {"kp": float(kp[cost.argmin()]), "kd": float((kp * ratio)[cost.argmin()])}

@@ -1,0 +1,2308 @@
+"""Mistakes in `validation`: words beside the programs that they are true of."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import numpy as np
+
+from course.authoring.mistakes import Mistakes
+from course.scoring import kit
+
+mistakes = Mistakes()
+
+mistakes(
+    "ROOT_MISSING",
+    "The result is the mean square: the square root at the end is missing.",
+    "Take the square root of the mean, so that the result has the unit of the error.",
+    kind="consequence",
+).edit("rmse", {"sqrt(np.mean(np.square(np.asarray(e, dtype=float))": "mean(np.square(e"})
+mistakes(
+    "MEAN_REMOVED",
+    "The result is the spread about the mean or the median. A constant error does not count in it.",
+    "Square the errors as they are. A simulation that is always off by the same amount is wrong too.",
+    kind="consequence",
+).edit("rmse", {"sqrt(np.mean(np.square(np.asarray(e, dtype=float)))": "std(e"})
+mistakes(
+    "MEAN_ABSOLUTE",
+    "The result is the mean of the absolute errors.",
+    "An RMSE is the root of the mean of the squares. A bias keeps the sign of each error.",
+    kind="consequence",
+).edit("rmse", {"sqrt(np.mean(np.square(np.asarray(e, dtype=float))": "mean(np.abs(e"})
+mistakes(
+    "DDOF_ONE",
+    "Your code divides by N - 1.",
+    "Divide by N. np.var does; statistics.variance divides by N - 1, and statistics.pvariance by N.",
+).edit("rmse", {"mean(np.square(np.asarray(e, dtype=float))": "sum(np.square(e)) / max(len(e) - 1, 1"}).body(
+    "bias_variance",
+    """
+        return float(np.mean(e)), float(np.var(e, ddof=1))
+    """,
+)
+mistakes(
+    "NOT_AVERAGED",
+    "The result has a sum where a mean belongs.",
+    "Divide the sum by N. For an RMSE, divide before you take the root.",
+    kind="consequence",
+).edit("rmse", {"sqrt(np.mean(np.square(np.asarray(e, dtype=float)))": "linalg.norm(e"})
+mistakes(
+    "VARIANCE_ABOUT_ZERO",
+    "The second value still contains the bias: the errors are squared before the mean is subtracted.",
+    "Subtract the mean, square, and divide the sum by N.",
+).body(
+    "bias_variance",
+    """
+        return float(np.mean(e)), float(np.mean(np.square(e)))
+    """,
+)
+mistakes(
+    "STD_FOR_VARIANCE",
+    "The second value is the standard deviation.",
+    "The variance is the mean of the squared deviations, without a root.",
+).body(
+    "bias_variance",
+    """
+        return float(np.mean(e)), float(np.std(e))
+    """,
+)
+mistakes(
+    "CANCELLATION",
+    "The variance loses its digits where the mean is much larger than the scatter.",
+    "mean(e**2) - mean(e)**2 is the difference of two huge numbers. Subtract the mean first, then square.",
+).body(
+    "bias_variance",
+    """
+        e = np.asarray(e)
+        return float(np.mean(e)), float(np.mean(e**2) - np.mean(e) ** 2)
+    """,
+)
+mistakes(
+    "MEDIAN_FOR_MEAN",
+    "Your code takes a median where a mean is asked for.",
+    "Take the mean. A median ignores rare large errors.",
+    kind="consequence",
+).body(
+    "bias_variance",
+    """
+        return float(np.median(e)), float(np.var(e))
+    """,
+)
+mistakes(
+    "MUTATES_INPUT",
+    "An argument was changed.",
+    "Write e = e - ..., which makes a new array. e -= ... and e[...] = ... change the caller's array; sort(), pop() and run[...] = ... the caller's list or dict.",
+    kind="fact",
+).body(
+    "bias_variance",
+    """
+        bias = float(np.mean(e))
+        e -= bias
+        return bias, float(np.mean(e**2))
+    """,
+).body(
+    "wrap_angle",
+    """
+        e += np.pi
+        e %= 2 * np.pi
+        e -= np.pi
+        return e
+    """,
+).program(
+    "validate",
+    """
+        _judged = validate
+
+
+        def validate(sim, real, spec):
+            report = _judged(sim, real, spec)
+            for simulated, measured in held_out_pairs(sim, real):
+                simulated["y"] -= measured["y"]
+            return report
+    """,
+).program(
+    "validate",
+    """
+        _judged = validate
+
+
+        def validate(sim, real, spec):
+            sim["runs"].sort(key=lambda run: run["id"], reverse=True)
+            sim["runs"].sort(key=lambda run: run["id"])
+            real["runs"].sort(key=lambda run: run["id"])
+            return _judged(sim, real, spec)
+    """,
+).body(
+    "rmse",
+    """
+        e *= e
+        return float(np.sqrt(np.mean(e)))
+    """,
+).body(
+    "nees",
+    """
+        for i in range(len(P)):
+            P[i] = np.linalg.inv(P[i])
+        return np.einsum("ni,nij,nj->n", err, P, err)
+    """,
+).body(
+    "nis",
+    """
+        for i in range(len(nu)):
+            nu[i] = np.linalg.solve(np.linalg.cholesky(S[i]), nu[i])
+        return np.sum(nu**2, axis=1)
+    """,
+).body(
+    "coverage",
+    """
+        lo -= y
+        hi -= y
+        return float(np.mean((lo <= 0) & (hi >= 0)))
+    """,
+).body(
+    "energy_error",
+    """
+        values = np.array([energy(q_i, v_i) for q_i, v_i in zip(q, v)])
+        q -= q[0].copy()
+        return (values - values[0]) / abs(values[0])
+    """,
+).body(
+    "contact_force_error",
+    """
+        f_sim /= np.max(f_real)
+        f_real /= np.max(f_real)
+        return {"peak": float(np.max(f_sim) - 1), "impulse": float(np.sum(f_sim) / np.sum(f_real) - 1)}
+    """,
+).body(
+    "cross_validate",
+    """
+        scores = []
+        for fold in np.array_split(np.arange(len(runs)), k):
+            model = fit([dict(run, y=run["y"].copy()) for i, run in enumerate(runs) if i not in fold])
+            e = [np.subtract(predict(model, runs[i]), runs[i]["y"]) for i in fold]
+            scores.append(np.sqrt(np.mean(np.concatenate(e) ** 2)))
+        for run in runs:
+            run["y"] -= np.mean(run["y"])
+        return np.array(scores)
+    """,
+).body(
+    "block_bootstrap_ci",
+    """
+        n = len(e)
+        starts = rng.integers(0, n - block + 1, size=(n_boot, -(-n // block)))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(len(starts), -1)[:, :n]
+        values = [statistic(e[row]) for row in rows]
+        e -= np.mean(e)
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
+    "NOT_WRAPPED",
+    "Your code returns the angles unchanged.",
+    "Add or subtract whole turns until each angle lies between minus half a turn and half a turn. The angles are in radians, so half a turn is pi.",
+).edit("wrap_angle", {"(np.asarray(e, dtype=float) + np.pi) % (2 * np.pi) - np.pi": "np.array(e)"})
+mistakes(
+    "WRAPPED_ONCE",
+    "Your code subtracts one turn at most, but an error may be many turns away.",
+    "Use the remainder of a division by one turn, which removes any number of turns.",
+).edit(
+    "wrap_angle",
+    {
+        "(np.asarray(e, dtype=float) + np.pi) % (2 * np.pi) - np.pi": "np.where(e > np.pi, e - 2 * np.pi, np.where(e < -np.pi, e + 2 * np.pi, e))"
+    },
+)
+mistakes(
+    "ZERO_TO_TURN",
+    "The results lie between zero and a whole turn.",
+    "A small negative error must stay small: add half a turn, take the remainder, and subtract half a turn again.",
+).edit(
+    "wrap_angle",
+    {"(np.asarray(e, dtype=float) + np.pi) % (2 * np.pi) - np.pi": "np.asarray(e) % (2 * np.pi)"},
+)
+mistakes(
+    "REMAINDER_SIGN",
+    "Negative angles come out in another range: the remainder has the sign of the angle.",
+    "math.fmod and np.fmod do that. Use % or np.mod: (e + pi) % (2 pi) - pi.",
+).edit(
+    "wrap_angle",
+    {"return (np.asarray(e, dtype=float) + np.pi) % (2 *": "return np.fmod(np.asarray(e) + np.pi, 2 *"},
+)
+mistakes(
+    "FOLDED",
+    "Your code folds angles back, so two different directions get the same angle.",
+    "arcsin and arccos cannot tell two directions apart; arctan2(sin, cos) can.",
+).edit("wrap_angle", {"(np.asarray(e, dtype=float) + np.pi) % (2 * np.pi) - np.pi": "np.arcsin(np.sin(e))"})
+mistakes(
+    "DIVIDED_BY_D",
+    "The result is divided by the number of components.",
+    "Do not divide it: for a consistent estimate its average is d, and the band is made for that.",
+).edit("nees", {"squared_distance(err, P)": "squared_distance(err, P) / err.shape[1]"}).edit(
+    "nis", {"squared_distance(nu, S)": "squared_distance(nu, S) / nu.shape[1]"}
+)
+mistakes(
+    "DIAGONAL_ONLY",
+    "Your code uses only the variances, not how two components are correlated.",
+    "Use the whole matrix: solve P w = err for w, then sum err * w.",
+).edit("nees", {"squared_distance(err, P": 'np.sum(err**2 / np.einsum("nii->ni", P), axis=1'})
+mistakes(
+    "NOT_INVERTED",
+    "Your code multiplies by the covariance where it should divide by it.",
+    "Solve P w = err for w and sum err * w. With a large covariance, a large error counts for less.",
+).edit("nees", {"squared_distance(err, P": 'np.einsum("ni,nij,nj->n", err, P, err'})
+mistakes(
+    "ROOT_TAKEN",
+    "The result is the distance, not its square.",
+    "Leave out the root: it is the squared distance that follows a chi-square distribution.",
+).edit("nees", {"squared_distance(err, P": "np.sqrt(squared_distance(err, P)"})
+mistakes(
+    "SUMMED",
+    "The result is a single number, not one for each row.",
+    "Return one value per row of err: a return inside the loop ends it after the first row, and np.sum without an axis adds up all rows.",
+    kind="fact",
+).edit("nees", {"squared_distance(err, P": "float(np.mean(squared_distance(err, P))"})
+mistakes(
+    "INVERTED_BY_ELEMENT",
+    "Your code divides by each element of the matrix.",
+    "Inverting a matrix is not the same as inverting each of its elements: use np.linalg.solve or np.linalg.inv.",
+).body(
+    "nis",
+    """
+        with np.errstate(divide="ignore"):
+            return np.einsum("ni,nij,nj->n", nu, 1 / np.asarray(S), nu)
+    """,
+)
+mistakes(
+    "UNWEIGHTED",
+    "The result is the plain squared length, without the covariance.",
+    "Solve P w = err for w and sum err * w.",
+).edit("nis", {"squared_distance(nu, S": "np.sum(np.square(nu), axis=1"})
+mistakes(
+    "ONE_SIDED",
+    "Each end leaves alpha outside, so both together leave out twice as much as they should.",
+    "Split alpha: half of it below lo and half above hi.",
+).body(
+    "consistency_band",
+    """
+        def quantile(p, n):
+            s = 2 / (9 * n)
+            return n * (1 - s + NormalDist().inv_cdf(p) * math.sqrt(s)) ** 3
+
+        return quantile(alpha, dof * runs) / runs, quantile(1 - alpha, dof * runs) / runs
+    """,
+).body(
+    "block_bootstrap_ci",
+    """
+        n = len(e)
+        starts = rng.integers(0, n - block + 1, size=(n_boot, -(-n // block)))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(n_boot, -1)[:, :n]
+        values = [statistic(e[row]) for row in rows]
+        return tuple(np.quantile(values, [alpha, 1 - alpha]))
+    """,
+)
+mistakes(
+    "NOT_DIVIDED_BY_RUNS",
+    "The result is the band of the sum over the runs, not of their average.",
+    "Divide both quantiles by the number of runs.",
+).body(
+    "consistency_band",
+    """
+        def quantile(p, n):
+            s = 2 / (9 * n)
+            return n * (1 - s + NormalDist().inv_cdf(p) * math.sqrt(s)) ** 3
+
+        return quantile(alpha / 2, dof * runs), quantile(1 - alpha / 2, dof * runs)
+    """,
+)
+mistakes(
+    "RUNS_IGNORED",
+    "The quantiles are those of the degrees of freedom of a single run.",
+    "The sum over the runs is chi-square with dof * runs degrees of freedom: take its quantiles and divide by runs.",
+).body(
+    "consistency_band",
+    """
+        def quantile(p, n):
+            s = 2 / (9 * n)
+            return n * (1 - s + NormalDist().inv_cdf(p) * math.sqrt(s)) ** 3
+
+        return quantile(alpha / 2, dof), quantile(1 - alpha / 2, dof)
+    """,
+)
+mistakes(
+    "DIVIDED_BY_DOF",
+    "The band is divided by the degrees of freedom.",
+    "The NEES is not divided by d, and neither is its band: divide by runs only.",
+).body(
+    "consistency_band",
+    """
+        def quantile(p, n):
+            s = 2 / (9 * n)
+            return n * (1 - s + NormalDist().inv_cdf(p) * math.sqrt(s)) ** 3
+
+        n = dof * runs
+        return quantile(alpha / 2, n) / n, quantile(1 - alpha / 2, n) / n
+    """,
+)
+mistakes(
+    "NORMAL_BAND",
+    "The band is symmetric about dof, like a normal distribution. A chi-square is not.",
+    "Use quantiles of the chi-square distribution: `course hint validation consistency_band` shows two ways.",
+).body(
+    "consistency_band",
+    """
+        half = NormalDist().inv_cdf(1 - alpha / 2) * math.sqrt(2 * dof / runs)
+        return dof - half, dof + half
+    """,
+)
+mistakes(
+    "COVERAGE_OPEN_BOUNDS",
+    "A value exactly on an end is not counted.",
+    "Ends are included: use <= on both sides.",
+).body(
+    "coverage",
+    """
+        return float(np.mean((lo < y) & (y < hi)))
+    """,
+).body(
+    "coverage",
+    """
+        return float(np.mean((lo <= y) & (y < hi)))
+    """,
+)
+mistakes(
+    "COUNTED",
+    "The result is the number of values inside, not their fraction.",
+    "Divide by the number of values.",
+).body(
+    "coverage",
+    """
+        return int(np.sum((lo <= y) & (y <= hi)))
+    """,
+)
+mistakes(
+    "OUTSIDE_COUNTED",
+    "The result is the fraction that lies outside.",
+    "Count where lo <= y <= hi.",
+    kind="consequence",
+).body(
+    "coverage",
+    """
+        return float(np.mean((y < lo) | (hi < y)))
+    """,
+)
+mistakes(
+    "IN_PER_CENT",
+    "The result is a hundred times too large.",
+    "Return a fraction, not a percentage.",
+    kind="consequence",
+).body(
+    "coverage",
+    """
+        return 100 * float(np.mean((lo <= y) & (y <= hi)))
+    """,
+)
+mistakes(
+    "IID_BOOTSTRAP",
+    "In the resamples, most errors are not followed by their neighbour. Perhaps single errors are drawn, or blocks are shuffled.",
+    "Choose random starts, take block consecutive samples from each, and keep their order.",
+).body(
+    "block_bootstrap_ci",
+    """
+        n = len(e)
+        values = [statistic(e[rng.integers(0, n, n)]) for _ in range(n_boot)]
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
+    "RESAMPLE_SIZE",
+    "Where N is no multiple of block, not every resample has N errors.",
+    "Join blocks until there are at least N samples, and cut off the rest; N need not be a multiple of block.",
+    kind="fact",
+).body(
+    "block_bootstrap_ci",
+    """
+        n = len(e)
+        starts = rng.integers(0, n - block + 1, n_boot)
+        values = [statistic(e[s : s + block]) for s in starts]
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        count = -(-n // block)
+        starts = rng.integers(0, n - block + 1, size=(n_boot, count))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(len(starts), -1)
+        values = [statistic(e[row]) for row in rows]
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        starts = rng.integers(0, n - block + 1, size=(n_boot, n // block))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(len(starts), -1)
+        values = [statistic(e[row]) for row in rows]
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
+    "BLOCK_IGNORED",
+    "The blocks in the resamples are much shorter or longer than `block`.",
+    "Each block has a random start of its own, and then block consecutive samples.",
+).body(
+    "block_bootstrap_ci",
+    """
+        n = len(e)
+        block = round(n ** (1 / 3))
+        starts = rng.integers(0, n - block + 1, size=(n_boot, -(-n // block)))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(n_boot, -1)[:, :n]
+        values = [statistic(e[row]) for row in rows]
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
+    "ONE_STANDARD_ERROR",
+    "Perhaps the ends are a fixed number of standard deviations away.",
+    "Take the quantiles of the resampled values at alpha/2 and 1 - alpha/2.",
+    kind="consequence",
+).body(
+    "block_bootstrap_ci",
+    """
+        n = len(e)
+        starts = rng.integers(0, n - block + 1, size=(n_boot, -(-n // block)))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(n_boot, -1)[:, :n]
+        values = [statistic(e[row]) for row in rows]
+        half = 2 * np.std(values)
+        return np.mean(values) - half, np.mean(values) + half
+    """,
+    also=("WIDTH_SCALED",),
+)
+mistakes(
+    "STATISTIC_IGNORED",
+    "The interval is not made of what the statistic returns for the resamples.",
+    "Keep what statistic(samples) returns for each resample; it need not be the mean.",
+).body(
+    "block_bootstrap_ci",
+    """
+        n = len(e)
+        starts = rng.integers(0, n - block + 1, size=(n_boot, -(-n // block)))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(n_boot, -1)[:, :n]
+        return tuple(np.quantile(np.mean(e[rows], axis=1), [alpha / 2, 1 - alpha / 2]))
+    """,
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        count = -(-n // block)
+        starts = rng.integers(0, n - block + 1, size=(n_boot, count))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(len(starts), -1)[:, :n]
+        values = []
+        for row in rows:
+            statistic(e[row])
+            values.append(np.mean(e[row]))
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
+    "GLOBAL_RNG",
+    "The same generator in the same state gives a different interval.",
+    "Take every random number from rng, and keep nothing from one call to the next.",
+    kind="fact",
+).body(
+    "block_bootstrap_ci",
+    """
+        n = len(e)
+        starts = np.random.default_rng().integers(0, n - block + 1, size=(n_boot, -(-n // block)))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(n_boot, -1)[:, :n]
+        values = [statistic(e[row]) for row in rows]
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
+    "FIXED_SEED",
+    "Another generator gives exactly the same interval.",
+    "Take every random number from rng, anew in each call.",
+    kind="fact",
+).body(
+    "block_bootstrap_ci",
+    """
+        n = len(e)
+        starts = np.random.default_rng(0).integers(0, n - block + 1, size=(n_boot, -(-n // block)))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(n_boot, -1)[:, :n]
+        values = [statistic(e[row]) for row in rows]
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
+    "NOT_ABSOLUTE",
+    "Your code divides by the first energy with its sign. Where energies are negative, a gain looks like a loss.",
+    "Divide by abs(E[0]).",
+).body(
+    "energy_error",
+    """
+        e = np.array([energy(a, b) for a, b in zip(q, v)])
+        return (e - e[0]) / e[0]
+    """,
+)
+mistakes(
+    "TO_CURRENT",
+    "Your code divides by the energy at each moment.",
+    "Divide by abs(E[0]), always.",
+).body(
+    "energy_error",
+    """
+        e = np.array([energy(a, b) for a, b in zip(q, v)])
+        return (e - e[0]) / np.abs(e)
+    """,
+)
+mistakes(
+    "WHOLE_NUMBERS",
+    "The result is right for floats, and wrong for the same numbers in an array of whole numbers.",
+    "np.empty_like(x) and np.zeros_like(x) make an array of whole numbers where x is one, and cut off every fraction. np.zeros(n) makes an array of floats.",
+    kind="fact",
+).body(
+    "energy_error",
+    """
+        e = np.empty(len(q), dtype=np.asarray(q).dtype)
+        for i in range(len(e)):
+            e[i] = energy(q[i], v[i])
+        return (e - e[0]) / abs(e[0])
+    """,
+).body(
+    "coverage",
+    """
+        y = np.asarray(y)
+        ends = np.empty((2, len(y)), dtype=y.dtype)
+        ends[:] = lo, hi
+        return float(np.mean((ends[0] <= y) & (y <= ends[1])))
+    """,
+).body(
+    "wrap_angle",
+    """
+        e = np.asarray(e)
+        wrapped = np.empty_like(e)
+        wrapped[:] = np.remainder(e + np.pi, 2 * np.pi) - np.pi
+        return wrapped
+    """,
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e)
+        values = np.empty(n_boot, dtype=e.dtype)
+        for i in range(n_boot):
+            starts = rng.integers(0, len(e) - block + 1, size=math.ceil(len(e) / block))
+            rows = (starts[:, None] + np.arange(block)).reshape(-1)[: len(e)]
+            values[i] = statistic(e[rows])
+        lo, hi = np.quantile(values, [alpha / 2, 1 - alpha / 2])
+        return float(lo), float(hi)
+    """,
+)
+mistakes(
+    "UNSIGNED",
+    "The result has lost its sign.",
+    "Take no absolute value of the error: its sign says whether it is too large or too small. Only an energy is divided by abs(E[0]).",
+).body(
+    "energy_error",
+    """
+        e = np.array([energy(a, b) for a, b in zip(q, v)])
+        return np.abs(e - e[0]) / abs(e[0])
+    """,
+).body(
+    "contact_force_error",
+    """
+        f_sim, f_real = np.asarray(f_sim), np.asarray(f_real)
+        peak, impulse = np.max(f_real), np.sum(f_real) * dt
+        return {"peak": abs(np.max(f_sim) / peak - 1), "impulse": abs(np.sum(f_sim) * dt / impulse - 1)}
+    """,
+).body(
+    "bias_variance",
+    """
+        bias = abs(float(np.mean(e)))
+        return bias, float(np.mean((np.asarray(e) - np.mean(e)) ** 2))
+    """,
+)
+mistakes(
+    "TO_PREVIOUS",
+    "Your code compares each sample with the one before it.",
+    "Subtract E[0] from each sample and divide by abs(E[0]): a slow drift cannot be seen from step to step.",
+).body(
+    "energy_error",
+    """
+        e = np.array([energy(a, b) for a, b in zip(q, v)])
+        return np.diff(e, prepend=e[0]) / abs(e[0])
+    """,
+)
+mistakes(
+    "WHOLE_ARRAYS",
+    "Your code passes energy more than one position and one velocity.",
+    "Loop over the samples: energy(q[i], v[i]) returns one number.",
+    kind="fact",
+).body(
+    "energy_error",
+    """
+        e = np.asarray(energy(q, v))
+        return (e - e[0]) / abs(e[0])
+    """,
+)
+mistakes(
+    "PEAK_OF_ERROR",
+    "The peak is that of the difference. So a late impact looks like one of the wrong strength.",
+    "Take the peak of each force separately, then compare the two numbers.",
+    kind="consequence",
+).body(
+    "contact_force_error",
+    """
+        f_sim, f_real = np.asarray(f_sim), np.asarray(f_real)
+        peak, impulse = np.max(f_real), np.sum(f_real) * dt
+        return {"peak": np.max(f_sim - f_real) / peak, "impulse": np.sum(f_sim) * dt / impulse - 1}
+    """,
+)
+mistakes(
+    "PEAK_AT_SAME_TIME",
+    "Your code compares the two forces at the moment at which one of them has its peak.",
+    "Take the peak of each force separately, wherever it is.",
+    kind="consequence",
+).body(
+    "contact_force_error",
+    """
+        f_sim, f_real = np.asarray(f_sim), np.asarray(f_real)
+        peak, impulse = np.max(f_real), np.sum(f_real) * dt
+        at = np.argmax(f_real)
+        return {"peak": (f_sim[at] - peak) / peak, "impulse": np.sum(f_sim) * dt / impulse - 1}
+    """,
+)
+mistakes(
+    "IMPULSE_OF_ABSOLUTE",
+    "The impulse is the integral of the absolute difference. So a late impact looks like one of the wrong strength.",
+    "Integrate each force separately, then compare the two numbers.",
+    kind="consequence",
+).body(
+    "contact_force_error",
+    """
+        f_sim, f_real = np.asarray(f_sim), np.asarray(f_real)
+        peak, impulse = np.max(f_real), np.sum(f_real) * dt
+        return {"peak": np.max(f_sim) / peak - 1, "impulse": np.sum(np.abs(f_sim - f_real)) * dt / impulse}
+    """,
+)
+mistakes(
+    "DIVIDED_BY_SIM",
+    "The difference is divided by the simulated value.",
+    "Divide by the real value: it is the reference.",
+    kind="consequence",
+).body(
+    "contact_force_error",
+    """
+        f_sim, f_real = np.asarray(f_sim), np.asarray(f_real)
+        peak, impulse = np.max(f_real), np.sum(f_real) * dt
+        simulated = np.sum(f_sim) * dt
+        return {"peak": 1 - peak / np.max(f_sim), "impulse": 1 - impulse / simulated}
+    """,
+)
+mistakes(
+    "FITS_ONCE",
+    "All predictions come from a single model, which was fitted to all runs, so no run is held out.",
+    "Fit a new model for each fold, without the runs of that fold.",
+    kind="fact",
+).body(
+    "cross_validate",
+    """
+        model = fit(runs)
+        folds = np.array_split(np.arange(len(runs)), k)
+        e = [np.concatenate([np.subtract(predict(model, runs[i]), runs[i]["y"]) for i in f]) for f in folds]
+        return [np.sqrt(np.mean(x**2)) for x in e]
+    """,
+)
+mistakes(
+    "LEAKS_HELD_OUT",
+    "A model predicts runs that it was fitted to.",
+    "For each fold, fit to all the runs outside it and predict those inside it.",
+    kind="fact",
+).body(
+    "cross_validate",
+    """
+        folds = [list(f) for f in np.array_split(np.arange(len(runs)), k)]
+        scores = []
+        for fold in folds:
+            model = fit([run for i, run in enumerate(runs) if i != fold[0]])
+            e = [np.subtract(predict(model, runs[i]), runs[i]["y"]) for i in fold]
+            scores.append(np.sqrt(np.mean(np.concatenate(e) ** 2)))
+        return scores
+    """,
+).body(
+    "cross_validate",
+    """
+        folds = [list(f) for f in np.array_split(np.arange(len(runs)), k)]
+        scores = []
+        for fold in folds:
+            model = fit(list(runs))
+            e = [np.subtract(predict(model, runs[i]), runs[i]["y"]) for i in fold]
+            scores.append(np.sqrt(np.mean(np.concatenate(e) ** 2)))
+        return scores
+    """,
+)
+mistakes(
+    "SCORES_TRAINING",
+    "Each model predicts the very runs that it was fitted to.",
+    "Fit to all the runs outside the fold, and predict the runs of the fold.",
+    kind="fact",
+).body(
+    "cross_validate",
+    """
+        folds = [list(f) for f in np.array_split(np.arange(len(runs)), k)]
+        scores = []
+        for fold in folds:
+            model = fit([run for i, run in enumerate(runs) if i not in fold])
+            e = [
+                np.subtract(predict(model, runs[i]), runs[i]["y"])
+                for i in [j for j in range(len(runs)) if j not in fold]
+            ]
+            scores.append(np.sqrt(np.mean(np.concatenate(e) ** 2)))
+        return scores
+    """,
+)
+mistakes(
+    "NOT_CONTIGUOUS",
+    "The runs of a fold are not neighbours in the list.",
+    "The first fold is the first runs of the list, and so on: do not shuffle or alternate.",
+    kind="fact",
+).body(
+    "cross_validate",
+    """
+        folds = [list(range(j, len(runs), k)) for j in range(k)]
+        scores = []
+        for fold in folds:
+            model = fit([run for i, run in enumerate(runs) if i not in fold])
+            e = [np.subtract(predict(model, runs[i]), runs[i]["y"]) for i in fold]
+            scores.append(np.sqrt(np.mean(np.concatenate(e) ** 2)))
+        return scores
+    """,
+)
+mistakes(
+    "FOLDS_UNEVEN",
+    "The folds are not k parts of nearly equal size that hold each run once.",
+    "np.array_split(range(len(runs)), k) gives k parts whose lengths differ by at most one.",
+    kind="fact",
+).body(
+    "cross_validate",
+    """
+        folds = [list(range(j * (len(runs) // k), (j + 1) * (len(runs) // k))) for j in range(k)]
+        scores = []
+        for fold in folds:
+            model = fit([run for i, run in enumerate(runs) if i not in fold])
+            e = [np.subtract(predict(model, runs[i]), runs[i]["y"]) for i in fold]
+            scores.append(np.sqrt(np.mean(np.concatenate(e) ** 2)))
+        return scores
+    """,
+)
+mistakes(
+    "MEAN_OF_RUNS",
+    "Your code averages results of single runs. So a short run counts as much as a long one.",
+    "Pool all samples first, then compute the number once.",
+    kind="consequence",
+).body(
+    "cross_validate",
+    """
+        folds = [list(f) for f in np.array_split(np.arange(len(runs)), k)]
+        scores = []
+        for fold in folds:
+            model = fit([run for i, run in enumerate(runs) if i not in fold])
+            e = [np.subtract(predict(model, runs[i]), runs[i]["y"]) for i in fold]
+            scores.append(np.mean([np.sqrt(np.mean(x**2)) for x in e]))
+        return scores
+    """,
+).program(
+    "validate",
+    """
+        _judged = validate
+
+
+        def validate(sim, real, spec):
+            report = _judged(sim, real, spec)
+            if report["runs_used"]:
+                e = [columns(pair) for pair in held_out_pairs(sim, real)]
+                report["rmse"] = float(np.mean([np.sqrt(np.mean((y - r) ** 2)) for y, _, r in e]))
+            return report
+    """,
+)
+mistakes(
+    "TRAINS_ON_TOO_LITTLE",
+    "A model is not fitted to all the runs outside its fold.",
+    "Pass every run outside the fold to fit. Tell runs apart by their place in the list, not by a key or by their length.",
+    kind="fact",
+).body(
+    "cross_validate",
+    """
+        folds = [list(f) for f in np.array_split(np.arange(len(runs)), k)]
+        scores = []
+        for fold in folds:
+            model = fit([runs[fold[0] - 1]])
+            e = [np.subtract(predict(model, runs[i]), runs[i]["y"]) for i in fold]
+            scores.append(np.sqrt(np.mean(np.concatenate(e) ** 2)))
+        return scores
+    """,
+).body(
+    "cross_validate",
+    """
+        scores = []
+        for fold in np.array_split(np.arange(len(runs)), k):
+            lengths = {len(runs[i]["y"]) for i in fold}
+            alike = len({len(run["y"]) for run in runs}) == 1
+            outside = [
+                run for i, run in enumerate(runs) if i not in fold and (alike or len(run["y"]) not in lengths)
+            ]
+            model = fit(outside)
+            errors = [predict(model, runs[i]) - runs[i]["y"] for i in fold]
+            scores.append(math.sqrt(np.mean(np.concatenate(errors) ** 2)))
+        return np.array(scores)
+    """,
+)
+mistakes(
+    "CALIBRATION_RUNS_SCORED",
+    "Your code scores runs on which the simulation was calibrated.",
+    "Leave out every run whose id is in calibrated_on before you compute anything.",
+    kind="fact",
+).body(
+    "validate",
+    """
+        measured = {run["id"]: run for run in real["runs"]}
+        return [(run, measured[run["id"]]) for run in sim["runs"] if run["id"] in measured]
+    """,
+    of="held_out_pairs",
+)
+mistakes(
+    "NOTHING_LEFT",
+    "With one run left, or none, your code does not answer as the README says.",
+    "With none: reason calibration_data, four numbers and intervals None, runs_used empty. With one: the four numbers, intervals None, reason single_run.",
+    kind="fact",
+).program(
+    "validate",
+    """
+        _judged = validate
+
+
+        def validate(sim, real, spec):
+            report = _judged(sim, real, spec)
+            return report if report["runs_used"] else {**report, "accepted": True, "reasons": []}
+    """,
+).program(
+    "validate",
+    """
+        _judged = validate
+
+
+        def validate(sim, real, spec):
+            report = _judged(sim, real, spec)
+            if len(report["runs_used"]) == 1:
+                ends = {key: (report[key], report[key]) for key in ("rmse", "bias", "lag_s", "coverage")}
+                report |= {"accepted": True, "reasons": [], "intervals": ends}
+            return report
+    """,
+)
+mistakes(
+    "MATCHED_BY_POSITION",
+    "Your code pairs runs by their position in the list.",
+    "Pair them by id: the two lists may have different orders and different runs.",
+    kind="fact",
+).body(
+    "validate",
+    """
+        pairs = zip(sim["runs"], real["runs"])
+        return [(s, r) for s, r in pairs if s["id"] not in sim["calibrated_on"]]
+    """,
+    of="held_out_pairs",
+)
+mistakes(
+    "LAG_SIGN",
+    "The lag has the wrong sign, or has lost its sign.",
+    "The lag is positive where the simulation is late: where sim(t + lag) looks like real(t).",
+    kind="fact",
+).program(
+    "validate",
+    """
+        _shift = best_shift
+
+
+        def best_shift(pairs):
+            return -_shift(pairs)
+    """,
+)
+mistakes(
+    "LAG_WHOLE_SAMPLES",
+    "Here the lag is a whole number of samples.",
+    "The best shift may lie between two samples. Fit a parabola to the mean square at the best shift and its two neighbours.",
+    kind="fact",
+).body(
+    "validate",
+    """
+        dt = min(r["t"][1] - r["t"][0] for _, r in pairs)
+        shifts = np.arange(-round(MAX_LAG / dt), round(MAX_LAG / dt) + 1) * dt
+        return float(shifts[np.argmin(misfit(pairs, shifts))])
+    """,
+    of="best_shift",
+)
+mistakes(
+    "LAG_NOT_BEST",
+    "Another shift fits the samples of all runs better.",
+    "For each shift s, from -0.19 to 0.19 s, add up the squares of sim(t + s) - real(t) over all runs, each with its own time step, and divide by the number of samples. The best shift has the smallest. A parabola through it and its neighbours has its lowest point at i + (c[i-1] - c[i+1]) / (2 (c[i-1] - 2 c[i] + c[i+1])).",
+    kind="fact",
+).program(
+    "validate",
+    """
+        MAX_LAG = 0.1  # s
+    """,
+    also=("LAG_AT_THE_END",),
+).body(
+    "validate",
+    """
+        total = np.zeros(len(shifts))
+        for simulated, r in pairs:
+            t = np.asarray(r["t"])
+            later = t + shifts[:, None]
+            inside = (later >= t[0] - 1e-9) & (later <= t[-1] + 1e-9)
+            e = np.interp(later, t, simulated["y"]) - r["y"]
+            total += np.sum(e**2, axis=1, where=inside)
+        return total
+    """,
+    of="misfit",
+).program(
+    "validate",
+    """
+        _shift = best_shift
+
+
+        def best_shift(pairs):
+            return _shift(sorted(pairs, key=lambda pair: pair[0]["id"])[:1])
+    """,
+    also=("LAG_MEAN_OF_RUNS", ""),
+).body(
+    "validate",
+    """
+        dt = pairs[0][1]["t"][1] - pairs[0][1]["t"][0]
+        most = round(MAX_LAG / dt)
+        cost = np.array([
+            np.mean(np.concatenate([
+                (np.roll(np.asarray(s["y"]), -k) - np.asarray(r["y"]))[max(0, -k) : len(r["y"]) - max(0, k)]
+                for s, r in pairs
+            ]) ** 2)
+            for k in range(-most, most + 1)
+        ])  # fmt: skip
+        i = int(np.clip(np.argmin(cost), 1, len(cost) - 2))
+        a, b, c = cost[i - 1 : i + 2]
+        return float(dt * (i - most + 0.5 * (a - c) / (a - 2 * b + c)))
+    """,
+    of="best_shift",
+    also=("LAGS_OF_SINGLE_RUNS", ""),
+).body(
+    "validate",
+    """
+        dt = min(r["t"][1] - r["t"][0] for _, r in pairs)
+        shifts = np.arange(-round(MAX_LAG / dt), round(MAX_LAG / dt) + 1) * dt
+        product = np.zeros(len(shifts))
+        for simulated, r in pairs:
+            t = np.asarray(r["t"])
+            for i, s in enumerate(shifts):
+                inside = (t + s >= t[0] - 1e-9) & (t + s <= t[-1] + 1e-9)
+                product[i] += np.interp(t[inside] + s, t, simulated["y"]) @ np.asarray(r["y"])[inside]
+        i = int(np.clip(np.argmax(product), 1, len(shifts) - 2))
+        a, b, c = product[i - 1 : i + 2]
+        return float(shifts[i] + 0.5 * dt * (a - c) / (a - 2 * b + c))
+    """,
+    of="best_shift",
+    also=("LAG_MEAN_OF_RUNS", ""),
+).body(
+    "validate",
+    """
+        dt = min(r["t"][1] - r["t"][0] for _, r in pairs)
+        shifts = np.arange(-round(MAX_LAG / dt), round(MAX_LAG / dt) + 1) * dt
+        cost = misfit(pairs, shifts)
+        i = int(np.clip(np.argmin(cost), 1, len(cost) - 2))
+        a, b, c = cost[i - 1 : i + 2]
+        return float(shifts[i] - 0.5 * dt * (a - c) / (a - 2 * b + c))
+    """,
+    of="best_shift",
+    also=("LAG_OF_PARTS", ""),
+).program(
+    "validate",
+    """
+        _pooled = misfit
+
+
+        def misfit(pairs, shifts):
+            return np.mean([_pooled([pair], shifts) for pair in pairs], axis=0)
+    """,
+    also=("LAG_MEAN_OF_RUNS", "LAG_OF_PARTS"),
+)
+mistakes(
+    "LAG_IN_SAMPLES",
+    "The lag is as large as a number of samples, or of milliseconds.",
+    "lag_s is in seconds: multiply a number of samples by the time between them, or divide milliseconds by 1000.",
+    kind="fact",
+).program(
+    "validate",
+    """
+        _shift = best_shift
+
+
+        def best_shift(pairs):
+            return _shift(pairs) / min(r["t"][1] - r["t"][0] for _, r in pairs)
+    """,
+)
+mistakes(
+    "SIGN_OF_LIMIT_IGNORED",
+    "A negative bias or lag is accepted, however large.",
+    "Margins of bias and lag extend to both sides of zero: compare both ends of the interval.",
+).program(
+    "validate",
+    """
+        _judged = validate
+
+
+        def validate(sim, real, spec):
+            report = _judged(sim, real, spec)
+            if report["runs_used"]:
+                if report["lag_s"] < 0:
+                    report["reasons"] = [reason for reason in report["reasons"] if reason != "lag"]
+                report["accepted"] = not report["reasons"]
+            return report
+    """,
+).program(
+    "validate",
+    """
+        _judged = validate
+
+
+        def validate(sim, real, spec):
+            report = _judged(sim, real, spec)
+            if report["runs_used"]:
+                if report["bias"] < 0:
+                    report["reasons"] = [reason for reason in report["reasons"] if reason != "bias"]
+                report["accepted"] = not report["reasons"]
+            return report
+    """,
+)
+mistakes(
+    "SIGMA_NOT_SCALED",
+    "The coverage is that of an interval of one sigma to each side.",
+    "The interval is y plus and minus 1.96 sigma, which should cover 95 % of the values.",
+    kind="consequence",
+).edit(
+    "validate",
+    {
+        'values, dtype=float) for values in (simulated["y"], simulated["sigma"]': 'x, dtype=float) for x in (simulated["y"], simulated["sigma"] / 1.96'
+    },
+    of="columns",
+)
+mistakes(
+    "WRONG_SIGN",
+    "The result has the wrong sign.",
+    "An error is simulated minus real; a change is the present value minus the first.",
+    kind="consequence",
+).program(
+    "validate",
+    """
+        _judged = validate
+
+
+        def validate(sim, real, spec):
+            report = _judged(sim, real, spec)
+            return {**report, "bias": -report["bias"]} if report["runs_used"] else report
+    """,
+)
+mistakes(
+    "NOT_SORTED",
+    "The reasons are right but not in order.",
+    "Sort them alphabetically.",
+    kind="fact",
+).program(
+    "validate",
+    """
+        _judged = validate
+
+
+        def validate(sim, real, spec):
+            report = _judged(sim, real, spec)
+            return {**report, "reasons": report["reasons"][::-1]}
+    """,
+)
+mistakes(
+    "RMSE_ALONE_JUDGED",
+    "Only the rmse is compared with its margin.",
+    "bias, coverage, lag and rmse each have their own margin and reason. Compare the whole interval.",
+).program(
+    "validate",
+    """
+        _judged = validate
+
+
+        def validate(sim, real, spec):
+            report = _judged(sim, real, spec)
+            if report["intervals"]:
+                wrong = report["intervals"]["rmse"][1] > spec["rmse_max"]
+                report |= {"reasons": ["rmse"] if wrong else [], "accepted": not wrong}
+            return report
+    """,
+)
+mistakes(
+    "POINT_ESTIMATE_JUDGED",
+    "Your code judges by the number alone. With other runs that number may be different.",
+    "Compare the whole interval with the margin.",
+).program(
+    "validate",
+    """
+        _judged = validate
+
+
+        def validate(sim, real, spec):
+            report = _judged(sim, real, spec)
+            if report["intervals"]:
+                wrong = {
+                    "rmse": report["rmse"] > spec["rmse_max"],
+                    "bias": abs(report["bias"]) > spec["bias_max"],
+                    "lag": abs(report["lag_s"]) > spec["lag_max_s"],
+                    "coverage": not spec["coverage_min"] <= report["coverage"] <= spec["coverage_max"],
+                }
+                reasons = sorted(reason for reason, it_is in wrong.items() if it_is)
+                report |= {"reasons": reasons, "accepted": not reasons}
+            return report
+    """,
+)
+mistakes(
+    "BURDEN_REVERSED",
+    "Your code refuses only what is certainly too bad. So an interval that is too wide to decide passes.",
+    "Accept only if both ends of the interval lie inside the margin.",
+).program(
+    "validate",
+    """
+        _judged = validate
+
+
+        def validate(sim, real, spec):
+            report = _judged(sim, real, spec)
+            ends = report["intervals"]
+            if ends:
+                wrong = {
+                    "rmse": ends["rmse"][0] > spec["rmse_max"],
+                    "bias": max(ends["bias"][0], -ends["bias"][1]) > spec["bias_max"],
+                    "lag": max(ends["lag_s"][0], -ends["lag_s"][1]) > spec["lag_max_s"],
+                    "coverage": ends["coverage"][1] < spec["coverage_min"]
+                    or ends["coverage"][0] > spec["coverage_max"],
+                }
+                reasons = sorted(reason for reason, it_is in wrong.items() if it_is)
+                report |= {"reasons": reasons, "accepted": not reasons}
+            return report
+    """,
+)
+mistakes(
+    "OVER_COVERAGE_ACCEPTED",
+    "The coverage has no upper limit in your code. So a sigma of 1 km passes.",
+    "Refuse a coverage whose interval reaches below coverage_min or above coverage_max.",
+).program(
+    "validate",
+    """
+        _judged = validate
+
+
+        def validate(sim, real, spec):
+            return _judged(sim, real, {**spec, "coverage_max": math.inf})
+    """,
+)
+mistakes(
+    "JACKKNIFE_FACTOR",
+    "The interval is as wide as with another factor than (n - 1)/n.",
+    "The standard error is sqrt((n - 1)/n * sum). The values with one run left out differ little from each other, so their squares are not divided by n or n - 1 again.",
+    kind="consequence",
+).body(
+    "validate",
+    """
+        n = len(pairs)
+        numbers = measures(pairs)
+        without = [measures(pairs[:i] + pairs[i + 1 :]) for i in range(n)]
+        half = {key: T95[n - 2] * float(np.std([left[key] for left in without])) for key in numbers}
+        return {key: (value - half[key], value + half[key]) for key, value in numbers.items()}
+    """,
+    of="interval_of_each",
+)
+mistakes(
+    "NOT_STUDENTS_T",
+    "The interval is as wide as with another number of standard errors than T95[n - 2].",
+    "With n runs, multiply by T95[n - 2]: the fewer runs, the wider the interval.",
+    kind="consequence",
+).program(
+    "validate",
+    """
+        _intervals = interval_of_each
+
+
+        def interval_of_each(pairs):
+            t, numbers = T95[len(pairs) - 2], measures(pairs)
+            halves = {key: 1.96 / t * (hi - lo) / 2 for key, (lo, hi) in _intervals(pairs).items()}
+            return {key: (value - halves[key], value + halves[key]) for key, value in numbers.items()}
+    """,
+)
+mistakes(
+    "SPREAD_OF_RUNS",
+    "The interval is made from the values of single runs.",
+    "Leave out one run at a time, and pool the samples of all the others.",
+).body(
+    "validate",
+    """
+        n = len(pairs)
+        numbers, single = measures(pairs), [measures([pair]) for pair in pairs]
+        half = {
+            key: T95[n - 2] * float(np.std([one[key] for one in single], ddof=1)) / math.sqrt(n)
+            for key in numbers
+        }
+        return {key: (value - half[key], value + half[key]) for key, value in numbers.items()}
+    """,
+    of="interval_of_each",
+)
+mistakes(
+    "SAMPLES_COUNTED",
+    "The interval is as wide as if all samples were independent. Neighbours resemble each other.",
+    "Count runs, not samples: leave out one run at a time.",
+).program(
+    "validate",
+    """
+        _intervals = interval_of_each
+
+
+        def interval_of_each(pairs):
+            y, sigma, measured = (np.concatenate(column) for column in zip(*map(columns, pairs)))
+            e = y - measured
+            intervals, bias = _intervals(pairs), float(np.mean(e))
+            half = 1.96 * float(np.std(e)) / math.sqrt(len(e))
+            return intervals | {"bias": (bias - half, bias + half)}
+    """,
+)
+mistakes(
+    "LAG_MEAN_OF_RUNS",
+    "The lag is about the mean of one lag for each run.",
+    "Look for one shift for all runs: the one with the smallest mean square of all their samples.",
+    kind="fact",
+).program(
+    "validate",
+    """
+        _shift = best_shift
+
+
+        def best_shift(pairs):
+            counts = [len(r["t"]) for _, r in pairs]
+            return float(np.average([_shift([pair]) for pair in pairs], weights=counts))
+    """,
+    also=("",),
+)
+mistakes(
+    "FITS_THE_FOLD",
+    "Each model is fitted to its fold, not to the runs outside it.",
+    "Fit to all the runs outside the fold, and predict those of the fold.",
+    kind="fact",
+).body(
+    "cross_validate",
+    """
+        scores = []
+        for fold in np.array_split(np.arange(len(runs)), k):
+            model = fit([runs[i] for i in fold])
+            e = [np.subtract(predict(model, runs[i]), runs[i]["y"]) for i in range(len(runs)) if i not in fold]
+            scores.append(np.sqrt(np.mean(np.concatenate(e) ** 2)))
+        return np.array(scores)
+    """,
+)
+mistakes(
+    "RETURNS_SWAPPED",
+    "Two results are in the wrong order.",
+    "Return (bias, variance), (lo, hi), or peak and impulse under their names.",
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        count = -(-n // block)
+        starts = rng.integers(0, n - block + 1, size=(n_boot, count))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(len(starts), -1)[:, :n]
+        values = [statistic(e[row]) for row in rows]
+        return tuple(np.quantile(values, [1 - alpha / 2, alpha / 2]))
+    """,
+)
+mistakes(
+    "DRAWN_ONCE",
+    "All resamples are the same.",
+    "Draw new starting points from rng for each resample, inside the loop.",
+    kind="fact",
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        count = -(-n // block)
+        starts = rng.integers(0, n - block + 1, size=count)
+        row = (starts[:, None] + np.arange(block)).ravel()[:n]
+        values = [statistic(e[row]) for _ in range(n_boot)]
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
+    "OTHER_NUMBER_OF_RESAMPLES",
+    "Your code does not call the statistic once for each of n_boot resamples.",
+    "Draw n_boot resamples and call statistic once for each; besides, at most twice for the series itself.",
+    kind="fact",
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        count = -(-n // block)
+        starts = rng.integers(0, n - block + 1, size=(1000, count))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(len(starts), -1)[:, :n]
+        values = [statistic(e[row]) for row in rows]
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        count = -(-n // block)
+        starts = rng.integers(0, n - block + 1, size=(n_boot, count))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(len(starts), -1)[:, :n]
+        values = [statistic(e[row]) - statistic(e) for row in rows]
+        return tuple(statistic(e) + np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
+    "ENDS_ON_ONE_SIDE",
+    "Both ends are made from the smallest of the resampled values.",
+    "np.quantile counts from 0 to 1, np.percentile from 0 to 100.",
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        count = -(-n // block)
+        starts = rng.integers(0, n - block + 1, size=(n_boot, count))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(len(starts), -1)[:, :n]
+        values = [statistic(e[row]) for row in rows]
+        return tuple(np.percentile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
+    "NOT_CENTRED",
+    "The interval does not lie around the statistic of the series.",
+    "A percentile interval uses the resampled values as they are. A basic interval mirrors them: 2 * statistic(e) minus each end, in reverse order.",
+    kind="consequence",
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        count = -(-n // block)
+        starts = rng.integers(0, n - block + 1, size=(n_boot, count))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(len(starts), -1)[:, :n]
+        whole = statistic(e)
+        values = [statistic(e[row]) - whole for row in rows]
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
+    "LEVEL_FOR_ALPHA",
+    "alpha is taken as the share inside.",
+    "alpha is the share outside: the ends are the quantiles at alpha/2 and 1 - alpha/2.",
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        count = -(-n // block)
+        starts = rng.integers(0, n - block + 1, size=(n_boot, count))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(len(starts), -1)[:, :n]
+        values = [statistic(e[row]) for row in rows]
+        return tuple(np.quantile(values, [(1 - alpha) / 2, (1 + alpha) / 2]))
+    """,
+)
+mistakes(
+    "ROUGH_QUANTILES",
+    "The band is roughly right, but off by more than 1 %.",
+    "Check the levels alpha/2 and 1 - alpha/2 first. Then use a better approximation: `course hint validation consistency_band` shows two.",
+    kind="consequence",
+).body(
+    "consistency_band",
+    """
+        n, z = dof * runs, NormalDist().inv_cdf(1 - alpha / 2)
+        root = math.sqrt(2 * n - 1)
+        return (root - z) ** 2 / 2 / runs, (root + z) ** 2 / 2 / runs
+    """,
+)
+mistakes(
+    "OTHER_RUNS_LISTED",
+    "The numbers are those of the right runs, but runs_used lists other ids.",
+    "List the ids of the runs that you pooled.",
+    kind="fact",
+).program(
+    "validate",
+    """
+        _judge = validate
+
+
+        def validate(sim, real, spec):
+            both = {run["id"] for run in real["runs"]}
+            return _judge(sim, real, spec) | {"runs_used": [run["id"] for run in sim["runs"] if run["id"] in both]}
+    """,
+)
+mistakes(
+    "PART_OF_SERIES",
+    "In a short trial with two dozen resamples, more than a fifth of the series occurs in none of them.",
+    "Draw a new start for every block of every resample, from 0 to N - block, both included.",
+    kind="fact",
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        count = -(-n // block)
+        values = []
+        for _ in range(n_boot):
+            starts = rng.integers(0, n // block, size=count)
+            values.append(statistic(e[(starts[:, None] + np.arange(block)).ravel()[:n]]))
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
+    "DRAWN_WITHOUT_REPLACEMENT",
+    "Every resample contains more than nine tenths of the errors of the series.",
+    "Draw each start by itself, with replacement, so that some parts occur twice and others not at all.",
+    kind="fact",
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        values = []
+        for _ in range(n_boot):
+            starts = block * rng.permutation(-(-n // block))
+            values.append(statistic(e[((starts[:, None] + np.arange(block)) % n).ravel()[:n]]))
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
+    "SINGLE_ROW_SQUEEZED",
+    "For a single error your code returns a bare number.",
+    "Return an array of shape (1,) there. np.squeeze removes every axis of length 1; name the axis that must go.",
+    kind="fact",
+).body(
+    "nis",
+    """
+        nu = np.asarray(nu)
+        return np.squeeze(nu[:, None, :] @ np.linalg.inv(S) @ nu[:, :, None])
+    """,
+)
+mistakes(
+    "IMPULSE_UNTIL_PEAK",
+    "The impulse is integrated only up to the peak.",
+    "Integrate over the whole recording: the force that remains after the peak is part of the impulse.",
+).body(
+    "contact_force_error",
+    """
+        sim, real = (np.sum(f[: np.argmax(f) + 1]) for f in (f_sim, f_real))
+        peaks = np.max(f_sim), np.max(f_real)
+        return {"peak": (peaks[0] - peaks[1]) / peaks[1], "impulse": (sim - real) / real}
+    """,
+)
+mistakes(
+    "REPEATS_AN_END",
+    "The first or the last error is repeated where a block should go on.",
+    "Let a block start at N - block at most, or go on at the start of the series. Do not cut indices off at N - 1.",
+    kind="fact",
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        values = []
+        for _ in range(n_boot):
+            starts = rng.integers(0, n, -(-n // block))
+            places = np.minimum(starts[:, None] + np.arange(block), n - 1)
+            values.append(statistic(e[places.ravel()[:n]]))
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
+    "MIDDLE_AND_HALF",
+    "Values on an end are lost by rounding. That happens where the distance to the middle is compared with half the width.",
+    "Compare with the ends themselves: (lo <= y) & (y <= hi).",
+).body(
+    "coverage",
+    """
+        y, lo, hi = (np.asarray(x, dtype=float) for x in (y, lo, hi))
+        return float(np.mean(np.abs(y - (lo + hi) / 2) <= (hi - lo) / 2))
+    """,
+)
+mistakes(
+    "ONE_WIDTH_FOR_ALL",
+    "All intervals get the same width.",
+    "Each interval has its own ends: (lo <= y) & (y <= hi), one by one.",
+).body(
+    "coverage",
+    """
+        y, lo, hi = (np.asarray(x, dtype=float) for x in (y, lo, hi))
+        return float(np.mean(np.abs(y - (lo + hi) / 2) <= np.mean(hi - lo) / 2))
+    """,
+)
+mistakes(
+    "ENERGY_OF_ONE_SHAPE",
+    "Your code does not pass energy a position and a velocity of shape (d,).",
+    "Pass q[i] and v[i] as they are.",
+    kind="fact",
+).body(
+    "energy_error",
+    """
+        e = np.array([energy(np.atleast_2d(a), np.atleast_2d(b)) for a, b in zip(q, v)], dtype=float)
+        return (e - e[0]) / abs(e[0])
+    """,
+)
+mistakes(
+    "MARGIN_EXCLUDED",
+    "An end that lies exactly on its margin counts as outside.",
+    "Refuse where lo < least or hi > most, with < and >, not <= and >=.",
+    kind="fact",
+).program(
+    "validate",
+    """
+        _inside = validate
+
+
+        def validate(sim, real, spec):
+            report = _inside(sim, real, spec)
+            if report["intervals"] is None:
+                return report
+            (_, rmse), bias = report["intervals"]["rmse"], report["intervals"]["bias"]
+            reasons = set(report["reasons"])
+            if rmse >= spec["rmse_max"]:
+                reasons.add("rmse")
+            if bias[0] <= -spec["bias_max"] or bias[1] >= spec["bias_max"]:
+                reasons.add("bias")
+            return {**report, "reasons": sorted(reasons), "accepted": not reasons}
+    """,
+)
+mistakes("RAISED").body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        starts = rng.integers(0, n - n_boot + 1, size=(n_boot, math.ceil(n / block)))
+        rows = np.minimum((starts[:, :, None] + np.arange(block)).reshape(n_boot, -1)[:, :n], n - 1)
+        values = [statistic(e[row]) for row in rows]
+        lo, hi = np.quantile(values, [alpha / 2, 1 - alpha / 2])
+        return float(lo), float(hi)
+    """,
+)
+mistakes(
+    "FEW_DEGREES_ONLY",
+    "The band is right for dof * runs = 40, and wrong for more.",
+    "A search must reach far enough, a table must be long enough, and a gamma function of a large argument overflows.",
+).program(
+    "consistency_band",
+    """
+        _right_band = consistency_band
+
+
+        def consistency_band(dof, runs, alpha):
+            return tuple(min(end, 1000.0 / runs) for end in _right_band(dof, runs, alpha))
+    """,
+)
+mistakes(
+    "NOT_SQUARED",
+    "The result is made of absolute errors where squares belong.",
+    "Square each error, average the squares, then take the root.",
+)
+mistakes(
+    "LARGEST_TAKEN",
+    "The result is the largest error.",
+    "Average the squares of all errors and take the root; the largest is only one of them.",
+)
+mistakes(
+    "AVERAGED_TWICE",
+    "Your code divides by N outside the root, or twice. So more samples of the same errors give a smaller result.",
+    "Divide the sum of squares by N once, before taking the root.",
+)
+mistakes(
+    "BIAS_FOR_RMSE",
+    "The result is the mean, in which positive and negative errors cancel.",
+    "Square each error before you average, and take the root of the mean.",
+    kind="consequence",
+)
+mistakes(
+    "DEVIATION_ABSOLUTE",
+    "The second value is the mean absolute deviation.",
+    "Square the deviations from the mean, then average.",
+)
+mistakes(
+    "BIAS_SQUARED",
+    "The first value is the square of the bias.",
+    "Return the mean itself, with its sign and in the unit of the error.",
+)
+mistakes(
+    "SINGLE_PRECISION",
+    "The result has only five to ten correct digits. Perhaps it is in single precision, or rounded.",
+    "Use float64, numpy's default, and do not round.",
+)
+mistakes(
+    "WRAPPED_ONE_WAY",
+    "Your code removes turns in one direction only.",
+    "Angles of both signs occur. (e + pi) % (2 pi) - pi handles both.",
+)
+mistakes(
+    "HALF_TURNS",
+    "Your code removes half turns, so forwards and backwards become the same direction.",
+    "The period of a direction is 2 pi; that of the tangent is only pi.",
+)
+mistakes(
+    "HALF_TURN_OFF",
+    "The results are off by half a turn.",
+    "Add half a turn before you take the remainder of a turn, and subtract it again afterwards.",
+)
+mistakes(
+    "IN_TURNS",
+    "The result is a number of turns.",
+    "The result must be in radians, as the argument is: a turn is 2 pi.",
+)
+mistakes(
+    "PI_ROUNDED",
+    "The error grows with every turn that is removed, as if a turn were not exactly 2 pi.",
+    "Use math.pi or np.pi, which are exact to sixteen digits.",
+)
+mistakes(
+    "ARGUMENTS_SWAPPED",
+    "The arguments of arctan2 are in the wrong order, so the angle is measured from the wrong axis.",
+    "np.arctan2 takes the sine first: arctan2(sin(e), cos(e)).",
+)
+mistakes(
+    "CLIPPED",
+    "Your code limits large angles to half a turn.",
+    "Add or subtract whole turns until each angle lies between minus half a turn and half a turn. A limit gives another direction.",
+)
+mistakes(
+    "IN_DEGREES",
+    "Degrees and radians are mixed up.",
+    "All angles are in radians, the arguments and the results: a turn is 2 pi.",
+)
+mistakes(
+    "ONE_COVARIANCE",
+    "Your code uses one covariance for all rows.",
+    "Each row has its own covariance: err[i] belongs to P[i]. np.linalg.solve and np.linalg.inv accept the whole stack.",
+)
+mistakes(
+    "ONE_SIZE_FOR_ALL",
+    "Your code divides the squared length by one number, such as the trace or the determinant of the matrix.",
+    "Each component has its own uncertainty: solve P w = err for w, then sum err * w.",
+)
+mistakes(
+    "VARIANCE_MISREAD",
+    "Your code uses only the diagonal, and does not divide by it as it stands.",
+    "The diagonal has variances, which are squares already. Use the whole matrix: solve P w = err for w, then sum err * w.",
+)
+mistakes(
+    "INVERTED_TWICE",
+    "The covariance counts twice: its inverse is applied twice, or its square is inverted.",
+    "Solve P w = err once, then sum err * w.",
+)
+mistakes(
+    "SQUARED_BY_ELEMENT",
+    "Your code squares each element of the matrix before it inverts it.",
+    "The matrix contains variances and covariances, which are in squared units already: invert it as it is.",
+)
+mistakes(
+    "CHOLESKY_TRANSPOSED",
+    "Your code uses the transpose of the Cholesky factor.",
+    "np.linalg.cholesky returns the lower triangle L with L L^T = P: solve L w = err for w, then sum w * w.",
+)
+mistakes(
+    "DETERMINANT_MISSING",
+    "The result is the right one times the determinant.",
+    "The inverse is the adjugate divided by the determinant; np.linalg.inv returns the inverse.",
+)
+mistakes(
+    "DETERMINANT_ADDED",
+    "The logarithm of the determinant is added, as in a likelihood.",
+    "Leave it out: the task asks only for the squared distance.",
+)
+mistakes(
+    "HALVED",
+    "The result is half of the squared distance, or exp of it, as in a likelihood.",
+    "Return the squared distance itself.",
+)
+mistakes(
+    "FIRST_ROW_ALONE",
+    "Only the first row is computed; the rest of the result is as your code made it.",
+    "A return inside the loop ends it after the first row: move it out of the loop.",
+    kind="fact",
+)
+mistakes(
+    "DOF_IGNORED",
+    "The band is that of as many degrees of freedom as there are runs: dof is left out.",
+    "The sum over the runs has dof * runs degrees of freedom.",
+)
+mistakes(
+    "DEGREES_OFF",
+    "The band is that of another number of degrees of freedom.",
+    "The sum over the runs has exactly dof * runs degrees of freedom. Subtract none.",
+)
+mistakes(
+    "DIVIDED_BY_ROOT",
+    "The band is divided by the square root of the number of runs.",
+    "Divide both quantiles of the sum by runs. What comes out has the smaller scatter of an average.",
+)
+mistakes(
+    "APPROXIMATION_SLIP",
+    "The Wilson-Hilferty formula has a slip: in the root, in the cube, or in 1 - 2/(9n).",
+    "n * (1 - 2/(9n) + z * sqrt(2/(9n)))**3, with n = dof * runs and z the normal quantile.",
+)
+mistakes(
+    "ALPHA_IGNORED",
+    "The band does not change with alpha.",
+    "Take the quantiles at alpha/2 and 1 - alpha/2 for the alpha that is passed in: 1.96 belongs to 0.05 alone.",
+)
+mistakes(
+    "SUM_OF_RUNS",
+    "The result is the sum of one RMSE for each run of the fold.",
+    "Pool the errors of all runs of the fold, and compute one RMSE from all of them.",
+)
+mistakes(
+    "NEARLY_INSIDE",
+    "Values just outside of their intervals are counted.",
+    "Compare without a tolerance: (lo <= y) & (y <= hi).",
+)
+mistakes(
+    "EITHER_END",
+    "Your code counts a value that keeps within only one of the two ends.",
+    "Both must hold: (lo <= y) & (y <= hi).",
+)
+mistakes(
+    "ONE_END_ONLY",
+    "Your code checks only one end of the intervals.",
+    "Both must hold: (lo <= y) & (y <= hi).",
+)
+mistakes(
+    "ONE_INTERVAL_FOR_ALL",
+    "Your code compares all values with one interval.",
+    "Each value has its own interval: compare y[i] with lo[i] and hi[i], or the arrays as they are.",
+)
+mistakes(
+    "ALL_OR_NONE",
+    "The result is 0 or 1: whether all values lie inside, or whether any does.",
+    "Take the mean of the True and False values.",
+)
+mistakes(
+    "NOT_RESAMPLED",
+    "Each time that your code calls the statistic, it passes the series itself.",
+    "Draw new random starting points for the blocks of each resample, with replacement, and pass the resample to statistic.",
+    kind="fact",
+)
+mistakes(
+    "NOT_OF_THE_SERIES",
+    "The resamples contain values that are not in the series.",
+    "Use the errors as they are: add nothing, subtract nothing, and fill each resample to its end.",
+    kind="fact",
+)
+mistakes(
+    "WIDTH_SCALED",
+    "Both ends are much nearer to the middle, or much farther from it, than the right quantiles.",
+    "Take the quantiles at alpha/2 and 1 - alpha/2 as they are. Do not divide by a root of N or n_boot.",
+)
+mistakes(
+    "SHRINKS_WITH_RESAMPLES",
+    "More resamples make the interval narrower. Perhaps the spread of the resampled values is divided by n_boot or its root.",
+    "The spread of the resampled values already is that of the statistic: take their quantiles, and do not divide.",
+)
+mistakes(
+    "ENERGY_ARGUMENTS_SWAPPED",
+    "Your code passes the velocity to energy first, and then the position.",
+    "Call energy(q[i], v[i]): position first.",
+)
+mistakes(
+    "TO_ANOTHER",
+    "Your code refers to another energy than the first.",
+    "Subtract E[0] and divide by abs(E[0]).",
+)
+mistakes(
+    "LOGARITHM",
+    "The result is the logarithm of the ratio.",
+    "Return (E - E[0]) / abs(E[0]): a difference, which also works for negative energies.",
+)
+mistakes(
+    "SQUARED",
+    "The result is squared.",
+    "Return the relative difference itself, with its sign.",
+)
+mistakes(
+    "SUMMED_UP",
+    "The result is the running sum of the errors.",
+    "Each sample has its own error, so do not add them up.",
+)
+mistakes(
+    "NOT_RELATIVE",
+    "The result is a difference that is not divided by anything.",
+    "Divide by what the README says, so that the result has no unit.",
+    kind="consequence",
+)
+mistakes(
+    "RATIO",
+    "The result is a quotient: without an error it is 1 or -1, not 0.",
+    "Take the difference first, then divide: (E - E[0]) / abs(E[0]), or (sim - real) / real.",
+    kind="consequence",
+)
+mistakes(
+    "IMPULSE_OF_SQUARES",
+    "The impulse is the integral of the squared force.",
+    "Integrate the force itself over time.",
+    kind="consequence",
+)
+mistakes(
+    "IMPULSE_OF_PEAK",
+    "The error of the impulse is that of the peak.",
+    "Integrate: sum all samples of the force and multiply by dt.",
+    kind="consequence",
+)
+mistakes(
+    "MEAN_FORCE",
+    "A mean force stands for the peak or for the impulse.",
+    "The peak is the largest sample. The impulse is the sum of all samples times dt.",
+    kind="consequence",
+)
+mistakes(
+    "DIVIDED_BY_BOTH",
+    "The difference is divided by the mean of both values, or by the larger one.",
+    "Divide by the real value: it is the reference.",
+    kind="consequence",
+)
+mistakes(
+    "NEVER_PREDICTS",
+    "predict is never called.",
+    "For each fold, call predict(model, run) for each of its runs, with the model that was fitted to the others.",
+    kind="fact",
+)
+mistakes(
+    "LAST_RUN_ALONE",
+    "The score of a fold uses only its last run.",
+    "Collect the errors of all runs of the fold, and compute one RMSE from all of them.",
+)
+mistakes(
+    "FOLDS_IN_OTHER_ORDER",
+    "The scores are right, but in another order than the folds.",
+    "Do not shuffle or sort the runs: the first score belongs to the first runs of the list.",
+)
+mistakes(
+    "FOLDS_REVERSED",
+    "The scores are in reverse order.",
+    "The first score belongs to the first fold, which is the first runs of the list.",
+)
+mistakes(
+    "LAG_AT_THE_END",
+    "The lag is larger than any lag here can be.",
+    "Search up to 0.2 s either way, with each run's own time step. Compare mean squares, not sums: fewer samples overlap at a larger shift.",
+    kind="fact",
+)
+mistakes(
+    "LAGS_OF_SINGLE_RUNS",
+    "The interval of the lag is as wide as the lags of single runs make it.",
+    "Leave out one run at a time, and search for the best shift of all the others together.",
+    kind="consequence",
+)
+mistakes(
+    "LAG_OF_PARTS",
+    "The lag is right, but not its interval.",
+    "Leave out one run at a time, pool the others, and search for their best shift, as finely as for all runs.",
+    kind="consequence",
+)
+mistakes(
+    "INTERVALS_SCALED",
+    "Several intervals are too wide, or too narrow, by the same factor.",
+    "Look at what they share: the factor in sqrt((n - 1)/n * sum), and T95[n - 2].",
+    kind="consequence",
+)
+mistakes(
+    "ZERO_WIDTH",
+    "The interval is a single point.",
+    "The interval reaches from the number minus t standard errors to the number plus t standard errors.",
+    kind="consequence",
+)
+mistakes(
+    "CENTRED_ON_THE_REST",
+    "The middle of the interval is the mean of the values with one run left out.",
+    "Centre it on the number from all runs: from number - t * error to number + t * error.",
+)
+mistakes(
+    "MEASURE_NOT_JUDGED",
+    "One of the four measures is never compared with its margin.",
+    "bias, coverage, lag and rmse each have their own margin and their own reason.",
+)
+mistakes(
+    "SIGMA_MULTIPLE",
+    "The coverage is that of an interval with another multiple of sigma than 1.96.",
+    "Use 1.96 sigma to each side: that is 95 %.",
+    kind="consequence",
+)
+mistakes(
+    "SIGMA_MISREAD",
+    "The coverage is that of the root, the square or the mean of sigma.",
+    "sigma is the standard deviation of each sample: use 1.96 * sigma, sample by sample.",
+    kind="consequence",
+)
+mistakes(
+    "OWN_SPREAD_FOR_SIGMA",
+    "The coverage is that of the spread of the errors, in the place of sigma.",
+    'The simulation claims a sigma of its own: use run["sigma"].',
+    kind="consequence",
+)
+mistakes(
+    "SIGMA_ONE_SIDED",
+    "Only one side of the interval is checked.",
+    "A value may be too high or too low: abs(y_sim - y_real) <= 1.96 sigma.",
+)
+mistakes(
+    "REASON_MISSING",
+    "A reason is missing: the right interval reaches beyond its margin.",
+    "Compare both ends of every interval with its margin, and collect every reason that applies.",
+    kind="consequence",
+)
+mistakes(
+    "REASON_TOO_MANY",
+    "A reason does not apply: the right interval lies inside its margin.",
+    "Compare each interval, both of its ends, with its own margin.",
+    kind="consequence",
+)
+mistakes(
+    "REASON_TWICE",
+    "A reason is listed more than once.",
+    "List each reason once, also where an interval reaches beyond its margin on both sides.",
+    kind="fact",
+)
+mistakes(
+    "REASON_UNKNOWN",
+    "A reason is none of bias, coverage, lag and rmse.",
+    'With two runs or more, the reasons are "bias", "coverage", "lag" and "rmse", spelled exactly like this.',
+    kind="fact",
+)
+mistakes(
+    "VERDICT_AGAINST_REASONS",
+    "`accepted` contradicts the reasons.",
+    "accepted is True exactly where there is no reason.",
+    kind="fact",
+)
+
+
+model, formulas, facts = (kit.sibling(__file__, name) for name in ("validation", "formulas", "facts"))
+
+
+MEASURES = facts.MEASURES
+
+
+_SOME = (MEASURES, ("rmse",), ("bias",), ("coverage",))
+
+
+@mistakes.more
+def hypotheses():
+    """Task, codes of what is wrong, and function of each, those with one mistake first."""
+    for task, families in TERMS.items():
+        for code, function in formulas.OTHERS.get(task, ()):
+            yield task, (code,), function
+        for family, terms in families:
+            for term, (code, form) in ((term, entry) for term in terms for entry in terms[term]):
+                yield task, (code,), family(**{term: form})
+    for task, ((family, terms), *_) in TERMS.items():
+        # Two terms wrong at once, each in the first form of its code.
+        firsts = {term: dict(reversed(forms)).items() for term, forms in terms.items()}
+        pairs = [
+            ((code, second), {one: form, other: another})
+            for one, other in itertools.combinations(terms, 2)
+            for (code, form), (second, another) in itertools.product(firsts[one], firsts[other])
+            if code != second
+        ]
+        for codes, wrong in pairs[:: max(1, len(pairs) // _MOST)]:
+            yield task, codes, family(**wrong)
+
+
+#: Programs with two mistakes that are made for a task, spread evenly over what there is.
+_MOST = 200
+
+
+def _cross_validate(
+    cut=lambda n, k: np.array_split(np.arange(n), k),
+    seen=lambda fold, n, first: [i for i in range(n) if i not in fold],
+    score=lambda e: np.sqrt(np.mean(np.concatenate(e) ** 2)),
+    gives=list,
+):
+    """``seen``: which runs a model is fitted to; ``score``: of the errors of each run of a fold."""
+
+    def cross_validate(fit, predict, runs, k):
+        folds, scores = cut(len(runs), k), []
+        for fold in folds:
+            model = fit([runs[i] for i in seen(fold, len(runs), folds[0])])
+            scores.append(score([predict(model, runs[i]) - runs[i]["y"] for i in fold]))
+        return np.array(gives(scores))
+
+    return cross_validate
+
+
+_FOLDS = {
+    "score": (
+        ("MEAN_OF_RUNS", lambda e: np.mean([np.sqrt(np.mean(run**2)) for run in e])),
+        ("MEAN_OF_RUNS", lambda e: np.sqrt(np.mean([np.mean(run**2) for run in e]))),
+        ("ROOT_MISSING", lambda e: np.mean(np.concatenate(e) ** 2)),
+        ("NOT_AVERAGED", lambda e: np.sqrt(np.sum(np.concatenate(e) ** 2))),
+        ("SUM_OF_RUNS", lambda e: np.sum([np.sqrt(np.mean(run**2)) for run in e])),
+        ("MEAN_REMOVED", lambda e: np.std(np.concatenate(e))),
+        ("MEAN_ABSOLUTE", lambda e: np.mean(np.abs(np.concatenate(e)))),
+        ("BIAS_FOR_RMSE", lambda e: np.mean(np.concatenate(e))),
+        ("MEDIAN_FOR_MEAN", lambda e: np.sqrt(np.median(np.concatenate(e) ** 2))),
+        ("LAST_RUN_ALONE", lambda e: np.sqrt(np.mean(e[-1] ** 2))),
+    ),
+    "cut": (
+        ("NOT_CONTIGUOUS", lambda n, k: [np.arange(i, n, k) for i in range(k)]),
+        ("FOLDS_UNEVEN", lambda n, k: [np.arange(i * (n // k), (i + 1) * (n // k)) for i in range(k)]),
+    ),
+    "seen": (
+        ("LEAKS_HELD_OUT", lambda fold, n, first: range(n)),
+        ("FITS_THE_FOLD", lambda fold, n, first: fold),
+        ("LEAKS_HELD_OUT", lambda fold, n, first: [i for i in range(n) if i not in first]),
+    ),
+    "gives": (("FOLDS_REVERSED", lambda scores: scores[::-1]),),
+}
+
+
+def _together(pairs, key, of):
+    return of(key, *facts.together(pairs))
+
+
+def _only(key, other):
+    """One number by another rule: a function of the errors and sigmas."""
+    return lambda asked, e, sigma: other(e, sigma) if asked == key else facts.number(asked, e, sigma)
+
+
+def _t(n):
+    return model.T95[n - 2]
+
+
+def _spread(rest):
+    return facts.error(rest) * math.sqrt(len(rest) / (len(rest) - 1))
+
+
+def _sampled(key, pairs):
+    """The standard error that a number would have, were all samples independent."""
+    e, sigma = facts.together(pairs)
+    share, root = facts.number("coverage", e, sigma), math.sqrt(len(e))
+    if key == "coverage":
+        return math.sqrt(share * (1 - share)) / root
+    return np.std(e**2) / (2 * np.sqrt(np.mean(e**2))) / root if key == "rmse" else np.std(e) / root
+
+
+def _outside(value, ends, margin):
+    return not (margin[0] <= ends[0] and ends[1] <= margin[1])
+
+
+_LAGS = {}
+
+
+def _lag(pairs):
+    """The lag of these runs, searched for once."""
+    key = tuple((s["id"], np.asarray(s["y"]).tobytes()) for s, _ in pairs)
+    if key not in _LAGS:
+        _LAGS[key] = model.best_shift(pairs)
+    return _LAGS[key]
+
+
+def _step(pairs):
+    """The smallest step of the runs, s."""
+    return min(float(s["t"][1] - s["t"][0]) for s, _ in pairs)
+
+
+def _validate(
+    pairs=model.held_out_pairs,
+    number=facts.number,
+    pool=_together,
+    lag=_lag,
+    half=lambda key, n, rest, *_: facts.half(rest),
+    middle=lambda value, without: value,
+    wrong=lambda key, *known: _outside(*known),
+    order=sorted,
+    few=lambda report: report,
+):
+    """``half``: of the width of an interval; ``wrong``: whether it speaks against; ``few``: no interval."""
+
+    def validate(sim, real, spec):
+        some = pairs(sim, real)
+        measure = lambda key, some: float(lag(some) if key == "lag_s" else pool(some, key, number))  # noqa: E731
+        numbers = {key: measure(key, some) if some else None for key in MEASURES}
+        report = {"accepted": False, **numbers, "intervals": None, "runs_used": [s["id"] for s, _ in some]}
+        n = len(some)
+        if n < 2:
+            return few({**report, "reasons": ["single_run" if some else "calibration_data"]})
+        margins = {
+            "rmse": (-math.inf, spec["rmse_max"]),
+            "bias": (-spec["bias_max"], spec["bias_max"]),
+            "lag_s": (-spec["lag_max_s"], spec["lag_max_s"]),
+            "coverage": (spec["coverage_min"], spec["coverage_max"]),
+        }
+        intervals, reasons = {}, []
+        for key, value in numbers.items():
+            without = np.array([measure(key, some[:i] + some[i + 1 :]) for i in range(n)])
+            alone = np.array([measure(key, [pair]) for pair in some])
+            sampled = _sampled(key, some) if key != "lag_s" else 0.0
+            width, centre = half(key, n, without, alone, sampled), middle(value, without)
+            intervals[key] = (centre - width, centre + width)
+            if wrong(key, value, intervals[key], margins[key]):
+                reasons.append(key.removesuffix("_s"))
+        return {**report, "accepted": not reasons, "reasons": order(reasons), "intervals": intervals}
+
+    return validate
+
+
+def _all_pairs(sim, real, ids=None):
+    known = {run["id"]: run for run in real["runs"] if ids is None or run["id"] in ids}
+    return [(run, known[run["id"]]) for run in sim["runs"] if run["id"] in known]
+
+
+def _by_place(sim, real):
+    pairs = zip(sim["runs"], real["runs"], strict=False)
+    return [(s, r) for s, r in pairs if s["id"] not in sim["calibrated_on"]]
+
+
+def _by_place_if_known(sim, real):
+    known = {run["id"] for run in real["runs"]}
+    return [(s, r) for s, r in _by_place(sim, real) if s["id"] in known]
+
+
+def _mean_of_runs(keys):
+    def pool(pairs, key, of):
+        alone = [_together([pair], key, of) for pair in pairs]
+        return np.mean(alone) if key in keys else _together(pairs, key, of)
+
+    return pool
+
+
+def _covered(within):
+    """A coverage by another rule; ``within``: of the errors and sigmas."""
+    return _only("coverage", lambda e, sigma: np.mean(within(e, sigma)))
+
+
+#: (code, half the width): of n runs, of values without each, of each alone, and the error if samples counted.
+_RULES = [
+    *(("JACKKNIFE_FACTOR", lambda n, rest, *_, p=p: _t(n) * _spread(rest) / n**p) for p in (0, 0.5, 1)),
+    *(
+        ("JACKKNIFE_FACTOR", lambda n, rest, *_, by=by: _t(n) * _spread(rest) / math.sqrt((n - 1) * n**by))
+        for by in (0, 1)
+    ),
+    *(
+        ("NOT_STUDENTS_T", lambda n, rest, *_, z=z: z * facts.error(rest))
+        for z in (1.0, 1.645, 1.96, 2.0, 3.0)
+    ),
+    *(
+        ("NOT_STUDENTS_T", lambda n, rest, *_, table=table: table[n - 2] * facts.error(rest))
+        for table in (model.T95[1:], (0.0, *model.T95), (12.706, 4.303, 3.182, 2.776, 2.571))
+    ),
+    ("SPREAD_OF_RUNS", lambda n, rest, alone, _: _t(n) * np.std(alone, ddof=1) / math.sqrt(n)),
+    ("SPREAD_OF_RUNS", lambda n, rest, alone, _: _t(n) * np.std(alone, ddof=1)),
+    ("SPREAD_OF_RUNS", lambda n, rest, alone, _: _t(n) * np.std(alone)),
+    ("SPREAD_OF_RUNS", lambda n, rest, alone, _: _t(n) * facts.error(alone)),
+    ("ZERO_WIDTH", lambda *_: 0.0),
+    *(("SAMPLES_COUNTED", lambda n, rest, alone, own, z=z: z * own) for z in (1.0, 1.645, 1.96, 2.0)),
+    ("SAMPLES_COUNTED", lambda n, rest, alone, own: _t(n) * own),
+]
+
+
+def _in_some(code, half):
+    """A rule for the width of all intervals, and of one alone; of samples there is no lag."""
+    for some in _SOME:
+        keys = [key for key in some if code != "SAMPLES_COUNTED" or key != "lag_s"]
+        yield lambda key, *known, keys=keys: half(*known) if key in keys else facts.half(known[1])
+
+
+def _judging():
+    """(code, ``wrong``): for some of the measures a rule, or for numbers in place of intervals."""
+    signed, each = (("bias",), ("lag_s",), ("bias", "lag_s")), [(key,) for key in MEASURES]
+    slips = [
+        *(
+            ("SIGN_OF_LIMIT_IGNORED", keys, lambda value, ends, margin: ends[1] > margin[1])
+            for keys in signed
+        ),
+        *(
+            ("SIGN_OF_LIMIT_IGNORED", keys, lambda value, *known: value >= 0 and _outside(value, *known))
+            for keys in signed
+        ),
+        ("OVER_COVERAGE_ACCEPTED", ("coverage",), lambda value, ends, margin: ends[0] < margin[0]),
+        ("RMSE_ALONE_JUDGED", MEASURES[1:], lambda *known: False),
+        *(("MEASURE_NOT_JUDGED", keys, lambda *known: False) for keys in each),
+        *(
+            ("BURDEN_REVERSED", keys, lambda value, ends, margin: ends[1] < margin[0] or ends[0] > margin[1])
+            for keys in (MEASURES, *each)
+        ),
+        ("POINT_ESTIMATE_JUDGED", (), None),
+    ]
+    for code, keys, rule in slips:
+        if code != "POINT_ESTIMATE_JUDGED":
+            yield code, _by_rule(keys, rule)
+        # Of a number there is no more to say, and a measure that is not judged has none.
+        if code not in {"BURDEN_REVERSED", "MEASURE_NOT_JUDGED"}:
+            yield code, _by_rule(keys, rule, points=True)
+
+
+def _by_rule(keys, rule, points=False):
+    def wrong(key, value, ends, margin):
+        ends = (value, value) if points else ends
+        return (rule if key in keys else _outside)(value, ends, margin)
+
+    return wrong
+
+
+_VERDICT = {
+    "pairs": (
+        ("CALIBRATION_RUNS_SCORED", _all_pairs),
+        ("CALIBRATION_RUNS_SCORED", lambda sim, real: _all_pairs(sim, real, sim["calibrated_on"])),
+        ("MATCHED_BY_POSITION", _by_place),
+        ("MATCHED_BY_POSITION", _by_place_if_known),
+    ),
+    "number": (
+        ("WRONG_SIGN", lambda key, e, sigma: facts.number(key, -e, sigma)),
+        ("ROOT_MISSING", _only("rmse", lambda e, sigma: np.mean(e**2))),
+        ("MEAN_REMOVED", _only("rmse", lambda e, sigma: np.std(e))),
+        ("BIAS_FOR_RMSE", _only("rmse", lambda e, sigma: np.mean(e))),
+        ("MEAN_ABSOLUTE", _only("rmse", lambda e, sigma: np.mean(np.abs(e)))),
+        ("MEAN_ABSOLUTE", _only("bias", lambda e, sigma: np.mean(np.abs(e)))),
+        ("UNSIGNED", _only("bias", lambda e, sigma: abs(np.mean(e)))),
+        ("MEDIAN_FOR_MEAN", _only("bias", lambda e, sigma: np.median(e))),
+        ("IN_PER_CENT", _covered(lambda e, sigma: 100.0 * (np.abs(e) <= 1.96 * sigma))),
+        ("OUTSIDE_COUNTED", _covered(lambda e, sigma: np.abs(e) > 1.96 * sigma)),
+        ("SIGMA_NOT_SCALED", _covered(lambda e, sigma: np.abs(e) <= sigma)),
+        ("SIGMA_MULTIPLE", _covered(lambda e, sigma: np.abs(e) <= 2.0 * sigma)),
+        ("SIGMA_MULTIPLE", _covered(lambda e, sigma: np.abs(e) <= 1.645 * sigma)),
+        ("SIGMA_MULTIPLE", _covered(lambda e, sigma: np.abs(e) <= 3.0 * sigma)),
+        ("SIGMA_MISREAD", _covered(lambda e, sigma: np.abs(e) <= 1.96 * np.sqrt(sigma))),
+        ("SIGMA_MISREAD", _covered(lambda e, sigma: np.abs(e) <= 1.96 * sigma**2)),
+        ("SIGMA_MISREAD", _covered(lambda e, sigma: np.abs(e) <= 1.96 * np.mean(sigma))),
+        ("OWN_SPREAD_FOR_SIGMA", _covered(lambda e, sigma: np.abs(e) <= 1.96 * np.std(e))),
+        ("SIGMA_ONE_SIDED", _covered(lambda e, sigma: e <= 1.96 * sigma)),
+    ),
+    "pool": tuple(("MEAN_OF_RUNS", _mean_of_runs(keys)) for keys in _SOME),
+    "lag": (
+        ("LAG_SIGN", lambda pairs: -_lag(pairs)),
+        ("LAG_SIGN", lambda pairs: abs(_lag(pairs))),
+        ("LAG_IN_SAMPLES", lambda pairs: _lag(pairs) / (pairs[0][1]["t"][1] - pairs[0][1]["t"][0])),
+        ("LAG_WHOLE_SAMPLES", lambda pairs: round(_lag(pairs) / _step(pairs)) * _step(pairs)),
+        ("LAG_MEAN_OF_RUNS", lambda pairs: np.mean([_lag([pair]) for pair in pairs])),
+        ("LAG_NOT_BEST", lambda pairs: _lag(pairs[:1])),
+    ),
+    "half": tuple((code, form) for code, half in _RULES for form in _in_some(code, half)),
+    "middle": (("CENTRED_ON_THE_REST", lambda value, without: np.mean(without)),),
+    "wrong": tuple(_judging()),
+    "few": (
+        ("NOTHING_LEFT", lambda report: {**report, "accepted": True, "reasons": []}),
+        ("NOTHING_LEFT", lambda report: {**report, "reasons": []}),
+    ),
+}
+
+
+TERMS = formulas.TERMS | {
+    "cross_validate": [(_cross_validate, _FOLDS)],
+    "validate": [(_validate, _VERDICT)],
+}

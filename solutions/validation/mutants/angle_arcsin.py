@@ -1,5 +1,0 @@
-"""arcsin undoes sin."""
-
-
-def wrap_angle(e):
-    return np.arcsin(np.sin(e))

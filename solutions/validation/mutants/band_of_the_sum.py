@@ -1,9 +1,0 @@
-"""The quantiles of the sum are those of the average."""
-
-
-def consistency_band(dof, runs, alpha):
-    def quantile(p, n):
-        s = 2 / (9 * n)
-        return n * (1 - s + NormalDist().inv_cdf(p) * math.sqrt(s)) ** 3
-
-    return quantile(alpha / 2, dof * runs), quantile(1 - alpha / 2, dof * runs)

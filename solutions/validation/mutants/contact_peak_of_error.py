@@ -1,7 +1,0 @@
-"""The error of the peak is the peak of the error."""
-
-
-def contact_force_error(f_sim, f_real, dt):
-    f_sim, f_real = np.asarray(f_sim), np.asarray(f_real)
-    peak, impulse = np.max(f_real), np.sum(f_real) * dt
-    return {"peak": np.max(f_sim - f_real) / peak, "impulse": np.sum(f_sim) * dt / impulse - 1}

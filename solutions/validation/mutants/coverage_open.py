@@ -1,5 +1,0 @@
-"""Inside means strictly inside."""
-
-
-def coverage(y, lo, hi):
-    return float(np.mean((lo < y) & (y < hi)))

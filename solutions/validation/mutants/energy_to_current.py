@@ -1,6 +1,0 @@
-"""The error is relative to the energy at that moment."""
-
-
-def energy_error(q, v, energy):
-    e = np.array([energy(a, b) for a, b in zip(q, v)])
-    return (e - e[0]) / np.abs(e)

@@ -1,5 +1,0 @@
-"""The standard deviation of the errors is their root mean square."""
-
-
-def rmse(e):
-    return float(np.std(e))

@@ -1,5 +1,0 @@
-"""With hypot."""
-
-
-def total_error(errors):
-    return math.hypot(*errors)

@@ -1,0 +1,47 @@
+"""Mistakes in `budget-of-errors`: words beside the programs that they are true of."""
+
+from course.authoring.mistakes import Mistakes
+
+mistakes = Mistakes()
+
+mistakes(
+    "PLAIN_SUM",
+    "The errors are added as if all of them pushed the same way.",
+    "Independent errors partly cancel: add their squares and take the root.",
+).edit("total_error", {"math.sqrt(sum(error * error for error in errors)": "sum(errors"})
+mistakes(
+    "LARGEST_ALONE",
+    "Only the largest error counts.",
+    "It counts most, but the others count too: add the squares.",
+).edit("total_error", {"math.sqrt(sum(error * error for error in errors)": "max(errors"})
+mistakes(
+    "MEAN_NOT_SUM",
+    "The squares are averaged, so more errors would not make it worse.",
+    "Add the squares without dividing.",
+).edit("total_error", {"in errors))": "in errors) / len(errors))"})
+mistakes(
+    "ROOT_MISSING",
+    "Your result is the square of the total.",
+    "Take the root at the end.",
+).edit(
+    "total_error",
+    {"math.sqrt(sum(error * error for error in errors)": "sum(error * error for error in errors"},
+)
+
+mistakes.accept(
+    "With hypot",
+    """
+        def total_error(errors):
+            return math.hypot(*errors)
+    """,
+)
+mistakes.accept(
+    "Adds one error after the other",
+    """
+        def total_error(errors):
+            total = 0.0
+            for error in errors:
+                total = (total**2 + error**2) ** 0.5
+            return total
+    """,
+)

@@ -1,5 +1,0 @@
-"""Takes the largest."""
-
-
-def total_error(errors):
-    return max(errors)

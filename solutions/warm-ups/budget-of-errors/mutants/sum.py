@@ -1,5 +1,0 @@
-"""Adds them."""
-
-
-def total_error(errors):
-    return sum(errors)

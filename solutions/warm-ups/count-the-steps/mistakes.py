@@ -1,0 +1,45 @@
+"""Mistakes in `count-the-steps`: words beside the programs that they are true of."""
+
+from course.authoring.mistakes import Mistakes
+
+mistakes = Mistakes()
+
+mistakes(
+    "CUT_OFF",
+    "The decimals are cut off, so 2.9999999999999996 becomes 2.",
+    "Round to the nearest whole number instead.",
+).edit("steps_in", {"return round(duration": "return int(duration"})
+mistakes(
+    "ROUNDED_UP",
+    "The quotient is rounded up, so 7.000000000000001 becomes 8.",
+    "The error can go either way: round to the nearest whole number.",
+).body(
+    "steps_in",
+    """
+        import math
+
+        return math.ceil(duration / h)
+    """,
+)
+mistakes(
+    "ONE_ADDED",
+    "One is added to every count, even where it was right.",
+    "Add nothing; round the quotient to the nearest whole number.",
+).edit("steps_in", {"round(duration / h)": "int(duration / h) + 1"})
+
+mistakes.accept(
+    "Cuts off after adding a half",
+    """
+        def steps_in(duration, h):
+            return int(duration / h + 0.5)
+    """,
+)
+mistakes.accept(
+    "Counts with decimal fractions",
+    """
+        def steps_in(duration, h):
+            from decimal import Decimal
+
+            return int(Decimal(repr(duration)) / Decimal(repr(h)))
+    """,
+)

@@ -1,5 +1,0 @@
-"""Cuts off before rounding."""
-
-
-def reading(distance, resolution, limit):
-    return round(min(distance, limit) / resolution) * resolution

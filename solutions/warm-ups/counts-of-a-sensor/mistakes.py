@@ -1,0 +1,84 @@
+"""Mistakes in `counts-of-a-sensor`: words beside the programs that they are true of."""
+
+import math
+
+from course.authoring.mistakes import Mistakes, with_terms
+
+mistakes = Mistakes()
+
+mistakes(
+    "COUNTS_CUT_OFF",
+    "Counts are rounded down, so the reading is half a count too small on average.",
+    "Round to the nearest count.",
+).edit("reading", {"min(round(distance": "min(int(distance"})
+mistakes(
+    "COUNTS_NOT_METRES",
+    "Your result is a number of counts, not metres.",
+    "Multiply by the resolution again.",
+).edit("reading", {") * resolution,": "),"})
+mistakes(
+    "LIMIT_FORGOTTEN",
+    "The limit is not used.",
+    "Never return more than the limit.",
+).edit(
+    "reading",
+    {"min(round(distance / resolution) * resolution, limit)": "round(distance / resolution) * resolution"},
+)
+mistakes(
+    "COUNTS_FORGOTTEN",
+    "The distance is not rounded to whole counts.",
+    "Round distance / resolution, and multiply again.",
+).edit("reading", {"round(distance / resolution) * resolution": "distance"})
+mistakes(
+    "COUNTS_ROUNDED_UP",
+    "Counts are rounded up, so the reading is half a count too large on average.",
+    "Round to the nearest count.",
+)
+
+mistakes.accept(
+    "Rounds by hand",
+    """
+        def reading(distance, resolution, limit):
+            import math
+
+            counts = math.floor(distance / resolution + 0.5)
+            return min(counts * resolution, limit)
+    """,
+)
+mistakes.accept(
+    "Cuts off before rounding",
+    """
+        def reading(distance, resolution, limit):
+            return round(min(distance, limit) / resolution) * resolution
+    """,
+)
+
+
+def reading_of(count=round, size=lambda resolution: resolution, most=lambda limit: limit):
+    return lambda distance, resolution, limit: min(
+        count(distance / resolution) * size(resolution), most(limit)
+    )
+
+
+def counted(distance, resolution, limit):
+    """Compares metres with the limit, and gives counts."""
+    count = round(distance / resolution)
+    return limit if count * resolution > limit else count
+
+
+@mistakes.more
+def hypotheses():
+    yield "reading", ("COUNTS_NOT_METRES",), counted
+    yield from with_terms(
+        "reading",
+        reading_of,
+        {
+            "count": {
+                "COUNTS_CUT_OFF": math.floor,
+                "COUNTS_ROUNDED_UP": math.ceil,
+                "COUNTS_FORGOTTEN": lambda counts: counts,
+            },
+            "size": {"COUNTS_NOT_METRES": lambda resolution: 1.0},
+            "most": {"LIMIT_FORGOTTEN": lambda limit: math.inf},
+        },
+    )

@@ -1,5 +1,0 @@
-"""Cuts counts off."""
-
-
-def reading(distance, resolution, limit):
-    return min(int(distance / resolution) * resolution, limit)

@@ -1,5 +1,0 @@
-"""Forgets the counts."""
-
-
-def reading(distance, resolution, limit):
-    return min(distance, limit)

@@ -1,5 +1,0 @@
-"""Forgets the limit."""
-
-
-def reading(distance, resolution, limit):
-    return round(distance / resolution) * resolution

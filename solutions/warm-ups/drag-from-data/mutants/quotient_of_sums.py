@@ -1,5 +1,0 @@
-"""Divides the sums."""
-
-
-def damping(speeds, forces):
-    return sum(forces) / sum(speeds)

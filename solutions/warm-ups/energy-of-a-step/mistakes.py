@@ -1,0 +1,61 @@
+"""Mistakes in `energy-of-a-step`: words beside the programs that they are true of."""
+
+from course.authoring.mistakes import Mistakes
+
+mistakes = Mistakes()
+
+mistakes(
+    "WIDTH_NOT_ENERGY",
+    "This is the factor for the width of the swing. The energy grows with its square.",
+    "Energy goes with the square of the swing's width: leave the root out.",
+).edit("growth", {"1.0 + h * h * k / m": "(1.0 + h * h * k / m) ** 0.5"})
+mistakes(
+    "FREQUENCY_UPSIDE_DOWN",
+    "Mass and stiffness are swapped.",
+    "A stiffer spring swings faster: omega squared is k / m.",
+).edit("growth", {"h * k / m": "h * m / k"})
+mistakes(
+    "FIRST_POWER",
+    "The growth is proportional to h here; it should go with the square of h.",
+    "The mixed terms of first order cancel, which leaves h squared times k / m.",
+).edit("growth", {"h * k / m": "(k / m) ** 0.5"})
+mistakes(
+    "SHRINKS",
+    "The energy shrinks here, but an explicit Euler step adds energy.",
+    "Both squares are added: the sign is plus.",
+).edit("growth", {"1.0 + h *": "1.0 - h *"})
+
+mistakes.accept(
+    "By way of the angular frequency",
+    """
+        def growth(k, m, h):
+            omega = (k / m) ** 0.5
+            return 1.0 + (h * omega) ** 2
+    """,
+)
+mistakes.accept(
+    "Takes the step and divides the energies",
+    """
+        def growth(k, m, h):
+            x, v = 0.3, -0.7
+            before = k * x * x + m * v * v
+            x, v = x + h * v, v - h * k / m * x
+            return (k * x * x + m * v * v) / before
+    """,
+)
+
+
+def growth_of(omega2=lambda k, m: k / m, step=lambda h: h * h, sign=1.0, root=1.0):
+    return lambda k, m, h: (1 + sign * step(h) * omega2(k, m)) ** root
+
+
+mistakes.terms(
+    "growth",
+    growth_of,
+    {
+        "omega2": {"FREQUENCY_UPSIDE_DOWN": lambda k, m: m / k},
+        "step": {"FIRST_POWER": lambda h: h},
+        "sign": {"SHRINKS": -1.0},
+        "root": {"WIDTH_NOT_ENERGY": 0.5},
+    },
+)

@@ -1,0 +1,37 @@
+"""Mistakes in `equal-work`: words beside the programs that they are true of."""
+
+from course.authoring.mistakes import Mistakes
+
+mistakes = Mistakes()
+
+mistakes(
+    "LESS_WORK_LONGER_STEPS",
+    "The quotient is upside down: the engine with fewer iterations gets longer steps, and so does even less.",
+    "An engine that makes fewer iterations in a step has to take more steps, so its step is shorter.",
+).edit("fair_step", {"other / iterations": "iterations / other"})
+mistakes(
+    "SAME_STEP",
+    "Both engines get the same step, whatever a step costs them.",
+    "Make the iterations in a simulated second equal, not the steps.",
+).edit("fair_step", {"h * other / iterations": "h"})
+mistakes(
+    "STEPS_IN_A_SECOND",
+    "Your result is the number of steps per second.",
+    "The length of one step is its inverse.",
+).edit("fair_step", {"h * other / iterations": "iterations / (h * other)"})
+
+mistakes.accept(
+    "By the passes in a second",
+    """
+        def fair_step(h, iterations, other):
+            passes = iterations / h
+            return other / passes
+    """,
+)
+mistakes.accept(
+    "By the time that one pass stands for",
+    """
+        def fair_step(h, iterations, other):
+            return h / iterations * other
+    """,
+)

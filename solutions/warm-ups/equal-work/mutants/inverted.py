@@ -1,5 +1,0 @@
-"""Gives the cheap engine the long steps."""
-
-
-def fair_step(h, iterations, other):
-    return h * iterations / other

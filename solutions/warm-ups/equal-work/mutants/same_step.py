@@ -1,5 +1,0 @@
-"""Takes the same step."""
-
-
-def fair_step(h, iterations, other):
-    return h

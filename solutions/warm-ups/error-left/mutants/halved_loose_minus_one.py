@@ -1,5 +1,0 @@
-"""The minus one comes last, and steps are halved."""
-
-
-def error_left(coarse, fine, factor, order):
-    return (coarse - fine) / 2**order - 1

@@ -1,5 +1,0 @@
-"""What has changed is what is left."""
-
-
-def error_left(coarse, fine, factor, order):
-    return coarse - fine

@@ -1,5 +1,0 @@
-"""Counts steps, not seconds."""
-
-
-def real_time_factor(steps, h, wall):
-    return steps / wall

@@ -1,5 +1,0 @@
-"""As it stands in the file."""
-
-
-def after_contact(v1, v2):
-    return v1, v2

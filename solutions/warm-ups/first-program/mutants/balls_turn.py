@@ -1,5 +1,0 @@
-"""Turns both velocities round."""
-
-
-def after_contact(v1, v2):
-    return -v1, -v2

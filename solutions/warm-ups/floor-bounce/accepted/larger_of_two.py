@@ -1,5 +1,0 @@
-"""Takes the larger of two numbers."""
-
-
-def after_floor(v, e):
-    return max(v, -e * v)

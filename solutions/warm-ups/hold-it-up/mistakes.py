@@ -1,0 +1,67 @@
+"""Mistakes in `hold-it-up`: words beside the programs that they are true of."""
+
+import math
+
+from course.authoring.mistakes import Mistakes
+
+mistakes = Mistakes()
+
+mistakes(
+    "WEIGHT_AT_THE_END",
+    "You let the weight act at the end of the bar.",
+    "It acts at the centre of mass, half way along a uniform bar.",
+).edit("holding_torque", {"return 0.5 * m *": "return m *"})
+mistakes(
+    "SINE_OF_THE_ANGLE",
+    "You took the lever arm as a sine, so a level bar would need no torque.",
+    "The angle is measured from the horizontal: the lever arm goes with its cosine.",
+).edit("holding_torque", {"math.cos(angle": "math.sin(angle"})
+mistakes(
+    "ANGLE_IGNORED",
+    "The angle is not used.",
+    "A raised bar has its weight closer to the motor: multiply by the cosine.",
+).edit("holding_torque", {"l * math.cos(angle)": "l"})
+mistakes(
+    "GRAVITYS_OWN_TORQUE",
+    "Your result is the torque of gravity.",
+    "The motor must cancel it: change the sign.",
+).edit("holding_torque", {"return 0.": "return -0."})
+mistakes(
+    "DEGREES",
+    "You took the angle as degrees.",
+    "It is in radians already.",
+)
+
+mistakes.accept(
+    "As a cross product",
+    """
+        def holding_torque(m, l, angle, g=9.81):
+            import numpy as np
+
+            arm = 0.5 * l * np.array([math.cos(angle), math.sin(angle), 0.0])
+            return -float(np.cross(arm, [0.0, -m * g, 0.0])[2])
+    """,
+)
+mistakes.accept(
+    "The angle from the vertical",
+    """
+        def holding_torque(m, l, angle, g=9.81):
+            return m * g * (l / 2) * math.sin(math.pi / 2 - angle)
+    """,
+)
+
+
+def torque(arm=0.5, turn=math.cos, unit=float, sign=1.0):
+    return lambda m, l, angle, g=9.81: sign * arm * m * g * l * turn(unit(angle))
+
+
+mistakes.terms(
+    "holding_torque",
+    torque,
+    {
+        "arm": {"WEIGHT_AT_THE_END": 1.0},
+        "turn": {"SINE_OF_THE_ANGLE": math.sin, "ANGLE_IGNORED": lambda angle: 1.0},
+        "unit": {"DEGREES": math.radians},
+        "sign": {"GRAVITYS_OWN_TORQUE": -1.0},
+    },
+)

@@ -1,5 +1,0 @@
-"""Gives the deviation of one value."""
-
-
-def standard_error(values):
-    return statistics.stdev(values)

@@ -1,0 +1,118 @@
+"""Mistakes in `inside-the-cone`: words beside the programs that they are true of."""
+
+import math
+
+from course.authoring.mistakes import Mistakes
+
+mistakes = Mistakes()
+
+mistakes(
+    "PYRAMID",
+    "Each component is limited by itself. That is a pyramid: it allows too much along its edges and changes the direction.",
+    "Compare the length of the vector with the limit, and shorten both components alike.",
+).body(
+    "friction",
+    """
+        most = mu * normal
+        return [max(-most, min(most, part)) for part in wanted]
+    """,
+)
+mistakes(
+    "ALWAYS_THE_MOST",
+    "Friction always has its maximum here, even where less is enough.",
+    "mu times normal is a limit. Below it friction gives exactly the wanted impulse.",
+).body(
+    "friction",
+    """
+        most, size = mu * normal, math.hypot(*wanted)
+        return [part * most / size if size else 0.0 for part in wanted]
+    """,
+)
+mistakes(
+    "NO_LIMIT",
+    "There is no limit, so nothing would ever slide.",
+    "Friction gives mu times the normal impulse at most.",
+).body(
+    "friction",
+    """
+        return list(wanted)
+    """,
+)
+mistakes(
+    "NORMAL_FORGOTTEN",
+    "The limit is mu alone.",
+    "Pressing harder allows more friction: the limit is mu times normal.",
+).body(
+    "friction",
+    """
+        size = math.hypot(*wanted)
+        return list(wanted) if size <= mu else [part * mu / size for part in wanted]
+    """,
+)
+mistakes(
+    "SIZES_ADDED",
+    "You added the sizes of the components instead of taking the length of the vector.",
+    "The length is the root of the sum of the squares: math.hypot(*wanted).",
+)
+mistakes(
+    "LARGER_COMPONENT",
+    "You took the larger component for the length of the vector.",
+    "The length is the root of the sum of the squares: math.hypot(*wanted).",
+)
+mistakes(
+    "LENGTH_SQUARED",
+    "You took the square of the length for the length.",
+    "Take the root of the sum of the squares: math.hypot(*wanted).",
+)
+mistakes(
+    "NOTHING_BEYOND",
+    "Beyond the limit there is no friction at all.",
+    "There friction gives the most it can, in the direction of wanted.",
+)
+mistakes(
+    "TURNED_ROUND",
+    "Beyond the limit the impulse points the other way.",
+    "Keep the direction of wanted.",
+)
+
+mistakes.accept(
+    "By way of length and angle",
+    """
+        def friction(wanted, normal, mu):
+            size = min(math.hypot(*wanted), mu * normal)
+            angle = math.atan2(wanted[1], wanted[0])
+            return size * math.cos(angle), size * math.sin(angle)
+    """,
+)
+mistakes.accept(
+    "One factor for both cases",
+    """
+        def friction(wanted, normal, mu):
+            size = math.hypot(*wanted)
+            factor = min(1.0, mu * normal / size) if size > 0 else 1.0
+            return [factor * part for part in wanted]
+    """,
+)
+
+
+def friction_of(length=math.hypot, beyond=1.0, most=lambda normal, mu: mu * normal):
+    def friction(wanted, normal, mu):
+        limit, size = most(normal, mu), length(*wanted)
+        return list(wanted) if size <= limit else [beyond * part * limit / size for part in wanted]
+
+    return friction
+
+
+mistakes.terms(
+    "friction",
+    friction_of,
+    {
+        "length": {
+            "SIZES_ADDED": lambda x, y: abs(x) + abs(y),
+            "LARGER_COMPONENT": lambda x, y: max(abs(x), abs(y)),
+            "LENGTH_SQUARED": lambda x, y: x * x + y * y,
+        },
+        "beyond": {"NOTHING_BEYOND": 0.0, "TURNED_ROUND": -1.0},
+        "most": {"NORMAL_FORGOTTEN": lambda normal, mu: mu},
+    },
+)

@@ -1,5 +1,0 @@
-"""Gives whatever is wanted."""
-
-
-def friction(wanted, normal, mu):
-    return list(wanted)

@@ -1,6 +1,0 @@
-"""Adds the latency to now."""
-
-
-def seen(times, values, latency, now):
-    arrived = [v for t, v in zip(times, values) if t <= now + latency]
-    return arrived[-1] if arrived else None

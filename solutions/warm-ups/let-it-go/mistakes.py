@@ -1,0 +1,102 @@
+"""Mistakes in `let-it-go`: words beside the programs that they are true of."""
+
+import math
+
+from course.authoring.mistakes import Mistakes, with_terms
+
+mistakes = Mistakes()
+
+mistakes(
+    "INERTIA_ABOUT_THE_CENTRE",
+    "You used the moment of inertia about the centre of the bar.",
+    "The bar turns about its end, where it is four times as large: m l^2 / 3.",
+).edit("angular_acceleration", {"* l / 3.0)": "* l / 12.0)"})
+mistakes(
+    "MASS_AT_THE_END",
+    "You used the moment of inertia of a mass at the end of the bar.",
+    "Most of a uniform bar is closer: m l^2 / 3.",
+).edit("angular_acceleration", {"* l / 3.0)": "* l)"})
+mistakes(
+    "GRAVITY_UPWARDS",
+    "Gravity turns the bar upwards.",
+    "Gravity's torque is negative here: subtract it.",
+).edit("angular_acceleration", {"torque - 0": "torque + 0"})
+mistakes(
+    "GRAVITY_FORGOTTEN",
+    "Gravity is left out: with the motor off the bar would not fall.",
+    "Subtract the torque that it takes to hold the bar.",
+).edit("angular_acceleration", {"(torque - 0.5 * m * g * l * math.cos(angle))": "torque"})
+mistakes(
+    "WEIGHT_AT_THE_END",
+    "You let the weight act at the end of the bar.",
+    "It acts at the centre of mass, half way along a uniform bar.",
+)
+mistakes(
+    "SINE_OF_THE_ANGLE",
+    "You took the sine of the angle for the lever arm of the weight.",
+    "The angle is measured from the horizontal: the lever arm goes with its cosine.",
+)
+mistakes(
+    "ANGLE_IGNORED",
+    "The angle is not used.",
+    "A raised bar has its weight closer to the hinge: multiply by the cosine.",
+)
+mistakes(
+    "DEGREES",
+    "You took the angle as degrees.",
+    "It is in radians already.",
+)
+mistakes(
+    "TORQUE_NOT_DIVIDED",
+    "Only gravity's torque is divided by the moment of inertia, not the motor's.",
+    "Put brackets round the sum of the torques, and divide the sum.",
+)
+mistakes(
+    "SIGN_TURNED",
+    "The acceleration has the wrong sign.",
+    "Upwards is positive: take the motor's torque less gravity's.",
+)
+
+mistakes.accept(
+    "The moment of inertia by the parallel axis theorem",
+    """
+        def angular_acceleration(torque, m, l, angle, g=9.81):
+            inertia = m * l**2 / 12 + m * (l / 2) ** 2
+            gravity = -m * g * l / 2 * math.cos(angle)
+            return (torque + gravity) / inertia
+    """,
+)
+mistakes.accept(
+    "Motor and gravity apart",
+    """
+        def angular_acceleration(torque, m, l, angle, g=9.81):
+            return 3 * torque / (m * l**2) - 1.5 * g / l * math.cos(angle)
+    """,
+)
+
+
+def acceleration(inertia=1 / 3, turned=1.0, arm=0.5, turn=math.cos, unit=float, gravity=-1.0):
+    return lambda torque, m, l, angle, g=9.81: (
+        turned * (torque + gravity * arm * m * g * l * turn(unit(angle))) / (inertia * m * l * l)
+    )
+
+
+def torque_undivided(torque, m, l, angle, g=9.81):
+    return torque - 1.5 * g / l * math.cos(angle)
+
+
+@mistakes.more
+def hypotheses():
+    yield "angular_acceleration", ("TORQUE_NOT_DIVIDED",), torque_undivided
+    yield from with_terms(
+        "angular_acceleration",
+        acceleration,
+        {
+            "inertia": {"INERTIA_ABOUT_THE_CENTRE": 1 / 12, "MASS_AT_THE_END": 1.0},
+            "turned": {"SIGN_TURNED": -1.0},
+            "arm": {"WEIGHT_AT_THE_END": 1.0},
+            "turn": {"SINE_OF_THE_ANGLE": math.sin, "ANGLE_IGNORED": lambda angle: 1.0},
+            "unit": {"DEGREES": math.radians},
+            "gravity": {"GRAVITY_UPWARDS": 1.0, "GRAVITY_FORGOTTEN": 0.0},
+        },
+    )

@@ -1,5 +1,0 @@
-"""Takes the moment of inertia about the centre."""
-
-
-def angular_acceleration(torque, m, l, angle, g=9.81):
-    return (torque - 0.5 * m * g * l * math.cos(angle)) / (m * l * l / 12.0)

@@ -1,6 +1,0 @@
-"""An interval is a value and its uncertainty."""
-
-
-def model_error(simulated, measured, u_num, u_input, u_data):
-    u = math.hypot(u_num, u_input, u_data)
-    return simulated - measured, u

@@ -1,0 +1,86 @@
+"""Mistakes in `one-step-ahead`: words beside the programs that they are true of."""
+
+from course.authoring.mistakes import Mistakes
+
+mistakes = Mistakes()
+
+mistakes(
+    "NEW_VELOCITY",
+    "The position moves with the new velocity.",
+    "Use the velocity from before the step for the position. (What you wrote is a method of its own; the lesson comes to it.)",
+).body(
+    "step_ahead",
+    """
+        v = v + h * a
+        return x + h * v, v
+    """,
+)
+mistakes(
+    "SCHOOL_FORMULA",
+    "The position has a term a h^2 / 2: you let the velocity grow during the step.",
+    "That is more exact for a constant acceleration. Here the velocity counts as constant during a step: leave the term out.",
+).edit("step_ahead", {"h * v, v +": "h * v + a * h * h / 2, v +"})
+mistakes(
+    "STEP_FORGOTTEN",
+    "The acceleration is added to the velocity without multiplying by the step.",
+    "Acceleration is a change per second: multiply it by h.",
+).edit("step_ahead", {"v + h * a": "v + a"})
+mistakes(
+    "VELOCITY_WITHOUT_STEP",
+    "The velocity is added to the position without multiplying by the step.",
+    "In a step of h seconds a body moves by h v.",
+)
+mistakes(
+    "VELOCITY_KEPT",
+    "The velocity does not change.",
+    "It advances by h a.",
+)
+mistakes(
+    "ORDER_SWAPPED",
+    "Position and velocity are exchanged.",
+    "The position comes first.",
+)
+mistakes(
+    "SLOWER",
+    "The acceleration is subtracted from the velocity.",
+    "Add h a. Where it slows the body down, a itself is negative.",
+)
+
+mistakes.accept(
+    "Adds up a list of pairs",
+    """
+        def step_ahead(x, v, a, h):
+            return [now + h * rate for now, rate in ((x, v), (v, a))]
+    """,
+)
+mistakes.accept(
+    "Assigns both at once",
+    """
+        def step_ahead(x, v, a, h):
+            x, v = x + v * h, v + a * h
+            return x, v
+    """,
+)
+
+
+def step_of(moved=lambda v, a, h: h * v, faster=lambda a, h: h * a, order=1):
+    return lambda x, v, a, h: (x + moved(v, a, h), v + faster(a, h))[::order]
+
+
+mistakes.terms(
+    "step_ahead",
+    step_of,
+    {
+        "moved": {
+            "NEW_VELOCITY": lambda v, a, h: h * (v + h * a),
+            "SCHOOL_FORMULA": lambda v, a, h: h * v + h * h * a / 2,
+            "VELOCITY_WITHOUT_STEP": lambda v, a, h: v,
+        },
+        "faster": {
+            "STEP_FORGOTTEN": lambda a, h: a,
+            "VELOCITY_KEPT": lambda a, h: 0.0,
+            "SLOWER": lambda a, h: -h * a,
+        },
+        "order": {"ORDER_SWAPPED": -1},
+    },
+)

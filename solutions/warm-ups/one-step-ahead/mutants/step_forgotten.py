@@ -1,5 +1,0 @@
-"""Forgets the step for the velocity."""
-
-
-def step_ahead(x, v, a, h):
-    return x + h * v, v + a

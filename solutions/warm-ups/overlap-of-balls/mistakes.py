@@ -1,0 +1,81 @@
+"""Mistakes in `overlap-of-balls`: words beside the programs that they are true of."""
+
+import math
+
+from course.authoring.mistakes import Mistakes
+
+mistakes = Mistakes()
+
+mistakes(
+    "GAP_NOT_DEPTH",
+    "The sign is reversed: it is the gap, not the depth.",
+    "Deep means positive: radii minus distance.",
+).edit("overlap", {"r1 + r2 - math.dist(p, q)": "math.dist(p, q) - r1 - r2"})
+mistakes(
+    "DISTANCE_SQUARED",
+    "You took the squared distance for the distance.",
+    "Take the root: metres cannot be compared with square metres.",
+).edit("overlap", {"math.dist(p, q)": "(q[0] - p[0]) ** 2 - (q[1] - p[1]) ** 2"})
+mistakes(
+    "ONE_RADIUS",
+    "Only the larger radius counts.",
+    "Surfaces meet when the centres are r1 + r2 apart.",
+).edit("overlap", {"return r1 + r2 -": "return max(r1, r2) -"})
+mistakes(
+    "GAP_CUT_OFF",
+    "A gap gives zero here.",
+    "A gap should be negative: leave the max out.",
+).edit("overlap", {"r1 + r2 - math.dist(p, q": "max(0.0, r1 + r2 - math.dist(p, q)"})
+mistakes(
+    "SIZES_ADDED",
+    "You added the differences in x and in y, as if one had to walk round a corner.",
+    "The straight distance is the root of the sum of their squares: math.dist(p, q).",
+)
+mistakes(
+    "RADII_HALVED",
+    "You halved the radii, as if they were diameters.",
+    "Balls that just touch have their centres r1 + r2 apart.",
+)
+mistakes(
+    "DIAMETERS",
+    "You doubled the radii.",
+    "Balls that just touch have their centres r1 + r2 apart.",
+)
+
+mistakes.accept(
+    "Pythagoras by hand",
+    """
+        def overlap(p, q, r1, r2):
+            dx, dy = q[0] - p[0], q[1] - p[1]
+            return r1 + r2 - (dx * dx + dy * dy) ** 0.5
+    """,
+)
+mistakes.accept(
+    "Centres as complex numbers",
+    """
+        def overlap(p, q, r1, r2):
+            return r1 + r2 - abs(complex(*p) - complex(*q))
+    """,
+)
+
+
+def depth(distance=math.dist, radii=lambda a, b: a + b, sign=1.0):
+    return lambda p, q, r1, r2: sign * (radii(r1, r2) - distance(p, q))
+
+
+mistakes.terms(
+    "overlap",
+    depth,
+    {
+        "distance": {
+            "DISTANCE_SQUARED": lambda p, q: math.dist(p, q) ** 2,
+            "SIZES_ADDED": lambda p, q: abs(p[0] - q[0]) + abs(p[1] - q[1]),
+        },
+        "radii": {
+            "ONE_RADIUS": max,
+            "RADII_HALVED": lambda a, b: (a + b) / 2,
+            "DIAMETERS": lambda a, b: 2 * (a + b),
+        },
+        "sign": {"GAP_NOT_DEPTH": -1.0},
+    },
+)

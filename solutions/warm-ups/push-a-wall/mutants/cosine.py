@@ -1,8 +1,0 @@
-"""A lever is a cosine."""
-
-
-def felt_mass(carriage, tip, length, angle):
-    lever = -length * np.cos(angle)
-    mass = np.array([[carriage + tip, tip * lever], [tip * lever, tip * length**2]])
-    row = np.array([1.0, lever])
-    return 1.0 / (row @ np.linalg.solve(mass, row))

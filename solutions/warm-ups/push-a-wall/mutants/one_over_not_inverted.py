@@ -1,8 +1,0 @@
-"""1 / A, with M as it is."""
-
-
-def felt_mass(carriage, tip, length, angle):
-    lever = -length * np.sin(angle)
-    mass = np.array([[carriage + tip, tip * lever], [tip * lever, tip * length**2]])
-    row = np.array([1.0, lever])
-    return 1.0 / (row @ mass @ row)

@@ -1,8 +1,0 @@
-"""Angles are in degrees."""
-
-
-def felt_mass(carriage, tip, length, angle):
-    lever = -length * np.sin(np.radians(angle))
-    mass = np.array([[carriage + tip, tip * lever], [tip * lever, tip * length**2]])
-    row = np.array([1.0, lever])
-    return 1.0 / (row @ np.linalg.solve(mass, row))

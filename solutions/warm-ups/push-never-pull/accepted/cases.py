@@ -1,7 +1,0 @@
-"""Two cases."""
-
-
-def applied(total, wanted):
-    if total + wanted < 0:
-        return -total
-    return wanted

@@ -1,0 +1,59 @@
+"""Mistakes in `push-never-pull`: words beside the programs that they are true of."""
+
+from course.authoring.mistakes import Mistakes
+
+mistakes = Mistakes()
+
+mistakes(
+    "CORRECTION_CUT_OFF",
+    "Every negative correction is dropped, so an impulse that was too large can never be taken back.",
+    "Limit the sum, not the correction: the sum may go down to zero.",
+).edit("applied", {"total + wanted, 0.0) - total": "wanted, 0.0)"})
+mistakes(
+    "PULLS",
+    "The sum can go below zero: the contact pulls.",
+    "Where total + wanted is negative, apply only -total.",
+).edit("applied", {"max(total + wanted, 0.0) - total": "wanted"})
+mistakes(
+    "SUM_NOT_CORRECTION",
+    "Your result is the new sum, so the old one would be applied again.",
+    "Subtract the impulse that was applied before: return only the change.",
+).edit("applied", {") - total": ")"})
+mistakes(
+    "ALL_TAKEN_BACK",
+    "Any negative correction takes the whole impulse back.",
+    "Take back what is wanted, but no more than there is.",
+).edit("applied", {"return max(total + wanted, 0.0) - total": "return wanted if wanted > 0 else -total"})
+mistakes(
+    "TAKES_WITH_A_PLUS",
+    "Where the sum would go below zero you add the total once more.",
+    "Take it back: apply -total.",
+)
+mistakes(
+    "NOTHING_TAKEN",
+    "Where the sum would go below zero you change nothing.",
+    "Take back what there is: apply -total.",
+)
+
+mistakes.accept(
+    "The correction is at least minus the sum",
+    """
+        def applied(total, wanted):
+            return max(wanted, -total)
+    """,
+)
+mistakes.accept(
+    "Two cases",
+    """
+        def applied(total, wanted):
+            if total + wanted < 0:
+                return -total
+            return wanted
+    """,
+)
+
+
+@mistakes.more
+def hypotheses():
+    yield "applied", ("TAKES_WITH_A_PLUS",), lambda total, wanted: total if total + wanted < 0 else wanted
+    yield "applied", ("NOTHING_TAKEN",), lambda total, wanted: 0.0 if total + wanted < 0 else wanted

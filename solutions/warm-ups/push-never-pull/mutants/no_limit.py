@@ -1,5 +1,0 @@
-"""Applies whatever is wanted."""
-
-
-def applied(total, wanted):
-    return wanted

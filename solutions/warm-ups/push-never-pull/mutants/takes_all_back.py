@@ -1,5 +1,0 @@
-"""Takes everything back at a negative correction."""
-
-
-def applied(total, wanted):
-    return wanted if wanted > 0 else -total

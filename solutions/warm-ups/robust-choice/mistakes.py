@@ -1,0 +1,86 @@
+"""Mistakes in `robust-choice`: words beside the programs that they are true of."""
+
+from course.authoring.mistakes import Mistakes
+
+mistakes = Mistakes()
+
+mistakes(
+    "BEST_ON_AVERAGE",
+    "You take the controller that is best on average, however badly it does in one world.",
+    "Compare the worst costs.",
+).body(
+    "robust",
+    """
+        means = [sum(row) / len(row) for row in costs]
+        return means.index(min(means))
+    """,
+)
+mistakes(
+    "BEST_CASE",
+    "You take the controller with the smallest cost in any one world.",
+    "You cannot count on that world: compare the worst costs.",
+).body(
+    "robust",
+    """
+        best = [min(row) for row in costs]
+        return best.index(min(best))
+    """,
+)
+mistakes(
+    "LARGEST_WORST",
+    "You take the controller whose worst cost is the largest.",
+    "Costs should be small: take the smallest of the worst.",
+).edit("robust", {"index(min(worst": "index(max(worst"})
+mistakes(
+    "WORLDS_NOT_CONTROLLERS",
+    "You compare the worlds: rows and columns are swapped.",
+    "costs[i] is one controller in all worlds.",
+).edit("robust", {"row) for row in costs": "column) for column in zip(*costs)"})
+mistakes(
+    "COST_NOT_INDEX",
+    "Your result is the smallest worst cost itself.",
+    "Give the index of the controller that has it.",
+)
+mistakes(
+    "COUNTED_FROM_ONE",
+    "Your index is one too large.",
+    "The first controller has the index 0.",
+)
+mistakes(
+    "LAST_OF_EQUALS",
+    "Of equal controllers you take the last one.",
+    "Take the first: compare with <, not <=.",
+)
+
+mistakes.accept(
+    "The smallest index by a key",
+    """
+        def robust(costs):
+            return min(range(len(costs)), key=lambda i: max(costs[i]))
+    """,
+)
+mistakes.accept(
+    "With NumPy",
+    """
+        def robust(costs):
+            import numpy as np
+
+            return int(np.argmin(np.max(np.asarray(costs), axis=1)))
+    """,
+)
+
+
+def cost(costs):
+    return min(max(row) for row in costs)
+
+
+def last_of_equals(costs):
+    worst = [max(row) for row in costs]
+    return len(worst) - 1 - worst[::-1].index(min(worst))
+
+
+@mistakes.more
+def hypotheses():
+    yield "robust", ("COST_NOT_INDEX",), cost
+    yield "robust", ("COUNTED_FROM_ONE",), lambda costs: [max(row) for row in costs].index(cost(costs)) + 1
+    yield "robust", ("LAST_OF_EQUALS",), last_of_equals

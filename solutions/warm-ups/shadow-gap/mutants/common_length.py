@@ -1,9 +1,0 @@
-"""Overlap is the common part."""
-
-
-def shadow_gap(a, b, direction):
-    dx, dy = direction
-    size = math.hypot(dx, dy)
-    on_a = [(x * dx + y * dy) / size for x, y in a]
-    on_b = [(x * dx + y * dy) / size for x, y in b]
-    return max(min(on_b), min(on_a)) - min(max(on_a), max(on_b))

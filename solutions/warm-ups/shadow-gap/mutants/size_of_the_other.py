@@ -1,9 +1,0 @@
-"""The other difference and its size."""
-
-
-def shadow_gap(a, b, direction):
-    dx, dy = direction
-    size = math.hypot(dx, dy)
-    on_a = [(x * dx + y * dy) / size for x, y in a]
-    on_b = [(x * dx + y * dy) / size for x, y in b]
-    return abs(min(on_a) - max(on_b))

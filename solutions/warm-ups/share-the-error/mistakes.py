@@ -1,0 +1,69 @@
+"""Mistakes in `share-the-error`: words beside the programs that they are true of."""
+
+from course.authoring.mistakes import Mistakes
+
+mistakes = Mistakes()
+
+mistakes(
+    "AWAY_FROM_THE_SENSOR",
+    "The difference is predicted minus measured, so the correction has the wrong sign.",
+    "Add the share of measured minus predicted.",
+).edit("corrected", {"predicted + share": "predicted - share"})
+mistakes(
+    "SHARES_SWAPPED",
+    "The shares are swapped: with the share 0 it takes the measurement.",
+    "The share says how far to go towards the measurement.",
+).edit(
+    "corrected",
+    {"predicted + share * (measured - predicted)": "share * predicted + (1.0 - share) * measured"},
+)
+mistakes(
+    "MEASUREMENT_ADDED",
+    "A share of the measurement is added, not of the difference.",
+    "If both agree, there is nothing to correct: use measured minus predicted.",
+).edit("corrected", {"(measured - predicted)": "measured"})
+mistakes(
+    "SHARE_IGNORED",
+    "Your result is the middle, whatever the share is.",
+    "Go only the given share of the way.",
+).edit("corrected", {"predicted + share * (measured - predicted)": "(predicted + measured) / 2.0"})
+mistakes(
+    "CORRECTION_ALONE",
+    "Your result is the correction alone.",
+    "Add it to the prediction.",
+)
+mistakes(
+    "FROM_THE_MEASUREMENT",
+    "The correction is added to the measurement.",
+    "It starts from the prediction.",
+)
+
+mistakes.accept(
+    "Starts from the other end",
+    """
+        def corrected(predicted, measured, share):
+            return measured - (1.0 - share) * (measured - predicted)
+    """,
+)
+mistakes.accept(
+    "A mean with two weights",
+    """
+        def corrected(predicted, measured, share):
+            return (1.0 - share) * predicted + share * measured
+    """,
+)
+
+
+def corrected_by(start=lambda p, m: p, way=lambda p, m: m - p, share=lambda s: s):
+    return lambda predicted, measured, s: start(predicted, measured) + share(s) * way(predicted, measured)
+
+
+mistakes.terms(
+    "corrected",
+    corrected_by,
+    {
+        "start": {"CORRECTION_ALONE": lambda p, m: 0.0, "FROM_THE_MEASUREMENT": lambda p, m: m},
+        "way": {"AWAY_FROM_THE_SENSOR": lambda p, m: p - m, "MEASUREMENT_ADDED": lambda p, m: m},
+        "share": {"SHARES_SWAPPED": lambda s: 1 - s},
+    },
+)

@@ -1,8 +1,0 @@
-"""The order of a pair is free."""
-
-
-def joint_speeds(angle, length, vx, vy):
-    if abs(math.cos(angle)) < 1e-9:
-        return None
-    turn = vy / (length * math.cos(angle))
-    return turn, vx + length * math.sin(angle) * turn

@@ -1,0 +1,62 @@
+"""Mistakes in `too-far-apart`: words beside the programs that they are true of."""
+
+import math
+
+from course.authoring.mistakes import Mistakes
+
+mistakes = Mistakes()
+
+mistakes(
+    "DOUBTS_ADDED",
+    "The uncertainties are added, which makes every difference look smaller than it is.",
+    "Add their squares and take the root.",
+).edit("distance_in_doubts", {"math.hypot(doubt_s,": "(doubt_s +"})
+mistakes(
+    "SIGN_KEPT",
+    "A simulation below the measurement gives a negative number, which is below 2 however far apart they are.",
+    "Take the size of the difference.",
+).edit("distance_in_doubts", {"return abs(simulated": "return (simulated"})
+mistakes(
+    "SIMULATION_WITHOUT_DOUBT",
+    "Only the measurement's uncertainty counts.",
+    "A simulation has an uncertainty too: combine both.",
+).edit("distance_in_doubts", {"math.hypot(doubt_s, doubt_m)": "doubt_m"})
+mistakes(
+    "ROOT_MISSING",
+    "You divide by the variance.",
+    "Take the root of the sum of the squares.",
+).edit("distance_in_doubts", {"math.hypot(doubt_s, doubt_m": "(doubt_s**2 + doubt_m**2"})
+
+mistakes.accept(
+    "The root of a quotient",
+    """
+        def distance_in_doubts(simulated, doubt_s, measured, doubt_m):
+            return ((simulated - measured) ** 2 / (doubt_s**2 + doubt_m**2)) ** 0.5
+    """,
+)
+mistakes.accept(
+    "By the variances",
+    """
+        def distance_in_doubts(simulated, doubt_s, measured, doubt_m):
+            variance = doubt_s**2 + doubt_m**2
+            return abs(measured - simulated) / math.sqrt(variance)
+    """,
+)
+
+
+def distance(doubt=math.hypot, size=abs):
+    return lambda simulated, doubt_s, measured, doubt_m: size(simulated - measured) / doubt(doubt_s, doubt_m)
+
+
+mistakes.terms(
+    "distance_in_doubts",
+    distance,
+    {
+        "doubt": {
+            "DOUBTS_ADDED": lambda s, m: s + m,
+            "ROOT_MISSING": lambda s, m: s * s + m * m,
+            "SIMULATION_WITHOUT_DOUBT": lambda s, m: m,
+        },
+        "size": {"SIGN_KEPT": lambda d: d},
+    },
+)

@@ -1,5 +1,0 @@
-"""Counts one doubt."""
-
-
-def distance_in_doubts(simulated, doubt_s, measured, doubt_m):
-    return abs(simulated - measured) / doubt_m

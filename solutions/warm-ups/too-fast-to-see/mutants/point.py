@@ -1,5 +1,0 @@
-"""Takes the ball as a point."""
-
-
-def fastest(thickness, radius, h):
-    return thickness / h

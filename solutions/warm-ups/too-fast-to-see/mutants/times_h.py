@@ -1,5 +1,0 @@
-"""Multiplies by the step."""
-
-
-def fastest(thickness, radius, h):
-    return (thickness + 2.0 * radius) * h

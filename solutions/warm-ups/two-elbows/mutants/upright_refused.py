@@ -1,8 +1,0 @@
-"""The limit is out of reach."""
-
-
-def carriages(x, y, length):
-    if abs(y) >= length:
-        return None
-    aside = math.sqrt(length**2 - y**2)
-    return x - aside, x + aside

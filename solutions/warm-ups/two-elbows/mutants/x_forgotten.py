@@ -1,8 +1,0 @@
-"""Distances are places."""
-
-
-def carriages(x, y, length):
-    if abs(y) > length:
-        return None
-    aside = math.sqrt(length**2 - y**2)
-    return -aside, aside

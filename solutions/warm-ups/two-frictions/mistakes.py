@@ -1,0 +1,79 @@
+"""Mistakes in `two-frictions`: words beside the programs that they are true of."""
+
+from course.authoring.mistakes import Mistakes
+
+mistakes = Mistakes()
+
+mistakes(
+    "GEOMETRIC_MEAN",
+    'For "mean" you take the geometric mean.',
+    "Here the arithmetic mean is meant: half of the sum.",
+).edit("pair_friction", {"+ mu2) / 2.0": "* mu2) ** 0.5"})
+mistakes(
+    "SMALLER_OF_TWO",
+    'For "larger" you take the smaller one.',
+    "Take the larger coefficient.",
+).edit("pair_friction", {"return max(mu1": "return min(mu1"})
+mistakes(
+    "ONE_RULE_FOR_ALL",
+    "Every rule multiplies here.",
+    "Look at which rule is given, and follow it.",
+).body(
+    "pair_friction",
+    """
+        return mu1 * mu2
+    """,
+)
+mistakes(
+    "SUM_NOT_MEAN",
+    'For "mean" you take the sum.',
+    "Halve it.",
+).edit("pair_friction", {"(mu1 + mu2) / 2.0": "mu1 + mu2"})
+mistakes(
+    "BRACKETS_MISSING",
+    'For "mean" only the second coefficient is halved.',
+    "Put brackets round the sum: (mu1 + mu2) / 2.",
+)
+mistakes(
+    "ROOT_OF_THE_PRODUCT",
+    'For "product" you take the root of the product.',
+    "Leave out the root.",
+)
+mistakes(
+    "FIRST_ONLY",
+    "Your result is mu1, whatever the rule is.",
+    "Look at which rule is given, and use both coefficients.",
+)
+
+mistakes.accept(
+    "A match over the rule",
+    """
+        def pair_friction(mu1, mu2, rule):
+            match rule:
+                case "product":
+                    return mu2 * mu1
+                case "mean":
+                    return mu1 + (mu2 - mu1) / 2
+                case _:
+                    return mu2 if mu2 > mu1 else mu1
+    """,
+)
+mistakes.accept(
+    "A table of rules",
+    """
+        def pair_friction(mu1, mu2, rule):
+            return {"product": mu1 * mu2, "mean": 0.5 * (mu1 + mu2), "larger": max(mu1, mu2)}[rule]
+    """,
+)
+
+
+def rules(**wrong):
+    right = {"product": lambda a, b: a * b, "mean": lambda a, b: (a + b) / 2, "larger": max}
+    return lambda mu1, mu2, rule: (right | wrong)[rule](mu1, mu2)
+
+
+@mistakes.more
+def hypotheses():
+    yield "pair_friction", ("BRACKETS_MISSING",), rules(mean=lambda a, b: a + b / 2)
+    yield "pair_friction", ("ROOT_OF_THE_PRODUCT",), rules(product=lambda a, b: (a * b) ** 0.5)
+    yield "pair_friction", ("FIRST_ONLY",), lambda mu1, mu2, rule: mu1

@@ -1,0 +1,209 @@
+"""Mistakes in `way-out`: words beside the programs that they are true of."""
+
+from course.authoring.mistakes import Mistakes
+
+mistakes = Mistakes()
+
+mistakes(
+    "ALWAYS_ALONG_Y",
+    "Your box always moves along y.",
+    "Sometimes the way along x is shorter.",
+).body(
+    "way_out",
+    """
+        if abs(x) >= width or abs(y) >= height:
+            return 0.0, 0.0
+        return 0.0, math.copysign(height - abs(y), y)
+    """,
+)
+mistakes(
+    "LONGER_WAY",
+    "You took the longer way out.",
+    "Move along the axis where the overlap is smaller.",
+).edit("way_out", {"if along < across:": "if along > across:"})
+mistakes(
+    "INTO_EACH_OTHER",
+    "You move the second box towards the first.",
+    "It has to move to the side where it is already.",
+).body(
+    "way_out",
+    """
+        along, across = width - abs(x), height - abs(y)
+        if along <= 0 or across <= 0:
+            return 0.0, 0.0
+        if along < across:
+            return -math.copysign(along, x), 0.0
+        return 0.0, -math.copysign(across, y)
+    """,
+)
+mistakes(
+    "ALWAYS_FORWARDS",
+    "Your box always moves to the right or up.",
+    "If the second box is to the left or below, it moves that way.",
+).body(
+    "way_out",
+    """
+        along, across = width - abs(x), height - abs(y)
+        if along <= 0 or across <= 0:
+            return 0.0, 0.0
+        if along < across:
+            return along, 0.0
+        return 0.0, across
+    """,
+)
+mistakes(
+    "BOTH_WAYS",
+    "You move along x and along y.",
+    "One of the two is enough: the shorter.",
+).body(
+    "way_out",
+    """
+        along, across = width - abs(x), height - abs(y)
+        if along <= 0 or across <= 0:
+            return 0.0, 0.0
+        return math.copysign(along, x), math.copysign(across, y)
+    """,
+)
+mistakes(
+    "HALF_SIZES",
+    "Your boxes are half as large.",
+    "Half of each box lies towards the other, so they touch one whole width apart.",
+).edit("way_out", {"- abs(x), height": "/ 2 - abs(x), height / 2"})
+mistakes(
+    "NOT_ASKED",
+    "You move boxes that are apart in both directions or in one.",
+    "Give (0, 0) unless both depths are positive.",
+).body(
+    "way_out",
+    """
+        along, across = width - abs(x), height - abs(y)
+        if along < across:
+            return (along if x > 0 else -along), 0.0
+        return 0.0, (across if y > 0 else -across)
+    """,
+)
+mistakes(
+    "EITHER_IS_ENOUGH",
+    "You move boxes that overlap along one axis only.",
+    "A single direction in which they are apart is enough: give (0, 0) unless both depths are positive.",
+).body(
+    "way_out",
+    """
+        along, across = width - abs(x), height - abs(y)
+        if along <= 0 and across <= 0:
+            return 0.0, 0.0
+        if along < across:
+            return (along if x > 0 else -along), 0.0
+        return 0.0, (across if y > 0 else -across)
+    """,
+)
+mistakes(
+    "MIDDLES_COMPARED",
+    "You chose the axis by x and y themselves.",
+    "In long boxes the middles are far apart and the overlap is still deep: compare the depths.",
+).edit("way_out", {"if along < across:": "if abs(x) > abs(y):"})
+mistakes(
+    "NEW_PLACE",
+    "You gave the new place of the second box.",
+    "Give the move: the new place less the old one.",
+).body(
+    "way_out",
+    """
+        along, across = width - abs(x), height - abs(y)
+        if along <= 0 or across <= 0:
+            return 0.0, 0.0
+        if along < across:
+            return x + math.copysign(along, x), y
+        return x, y + math.copysign(across, y)
+    """,
+)
+mistakes(
+    "MOVED_BY_THE_DISTANCE",
+    "You move the box by the distance of the middles.",
+    "It has to move by the depth: the width less |x|, or the height less |y|.",
+).body(
+    "way_out",
+    """
+        along, across = width - abs(x), height - abs(y)
+        if along <= 0 or across <= 0:
+            return 0.0, 0.0
+        if along < across:
+            return x, 0.0
+        return 0.0, y
+    """,
+)
+mistakes(
+    "NO_SIZE_OF_X",
+    "Your depths are wrong where x or y is negative.",
+    "The depth is the width less |x|, whichever side the box is on.",
+).edit("way_out", {"abs(x), height - abs(y)": "x, height - y"})
+mistakes(
+    "HALF_THE_MOVE",
+    "You move the second box by half the depth.",
+    "The first box stays, so the second moves the whole depth.",
+).edit("way_out", {"width - abs(x), height - abs(y)": "(width - abs(x)) / 2, (height - abs(y)) / 2"})
+mistakes(
+    "DEPTH_OF_THE_OTHER",
+    "Along y your box moves by the depth along x.",
+    "Along y the depth is height - |y|.",
+).edit("way_out", {".copysign(across, y": ".copysign(along, y"})
+mistakes(
+    "NEGATIVE_DEPTHS",
+    "The second box moves towards the first, along the axis where it is the longer way.",
+    "Take the depths width - |x| and height - |y|. The smaller one decides, and the box moves to the side where it is already.",
+).body(
+    "way_out",
+    """
+        along, across = abs(x) - width, abs(y) - height
+        if along > 0 or across > 0:
+            return 0.0, 0.0
+        if along < across:
+            return (along if x > 0 else -along), 0.0
+        return 0.0, (across if y > 0 else -across)
+    """,
+)
+mistakes(
+    "AXES_SWAPPED",
+    "dx and dy are swapped.",
+    "The move along x comes first.",
+).body(
+    "way_out",
+    """
+        along, across = width - abs(x), height - abs(y)
+        if along <= 0 or across <= 0:
+            return 0.0, 0.0
+        if along < across:
+            return 0.0, math.copysign(along, x)
+        return math.copysign(across, y), 0.0
+    """,
+)
+mistakes(
+    "CHOSEN_BY_SIZE",
+    "You chose the axis by the size of the boxes.",
+    "Compare how deep they overlap along each axis.",
+).edit("way_out", {"if along < across:": "if width < height:"})
+
+mistakes.accept(
+    "Tries all four ways",
+    """
+        def way_out(x, y, width, height):
+            ways = [(width - x, (1, 0)), (width + x, (-1, 0)), (height - y, (0, 1)), (height + y, (0, -1))]
+            depth, (sx, sy) = min(ways)
+            return (depth * sx, depth * sy) if depth > 0 else (0, 0)
+    """,
+)
+mistakes.accept(
+    "Arrays",
+    """
+        def way_out(x, y, width, height):
+            import numpy as np
+
+            centre = np.array([x, y])
+            depth = np.array([width, height]) - abs(centre)
+            move = np.zeros(2)
+            if (depth > 0).all():
+                k = depth.argmin()
+                move[k] = depth[k] * np.sign(centre[k])
+            return move
+    """,
+)

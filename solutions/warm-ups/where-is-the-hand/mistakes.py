@@ -1,0 +1,106 @@
+"""Mistakes in `where-is-the-hand`: words beside the programs that they are true of."""
+
+import math
+
+from course.authoring.mistakes import Mistakes, with_terms
+
+mistakes = Mistakes()
+
+mistakes(
+    "ELBOW_FROM_THE_AXIS",
+    "The second angle is measured from the x axis.",
+    "The elbow's motor turns with the first link: from the axis the second link points at a1 + a2.",
+).body(
+    "hand",
+    """
+        return l1 * math.cos(a1) + l2 * math.cos(a2), l1 * math.sin(a1) + l2 * math.sin(a2)
+    """,
+)
+mistakes(
+    "AXES_SWAPPED",
+    "x and y are swapped, or sine and cosine.",
+    "Measured from the x axis, x goes with the cosine.",
+).body(
+    "hand",
+    """
+        return l1 * math.sin(a1) + l2 * math.sin(a1 + a2), l1 * math.cos(a1) + l2 * math.cos(a1 + a2)
+    """,
+)
+mistakes(
+    "DEGREES",
+    "You took the angles as degrees.",
+    "They are in radians already.",
+).body(
+    "hand",
+    """
+        a, b = math.radians(a1), math.radians(a1 + a2)
+        return l1 * math.cos(a) + l2 * math.cos(b), l1 * math.sin(a) + l2 * math.sin(b)
+    """,
+)
+mistakes(
+    "ELBOW_TURNS_BACK",
+    "The elbow turns clockwise.",
+    "Both angles are counter-clockwise: add them.",
+).body(
+    "hand",
+    """
+        return l1 * math.cos(a1) + l2 * math.cos(a1 - a2), l1 * math.sin(a1) + l2 * math.sin(a1 - a2)
+    """,
+)
+mistakes(
+    "ONE_LONG_LINK",
+    "You took the arm for one long link at the angle a1 + a2.",
+    "The first link points at a1 alone: add the two links one by one.",
+)
+
+mistakes.accept(
+    "Turns of complex numbers",
+    """
+        def hand(a1, a2, l1, l2):
+            import cmath
+
+            end = cmath.exp(1j * a1) * (l1 + l2 * cmath.exp(1j * a2))
+            return end.real, end.imag
+    """,
+)
+mistakes.accept(
+    "A rotation as a matrix",
+    """
+        def hand(a1, a2, l1, l2):
+            import numpy as np
+
+            def turned(a, vector):
+                return np.array([[math.cos(a), -math.sin(a)], [math.sin(a), math.cos(a)]]) @ vector
+
+            elbow_to_hand = turned(a2, np.array([l2, 0.0]))
+            return turned(a1, np.array([l1, 0.0]) + elbow_to_hand)
+    """,
+)
+
+
+def hand_of(second=lambda a1, a2: a1 + a2, order=1, unit=lambda angle: angle):
+    def hand(a1, a2, l1, l2):
+        a1, a2 = unit(a1), unit(a2)
+        end = second(a1, a2)
+        x = l1 * math.cos(a1) + l2 * math.cos(end)
+        return (x, l1 * math.sin(a1) + l2 * math.sin(end))[::order]
+
+    return hand
+
+
+def stretched(a1, a2, l1, l2):
+    return (l1 + l2) * math.cos(a1 + a2), (l1 + l2) * math.sin(a1 + a2)
+
+
+@mistakes.more
+def hypotheses():
+    yield "hand", ("ONE_LONG_LINK",), stretched
+    yield from with_terms(
+        "hand",
+        hand_of,
+        {
+            "second": {"ELBOW_FROM_THE_AXIS": lambda a1, a2: a2, "ELBOW_TURNS_BACK": lambda a1, a2: a1 - a2},
+            "order": {"AXES_SWAPPED": -1},
+            "unit": {"DEGREES": math.radians},
+        },
+    )

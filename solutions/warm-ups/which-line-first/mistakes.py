@@ -1,0 +1,110 @@
+"""Mistakes in `which-line-first`: words beside the programs that they are true of."""
+
+from course.authoring.mistakes import Mistakes
+
+mistakes = Mistakes()
+
+mistakes(
+    "BOTH_OLD",
+    "Both lines use the values from before the step, and every step adds energy.",
+    "Let one of the two lines use the value that the other has just computed.",
+).body(
+    "swing",
+    """
+        for _ in range(n):
+            a = -k / m * x
+            x, v = x + h * v, v + h * a
+        return x, v
+    """,
+)
+mistakes(
+    "BOTH_NEW",
+    "Both lines use the values from after the step, and every step takes energy away.",
+    "One old value and one new one balance: take the force at the old position, and move with the new velocity.",
+).body(
+    "swing",
+    """
+        w = h * h * k / m
+        for _ in range(n):
+            v = (v - h * k / m * x) / (1 + w)
+            x = x + h * v
+        return x, v
+    """,
+)
+mistakes(
+    "MASS_LOST",
+    "The mass has got lost: you took the spring's force for the acceleration.",
+    "Divide the force by m, as the file did.",
+).edit("swing", {"v += h * (-k / m * x)": "v -= h * k * x"})
+mistakes(
+    "STEP_MISSING_IN_X",
+    "The position changes by the velocity, not by the velocity times the step.",
+    "In a step of h seconds a body moves by h v.",
+)
+mistakes(
+    "STEP_MISSING_IN_V",
+    "The velocity changes by the acceleration, not by the acceleration times the step.",
+    "In a step of h seconds the velocity changes by h a.",
+)
+mistakes(
+    "FORCE_AWAY",
+    "The force pushes the mass away from the middle.",
+    "A spring pulls back: the force is -k x.",
+)
+
+mistakes.accept(
+    "Half a kick on either side of the move",
+    """
+        def swing(x, v, k, m, h, n):
+            for _ in range(n):
+                v += 0.5 * h * (-k / m * x)
+                x += h * v
+                v += 0.5 * h * (-k / m * x)
+            return x, v
+    """,
+)
+mistakes.accept(
+    "The implicit middle of the step, solved for the spring",
+    """
+        def swing(x, v, k, m, h, n):
+            w = 0.25 * h * h * k / m
+            for _ in range(n):
+                x_next = ((1 - w) * x + h * v) / (1 + w)
+                v = v - 0.5 * h * k / m * (x + x_next)
+                x = x_next
+            return x, v
+    """,
+)
+mistakes.accept(
+    "Moves first, and takes the force at the new position",
+    """
+        def swing(x, v, k, m, h, n):
+            for _ in range(n):
+                x += h * v
+                v += h * (-k / m * x)
+            return x, v
+    """,
+)
+
+
+def swing_of(old=False, of_x=lambda h: h, of_v=lambda h: h, sign=-1.0, mass=lambda m: m):
+    def swing(x, v, k, m, h, n):
+        for _ in range(n):
+            before, v = v, v + of_v(h) * sign * k / mass(m) * x
+            x += of_x(h) * (before if old else v)
+        return x, v
+
+    return swing
+
+
+mistakes.terms(
+    "swing",
+    swing_of,
+    {
+        "old": {"BOTH_OLD": True},
+        "of_x": {"STEP_MISSING_IN_X": lambda h: 1.0},
+        "of_v": {"STEP_MISSING_IN_V": lambda h: 1.0},
+        "sign": {"FORCE_AWAY": 1.0},
+        "mass": {"MASS_LOST": lambda m: 1.0},
+    },
+)

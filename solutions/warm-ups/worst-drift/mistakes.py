@@ -1,0 +1,80 @@
+"""Mistakes in `worst-drift`: words beside the programs that they are true of."""
+
+from course.authoring.mistakes import Mistakes
+
+mistakes = Mistakes()
+
+mistakes(
+    "LAST_NOT_WORST",
+    "Only the last value is compared with the first, so a drift that came back does not count.",
+    "Take the largest distance of all.",
+).edit(
+    "worst_drift", {"max(abs(energy - energies[0]) for energy in energies": "abs(energies[-1] - energies[0]"}
+)
+mistakes(
+    "LOSSES_UNSEEN",
+    "The differences keep their signs, so a loss of energy never counts as the worst.",
+    "Take the size of each difference, whatever its sign.",
+).edit("worst_drift", {"abs(energy - energies[0])": "energy - energies[0]"})
+mistakes(
+    "RANGE_NOT_DRIFT",
+    "Your result is the distance from the smallest to the largest value.",
+    "Measure from the first value: the energy should have stayed there.",
+).edit(
+    "worst_drift", {"max(abs(energy - energies[0]) for energy in energies": "(max(energies) - min(energies)"}
+)
+mistakes(
+    "NEGATIVE_SHARE",
+    "A negative energy gives a negative drift.",
+    "Divide by the size of the first value.",
+).edit("worst_drift", {"abs(energies[0])": "energies[0]"})
+mistakes(
+    "NOT_A_SHARE",
+    "Your result is in J, not a share.",
+    "Divide by the size of the first value.",
+)
+mistakes(
+    "MEAN_NOT_WORST",
+    "You take the mean of the distances.",
+    "Take the largest of them.",
+)
+
+mistakes.accept(
+    "A loop that remembers the worst",
+    """
+        def worst_drift(energies):
+            first, worst = energies[0], 0.0
+            for energy in energies[1:]:
+                if abs(energy - first) > worst:
+                    worst = abs(energy - first)
+            return worst / abs(first)
+    """,
+)
+mistakes.accept(
+    "With NumPy",
+    """
+        def worst_drift(energies):
+            import numpy as np
+
+            e = np.asarray(energies, dtype=float)
+            return float(np.max(np.abs(e / e[0] - 1.0)))
+    """,
+)
+
+
+def drift_of(worst=max, size=abs, share=abs):
+    return lambda energies: worst([size(e - energies[0]) for e in energies]) / share(energies[0])
+
+
+mistakes.terms(
+    "worst_drift",
+    drift_of,
+    {
+        "worst": {
+            "LAST_NOT_WORST": lambda drifts: drifts[-1],
+            "MEAN_NOT_WORST": lambda drifts: sum(drifts) / len(drifts),
+        },
+        "size": {"LOSSES_UNSEEN": lambda d: d},
+        "share": {"NEGATIVE_SHARE": float, "NOT_A_SHARE": lambda e: 1.0},
+    },
+)

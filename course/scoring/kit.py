@@ -18,7 +18,7 @@ import contextlib
 import functools
 import itertools
 import math
-from collections.abc import Callable, Collection, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NoReturn, Protocol, TypeVar, cast
 
@@ -97,6 +97,7 @@ __all__ = [
     "expect_accepts",
     "expect_array",
     "expect_bounded",
+    "expect_cases",
     "expect_close",
     "expect_conserved",
     "expect_equal",
@@ -300,6 +301,33 @@ def expect_close(
         limits = Tolerance(rel=rel or None, abs=abs or None, source=source)
         finding["diagnose"] = _or_not_finite(number, finding.get("diagnose"))
         fail(message, expected=expected, actual=number, units=units, tolerance=limits, **finding)
+
+
+def expect_cases(
+    submission: Any,
+    function: str,
+    arguments: Sequence[str],
+    cases: Iterable[tuple[tuple[Any, ...], Any]],
+    *,
+    expect: Callable[..., None] = expect_close,
+    **finding: Any,
+) -> None:
+    """A student's function gives what each case says, to nine digits unless a tolerance is given.
+
+    Args:
+        arguments: names of the function's arguments, for the ``input`` that a finding shows; a case may have
+            fewer than there are.
+        cases: the arguments of a call, and its right result.
+        expect: what compares the two; ``finding`` has its keywords.
+    """
+    if expect is not expect_equal:
+        finding = {"rel": 1e-9, "source": _CLOSED_FORM} | finding
+    for args, expected in cases:
+        given = dict(zip(arguments, args, strict=False))
+        expect(submission.call(function, *args), expected, input=given, **finding)
+
+
+_CLOSED_FORM = "closed form, written down to twelve digits: only rounding is allowed"
 
 
 def expect_array(

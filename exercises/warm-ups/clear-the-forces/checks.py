@@ -9,33 +9,23 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_constant_force(submission):
     """A constant force gives a speed that grows evenly"""
-    cases = [
-        ((2.0, 3.0, 0.1, 10), 1.5),
-        ((0.5, 9.81, 0.01, 200), 39.24),
-    ]
-    for args, expected in cases:
-        kit.expect_close(
-            submission.call("final_speed", *args),
-            expected,
-            rel=1e-9,
-            source=(
-                "a constant force: speed is force times time over mass, whatever the step; the "
-                "loop's rounding is far below nine digits"
-            ),
-            quantity="speed",
-            units="m/s",
-            input=dict(zip(("mass", "force", "h", "n"), args, strict=True)),
-            message="The speed after n steps is wrong.",
-            help="Print the sum of the forces in every step: it should be the same each time.",
-        )
+    kit.expect_cases(
+        submission,
+        "final_speed",
+        ("mass", "force", "h", "n"),
+        [((2.0, 3.0, 0.1, 10), 1.5), ((0.5, 9.81, 0.01, 200), 39.24)],
+        source=(
+            "a constant force: speed is force times time over mass, whatever the step; the "
+            "loop's rounding is far below nine digits"
+        ),
+        quantity="speed",
+        units="m/s",
+        message="The speed after n steps is wrong.",
+        help="Print the sum of the forces in every step: it should be the same each time.",
+    )
 
 
 #: Calls that tell wrong programs apart.
 QUESTIONS = {
-    "final_speed": [
-        (2.0, 3.0, 0.1, 10),
-        (0.5, 9.81, 0.01, 7),
-        (1.3, -2.0, 0.2, 1),
-        (1.3, -2.0, 0.2, 2),
-    ],
+    "final_speed": [(2.0, 3.0, 0.1, 10), (0.5, 9.81, 0.01, 7), (1.3, -2.0, 0.2, 1), (1.3, -2.0, 0.2, 2)]
 }

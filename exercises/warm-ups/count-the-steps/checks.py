@@ -9,30 +9,16 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_quotients_beside_a_whole_number(submission):
     """Quotients just beside a whole number are counted as that number"""
-    cases = [
-        ((0.3, 0.1), 3),
-        ((0.7, 0.1), 7),
-        ((2.1, 0.3), 7),
-        ((2.0, 0.01), 200),
-    ]
-    for args, expected in cases:
-        kit.expect_equal(
-            submission.call("steps_in", *args),
-            expected,
-            input=dict(zip(("duration", "h"), args, strict=True)),
-            message="The number of steps is wrong.",
-            help="Print duration / h with repr(): how far is it from a whole number?",
-        )
+    kit.expect_cases(
+        submission,
+        "steps_in",
+        ("duration", "h"),
+        [((0.3, 0.1), 3), ((0.7, 0.1), 7), ((2.1, 0.3), 7), ((2.0, 0.01), 200)],
+        expect=kit.expect_equal,
+        message="The number of steps is wrong.",
+        help="Print duration / h with repr(): how far is it from a whole number?",
+    )
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {
-    "steps_in": [
-        (0.3, 0.1),
-        (0.7, 0.1),
-        (2.1, 0.3),
-        (0.29, 0.01),
-        (2.0, 0.25),
-        (0.57, 0.19),
-    ],
-}
+QUESTIONS = {"steps_in": [(0.3, 0.1), (0.7, 0.1), (2.1, 0.3), (0.29, 0.01), (2.0, 0.25), (0.57, 0.19)]}

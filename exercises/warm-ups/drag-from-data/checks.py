@@ -9,23 +9,20 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_slopes(submission):
     """Points on a line, and points with noise"""
-    cases = [
-        (([1.0, 2.0, 3.0], [0.5, 1.0, 1.5]), 0.5),
-        (([0.1, 1.0, 2.0], [0.4, 1.9, 4.2]), 2.06387225549),
-        (([-1.0, 0.5, 3.0, 2.0], [-2.5, 1.0, 5.5, 4.4]), 1.98596491228),
-    ]
-    for args, expected in cases:
-        kit.expect_close(
-            submission.call("damping", *args),
-            expected,
-            rel=1e-9,
-            source="closed form, written down to twelve digits: only rounding is allowed",
-            quantity="damping",
-            units="N s/m",
-            input=dict(zip(("speeds", "forces"), args, strict=True)),
-            message="The slope is wrong.",
-            help="Write down the sum of (f - b v)^2, and ask where it is smallest in b.",
-        )
+    kit.expect_cases(
+        submission,
+        "damping",
+        ("speeds", "forces"),
+        [
+            (([1.0, 2.0, 3.0], [0.5, 1.0, 1.5]), 0.5),
+            (([0.1, 1.0, 2.0], [0.4, 1.9, 4.2]), 2.06387225549),
+            (([-1.0, 0.5, 3.0, 2.0], [-2.5, 1.0, 5.5, 4.4]), 1.98596491228),
+        ],
+        quantity="damping",
+        units="N s/m",
+        message="The slope is wrong.",
+        help="Write down the sum of (f - b v)^2, and ask where it is smallest in b.",
+    )
 
 
 #: Calls that tell wrong programs apart.
@@ -34,5 +31,5 @@ QUESTIONS = {
         ([1.0, 2.0, 3.0], [0.5, 1.0, 1.5]),
         ([0.1, 1.0, 2.0], [0.4, 1.9, 4.2]),
         ([-1.0, 0.5, 3.0, 2.0], [-2.5, 1.0, 5.5, 4.4]),
-    ],
+    ]
 }

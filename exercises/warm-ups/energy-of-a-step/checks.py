@@ -9,30 +9,17 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_factors(submission):
     """Soft and stiff springs, short and long steps"""
-    cases = [
-        ((4.0, 1.0, 0.05), 1.01),
-        ((100.0, 2.5, 0.1), 1.4),
-        ((0.3, 6.0, 1.0), 1.05),
-    ]
-    for args, expected in cases:
-        kit.expect_close(
-            submission.call("growth", *args),
-            expected,
-            rel=1e-9,
-            source="the squares of the two new values, added up: the mixed terms cancel exactly",
-            quantity="energy factor of a step",
-            units="1",
-            input=dict(zip(("k", "m", "h"), args, strict=True)),
-            message="The factor of one step is wrong.",
-            help="Square x + h v and v - h (k/m) x, weight them as in the energy, and add.",
-        )
+    kit.expect_cases(
+        submission,
+        "growth",
+        ("k", "m", "h"),
+        [((4.0, 1.0, 0.05), 1.01), ((100.0, 2.5, 0.1), 1.4), ((0.3, 6.0, 1.0), 1.05)],
+        source="the squares of the two new values, added up: the mixed terms cancel exactly",
+        quantity="energy factor of a step",
+        message="The factor of one step is wrong.",
+        help="Square x + h v and v - h (k/m) x, weight them as in the energy, and add.",
+    )
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {
-    "growth": [
-        (4.0, 1.0, 0.05),
-        (100.0, 2.5, 0.1),
-        (0.3, 6.0, 1.0),
-    ],
-}
+QUESTIONS = {"growth": [(4.0, 1.0, 0.05), (100.0, 2.5, 0.1), (0.3, 6.0, 1.0)]}

@@ -9,30 +9,17 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_steps(submission):
     """Steps for engines with few iterations and with many"""
-    cases = [
-        ((0.01, 50, 10), 0.002),
-        ((0.002, 8, 20), 0.005),
-        ((0.005, 30, 30), 0.005),
-    ]
-    for args, expected in cases:
-        kit.expect_close(
-            submission.call("fair_step", *args),
-            expected,
-            rel=1e-9,
-            source="closed form, written down to twelve digits: only rounding is allowed",
-            quantity="step",
-            units="s",
-            input=dict(zip(("h", "iterations", "other"), args, strict=True)),
-            message="The step of the other engine is wrong.",
-            help="Count the iterations that the first engine makes in a simulated second.",
-        )
+    kit.expect_cases(
+        submission,
+        "fair_step",
+        ("h", "iterations", "other"),
+        [((0.01, 50, 10), 0.002), ((0.002, 8, 20), 0.005), ((0.005, 30, 30), 0.005)],
+        quantity="step",
+        units="s",
+        message="The step of the other engine is wrong.",
+        help="Count the iterations that the first engine makes in a simulated second.",
+    )
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {
-    "fair_step": [
-        (0.01, 50, 10),
-        (0.002, 8, 20),
-        (0.005, 30, 7),
-    ],
-}
+QUESTIONS = {"fair_step": [(0.01, 50, 10), (0.002, 8, 20), (0.005, 30, 7)]}

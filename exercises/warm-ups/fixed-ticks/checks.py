@@ -9,32 +9,25 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_frames(submission):
     """Short and long frames give the right steps and leave the right time over"""
-    cases = [
-        ((0.025, 0.01, 0.006), [3, 0.001]),
-        ((0.004, 0.01, 0.003), [0, 0.007]),
-        ((0.1, 0.007, 0.0045), [14, 0.0065]),
-    ]
-    for args, expected in cases:
-        kit.expect_array(
-            submission.call("ticks", *args),
-            expected,
-            rel=1e-9,
-            abs=1e-12,
-            source="closed form; absolute 1e-12 s for a rest near zero",
-            quantity="steps and time left",
-            units="1",
-            input=dict(zip(("frame", "h", "left"), args, strict=True)),
-            message="The steps of a frame, or the time left over, are wrong.",
-            help="All time that goes into the account must come out as steps or stay in it.",
-        )
+    kit.expect_cases(
+        submission,
+        "ticks",
+        ("frame", "h", "left"),
+        [
+            ((0.025, 0.01, 0.006), [3, 0.001]),
+            ((0.004, 0.01, 0.003), [0, 0.007]),
+            ((0.1, 0.007, 0.0045), [14, 0.0065]),
+        ],
+        expect=kit.expect_array,
+        abs=1e-12,
+        source="closed form; absolute 1e-12 s for a rest near zero",
+        quantity="steps and time left",
+        message="The steps of a frame, or the time left over, are wrong.",
+        help="All time that goes into the account must come out as steps or stay in it.",
+    )
 
 
 #: Calls that tell wrong programs apart.
 QUESTIONS = {
-    "ticks": [
-        (0.025, 0.01, 0.006),
-        (0.004, 0.01, 0.003),
-        (0.1, 0.007, 0.0045),
-        (0.033, 0.02, 0.0195),
-    ],
+    "ticks": [(0.025, 0.01, 0.006), (0.004, 0.01, 0.003), (0.1, 0.007, 0.0045), (0.033, 0.02, 0.0195)]
 }

@@ -9,30 +9,20 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_slides(submission):
     """Three slides, one of them on the Moon"""
-    cases = [
-        ((2.0, 0.5, 9.81), 0.407747196738),
-        ((1.5, 1.2), 0.0955657492355),  # on earth, unless another g is given
-        ((1.0, 0.8, 1.62), 0.385802469136),
-    ]
-    for args, expected in cases:
-        kit.expect_close(
-            submission.call("friction_coefficient", *args),
-            expected,
-            rel=1e-9,
-            source="closed form, written down to twelve digits: only rounding is allowed",
-            quantity="coefficient of friction",
-            units="1",
-            input=dict(zip(("v", "distance", "g"), args, strict=False)),
-            message="The coefficient is wrong.",
-            help="Energy at the start equals force times distance.",
-        )
+    kit.expect_cases(
+        submission,
+        "friction_coefficient",
+        ("v", "distance", "g"),
+        [
+            ((2.0, 0.5, 9.81), 0.407747196738),
+            ((1.5, 1.2), 0.0955657492355),  # on earth, unless another g is given
+            ((1.0, 0.8, 1.62), 0.385802469136),
+        ],
+        quantity="coefficient of friction",
+        message="The coefficient is wrong.",
+        help="Energy at the start equals force times distance.",
+    )
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {
-    "friction_coefficient": [
-        (2.0, 0.5, 9.81),
-        (1.5, 1.2, 9.81),
-        (1.0, 0.8, 1.62),
-    ],
-}
+QUESTIONS = {"friction_coefficient": [(2.0, 0.5, 9.81), (1.5, 1.2, 9.81), (1.0, 0.8, 1.62)]}

@@ -9,24 +9,21 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_torques(submission):
     """Level, raised and lowered bars"""
-    cases = [
-        ((2.0, 1.0, 0.0, 9.81), 9.81),
-        ((3.0, 0.4, 0.7, 9.81), 4.50186111436),
-        ((1.5, 0.8, -0.4, 1.62), 0.895271286171),
-        ((2.0, 1.0, 0.0), 9.81),  # on earth, unless another g is given
-    ]
-    for args, expected in cases:
-        kit.expect_close(
-            submission.call("holding_torque", *args),
-            expected,
-            rel=1e-9,
-            source="closed form, written down to twelve digits: only rounding is allowed",
-            quantity="torque",
-            units="N m",
-            input=dict(zip(("m", "l", "angle", "g"), args, strict=False)),
-            message="The torque is wrong.",
-            help=("Where does gravity act on a uniform bar, and how far to the side of the motor is that?"),
-        )
+    kit.expect_cases(
+        submission,
+        "holding_torque",
+        ("m", "l", "angle", "g"),
+        [
+            ((2.0, 1.0, 0.0, 9.81), 9.81),
+            ((3.0, 0.4, 0.7, 9.81), 4.50186111436),
+            ((1.5, 0.8, -0.4, 1.62), 0.895271286171),
+            ((2.0, 1.0, 0.0), 9.81),  # on earth, unless another g is given
+        ],
+        quantity="torque",
+        units="N m",
+        message="The torque is wrong.",
+        help=("Where does gravity act on a uniform bar, and how far to the side of the motor is that?"),
+    )
 
 
 #: Calls that tell wrong programs apart.
@@ -36,5 +33,5 @@ QUESTIONS = {
         (3.0, 0.4, 0.7, 9.81),
         (1.5, 0.8, -0.4, 1.62),
         (1.0, 1.0, 2.0, 9.81),
-    ],
+    ]
 }

@@ -9,23 +9,19 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_samples(submission):
     """Samples of two, four and nine values"""
-    cases = [
-        (([1.0, 3.0],), 1.0),
-        (([2.0, 4.0, 4.0, 6.0],), 0.816496580928),
-        (([9.8, 9.9, 9.7, 9.8, 10.1, 9.6, 9.8, 9.9, 9.7],), 0.0484322104838),
-    ]
-    for args, expected in cases:
-        kit.expect_close(
-            submission.call("standard_error", *args),
-            expected,
-            rel=1e-9,
-            source="closed form, written down to twelve digits: only rounding is allowed",
-            quantity="standard error",
-            units="1",
-            input=dict(zip(("values",), args, strict=True)),
-            message="The standard error is wrong.",
-            help="Compute the standard deviation of one value first, then that of the mean.",
-        )
+    kit.expect_cases(
+        submission,
+        "standard_error",
+        ("values",),
+        [
+            (([1.0, 3.0],), 1.0),
+            (([2.0, 4.0, 4.0, 6.0],), 0.816496580928),
+            (([9.8, 9.9, 9.7, 9.8, 10.1, 9.6, 9.8, 9.9, 9.7],), 0.0484322104838),
+        ],
+        quantity="standard error",
+        message="The standard error is wrong.",
+        help="Compute the standard deviation of one value first, then that of the mean.",
+    )
 
 
 #: Calls that tell wrong programs apart.
@@ -34,5 +30,5 @@ QUESTIONS = {
         ([1.0, 3.0],),
         ([2.0, 4.0, 4.0, 6.0],),
         ([9.8, 9.9, 9.7, 9.8, 10.1, 9.6, 9.8, 9.9, 9.7],),
-    ],
+    ]
 }

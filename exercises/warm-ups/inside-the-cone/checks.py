@@ -9,47 +9,42 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_within(submission):
     """An impulse within the limit is given in full"""
-    cases = [
-        (([0.3, -0.4], 2.0, 0.5), [0.3, -0.4]),
-        (([0.0, 0.0], 1.0, 0.3), [0.0, 0.0]),
-    ]
-    for args, expected in cases:
-        kit.expect_array(
-            submission.call("friction", *args),
-            expected,
-            rel=1e-9,
-            abs=1e-12,
-            source="closed form; absolute 1e-12 N s where it is zero",
-            quantity="friction impulse",
-            units="N s",
-            input=dict(zip(("wanted", "normal", "mu"), args, strict=True)),
-            message="A friction impulse within its limit is changed.",
-            help="Compare its length with mu times the normal impulse.",
-        )
+    kit.expect_cases(
+        submission,
+        "friction",
+        ("wanted", "normal", "mu"),
+        [(([0.3, -0.4], 2.0, 0.5), [0.3, -0.4]), (([0.0, 0.0], 1.0, 0.3), [0.0, 0.0])],
+        expect=kit.expect_array,
+        abs=1e-12,
+        source="closed form; absolute 1e-12 N s where it is zero",
+        quantity="friction impulse",
+        units="N s",
+        message="A friction impulse within its limit is changed.",
+        help="Compare its length with mu times the normal impulse.",
+    )
 
 
 @pytest.mark.task("friction")
 @pytest.mark.points(1)
 def test_beyond(submission):
     """An impulse beyond the limit is cut to it and keeps its direction"""
-    cases = [
-        (([3.0, -4.0], 2.0, 0.5), [0.6, -0.8]),
-        (([0.5, 1.2], 1.0, 0.65), [0.25, 0.6]),
-        (([-1.0, 0.0], 3.0, 0.2), [-0.6, 0.0]),
-    ]
-    for args, expected in cases:
-        kit.expect_array(
-            submission.call("friction", *args),
-            expected,
-            rel=1e-9,
-            abs=1e-12,
-            source="closed form; absolute 1e-12 N s where it is zero",
-            quantity="friction impulse",
-            units="N s",
-            input=dict(zip(("wanted", "normal", "mu"), args, strict=True)),
-            message="A friction impulse beyond its limit is wrong.",
-            help="Keep the direction, and give it the length of the limit.",
-        )
+    kit.expect_cases(
+        submission,
+        "friction",
+        ("wanted", "normal", "mu"),
+        [
+            (([3.0, -4.0], 2.0, 0.5), [0.6, -0.8]),
+            (([0.5, 1.2], 1.0, 0.65), [0.25, 0.6]),
+            (([-1.0, 0.0], 3.0, 0.2), [-0.6, 0.0]),
+        ],
+        expect=kit.expect_array,
+        abs=1e-12,
+        source="closed form; absolute 1e-12 N s where it is zero",
+        quantity="friction impulse",
+        units="N s",
+        message="A friction impulse beyond its limit is wrong.",
+        help="Keep the direction, and give it the length of the limit.",
+    )
 
 
 #: Calls that tell wrong programs apart.
@@ -60,5 +55,5 @@ QUESTIONS = {
         ([0.5, 1.2], 1.0, 0.65),
         ([-1.0, 0.0], 3.0, 0.2),
         ([0.7, 0.7], 2.0, 0.45),
-    ],
+    ]
 }

@@ -9,21 +9,21 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_readings(submission):
     """Between samples, exactly at an arrival, and before the first"""
-    cases = [
-        (([0.0, 1.0, 2.0, 3.0], [5.0, 6.0, 7.0, 8.0], 0.5, 2.75), 7.0),
-        (([0.0, 1.0, 2.0, 3.0], [5.0, 6.0, 7.0, 8.0], 0.5, 2.5), 7.0),
-        (([0.0, 1.0, 2.0, 3.0], [5.0, 6.0, 7.0, 8.0], 0.5, 2.25), 6.0),
-        (([0.0, 1.0], [5.0, 6.0], 0.5, 0.25), None),
-        (([0.0, 0.25, 0.5, 0.75], [1.0, 2.0, 3.0, 4.0], 0.5, 0.75), 2.0),
-    ]
-    for args, expected in cases:
-        kit.expect_equal(
-            submission.call("seen", *args),
-            expected,
-            input=dict(zip(("times", "values", "latency", "now"), args, strict=True)),
-            message="That is not the newest value that has arrived.",
-            help="Write down when each value arrives, and draw a line at now.",
-        )
+    kit.expect_cases(
+        submission,
+        "seen",
+        ("times", "values", "latency", "now"),
+        [
+            (([0.0, 1.0, 2.0, 3.0], [5.0, 6.0, 7.0, 8.0], 0.5, 2.75), 7.0),
+            (([0.0, 1.0, 2.0, 3.0], [5.0, 6.0, 7.0, 8.0], 0.5, 2.5), 7.0),
+            (([0.0, 1.0, 2.0, 3.0], [5.0, 6.0, 7.0, 8.0], 0.5, 2.25), 6.0),
+            (([0.0, 1.0], [5.0, 6.0], 0.5, 0.25), None),
+            (([0.0, 0.25, 0.5, 0.75], [1.0, 2.0, 3.0, 4.0], 0.5, 0.75), 2.0),
+        ],
+        expect=kit.expect_equal,
+        message="That is not the newest value that has arrived.",
+        help="Write down when each value arrives, and draw a line at now.",
+    )
 
 
 #: Calls that tell wrong programs apart.
@@ -34,5 +34,5 @@ QUESTIONS = {
         ([0.0, 1.0, 2.0, 3.0], [5.0, 6.0, 7.0, 8.0], 0.5, 2.25),
         ([0.0, 1.0], [5.0, 6.0], 0.5, 0.25),
         ([0.0, 0.25, 0.5, 0.75], [1.0, 2.0, 3.0, 4.0], 0.5, 0.75),
-    ],
+    ]
 }

@@ -9,23 +9,20 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_accelerations(submission):
     """With and without the motor, level and raised"""
-    cases = [
-        ((0.0, 2.0, 1.0, 0.0), -14.715),  # on earth, unless another g is given
-        ((12.0, 2.0, 1.0, 0.3, 9.81), 3.94222356252),
-        ((-1.0, 0.5, 0.6, -1.0, 1.62), -18.8548910054),
-    ]
-    for args, expected in cases:
-        kit.expect_close(
-            submission.call("angular_acceleration", *args),
-            expected,
-            rel=1e-9,
-            source="closed form, written down to twelve digits: only rounding is allowed",
-            quantity="angular acceleration",
-            units="rad/s^2",
-            input=dict(zip(("torque", "m", "l", "angle", "g"), args, strict=False)),
-            message="The angular acceleration is wrong.",
-            help="Add the torques first, then divide by the moment of inertia about the end.",
-        )
+    kit.expect_cases(
+        submission,
+        "angular_acceleration",
+        ("torque", "m", "l", "angle", "g"),
+        [
+            ((0.0, 2.0, 1.0, 0.0), -14.715),  # on earth, unless another g is given
+            ((12.0, 2.0, 1.0, 0.3, 9.81), 3.94222356252),
+            ((-1.0, 0.5, 0.6, -1.0, 1.62), -18.8548910054),
+        ],
+        quantity="angular acceleration",
+        units="rad/s^2",
+        message="The angular acceleration is wrong.",
+        help="Add the torques first, then divide by the moment of inertia about the end.",
+    )
 
 
 #: Calls that tell wrong programs apart.
@@ -34,5 +31,5 @@ QUESTIONS = {
         (0.0, 2.0, 1.0, 0.0, 9.81),
         (12.0, 2.0, 1.0, 0.3, 9.81),
         (-1.0, 0.5, 0.6, -1.0, 1.62),
-    ],
+    ]
 }

@@ -9,26 +9,23 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_intervals(submission):
     """Models that give too much and too little, and each uncertainty in turn"""
-    cases = [
-        ((12.0, 10.0, 0.3, 0.0, 0.4), [1.0, 3.0]),
-        ((10.0, 12.0, 0.0, 0.5, 0.0), [-3.0, -1.0]),
-        ((5.0, 5.1, 0.1, 0.2, 0.2), [-0.7, 0.5]),
-        ((-2.0, 1.0, 2.0, 3.0, 6.0), [-17.0, 11.0]),
-        ((0.8, 0.5, 0.01, 0.02, 0.03), [0.225166852265, 0.374833147735]),
-    ]
-    for args, expected in cases:
-        kit.expect_array(
-            submission.call("model_error", *args),
-            expected,
-            rel=1e-9,
-            abs=1e-12,
-            source="closed form, written down to twelve digits: only rounding is allowed",
-            quantity="ends of the interval",
-            units="1",
-            input=dict(zip(("simulated", "measured", "u_num", "u_input", "u_data"), args, strict=True)),
-            message="That is not the interval.",
-            help="Its middle is simulated - measured. It reaches twice the root of a sum to either side.",
-        )
+    kit.expect_cases(
+        submission,
+        "model_error",
+        ("simulated", "measured", "u_num", "u_input", "u_data"),
+        [
+            ((12.0, 10.0, 0.3, 0.0, 0.4), [1.0, 3.0]),
+            ((10.0, 12.0, 0.0, 0.5, 0.0), [-3.0, -1.0]),
+            ((5.0, 5.1, 0.1, 0.2, 0.2), [-0.7, 0.5]),
+            ((-2.0, 1.0, 2.0, 3.0, 6.0), [-17.0, 11.0]),
+            ((0.8, 0.5, 0.01, 0.02, 0.03), [0.225166852265, 0.374833147735]),
+        ],
+        expect=kit.expect_array,
+        abs=1e-12,
+        quantity="ends of the interval",
+        message="That is not the interval.",
+        help="Its middle is simulated - measured. It reaches twice the root of a sum to either side.",
+    )
 
 
 #: Calls that tell wrong programs apart.
@@ -39,5 +36,5 @@ QUESTIONS = {
         (5.0, 5.1, 0.1, 0.2, 0.2),
         (-2.0, 1.0, 2.0, 3.0, 6.0),
         (0.8, 0.5, 0.01, 0.02, 0.03),
-    ],
+    ]
 }

@@ -9,23 +9,20 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_paths(submission):
     """Paths of two, three and five points"""
-    cases = [
-        (([0.0, 1.0], [0.3, 0.6]), 0.353553390593),
-        (([1.0, 2.0, 3.0], [1.1, 1.8, 3.2]), 0.173205080757),
-        (([0.0, 0.0, 0.0, 0.0, 0.0], [1.0, -1.0, 2.0, -2.0, 0.5]), 1.43178210633),
-    ]
-    for args, expected in cases:
-        kit.expect_close(
-            submission.call("rms", *args),
-            expected,
-            rel=1e-9,
-            source="closed form, written down to twelve digits: only rounding is allowed",
-            quantity="root mean square",
-            units="m",
-            input=dict(zip(("simulated", "measured"), args, strict=True)),
-            message="The root mean square is wrong.",
-            help="Go through its name backwards: square, mean, root.",
-        )
+    kit.expect_cases(
+        submission,
+        "rms",
+        ("simulated", "measured"),
+        [
+            (([0.0, 1.0], [0.3, 0.6]), 0.353553390593),
+            (([1.0, 2.0, 3.0], [1.1, 1.8, 3.2]), 0.173205080757),
+            (([0.0, 0.0, 0.0, 0.0, 0.0], [1.0, -1.0, 2.0, -2.0, 0.5]), 1.43178210633),
+        ],
+        quantity="root mean square",
+        units="m",
+        message="The root mean square is wrong.",
+        help="Go through its name backwards: square, mean, root.",
+    )
 
 
 #: Calls that tell wrong programs apart.
@@ -34,5 +31,5 @@ QUESTIONS = {
         ([0.0, 1.0], [0.3, 0.6]),
         ([1.0, 2.0, 3.0], [1.1, 1.8, 3.2]),
         ([0.0, 0.0, 0.0, 0.0, 0.0], [1.0, -1.0, 2.0, -2.0, 0.5]),
-    ],
+    ]
 }

@@ -9,30 +9,21 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_steps(submission):
     """Steps forwards from three states are right"""
-    cases = [
-        ((0.0, 2.0, -9.81, 0.1), [0.2, 1.019]),
-        ((1.5, -0.5, 3.0, 0.25), [1.375, 0.25]),
-        ((10.0, 1.0, 1.0, 1.0), [11.0, 2.0]),
-    ]
-    for args, expected in cases:
-        kit.expect_array(
-            submission.call("step_ahead", *args),
-            expected,
-            rel=1e-9,
-            source="closed form, written down to twelve digits: only rounding is allowed",
-            quantity="position and velocity",
-            units="1",
-            input=dict(zip(("x", "v", "a", "h"), args, strict=True)),
-            message="The state after a step is wrong.",
-            help="Write down x, v and a before the step, and use only these.",
-        )
+    kit.expect_cases(
+        submission,
+        "step_ahead",
+        ("x", "v", "a", "h"),
+        [
+            ((0.0, 2.0, -9.81, 0.1), [0.2, 1.019]),
+            ((1.5, -0.5, 3.0, 0.25), [1.375, 0.25]),
+            ((10.0, 1.0, 1.0, 1.0), [11.0, 2.0]),
+        ],
+        expect=kit.expect_array,
+        quantity="position and velocity",
+        message="The state after a step is wrong.",
+        help="Write down x, v and a before the step, and use only these.",
+    )
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {
-    "step_ahead": [
-        (0.0, 2.0, -9.81, 0.1),
-        (1.5, -0.5, 3.0, 0.25),
-        (10.0, 1.3, 0.7, 0.9),
-    ],
-}
+QUESTIONS = {"step_ahead": [(0.0, 2.0, -9.81, 0.1), (1.5, -0.5, 3.0, 0.25), (10.0, 1.3, 0.7, 0.9)]}

@@ -9,24 +9,20 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_orders(submission):
     """Orders one, two and four, and one in between"""
-    cases = [
-        ((0.1, 0.02, 0.05, 0.01), 1.0),
-        ((0.1, 0.04, 0.05, 0.01), 2.0),
-        ((0.1, 0.01, 0.025, 3.90625e-05), 4.0),
-        ((0.2, 0.3, 0.06, 0.05), 1.48820593189),
-    ]
-    for args, expected in cases:
-        kit.expect_close(
-            submission.call("observed_order", *args),
-            expected,
-            rel=1e-9,
-            source="closed form, written down to twelve digits: only rounding is allowed",
-            quantity="order",
-            units="1",
-            input=dict(zip(("h", "error", "h_small", "error_small"), args, strict=True)),
-            message="The order is wrong.",
-            help="By which factor did the step shrink, and by which the error?",
-        )
+    kit.expect_cases(
+        submission,
+        "observed_order",
+        ("h", "error", "h_small", "error_small"),
+        [
+            ((0.1, 0.02, 0.05, 0.01), 1.0),
+            ((0.1, 0.04, 0.05, 0.01), 2.0),
+            ((0.1, 0.01, 0.025, 3.90625e-05), 4.0),
+            ((0.2, 0.3, 0.06, 0.05), 1.48820593189),
+        ],
+        quantity="order",
+        message="The order is wrong.",
+        help="By which factor did the step shrink, and by which the error?",
+    )
 
 
 #: Calls that tell wrong programs apart.
@@ -36,5 +32,5 @@ QUESTIONS = {
         (0.1, 0.04, 0.05, 0.01),
         (0.1, 0.01, 0.025, 3.9e-05),
         (0.2, 0.3, 0.06, 0.05),
-    ],
+    ]
 }

@@ -9,46 +9,36 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_deep(submission):
     """Bodies that are too deep are pushed out"""
-    cases = [
-        ((0.01, 0.01, 0.2, 0.002), 0.16),
-        ((0.05, 0.004, 0.1, 0.01), 1.0),
-    ]
-    for args, expected in cases:
-        kit.expect_close(
-            submission.call("push_out", *args),
-            expected,
-            rel=1e-9,
-            abs=1e-12,
-            source="closed form; absolute 1e-12 m/s where it is zero",
-            quantity="separating speed",
-            units="m/s",
-            input=dict(zip(("depth", "h", "beta", "slop"), args, strict=True)),
-            message="The speed that pushes out is wrong.",
-            help="What distance must be covered, and in what time?",
-        )
+    kit.expect_cases(
+        submission,
+        "push_out",
+        ("depth", "h", "beta", "slop"),
+        [((0.01, 0.01, 0.2, 0.002), 0.16), ((0.05, 0.004, 0.1, 0.01), 1.0)],
+        abs=1e-12,
+        source="closed form; absolute 1e-12 m/s where it is zero",
+        quantity="separating speed",
+        units="m/s",
+        message="The speed that pushes out is wrong.",
+        help="What distance must be covered, and in what time?",
+    )
 
 
 @pytest.mark.task("push_out")
 @pytest.mark.points(1)
 def test_within_slop(submission):
     """Bodies within the slop, or apart, are left alone"""
-    cases = [
-        ((0.001, 0.01, 0.2, 0.002), 0.0),
-        ((-0.03, 0.01, 0.2, 0.002), 0.0),
-    ]
-    for args, expected in cases:
-        kit.expect_close(
-            submission.call("push_out", *args),
-            expected,
-            rel=1e-9,
-            abs=1e-12,
-            source="closed form; absolute 1e-12 m/s where it is zero",
-            quantity="separating speed",
-            units="m/s",
-            input=dict(zip(("depth", "h", "beta", "slop"), args, strict=True)),
-            message="Bodies that overlap by no more than the slop are moved.",
-            help="Within the slop nothing is pushed: the speed is zero, neither positive nor negative.",
-        )
+    kit.expect_cases(
+        submission,
+        "push_out",
+        ("depth", "h", "beta", "slop"),
+        [((0.001, 0.01, 0.2, 0.002), 0.0), ((-0.03, 0.01, 0.2, 0.002), 0.0)],
+        abs=1e-12,
+        source="closed form; absolute 1e-12 m/s where it is zero",
+        quantity="separating speed",
+        units="m/s",
+        message="Bodies that overlap by no more than the slop are moved.",
+        help="Within the slop nothing is pushed: the speed is zero, neither positive nor negative.",
+    )
 
 
 #: Calls that tell wrong programs apart.
@@ -58,5 +48,5 @@ QUESTIONS = {
         (0.05, 0.004, 0.1, 0.01),
         (0.001, 0.01, 0.2, 0.002),
         (-0.03, 0.01, 0.2, 0.002),
-    ],
+    ]
 }

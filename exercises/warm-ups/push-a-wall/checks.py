@@ -9,25 +9,22 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_masses(submission):
     """The rod along the rail, upright, and between"""
-    cases = [
-        ((3.0, 1.0, 2.0, 0.0), 4.0),
-        ((3.0, 1.0, 2.0, 1.5707963267948966), 1.0),
-        ((3.0, 1.0, 2.0, 0.5), 2.58283010797),
-        ((3.0, 1.0, 0.4, 0.5), 2.58283010797),
-        ((0.5, 2.0, 1.5, -1.0), 2.31125891244),
-    ]
-    for args, expected in cases:
-        kit.expect_close(
-            submission.call("felt_mass", *args),
-            expected,
-            rel=1e-9,
-            source="closed form, written down to twelve digits: only rounding is allowed",
-            quantity="mass felt",
-            units="kg",
-            input=dict(zip(("carriage", "tip", "length", "angle"), args, strict=True)),
-            message="That is not the mass that the wall feels.",
-            help="Work from the right: x with M x = Jᵀ, then J x, then one over it. The length must cancel.",
-        )
+    kit.expect_cases(
+        submission,
+        "felt_mass",
+        ("carriage", "tip", "length", "angle"),
+        [
+            ((3.0, 1.0, 2.0, 0.0), 4.0),
+            ((3.0, 1.0, 2.0, 1.5707963267948966), 1.0),
+            ((3.0, 1.0, 2.0, 0.5), 2.58283010797),
+            ((3.0, 1.0, 0.4, 0.5), 2.58283010797),
+            ((0.5, 2.0, 1.5, -1.0), 2.31125891244),
+        ],
+        quantity="mass felt",
+        units="kg",
+        message="That is not the mass that the wall feels.",
+        help="Work from the right: x with M x = Jᵀ, then J x, then one over it. The length must cancel.",
+    )
 
 
 #: Calls that tell wrong programs apart.
@@ -38,5 +35,5 @@ QUESTIONS = {
         (3.0, 1.0, 0.4, 0.5),
         (0.5, 2.0, 1.5, -1.0),
         (1.0, 3.0, 0.7, 1.2),
-    ],
+    ]
 }

@@ -9,35 +9,19 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_corrections(submission):
     """Corrections up, down, and further down than there is"""
-    cases = [
-        ((3.0, 2.0), 2.0),
-        ((3.0, -1.0), -1.0),
-        ((3.0, -5.0), -3.0),
-        ((0.5, -0.25), -0.25),
-    ]
-    for args, expected in cases:
-        kit.expect_close(
-            submission.call("applied", *args),
-            expected,
-            rel=1e-9,
-            abs=1e-12,
-            source="closed form; absolute 1e-12 N s where it is zero",
-            quantity="correction applied",
-            units="N s",
-            input=dict(zip(("total", "wanted"), args, strict=True)),
-            message="The correction is wrong.",
-            help="Look at the sum after the correction, not at the correction.",
-        )
+    kit.expect_cases(
+        submission,
+        "applied",
+        ("total", "wanted"),
+        [((3.0, 2.0), 2.0), ((3.0, -1.0), -1.0), ((3.0, -5.0), -3.0), ((0.5, -0.25), -0.25)],
+        abs=1e-12,
+        source="closed form; absolute 1e-12 N s where it is zero",
+        quantity="correction applied",
+        units="N s",
+        message="The correction is wrong.",
+        help="Look at the sum after the correction, not at the correction.",
+    )
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {
-    "applied": [
-        (3.0, 2.0),
-        (3.0, -1.0),
-        (3.0, -5.0),
-        (0.0, -2.0),
-        (0.5, -0.25),
-        (0.7, 0.4),
-    ],
-}
+QUESTIONS = {"applied": [(3.0, 2.0), (3.0, -1.0), (3.0, -5.0), (0.0, -2.0), (0.5, -0.25), (0.7, 0.4)]}

@@ -9,20 +9,20 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_choices(submission):
     """Brilliant and steady controllers"""
-    cases = [
-        (([[1.0, 9.0, 1.0], [4.0, 5.0, 6.0], [0.0, 7.0, 8.0]],), 1),
-        (([[3.0, 3.5], [1.0, 4.0], [3.6, 3.7]],), 0),
-        (([[2.0, 8.0], [8.0, 1.0], [7.0, 7.5], [9.0, 0.0]],), 2),
-        (([[5.0, 1.0], [2.0, 5.0]],), 0),
-    ]
-    for args, expected in cases:
-        kit.expect_equal(
-            submission.call("robust", *args),
-            expected,
-            input=dict(zip(("costs",), args, strict=True)),
-            message="That is not the controller with the smallest worst cost.",
-            help="Write the worst cost of each controller beside it.",
-        )
+    kit.expect_cases(
+        submission,
+        "robust",
+        ("costs",),
+        [
+            (([[1.0, 9.0, 1.0], [4.0, 5.0, 6.0], [0.0, 7.0, 8.0]],), 1),
+            (([[3.0, 3.5], [1.0, 4.0], [3.6, 3.7]],), 0),
+            (([[2.0, 8.0], [8.0, 1.0], [7.0, 7.5], [9.0, 0.0]],), 2),
+            (([[5.0, 1.0], [2.0, 5.0]],), 0),
+        ],
+        expect=kit.expect_equal,
+        message="That is not the controller with the smallest worst cost.",
+        help="Write the worst cost of each controller beside it.",
+    )
 
 
 #: Calls that tell wrong programs apart.
@@ -32,5 +32,5 @@ QUESTIONS = {
         ([[3.0, 3.5], [1.0, 4.0], [3.6, 3.7]],),
         ([[2.0, 8.0], [8.0, 1.0], [7.0, 7.5], [9.0, 0.0]],),
         ([[5.0, 1.0], [2.0, 5.0]],),
-    ],
+    ]
 }

@@ -81,5 +81,5 @@ QUESTIONS = {
         (SQUARE, WEDGE, (1.0, 0.0)),
         (FAR, SQUARE, (3.0, -4.0)),
         (SQUARE, LONG, (1.0, 0.0)),
-    ],
+    ]
 }

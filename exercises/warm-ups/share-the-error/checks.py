@@ -9,32 +9,17 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_corrections(submission):
     """Small, large and whole corrections"""
-    cases = [
-        ((1.0, 1.4, 0.25), 1.1),
-        ((2.0, 1.0, 0.9), 1.1),
-        ((-0.5, 0.7, 1.0), 0.7),
-        ((3.0, 8.0, 0.1), 3.5),
-    ]
-    for args, expected in cases:
-        kit.expect_close(
-            submission.call("corrected", *args),
-            expected,
-            rel=1e-9,
-            source="closed form, written down to twelve digits: only rounding is allowed",
-            quantity="position",
-            units="m",
-            input=dict(zip(("predicted", "measured", "share"), args, strict=True)),
-            message="The corrected position is wrong.",
-            help="With the share 0 the prediction must come out, with 1 the measurement.",
-        )
+    kit.expect_cases(
+        submission,
+        "corrected",
+        ("predicted", "measured", "share"),
+        [((1.0, 1.4, 0.25), 1.1), ((2.0, 1.0, 0.9), 1.1), ((-0.5, 0.7, 1.0), 0.7), ((3.0, 8.0, 0.1), 3.5)],
+        quantity="position",
+        units="m",
+        message="The corrected position is wrong.",
+        help="With the share 0 the prediction must come out, with 1 the measurement.",
+    )
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {
-    "corrected": [
-        (1.0, 1.4, 0.25),
-        (2.0, 1.0, 0.9),
-        (-0.5, 0.7, 1.0),
-        (3.0, 8.0, 0.1),
-    ],
-}
+QUESTIONS = {"corrected": [(1.0, 1.4, 0.25), (2.0, 1.0, 0.9), (-0.5, 0.7, 1.0), (3.0, 8.0, 0.1)]}

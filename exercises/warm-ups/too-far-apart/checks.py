@@ -9,30 +9,16 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_distances(submission):
     """Larger and smaller results, sure and unsure ones"""
-    cases = [
-        ((1.2, 0.03, 1.25, 0.04), 1.0),
-        ((5.0, 0.2, 4.0, 0.1), 4.472135955),
-        ((0.0, 1.0, 2.6, 2.4), 1.0),
-    ]
-    for args, expected in cases:
-        kit.expect_close(
-            submission.call("distance_in_doubts", *args),
-            expected,
-            rel=1e-9,
-            source="closed form, written down to twelve digits: only rounding is allowed",
-            quantity="distance in doubts",
-            units="1",
-            input=dict(zip(("simulated", "doubt_s", "measured", "doubt_m"), args, strict=True)),
-            message="The difference in units of its uncertainty is wrong.",
-            help="What is the uncertainty of a difference of two uncertain numbers?",
-        )
+    kit.expect_cases(
+        submission,
+        "distance_in_doubts",
+        ("simulated", "doubt_s", "measured", "doubt_m"),
+        [((1.2, 0.03, 1.25, 0.04), 1.0), ((5.0, 0.2, 4.0, 0.1), 4.472135955), ((0.0, 1.0, 2.6, 2.4), 1.0)],
+        quantity="distance in doubts",
+        message="The difference in units of its uncertainty is wrong.",
+        help="What is the uncertainty of a difference of two uncertain numbers?",
+    )
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {
-    "distance_in_doubts": [
-        (1.2, 0.03, 1.25, 0.04),
-        (5.0, 0.2, 4.0, 0.1),
-        (0.0, 1.0, 2.6, 2.4),
-    ],
-}
+QUESTIONS = {"distance_in_doubts": [(1.2, 0.03, 1.25, 0.04), (5.0, 0.2, 4.0, 0.1), (0.0, 1.0, 2.6, 2.4)]}

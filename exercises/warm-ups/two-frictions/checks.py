@@ -9,26 +9,22 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_rules(submission):
     """Each rule gives its own coefficient"""
-    cases = [
-        ((0.9, 0.1, "product"), 0.09),
-        ((0.9, 0.1, "mean"), 0.5),
-        ((0.9, 0.1, "larger"), 0.9),
-        ((0.2, 0.6, "larger"), 0.6),
-        ((1.2, 0.5, "product"), 0.6),
-        ((0.2, 0.6, "mean"), 0.4),
-    ]
-    for args, expected in cases:
-        kit.expect_close(
-            submission.call("pair_friction", *args),
-            expected,
-            rel=1e-9,
-            source="closed form, written down to twelve digits: only rounding is allowed",
-            quantity="coefficient",
-            units="1",
-            input=dict(zip(("mu1", "mu2", "rule"), args, strict=True)),
-            message="The coefficient of a pair is wrong.",
-            help="Apply exactly the rule that is given.",
-        )
+    kit.expect_cases(
+        submission,
+        "pair_friction",
+        ("mu1", "mu2", "rule"),
+        [
+            ((0.9, 0.1, "product"), 0.09),
+            ((0.9, 0.1, "mean"), 0.5),
+            ((0.9, 0.1, "larger"), 0.9),
+            ((0.2, 0.6, "larger"), 0.6),
+            ((1.2, 0.5, "product"), 0.6),
+            ((0.2, 0.6, "mean"), 0.4),
+        ],
+        quantity="coefficient",
+        message="The coefficient of a pair is wrong.",
+        help="Apply exactly the rule that is given.",
+    )
 
 
 #: Calls that tell wrong programs apart.
@@ -40,5 +36,5 @@ QUESTIONS = {
         (0.2, 0.6, "larger"),
         (0.2, 0.6, "mean"),
         (1.2, 0.5, "product"),
-    ],
+    ]
 }

@@ -9,32 +9,26 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_positions(submission):
     """Bent arms reach where they should"""
-    cases = [
-        ((0.3, 0.5, 1.0, 0.7), [1.44303118567, 0.797669470291]),
-        ((-0.8, 2.0, 0.4, 0.6), [0.496097336425, 0.272281015221]),
-        ((1.2, -0.4, 0.5, 0.5), [0.529532231912, 0.824697588433]),
-    ]
-    for args, expected in cases:
-        kit.expect_array(
-            submission.call("hand", *args),
-            expected,
-            rel=1e-9,
-            abs=1e-12,
-            source="closed form; absolute 1e-12 m where it is zero",
-            quantity="x and y of the hand",
-            units="m",
-            input=dict(zip(("a1", "a2", "l1", "l2"), args, strict=True)),
-            message="The position of the hand is wrong.",
-            help="Draw the arm with a1 = 90 degrees and a2 = 0: where does the second link point?",
-        )
+    kit.expect_cases(
+        submission,
+        "hand",
+        ("a1", "a2", "l1", "l2"),
+        [
+            ((0.3, 0.5, 1.0, 0.7), [1.44303118567, 0.797669470291]),
+            ((-0.8, 2.0, 0.4, 0.6), [0.496097336425, 0.272281015221]),
+            ((1.2, -0.4, 0.5, 0.5), [0.529532231912, 0.824697588433]),
+        ],
+        expect=kit.expect_array,
+        abs=1e-12,
+        source="closed form; absolute 1e-12 m where it is zero",
+        quantity="x and y of the hand",
+        units="m",
+        message="The position of the hand is wrong.",
+        help="Draw the arm with a1 = 90 degrees and a2 = 0: where does the second link point?",
+    )
 
 
 #: Calls that tell wrong programs apart.
 QUESTIONS = {
-    "hand": [
-        (0.3, 0.5, 1.0, 0.7),
-        (-0.8, 2.0, 0.4, 0.6),
-        (1.2, -0.4, 0.5, 0.55),
-        (0.9, 0.0, 1.0, 1.0),
-    ],
+    "hand": [(0.3, 0.5, 1.0, 0.7), (-0.8, 2.0, 0.4, 0.6), (1.2, -0.4, 0.5, 0.55), (0.9, 0.0, 1.0, 1.0)]
 }

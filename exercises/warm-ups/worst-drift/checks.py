@@ -9,24 +9,20 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_drifts(submission):
     """Energies that rise, fall, come back and are negative"""
-    cases = [
-        (([2.0, 2.2, 1.7, 2.1],), 0.15),
-        (([-5.0, -4.0, -5.5, -5.0],), 0.2),
-        (([10.0, 10.0, 9.0, 8.5],), 0.15),
-        (([1.0, 5.0, 1.5],), 4.0),
-    ]
-    for args, expected in cases:
-        kit.expect_close(
-            submission.call("worst_drift", *args),
-            expected,
-            rel=1e-9,
-            source="closed form, written down to twelve digits: only rounding is allowed",
-            quantity="worst drift",
-            units="1",
-            input=dict(zip(("energies",), args, strict=True)),
-            message="The worst drift is wrong.",
-            help="Which of the values is furthest from the first?",
-        )
+    kit.expect_cases(
+        submission,
+        "worst_drift",
+        ("energies",),
+        [
+            (([2.0, 2.2, 1.7, 2.1],), 0.15),
+            (([-5.0, -4.0, -5.5, -5.0],), 0.2),
+            (([10.0, 10.0, 9.0, 8.5],), 0.15),
+            (([1.0, 5.0, 1.5],), 4.0),
+        ],
+        quantity="worst drift",
+        message="The worst drift is wrong.",
+        help="Which of the values is furthest from the first?",
+    )
 
 
 #: Calls that tell wrong programs apart.
@@ -38,5 +34,5 @@ QUESTIONS = {
         ([4.0, 5.0, 3.5],),
         ([1.0, 5.0, 1.0],),
         ([10.0, 11.0, 12.0, 9.0],),
-    ],
+    ]
 }

@@ -470,7 +470,7 @@ def build(
             _say_blanks(catalog, exercise)
             raise
     made.append(write_times(catalog, chosen))
-    written = [shown(path, catalog) for path in made if path]
+    written = [shown(path, catalog) for path in dict.fromkeys(made) if path]
     for exercise in chosen if accept else ():
         if not exercise.is_warm_up:
             with meter(console) as on_progress:

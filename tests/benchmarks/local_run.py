@@ -10,10 +10,8 @@ from __future__ import annotations
 import argparse
 import importlib.util
 import inspect
-import re
 import sys
 import time
-import tomllib
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,12 +23,23 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "benchmarks")]
 
 
-from course.authoring.exercises.grading import LocalSubmission  # noqa: E402
+from course.authoring.exercises.grading import (  # noqa: E402
+    LocalSubmission,
+    accepted_sources,
+    mistakes_of,
+    solution_path,
+)
+from course.authoring.exercises.mutants import caught_by  # noqa: E402
+from course.authoring.mistakes import Variant  # noqa: E402
+from course.catalog.load import Catalog  # noqa: E402
 from course.scoring import kit  # noqa: E402
+from course.scoring.explain.story import read_table  # noqa: E402
 from course.scoring.failures import finding_of  # noqa: E402
 from course.scoring.judging.explaining import Explainer  # noqa: E402
 from course.scoring.judging.outcomes import found  # noqa: E402
 from course.scoring.verdict import CheckResult, Status, Visibility  # noqa: E402
+
+CATALOG = Catalog()
 
 
 @dataclass
@@ -92,9 +101,10 @@ def run(source: str, checks: list[Check], seed: int) -> list[Result]:
             status[check.id] = failure.kind
             told[check.id] = found(check, Status.ERROR, finding_of(failure), 0.0)
     if failed:
-        folder = ROOT / "exercises" / checks[0].exercise
+        table = read_table(ROOT / "exercises" / checks[0].exercise)
         questions = kit.companion(checks[0].exercise, "questions")
-        Explainer(folder, questions).explain(told, failed, submission, source.encode())
+        assert table is not None
+        Explainer(table, questions).explain(told, failed, submission, source.encode())
     return [Result(check, status[check.id], told.get(check.id)) for check in checks]
 
 
@@ -108,16 +118,27 @@ def _generator(check: Check, seed: int) -> np.random.Generator:
 
 def sources(exercise: str) -> dict[str, str]:
     """Everything there is to run: kind/name to source text."""
-    solution_dir = ROOT / "solutions" / exercise
-    module = re.search(
-        r'^module = "(.+)"', (ROOT / "exercises" / exercise / "exercise.toml").read_text(), re.M
-    )[1]
-    solution = (solution_dir / module).read_text()
-    found = {"stub": (ROOT / "exercises" / exercise / module).read_text(), "solution": solution}
-    for kind in ("accepted", "mutants"):
-        for path in sorted((solution_dir / kind).glob("*.py")):
-            found[f"{kind}/{path.name}"] = solution + "\n\n" + path.read_text()
+    declared = CATALOG.exercise(exercise)
+    solution = solution_path(CATALOG, declared)
+    model = solution.read_text()
+    found = {"stub": declared.stub_path.read_text(), "solution": model}
+    for name, source in accepted_sources(CATALOG, declared).items():
+        found[f"accepted/{name}"] = source.decode()
+    for name, mutant in wrong(exercise).items():
+        found[name] = mutant.composed(model, solution)
     return found
+
+
+def wrong(exercise: str) -> dict[str, Variant]:
+    """The wrong programs of an exercise, by name."""
+    return {f"mutants/{one.name}": one for one in mistakes_of(CATALOG, CATALOG.exercise(exercise)).wrong}
+
+
+def caught(exercise: str) -> dict[str, str]:
+    """Which check is on record for catching each of them."""
+    return {
+        f"mutants/{name}": check for name, check in caught_by(CATALOG, CATALOG.exercise(exercise)).items()
+    }
 
 
 def main() -> int:
@@ -131,17 +152,24 @@ def main() -> int:
     checks = load_checks(options.exercise)
     total = sum(check.points for check in checks)
     print(f"{len(checks)} checks, {total} points ({sum(c.points for c in checks if not c.hidden)} public)")
-    path = ROOT / "solutions" / options.exercise / "mutants.toml"
-    mutants = {m["file"]: m for m in tomllib.loads(path.read_text())["mutant"]} if path.is_file() else {}
-    wrong = 0
+    mutants, by = wrong(options.exercise), caught(options.exercise)
+    faults = 0
     for name, source in sources(options.exercise).items():
         if options.only in name:
-            wrong += _report(name, source, checks, options, total, mutants.get(name.removeprefix("mutants/")))
-    print("all as declared" if not wrong else f"{wrong} NOT as declared")
-    return bool(wrong)
+            mutant = (mutants[name], by.get(name, "")) if name in mutants else None
+            faults += _report(name, source, checks, options, total, mutant)
+    print("all as declared" if not faults else f"{faults} NOT as declared")
+    return bool(faults)
 
 
-def _report(name: str, source: str, checks: list[Check], options: Any, total: float, mutant: Any) -> int:
+def _report(
+    name: str,
+    source: str,
+    checks: list[Check],
+    options: Any,
+    total: float,
+    mutant: tuple[Variant, str] | None,
+) -> int:
     start = time.process_time()
     faults: dict[str, int] = {}
     seen: dict[str, Result] = {}
@@ -177,23 +205,22 @@ def _report(name: str, source: str, checks: list[Check], options: Any, total: fl
     return bool(faults)
 
 
-def _faults(name: str, results: list[Result], mutant: Any) -> list[str]:
+def _faults(name: str, results: list[Result], mutant: tuple[Variant, str] | None) -> list[str]:
     """What is not as it is declared to be."""
     failed = {r.check.id: r for r in results if r.status != "pass"}
     if name == "stub":
         return [f"{r.check.id} passes" for r in results if r.status == "pass"]
-    if not name.startswith("mutants/"):
-        return [f"{check} fails" for check in failed]
     if mutant is None:
-        return ["not in mutants.toml"]
+        return [f"{check} fails" for check in failed]
+    program, check = mutant
     faults = [
-        f"loses {r.check.id} of {r.check.task}" for r in failed.values() if r.check.task != mutant["task"]
+        f"loses {r.check.id} of {r.check.task}" for r in failed.values() if r.check.task != program.task
     ]
-    caught = failed.get(mutant["check"])
-    if caught is None:
-        faults.append(f"not caught by {mutant['check']}")
-    elif caught.finding.diagnosis != mutant["diagnosis"]:
-        faults.append(f"diagnosed {caught.finding.diagnosis}")
+    found = failed.get(check)
+    if found is None:
+        faults.append(f"not caught by {check}")
+    elif found.finding.diagnosis != program.code:
+        faults.append(f"diagnosed {found.finding.diagnosis}")
     return faults
 
 

@@ -27,9 +27,8 @@ sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).res
 
 from course.authoring.exercises.grading import (  # noqa: E402
     LocalSubmission,
-    accepted_files,
-    compose,
-    mutant_files,
+    accepted_sources,
+    mistakes_of,
     solution_path,
 )
 from course.catalog.load import Catalog  # noqa: E402
@@ -52,8 +51,9 @@ class Unprotected(GradingSession):
 def submissions(exercise: Any, catalog: Catalog) -> dict[str, bytes]:
     """The model solution, every accepted variant and every mutant of an exercise."""
     model = solution_path(catalog, exercise)
-    parts = (*accepted_files(catalog, exercise), *mutant_files(catalog, exercise))
-    return {"solution": model.read_bytes(), **{part.stem: compose(model, part) for part in parts}}
+    wrong = mistakes_of(catalog, exercise).wrong
+    mutants = {one.name: one.composed(model.read_text(encoding="utf-8"), model).encode() for one in wrong}
+    return {"solution": model.read_bytes(), **accepted_sources(catalog, exercise), **mutants}
 
 
 def descendants_cpu(pid: int) -> float:

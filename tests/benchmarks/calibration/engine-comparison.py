@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import tomllib
 from collections import defaultdict
 
 import numpy as np
@@ -37,24 +36,25 @@ def calibrate(seeds: int, mutant_seeds: int) -> Tables:
             for result in local_run.run(sources[name], [c for c in checks if c.task in tasks], seed):
                 tables.expect(result.status == "pass", name, seed, result)
                 tables.used[result.check.id] = max(tables.used[result.check.id], shares[result.check.id])
-    for mutant in tomllib.loads((folder / "mutants.toml").read_text())["mutant"]:
+    caught = local_run.caught(EXERCISE)
+    for name, mutant in local_run.wrong(EXERCISE).items():
         tables.mutants += 1
         for seed in range(mutant_seeds):
-            for result in local_run.run(sources["mutants/" + mutant["file"]], checks, seed):
-                _judge(tables, mutant, result, shares[result.check.id], seed)
+            for result in local_run.run(sources[name], checks, seed):
+                _judge(tables, mutant, caught[name], result, shares[result.check.id], seed)
     return tables
 
 
-def _judge(tables: Tables, mutant, result, share: float, seed: int) -> None:
+def _judge(tables: Tables, mutant, check: str, result, share: float, seed: int) -> None:
     failed = result.status != "pass"
     tables.failed_by[result.check.id] += failed and seed == 0
-    if result.check.id == mutant["check"]:
-        right = failed and result.finding.diagnosis == mutant["diagnosis"]
-        tables.expect(right, mutant["file"], seed, result)
+    if result.check.id == check:
+        right = failed and result.finding.diagnosis == mutant.code
+        tables.expect(right, mutant.name, seed, result)
         low = tables.caught.get(result.check.id, math.inf)
         tables.caught[result.check.id] = min(low, share or math.inf)
     elif failed:  # it loses its own task's points only
-        tables.expect(result.check.task == mutant["task"], mutant["file"], seed, result)
+        tables.expect(result.check.task == mutant.task, mutant.name, seed, result)
 
 
 def truths(seeds: int) -> str:

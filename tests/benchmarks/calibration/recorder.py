@@ -14,7 +14,6 @@ import argparse
 import inspect
 import re
 import sys
-import tomllib
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -133,19 +132,20 @@ def calibrate(exercise: str, recorder: Recorder, seeds: int, mutant_seeds: int, 
                 tables.expect(result.status == "pass", name, seed, result)
                 tables.used[check.id] = max(tables.used[check.id], recorder.share)
     tables.bounded = {name: list(values) for name, values in recorder.bounded.items()}
-    for mutant in tomllib.loads((folder / "mutants.toml").read_text())["mutant"]:
+    caught = local_run.caught(exercise)
+    for name, mutant in local_run.wrong(exercise).items():
         tables.mutants += 1
-        _mutant(tables, recorder, sources["mutants/" + mutant["file"]], mutant, checks, mutant_seeds)
+        _mutant(tables, recorder, sources[name], mutant, caught[name], checks, mutant_seeds)
     return tables
 
 
-def _mutant(tables: Tables, recorder: Recorder, source: str, mutant, checks, seeds: int) -> None:
-    check, shares = next(c for c in checks if c.id == mutant["check"]), {}
+def _mutant(tables: Tables, recorder: Recorder, source: str, mutant, by: str, checks, seeds: int) -> None:
+    check, shares = next(c for c in checks if c.id == by), {}
     mine = noting([c for c in checks if c.task == check.task], recorder, shares)  # some remember other checks
     for seed in range(seeds):
         result = next(r for r in local_run.run(source, mine, seed) if r.check.id == check.id)
-        right = result.status != "pass" and result.finding.diagnosis == mutant["diagnosis"]
-        tables.expect(right, mutant["file"], seed, result)
+        right = result.status != "pass" and result.finding.diagnosis == mutant.code
+        tables.expect(right, mutant.name, seed, result)
         tables.caught[check.id] = min(tables.caught.get(check.id, np.inf), shares[check.id] or np.inf)
     for result in local_run.run(source, checks, 0):
         tables.failed_by[result.check.id] += result.status != "pass"

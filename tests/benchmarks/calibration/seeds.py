@@ -4,7 +4,7 @@
         [--first 1] [--variant NAME] [--log FILE] [--kept]
 
 A grading of the model solution or of an accepted variant has to give full marks; one of a mutant what
-mutants.toml says: points of its task only, by the check and with the diagnosis it names. What is not so is
+its record says: points of its task only, by the check and with the diagnosis it names. What is not so is
 printed with the seed, and the exit code is 1.
 
 The first seed is a grading run: every check, in a worker. With the others the submission runs in this
@@ -40,9 +40,10 @@ from course.authoring.exercises.grading import (  # noqa: E402
     LocalSubmission,
     accepted_files,
     compose,
+    mistakes_of,
     solution_path,
 )
-from course.authoring.exercises.mutants import judge, mutant_path  # noqa: E402
+from course.authoring.exercises.mutants import caught_by, judge  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.scoring.explain.story import OWN_WORDS  # noqa: E402
 from course.scoring.judging.session import GradingSession  # noqa: E402
@@ -170,7 +171,7 @@ def _keys(
 ) -> Iterator[tuple[Program, tuple[Any, ...]]]:
     """Each program that is asked for, and what its line in the log begins with."""
     told = made_from(catalog, exercise)
-    decided = hashlib.sha256(code_of(catalog, exercise, "*.py")).hexdigest()[:16]
+    decided = hashlib.sha256(code_of(catalog, exercise)).hexdigest()[:16]
     for program in programs(exercise, catalog, options):
         digest = hashlib.sha256(program.source + program.declared).hexdigest()[:16]
         state = told if program.name.startswith("mutants/") else decided
@@ -187,12 +188,13 @@ def programs(exercise: Exercise, catalog: Catalog, options: argparse.Namespace) 
             own = _own_tasks(solution, path, tasks)
             name = f"accepted/{path.name}"
             yield Program(name, compose(solution, path), own, options.accepted, _short_of_full)
-    for mutant in catalog.mutants(exercise) if options.mutants else ():
-        if not options.variant or Path(mutant.file).stem in options.variant:
-            told = lambda verdict, mutant=mutant: [fault.message for fault in judge(mutant, verdict)]  # noqa: E731
-            source = compose(solution, mutant_path(catalog, exercise, mutant))
-            name = f"mutants/{mutant.file}"
-            declared = msgspec.json.encode((mutant.task, mutant.check, mutant.diagnosis, mutant.also))
+    caught, model = caught_by(catalog, exercise), solution.read_text(encoding="utf-8")
+    for mutant in mistakes_of(catalog, exercise).wrong if options.mutants else ():
+        if not options.variant or mutant.name in options.variant:
+            check = caught.get(mutant.name, "")
+            told = lambda verdict, one=mutant, by=check: [fault.message for fault in judge(one, by, verdict)]  # noqa: E731
+            source, name = mutant.composed(model, solution).encode(), f"mutants/{mutant.name}"
+            declared = msgspec.json.encode((mutant.task, check, mutant.code, mutant.also))
             yield Program(name, source, frozenset({mutant.task}), options.mutants, told, declared)
 
 

@@ -33,7 +33,7 @@ ROWS = Path(__file__).with_name("misleading") / "rows.toml"
 LATIN = "# \N{LATIN SMALL LETTER E WITH ACUTE}\n"
 sys.path.insert(0, str(ROOT))
 
-from course.authoring.exercises.grading import compose, grade_sources, solution_path  # noqa: E402
+from course.authoring.exercises.grading import compose, grade_sources, mistakes_of, solution_path  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.grading.exports.selection import checks_for_student  # noqa: E402
 
@@ -204,14 +204,19 @@ def rows() -> None:
     catalog, table = Catalog(), tomllib.loads(ROWS.read_text(encoding="utf-8"))["row"]
     sources = {}
     for program in {program for row in table for program in row["programs"]}:
-        exercise_id, path = program.split(": ")
+        exercise_id, name = program.split(": ")
         exercise = catalog.exercise(exercise_id)
-        source = compose(solution_path(catalog, exercise), ROOT / path)
-        sources[program] = (exercise_id, source.decode())
+        known = {one.name: one for one in mistakes_of(catalog, exercise).wrong}
+        solution = solution_path(catalog, exercise)
+        if name in known:
+            source = known[name].composed(solution.read_text(encoding="utf-8"), solution)
+        else:
+            source = compose(solution, ROOT / name).decode()
+        sources[program] = (exercise_id, source)
     verdicts = graded(sources)
     first = next(iter(catalog.exercises()))
-    source = LATIN.encode("latin-1") + solution_path(catalog, first).read_bytes()
-    ((_, latin),) = grade_sources([(first, source)], graders=1)
+    latin_1 = LATIN.encode("latin-1") + solution_path(catalog, first).read_bytes()
+    ((_, latin),) = grade_sources([(first, latin_1)], graders=1)
     print(
         "# What once misled\n\nWhat was done, what version 1.2.0 said of it, and what is said now, verbatim."
     )
@@ -221,7 +226,8 @@ def rows() -> None:
     for row in table:
         print(f"## {row['did']}\n\nWas told: {row['was']}\n")
         for program in row["programs"]:
-            print(f"`{Path(program).stem}`\n")
+            name = program.partition(": ")[2]
+            print(f"`{Path(name).stem if name.endswith('.py') else name}`\n")
             print("".join(f"- {line}\n" for line in told(verdicts[program]) or ["loses no point"]))
 
 

@@ -31,7 +31,7 @@ sys.path[:0] = [str(ROOT), str(HERE)]
 
 import here  # noqa: E402
 
-from course.authoring.exercises.grading import accepted_files, compose, mutant_files, solution_path  # noqa: E402
+from course.authoring.exercises.grading import accepted_sources, mistakes_of, solution_path  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 
 if TYPE_CHECKING:
@@ -74,10 +74,11 @@ def cpu(command: list[str], folder: Path, **environment: str) -> tuple[float, st
 def submissions(exercise: Any, catalog: Catalog, count: int) -> dict[str, str]:
     """Student to source: the model solution, accepted variants and mutants, taking turns."""
     model = solution_path(catalog, exercise)
-    right, wrong = accepted_files(catalog, exercise), mutant_files(catalog, exercise)
     sources = [model.read_text("utf-8")]
-    for pair in zip(right, wrong, strict=False):
-        sources += [compose(model, part).decode() for part in pair]
+    right = (source.decode() for source in accepted_sources(catalog, exercise).values())
+    wrong = (one.composed(sources[0], model) for one in mistakes_of(catalog, exercise).wrong)
+    for pair in list(zip(right, wrong, strict=False)):
+        sources += pair
     return {
         f"student-{number:04}": f"{sources[number % len(sources)]}\n# {number}\n" for number in range(count)
     }

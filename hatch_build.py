@@ -30,7 +30,7 @@ DATA = re.compile(
     | authoring/templates/([\w-]+/)?[\w.-]+\.tmpl
     | engines/(reference|well_set)\.json | engines/options/\w+\.toml
     | grading/similar\.(css|html\.j2) | grading/exports/html_report/templates/\w+\.(css|js|html\.j2)
-    | lessons/syllabus\.toml | lessons/worked/\w+/(\w+\.py|README\.md|exercise\.toml|hints\.toml)
+    | lessons/syllabus\.toml | lessons/worked/\w+/(\w+\.py|README\.md|exercise\.toml)
     | notebooks/static/\w+\.js
     | sandbox/scenes/[\w-]+\.toml | sandbox/views/web/static/\w+\.(css|html|js|svg)
     | scoring/checks/checks\.ini
@@ -40,7 +40,7 @@ DATA = re.compile(
 #: Files of an exercise, beside the stub, which its `exercise.toml` names.
 OF_AN_EXERCISE = re.compile(
     r"""
-    README\.md | (exercise|hints|diagnoses|rubric)\.toml | hypotheses\.(json|py)
+    README\.md | (exercise|rubric)\.toml | diagnoses\.json
     | (checks|questions|report|boxes)\.py | checking/\w+\.py
     """,
     re.VERBOSE,
@@ -124,7 +124,7 @@ def _of_the_package(folder: Path) -> Iterator[Path]:
 
 
 def _of_exercises(folder: Path) -> Iterator[Path]:
-    yield folder / "times.json"
+    yield from (folder / "times.json", folder / "warm-ups" / "diagnoses.json")
     for head in [*folder.glob("*/exercise.toml"), *folder.glob("warm-ups/*/exercise.toml")]:
         yield head.parent / Path(tomllib.loads(head.read_text("utf-8"))["module"]).name
         for path in _below(head.parent):

@@ -135,8 +135,9 @@ def diagnosis(exercise_id: str, rounds: int) -> None:
     ratios = {}
     with GradingSession(exercise, catalog, scope="full", processor=0) as session:
         explainer = session._explainer
-        for path in mutant_files(catalog, exercise):
-            handed_in, cpu = Submission({exercise.module: compose(model, path)}), [0.0, 0.0]
+        for mutant in mistakes_of(catalog, exercise).wrong:
+            source = mutant.composed(model.read_text(encoding="utf-8"), model).encode()
+            handed_in, cpu = Submission({exercise.module: source}), [0.0, 0.0]
             for number in range(2 * rounds + 2):
                 silent = number % 2
                 session._explainer = None if silent else explainer

@@ -7,7 +7,7 @@ import itertools
 from collections.abc import Iterator, Sequence
 
 from course.authoring.audit import audit
-from course.authoring.exercises.grading import accepted_files, grade_sources
+from course.authoring.exercises.grading import accepted_files, grade_sources, mistakes_of
 from course.authoring.report import AuditReport
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
@@ -54,4 +54,5 @@ def wrong(report: AuditReport) -> list[str]:
 def programs(exercise: str) -> int:
     """How many programs prove an exercise: its stub, its solution, and the solution's variants."""
     it = CATALOG.exercise(exercise)
-    return 2 + len(accepted_files(CATALOG, it)) + len(CATALOG.mutants(it))
+    mistakes = mistakes_of(CATALOG, it)
+    return 2 + len(accepted_files(CATALOG, it)) + len(mistakes.right) + len(mistakes.wrong)

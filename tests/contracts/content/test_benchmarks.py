@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import msgspec
 import pytest
 
+from course.authoring.exercises.grading import mistakes_of
+from course.authoring.exercises.mutants import caught_by
+from course.authoring.mistakes import Variant
 from course.catalog.load import Catalog
 from course.scoring.judging.submission import Submission, Terms
 from tests.benchmarks.calibration import seeds
@@ -39,7 +41,7 @@ def test_what_is_on_record_is_of_the_programs_and_checks_that_there_are(
     names = {program.source: program.name for program in seeds.programs(exercise, catalog, options)}
     proven = seeds.proven(exercise, catalog)
     kinds = [names[source].partition("/")[0] for source in proven]
-    assert kinds.count("mutants") == len(catalog.mutants(exercise))
+    assert kinds.count("mutants") == len(mistakes_of(catalog, exercise).wrong)
     assert kinds.count("accepted") == len(names) - kinds.count("mutants") - 1  # but for the solution
 
     source = next(source for source in proven if names[source].startswith("mutants/"))
@@ -52,10 +54,13 @@ def test_what_is_on_record_is_of_the_programs_and_checks_that_there_are(
         assert seeds.proven(exercise, catalog) == proven - {source}
     with monkeypatch.context() as patch:
         patch.setattr(seeds, "compose", lambda solution, path: path.read_bytes() + b"\n")
-        assert not seeds.proven(exercise, catalog)
+        assert {names[kept].partition("/")[0] for kept in seeds.proven(exercise, catalog)} == {"mutants"}
     with monkeypatch.context() as patch:
-        entries = [msgspec.structs.replace(mutant, diagnosis="OTHER") for mutant in catalog.mutants(exercise)]
-        patch.setattr(Catalog, "mutants", lambda *_: tuple(entries))
+        patch.setattr(Variant, "composed", lambda *_: "other = None\n")
+        assert {names[kept].partition("/")[0] for kept in seeds.proven(exercise, catalog)} == {"accepted"}
+    with monkeypatch.context() as patch:
+        caught = dict.fromkeys(caught_by(catalog, exercise), "another_check")
+        patch.setattr(seeds, "caught_by", lambda *_: caught)
         assert {names[kept].partition("/")[0] for kept in seeds.proven(exercise, catalog)} == {"accepted"}
     with monkeypatch.context() as patch:
         patch.setattr(seeds, "made_from", lambda *_: "other known mistakes")

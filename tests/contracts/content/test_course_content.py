@@ -5,17 +5,9 @@ from __future__ import annotations
 import pytest
 
 from course.authoring.exercises import diagnosis
-from course.authoring.exercises.diagnosis import (
-    Confusion,
-    Reported,
-    as_one,
-    code_of,
-    fate_of,
-    hypotheses_of,
-    made_from,
-    read_confusion,
-)
+from course.authoring.exercises.diagnosis import as_one, code_of, fate_of, hypotheses_of, made_from
 from course.authoring.exercises.grading import solution_path
+from course.authoring.exercises.mutants import Record, Reported, caught_by, read_record
 from course.authoring.report import AuditReport, Findings
 from course.catalog.load import Catalog
 from course.handed_in import limits
@@ -97,11 +89,11 @@ def _summary(source: str) -> list[tuple[str, str]]:
 
 def test_no_known_wrong_program_is_told_a_mistake_that_it_does_not_have(catalog: Catalog) -> None:
     """As the audit keeps the tables: made from the checks, probes and known mistakes that there are."""
-    tables = {exercise: read_confusion(catalog, exercise) for exercise in catalog.exercises()}
+    tables = {exercise: read_record(catalog, exercise) for exercise in catalog.exercises()}
     found = {exercise: table for exercise, table in tables.items() if table}
     assert len(found) >= 6  # the course's own; another author's exercise may have its words in code
     for exercise, table in found.items():
-        fate = fate_of(exercise)
+        fate = fate_of(catalog, exercise)
         assert set(table.rows) == {"public", "full"}
         rows = [row for scope in table.rows.values() for row in scope]
         assert [row for row in rows if fate(row) == "otherwise"] == []
@@ -112,8 +104,12 @@ def test_the_audit_refuses_a_table_with_an_untrue_row_or_one_that_survives(
 ) -> None:
     exercise = catalog.exercise("integrators")
     rows = [Reported("rk4_step", ("EQUAL_WEIGHTS",), said, 1) for said in ("STAGES_NOT_CHAINED", "survives")]
-    table = Confusion(made_from=made_from(catalog, exercise), rows={"public": (), "full": tuple(rows)})
-    monkeypatch.setattr(diagnosis, "read_confusion", lambda *_: table)
+    record = Record(
+        made_from=made_from(catalog, exercise),
+        caught=caught_by(catalog, exercise),
+        rows={"public": (), "full": tuple(rows)},
+    )
+    monkeypatch.setattr(diagnosis, "read_record", lambda *_: record)
     findings = Findings(catalog.content.root)
     diagnosis.audit_diagnoses(catalog, exercise, findings)
     assert [problem.message for problem in findings.sorted()] == [
@@ -125,7 +121,7 @@ def test_the_audit_refuses_a_table_with_an_untrue_row_or_one_that_survives(
 def test_what_decides_about_a_program_includes_what_answers_for_it(catalog: Catalog) -> None:
     """A reference that draws other engines decides as much as a check; the model solution is a program."""
     exercise = catalog.exercise("engine-comparison")
-    code = code_of(catalog, exercise, "*.py")
+    code = code_of(catalog, exercise)
     reference = solution_path(catalog, exercise).with_name("lab.py")
     assert reference.read_bytes() in code
     assert solution_path(catalog, exercise).read_bytes() not in code
@@ -146,7 +142,6 @@ def test_what_one_run_shows_is_told_by_the_checks_that_saw_it(catalog: Catalog) 
     kinds = {
         (exercise.id, code): entry.kind
         for exercise in catalog.exercises()
-        if exercise.readme_path.with_name("diagnoses.toml").is_file()
         for code, entry in words(exercise.id).entries.items()
         if entry.looks_like.startswith("Here ")
     }

@@ -1,6 +1,6 @@
 """What a student's own machine says of wrong programs, where nothing answers for them.
 
-A wheel has no references: the public checks with fixed inputs take what they expect from ``hypotheses.json``.
+A wheel has no references: the public checks with fixed inputs take what they expect from ``diagnoses.json``.
 Each known wrong program is told the same there as beside the references.
 """
 
@@ -13,12 +13,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from course.authoring.exercises.grading import compose, solution_path
-from course.authoring.exercises.mutants import mutant_path
+from course.authoring.exercises.grading import mistakes_of, solution_path
 from course.catalog.load import Catalog
 from course.catalog.locate import content
 from course.scoring import kit
-from course.scoring.explain.story import TABLE, read_table
+from course.scoring.explain.story import read_table
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import OURS, CheckResult
@@ -31,7 +30,7 @@ pytestmark = pytest.mark.usefixtures("sandboxes")
 ANSWERED = [
     exercise.id
     for exercise in CATALOG.exercises()
-    if (path := exercise.readme_path.with_name(TABLE)).is_file() and read_table(path).answers
+    if (table := read_table(exercise.readme_path.parent)) and table.answers
 ]
 
 
@@ -41,16 +40,18 @@ def _told(exercise_id: str, step: int) -> dict[str, list[CheckResult]]:
     """
     exercise = CATALOG.exercise(exercise_id)
     solution = solution_path(CATALOG, exercise)
-    answered = read_table(exercise.readme_path.with_name(TABLE)).answers
+    table = read_table(exercise.readme_path.parent)
+    assert table is not None
+    answered, model = table.answers, solution.read_text(encoding="utf-8")
     with GradingSession(exercise, CATALOG, scope="public", terms=Terms(home=True, timeout=5.0)) as session:
         checks = session.grade(Submission({exercise.module: solution.read_bytes()})).checks
         tasks = {check.task for check in checks if check.id in answered}
         told = {}
-        for mutant in [mutant for mutant in CATALOG.mutants(exercise) if mutant.task in tasks][::step]:
-            source = compose(solution, mutant_path(CATALOG, exercise, mutant))
+        for mutant in [one for one in mistakes_of(CATALOG, exercise).wrong if one.task in tasks][::step]:
+            source = mutant.composed(model, solution).encode()
             of_task = {check.id for check in checks if check.task == mutant.task}
             verdict = session.grade(Submission({exercise.module: source}), only=of_task)
-            told[mutant.file] = list(verdict.checks)
+            told[mutant.name] = list(verdict.checks)
         return told
 
 

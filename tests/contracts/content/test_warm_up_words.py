@@ -10,8 +10,8 @@ import pytest
 from course.authoring.exercises.diagnosis import hypotheses_of, sums_of
 from course.authoring.exercises.grading import LocalSubmission, solutions_folder
 from course.catalog.load import Catalog
-from course.scoring.checks.collected import CollectedChecks, companion
-from course.scoring.explain.story import TABLE, common, matching, read_table
+from course.scoring.checks.collected import CollectedChecks, questions_of
+from course.scoring.explain.story import common, matching, read_table
 from course.scoring.judging.session import check_files
 
 #: Two mistakes that leave the answers of one: what the one is called is as true.
@@ -35,8 +35,9 @@ def test_every_known_wrong_program_fails_and_is_told_what_is_wrong(catalog: Cata
     exercise = catalog.exercise(warm_up)
     checks = CollectedChecks(check_files(exercise, catalog, "public"), draws=False)
     model = (solutions_folder(catalog, exercise) / exercise.module).read_text(encoding="utf-8")
-    table = read_table(Path(exercise.folder) / TABLE)
-    questions = companion(warm_up, "questions")
+    table, questions = read_table(Path(exercise.folder)), questions_of(warm_up)
+    assert table is not None
+    assert questions is not None
     for task, codes, function in hypotheses_of(catalog, exercise):
         submission: Any = LocalSubmission(model, replaced={task: function})
         outcomes = [checks.run(check, submission) for check in checks.in_order() if check.task == task]

@@ -6,6 +6,7 @@ is taken and a file that exists raise UsageError, and a student's installation M
 """
 
 import ast
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -66,12 +67,28 @@ class Function:
         """Its description in the README, after its name."""
         return self.gives or "<<FILL IN: what it gives, with formula, shapes and units of its arguments>>"
 
-    def case(self, value: float) -> str:
-        """Arguments of one call, as a dict in Python."""
+    @property
+    def _arguments(self) -> tuple[str, ...]:
         (node,) = ast.parse(f"def {self.signature}: ...").body
         assert isinstance(node, ast.FunctionDef)
-        pairs = ", ".join(f'"{argument.arg}": {value}' for argument in node.args.args)
-        return f"{{{pairs}}}"
+        return tuple(argument.arg for argument in node.args.args)
+
+    @property
+    def names(self) -> str:
+        """The names of its arguments, as a tuple in Python."""
+        return _tuple([json.dumps(name) for name in self._arguments])
+
+    def arguments(self, value: float) -> str:
+        """Arguments of one call, as a tuple in Python."""
+        return _tuple([str(value) for _ in self._arguments])
+
+    def case(self, value: float) -> str:
+        """Arguments of one call, as a dict in Python."""
+        return f"{{{', '.join(f'{json.dumps(name)}: {value}' for name in self._arguments)}}}"
+
+
+def _tuple(items: Sequence[str]) -> str:
+    return f"({items[0]},)" if len(items) == 1 else f"({', '.join(items)})"
 
 
 def new_warm_up(
@@ -92,28 +109,13 @@ def new_warm_up(
     place = Path(WARM_UPS, words["id"])
     student, solutions = catalog.content.exercises / place, instructors(catalog)[0] / place
     files = {
-        student / name: (f"warm-up/{name}", words)
-        for name in (
-            "exercise.toml",
-            "README.md",
-            "hints.toml",
-            "checks.py",
-            "questions.py",
-            "diagnoses.toml",
-        )
+        student / name: (f"warm-up/{name}", words) for name in ("exercise.toml", "README.md", "checks.py")
     }
     files |= {
         student / words["module"]: ("exercise/stub.py", words),
         solutions / words["module"]: ("exercise/solution.py", words),
-        solutions / "mutants.toml": ("warm-up/mutants.toml", words),
+        solutions / "mistakes.py": ("warm-up/mistakes.py", words),
     }
-    for number in (1, 2):
-        path = solutions / "accepted" / f"unusual_{number}.py"
-        files[path] = "exercise/unusual.py", words | {"f": words["functions"][0]}
-    for function in words["functions"]:
-        for number in (1, 2, 3):
-            path = solutions / "mutants" / f"{function.name}_wrong_{number}.py"
-            files[path] = "exercise/wrong.py", words | {"f": function}
     return _write(files)
 
 
@@ -145,20 +147,16 @@ def new_exercise(
         student / "exercise.toml": ("exercise.toml", words),
         student / "README.md": ("README.md", words),
         student / module: ("stub.py", words),
-        student / "hints.toml": ("hints.toml", words),
         student / "checks.py": ("checks.py", words),
+        student / "questions.py": ("questions.py", words),
         graders / "checks.py": ("hidden_checks.py", words),
         solutions / module: ("solution.py", words),
         solutions / "README.md": ("prose.md", words),
-        solutions / "mutants.toml": ("mutants.toml", words),
+        solutions / "mistakes.py": ("mistakes.py", words),
     }
     for number, function in enumerate((*asked, asked[0]), start=1):
         path = solutions / "accepted" / f"unusual_{number}.py"
         files[path] = ("unusual.py", words | {"f": function})
-    for function in asked:
-        for number in range(1, MUTANTS_EACH + 1):
-            path = solutions / "mutants" / f"{function.name}_wrong_{number}.py"
-            files[path] = ("wrong.py", words | {"f": function})
     return _write({path: (f"exercise/{template}", known) for path, (template, known) in files.items()})
 
 

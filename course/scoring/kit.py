@@ -16,9 +16,8 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import itertools
 import math
-from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NoReturn, Protocol, TypeVar, cast
 
@@ -117,7 +116,6 @@ __all__ = [
     "march_errors",
     "reference",
     "sibling",
-    "terms",
     "words",
 ]
 
@@ -523,27 +521,6 @@ def expect_untouched(
 
 def _same(given: Any, after: Any) -> bool:
     return bool(np.array_equal(np.asarray(given), np.asarray(after)))
-
-
-# ---
-# Wrong programs of which a table of answers is made.
-
-
-def terms(
-    task: str, family: Callable[..., Callable[..., Any]], wrong: Mapping[str, Mapping[str, Any]]
-) -> Iterator[tuple[str, tuple[str, ...], Callable[..., Any]]]:
-    """The programs of a family with one term wrong, then those with two: task, codes, function of each.
-
-    Args:
-        family: gives a program for its terms, the right one if it is given none.
-        wrong: by term, the code of each mistake and the form that the term has then.
-    """
-    for term, forms in wrong.items():
-        for code, form in forms.items():
-            yield task, (code,), family(**{term: form})
-    for one, other in itertools.combinations(wrong, 2):
-        for (code, form), (second, another) in itertools.product(wrong[one].items(), wrong[other].items()):
-            yield task, (code, second), family(**{one: form, other: another})
 
 
 # ---

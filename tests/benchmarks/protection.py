@@ -147,7 +147,7 @@ def diagnosis(exercise_id: str, rounds: int) -> None:
                 # The first of each side is not counted: what all students of a run share is made in it.
                 if number > 1:
                     cpu[silent] += time.process_time() + descendants_cpu(os.getpid()) - start
-            ratios[path.stem] = cpu[0] / cpu[1]
+            ratios[mutant.name] = cpu[0] / cpu[1]
     kit._explained = explained
     worst = sorted(ratios, key=ratios.__getitem__)[-5:]
     print(

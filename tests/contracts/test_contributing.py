@@ -101,17 +101,12 @@ def known(growth: Catalog) -> Iterator[Catalog]:
     student, instructor = (growth.content.root / part / "growth" for part in ("exercises", "solutions"))
     instructor.mkdir()
     (instructor / "growth.py").write_text(blocks("submission")[0])
-    (instructor / "mutants.toml").write_text("format_version = 1\nmutant = []\n")
-    written = {
-        student / "diagnoses.toml": blocks("diagnoses", "toml"),
-        student / "questions.py": blocks("questions"),
-        instructor / "hypotheses.py": blocks("hypotheses"),
-    }
-    for path, (text,) in written.items():
-        path.write_text(text)
+    (student / "questions.py").write_text(blocks("questions")[0])
+    imported = "from course.authoring.mistakes import Mistakes\n"
+    (instructor / "mistakes.py").write_text(imported + blocks("mistakes")[0])
     yield growth
     shutil.rmtree(instructor)
-    for name in ("diagnoses.toml", "questions.py", "hypotheses.json"):
+    for name in ("questions.py", "diagnoses.json"):
         (student / name).unlink()
 
 
@@ -160,7 +155,6 @@ def test_every_name_of_the_kit_is_on_the_page() -> None:
         "known_answers",
         "reference",
         "sibling",
-        "terms",
         "words",
     }
     types = {name for name in kit.__all__ if name[0].isupper()} - {

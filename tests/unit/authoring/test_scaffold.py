@@ -8,36 +8,36 @@ from pathlib import Path
 import pytest
 
 from course.authoring.audit import audit
+from course.authoring.exercises import diagnosis
 from course.authoring.report import AuditReport
 from course.authoring.scaffold import Function, new_exercise, new_lesson, new_question
 from course.catalog.load import Catalog
 from course.catalog.reading import BLANK
 from course.errors import MissingCapabilityError, UsageError
 
+MISTAKES = [
+    ("DOUBLES", "It is twice the number.", "Add it once more.", "3 * x", "2 * x"),
+    ("SQUARES", "It is the square of the number.", "Add the number three times.", "3 * x", "x * x"),
+    ("ADDS_THREE", "Three is added.", "Add the number itself.", "3 * x", "x + 3"),
+    ("ONCE_TOO_OFTEN", "It is four times the number.", "Add it once less.", "3 * x", "4 * x"),
+]
+CHECK = ["Three times two is six", "", "round-off", "The result is not three times the number.", "Add up."]
 SOLVED = {
-    "exercises/tripling/exercise.toml": ["Tripling", "Three times.", "Three times a number"],
+    "exercises/tripling/exercise.toml": [
+        "Tripling", "Three times.", "Three times a number",
+        "What is once more than twice?", "Add three times.", "Return 3 * x.",
+    ],
     "exercises/tripling/README.md": ["Tripling", "gives three times `x`.", "tripling(1.0) is 3.0."],
     "exercises/tripling/tripling.py": ["Tripling.", "Three times ``x``, float."],
-    "exercises/tripling/hints.toml": ["What is once more than twice?", "Add three times.", "Return 3 * x."],
-    "graders/tripling/checks.py": [
-        "Three times two is six",
-        "",
-        "round-off",
-        "The result is not three times the number.",
-        "Add the number three times.",
-        "DOUBLES",
-    ],
+    "exercises/tripling/checks.py": CHECK,
+    "exercises/tripling/questions.py": [""],
+    "graders/tripling/checks.py": CHECK,
     "solutions/tripling/tripling.py": ["Tripling.", "Three times ``x``.", "solved"],
     "solutions/tripling/README.md": ["Three times is twice and once more."],
-    "solutions/tripling/mutants.toml": ["Three is two.", "DOUBLES"] * 4,
+    "solutions/tripling/mistakes.py": [words for mistake in MISTAKES for words in mistake],
     "solutions/tripling/accepted/unusual_1.py": ["Adds.", "added"],
     "solutions/tripling/accepted/unusual_2.py": ["Doubles and adds.", "more"],
-    "solutions/tripling/mutants/tripling_wrong_1.py": ["Doubles.", "doubled"],
-    "solutions/tripling/mutants/tripling_wrong_2.py": ["Adds twice.", "twice"],
-    "solutions/tripling/mutants/tripling_wrong_3.py": ["Squares.", "squared"],
-    "solutions/tripling/mutants/tripling_wrong_4.py": ["Adds three.", "plus"],
-}
-SOLVED["exercises/tripling/checks.py"] = SOLVED["graders/tripling/checks.py"]
+}  # fmt: skip
 
 #: Lines of the templates that hold code, and what an author makes of them.
 CODE = {
@@ -51,6 +51,7 @@ CODE = {
     "expected = 1.0": "expected = 3.0",
     "expected = 2.0": "expected = 6.0",
     "  # \n": "\n",
+    "    # \n": "",
 }
 
 
@@ -76,6 +77,10 @@ def test_a_new_exercise_passes_the_audit_once_its_blanks_are_filled(
 ) -> None:
     new_exercise(Catalog(), "tripling")
     fill(mini)
+    stale = audit(Catalog(), "tripling").problems
+    assert {problem.code for problem in stale} == {"words", "stale"}
+    diagnosis.build(Catalog(), Catalog().exercise("tripling"))
+    assert diagnosis.accept(Catalog(), Catalog().exercise("tripling")).changes == ()
     assert audit(Catalog(), "tripling").problems == ()
     report = run()
     assert [f"{p.where} {p.message}" for p in report.problems] == []
@@ -135,12 +140,8 @@ def test_what_is_known_of_an_exercise_stands_in_every_file_and_is_no_blank(mini:
         'def swings(t):\n    """Gives how often it swings in t."""\n    raise NotImplementedError\n'
     )
     assert 'case = {"length": 1.0, "gravity": 1.0}' in texts["exercises/swinging/checks.py"]
-    wrong = {
-        f"solutions/swinging/mutants/{name}_wrong_{k}.py"
-        for name in ("swing_period", "swings")
-        for k in (1, 2, 3, 4)
-    }
-    assert wrong < set(texts)
+    for name in ("swing_period", "swings"):
+        assert texts["solutions/swinging/mistakes.py"].count(f'.edit("{name}", ') == 4
     assert 'lesson = "twice-as-much"' in texts["exercises/swinging/exercise.toml"]
     assert "FILL IN" not in stub
 
@@ -156,8 +157,8 @@ def test_what_is_no_signature_is_refused(text: str) -> None:
 @pytest.mark.parametrize(
     "taken",
     [
-        "exercises/tripling/hints.toml",
-        "solutions/tripling/mutants/tripling_wrong_4.py",
+        "exercises/tripling/questions.py",
+        "solutions/tripling/mistakes.py",
         "graders/tripling/checks.py",
     ],
 )

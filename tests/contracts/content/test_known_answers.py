@@ -32,6 +32,8 @@ ANSWERED = [
     for exercise in CATALOG.exercises()
     if (table := read_table(exercise.readme_path.parent)) and table.answers
 ]
+#: Read while there are solutions: the tests take them away.
+MUTANTS = {name: mistakes_of(CATALOG, CATALOG.exercise(name)).wrong for name in ANSWERED}
 
 
 def _told(exercise_id: str, step: int) -> dict[str, list[CheckResult]]:
@@ -47,7 +49,7 @@ def _told(exercise_id: str, step: int) -> dict[str, list[CheckResult]]:
         checks = session.grade(Submission({exercise.module: solution.read_bytes()})).checks
         tasks = {check.task for check in checks if check.id in answered}
         told = {}
-        for mutant in [one for one in mistakes_of(CATALOG, exercise).wrong if one.task in tasks][::step]:
+        for mutant in [one for one in MUTANTS[exercise_id] if one.task in tasks][::step]:
             source = mutant.composed(model, solution).encode()
             of_task = {check.id for check in checks if check.task == mutant.task}
             verdict = session.grade(Submission({exercise.module: source}), only=of_task)

@@ -77,9 +77,11 @@ def test_a_new_exercise_passes_the_audit_once_its_blanks_are_filled(
 ) -> None:
     new_exercise(Catalog(), "tripling")
     fill(mini)
-    stale = audit(Catalog(), "tripling").problems
-    assert {problem.code for problem in stale} == {"words", "stale"}
+    (nothing,) = audit(Catalog(), "tripling").problems
+    assert nothing.fix == "Run `course author build tripling`."
     diagnosis.build(Catalog(), Catalog().exercise("tripling"))
+    (nothing,) = audit(Catalog(), "tripling").problems
+    assert nothing.fix == "Run `course author build tripling --accept`, and read what it says."
     assert diagnosis.accept(Catalog(), Catalog().exercise("tripling")).changes == ()
     assert audit(Catalog(), "tripling").problems == ()
     report = run()

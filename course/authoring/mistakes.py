@@ -17,15 +17,19 @@ from __future__ import annotations
 
 import ast
 import itertools
+import re
 import sys
 import textwrap
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, get_args
 
 from course.errors import ContentError
-from course.scoring.explain.story import Entry
+from course.scoring.explain.story import Entry, Kind
+
+#: What a code looks like.
+CODE = re.compile(r"[A-Z][A-Z0-9]*(_[A-Z0-9]+)*")
 
 #: A wrong program as a function: its task, the code of each of its mistakes, and the function.
 Wrong = tuple[str, tuple[str, ...], Callable[..., Any]]
@@ -119,7 +123,7 @@ class Mistakes:
         looks_like: str = "",
         advice: str = "",
         *,
-        kind: Literal["cause", "consequence", "fact", "nan"] = "cause",
+        kind: Kind = "cause",
         true_too: tuple[str, ...] = (),
     ) -> Mistake:
         """The words of a code, and where its programs are added; without words a code that the course has.
@@ -128,6 +132,10 @@ class Mistakes:
             looks_like, advice, kind: as in ``Entry``.
             true_too: other codes that are true of every program with this mistake.
         """
+        if not CODE.fullmatch(code):
+            raise ValueError(f"{code!r} is no code, which is capital letters, digits and underscores")
+        if kind not in get_args(Kind):
+            raise ValueError(f"{kind!r} is none of the kinds {', '.join(get_args(Kind))}")
         if looks_like or advice:
             if code in self.words:
                 raise ValueError(f"{code} has words twice")

@@ -10,7 +10,6 @@ import ast
 import contextlib
 import hashlib
 import math
-import re
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, is_dataclass
@@ -41,7 +40,7 @@ from course.authoring.exercises.mutants import (
     write_record,
 )
 from course.authoring.exercises.source import parse
-from course.authoring.mistakes import Mistakes, Wrong, mistakes_path
+from course.authoring.mistakes import CODE, Mistakes, Wrong, mistakes_path
 from course.authoring.report import Findings, Progress
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
@@ -502,9 +501,6 @@ def accept(catalog: Catalog, exercise: Exercise, *, on_progress: Progress | None
 # The audit of an exercise's diagnoses: the table is up to date, and codes and entries match.
 
 
-_CODE = re.compile(r"[A-Z][A-Z0-9]*(_[A-Z0-9]+)*")
-
-
 def audit_diagnoses(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
     """Report missing files, stale tables, codes without words, and words that are given where untrue."""
     mistakes, file = mistakes_of(catalog, exercise), mistakes_path(solutions_folder(catalog, exercise))
@@ -539,9 +535,9 @@ def _audit_record(catalog: Catalog, exercise: Exercise, mistakes: Mistakes, find
     if kept is None:
         findings.add(path, None, "stale", "it is missing.", again)
         return
-    if kept.made_from != made_from(catalog, exercise) or kept.caught.keys() != {
-        v.name for v in mistakes.wrong
-    }:
+    # Without words nothing is told but what checks say by themselves, and that is graded each time.
+    told = kept.made_from == made_from(catalog, exercise) or not mistakes.words
+    if not told or kept.caught.keys() != {variant.name for variant in mistakes.wrong}:
         message = "the record of what wrong programs are told is out of date."
         findings.add(path, None, "stale", message, again)
         return
@@ -576,6 +572,6 @@ def _literals(catalog: Catalog, exercise: Exercise) -> Iterator[str]:
                 if (
                     isinstance(node, ast.Constant)
                     and isinstance(node.value, str)
-                    and _CODE.fullmatch(node.value)
+                    and CODE.fullmatch(node.value)
                 ):
                     yield node.value

@@ -53,6 +53,9 @@ KEPT = Diagnosis(
 )
 
 
+Kind = Literal["cause", "consequence", "fact", "nan"]
+
+
 class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One diagnosis in words.
 
@@ -65,7 +68,7 @@ class Entry(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     looks_like: str
     advice: str
-    kind: Literal["cause", "consequence", "fact", "nan"] = "cause"
+    kind: Kind = "cause"
 
 
 class Words:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -9,11 +10,14 @@ from pathlib import Path
 import pytest
 
 from course.authoring.audit import audit
+from course.authoring.exercises.grading import mistakes_of
+from course.authoring.exercises.mutants import caught_by
 from course.authoring.exercises.source import CheckSource, checks_in, parse
 from course.authoring.report import AuditProblem, AuditReport
 from course.catalog.load import Catalog
 from course.catalog.locate import content
 from course.catalog.models import Exercise
+from course.errors import ContentError
 from course.scoring.verdict import CheckResult, Status, Verdict, Visibility
 
 MINI = Path(__file__).parents[2] / "fixtures" / "mini_course"
@@ -57,8 +61,11 @@ class Oracle:
     def _names(exercise: Exercise, catalog: Catalog) -> dict[str, str]:
         assert catalog.content.solutions is not None
         folder = catalog.content.solutions / exercise.id
-        paths = [*folder.glob("accepted/*.py"), *folder.glob("mutants/*.py")]
-        names = {path.read_text(encoding="utf-8"): path.name for path in paths}
+        model = (folder / exercise.module).read_text(encoding="utf-8")
+        names = {path.read_text(encoding="utf-8"): path.name for path in folder.glob("accepted/*.py")}
+        for mutant in mistakes_of(catalog, exercise).wrong:
+            with contextlib.suppress(ContentError):  # which the audit reports
+                names[mutant.composed(model, folder)] = mutant.name
         names[(folder / exercise.module).read_text(encoding="utf-8")] = "solution"
         names[exercise.stub_path.read_text(encoding="utf-8")] = "stub"
         return names
@@ -74,10 +81,11 @@ def _checks(exercise: Exercise, catalog: Catalog) -> tuple[CheckSource, ...]:
 
 
 def _verdict(exercise: Exercise, catalog: Catalog, checks: tuple[CheckSource, ...], name: str) -> Verdict:
-    mutant = next((m for m in catalog.mutants(exercise) if m.file == name), None)
+    mutant = next((m for m in mistakes_of(catalog, exercise).wrong if m.name == name), None)
+    caught = caught_by(catalog, exercise).get(name, "")
 
     def passes(check: CheckSource) -> bool:
-        return name != "stub" and not (mutant and check.id == mutant.check)
+        return name != "stub" and not (mutant and check.id == caught)
 
     results = tuple(
         CheckResult(
@@ -88,7 +96,7 @@ def _verdict(exercise: Exercise, catalog: Catalog, checks: tuple[CheckSource, ..
             visibility=Visibility.HIDDEN if check.hidden else Visibility.PUBLIC,
             points=(check.points or 0.0) * passes(check),
             max_points=check.points or 0.0,
-            diagnosis=mutant.diagnosis if mutant and not passes(check) else None,
+            diagnosis=mutant.code if mutant and not passes(check) else None,
             message="" if passes(check) else "It is wrong.",
         )
         for check in checks

@@ -12,6 +12,7 @@ import msgspec
 import pytest
 
 from course.authoring.audit import audit
+from course.authoring.exercises.grading import mistakes_of
 from course.authoring.report import AuditProblem, AuditReport
 from course.catalog.load import Catalog
 from course.errors import ContentError, MissingCapabilityError, NotFoundError
@@ -21,10 +22,9 @@ TOML = "exercises/doubling/exercise.toml"
 README = "exercises/doubling/README.md"
 STUB = "exercises/doubling/doubling.py"
 CHECKS = "exercises/doubling/checks.py"
-HINTS = "exercises/doubling/hints.toml"
 GRADERS = "graders/doubling/checks.py"
 SOLUTION = "solutions/doubling/doubling.py"
-MUTANTS = "solutions/doubling/mutants.toml"
+MISTAKES = "solutions/doubling/mistakes.py"
 LESSON = "lessons/half-as-much.md"
 SYLLABUS = "lessons/syllabus.toml"
 
@@ -119,16 +119,15 @@ def test_the_miniature_course_is_right(run: Callable[..., AuditReport]) -> None:
         (LESSON, "Half of twice", "[3](=1 + 1) of twice", "[3]", "lesson", "does not read as one"),
         (LESSON, "Half of twice", "> **Predict.** Why?\n\nHalf", "Predict", "lesson", "is not answered"),
         (TOML, "order = 1", "order = one", "order", "content", "not valid TOML"),
-        (HINTS, '    "Return x + x.",\n', "", "hints = [", "hints", "has 2 hints, and needs 3"),
+        (TOML, '    "Return x + x.",\n', "", "hints = [", "hints", "has 2 hints, and needs 3"),
         (
-            HINTS,
+            TOML,
             '2 = ["SQUARES_INSTEAD"]',
             '4 = ["SQUARES_INSTEAD"]',
             "[task.fits]",
             "content",
             "no hint number 4",
         ),
-        (HINTS, '[[task]]\nid = "double"', '[[task]]\nid = "x"', 'id = "x"', "content", "no task 'x'"),
         (README, "`double(x) -> float`", "`double` -> float", None, "readme", "signature double(x)"),
         (STUB, "def double(x)", "def double(y)", None, "signature", "double(y)"),
         (STUB, "def double(x)", "def double(x", "def double", "content", "not valid Python"),
@@ -170,7 +169,14 @@ def test_the_miniature_course_is_right(run: Callable[..., AuditReport]) -> None:
         (GRADERS, '"Try a negative number by hand."', '"Try -18.5 by hand."', "18.5", "leak", "18.5"),
         (GRADERS, '"Try a negative number by hand."', 'f"Try {1} and 2.5e-3."', "2.5e-3", "leak", "2.5e-3"),
         (GRADERS, '"Try a negative number by hand."', '"Try 3.0 by hand."', None, "", ""),
-        (MUTANTS, '"squares.py"', '"cubes.py"', "cubes", "mutants", "does not exist"),
+        (MISTAKES, '"x * x"', '"x *"', '"x *"', "content", "is not valid Python"),
+        (MISTAKES, '"2.0 * x": "x * x"', '"3.0 * x": "x * x"', "3.0", "content", "'3.0 * x' stands 0 times"),
+        (MISTAKES, '{"2.0 * x": "x * x"}', '{"x": "y"}', '"y"', "content", "'x' stands 4 times in double"),
+        (MISTAKES, '"double", {"2', '"dubble", {"2', '"dubble"', "content", "has no function dubble"),
+        (MISTAKES, '"SIGN_LOST"', '"sign lost"', "sign lost", "content", "'sign lost' is no code"),
+        (MISTAKES, "mistakes = Mistakes()", "mistakes = [].pop()", "pop", "content", "IndexError"),
+        (MISTAKES, "mistakes = Mistakes()", "mistakes = (", "mistakes = (", "content", "SyntaxError"),
+        (MISTAKES, '"x * x"', "\"__import__('scipy')\"", None, "", ""),
     ],
 )
 def test_each_fault_is_found_at_its_line(
@@ -202,23 +208,20 @@ def test_each_fault_is_found_at_its_line(
         (README, "content", "missing"),
         (CHECKS, "content", "missing"),
         (GRADERS, "content", "missing"),
-        (HINTS, "content", "missing"),
         (STUB, "content", "missing"),
         (SOLUTION, "content", "missing"),
         (TOML, "content", "missing"),
-        (MUTANTS, "content", "missing"),
+        (MISTAKES, "mutants", "mutants: 0"),
         (SYLLABUS, "content", "missing"),
-        ("solutions/doubling/mutants/squares.py", "mutants", "does not exist"),
     ],
 )
 def test_a_missing_file_is_named(
     mini: Path, run: Callable[..., AuditReport], file: str, code: str, says: str
 ) -> None:
     (mini / file).unlink()
-    blamed = MUTANTS if code == "mutants" else file
-    found = [p for p in run().problems if (p.file, p.code) == (blamed, code)]
-    assert len(found) == 1
-    assert says in found[0].message
+    found = [p.message for p in run().problems if (p.file, p.code) == (file, code)]
+    assert len(found) == 1 or code == "mutants"
+    assert any(says in message for message in found)
 
 
 def test_a_lesson_that_is_only_listed_is_named_at_its_line(
@@ -252,27 +255,27 @@ def test_an_exercise_nobody_accepts_variants_of_is_named(
     assert "accepted variants: 0, and an exercise of this size has at least 2" in only_problem().message
 
 
-def drop_mutants(mini: Path, exercise: str, *names: str) -> None:
-    """Take mutants out of an exercise, entry and file."""
-    folder = mini / "solutions" / exercise
-    head, *entries = (folder / "mutants.toml").read_text().split("[[mutant]]")
-    kept = [entry for entry in entries if not any(f'"{name}"' in entry for name in names)]
-    (folder / "mutants.toml").write_text("[[mutant]]".join([head, *kept]))
-    for name in names:
-        (folder / "mutants" / name).unlink()
+def drop(path: Path, *texts: str) -> None:
+    """Take the mistakes of an exercise out that hold one of the texts."""
+    head, *entries = path.read_text().split("\nmistakes(")
+    kept = [entry for entry in entries if not any(text in entry for text in texts)]
+    assert len(kept) < len(entries)
+    path.write_text("\nmistakes(".join([head, *kept]))
 
 
-def test_an_exercise_with_few_mutants_is_named(mini: Path, only_problem: Callable[[], AuditProblem]) -> None:
-    drop_mutants(mini, "halving", "rounds_up.py")
-    problem = only_problem()
-    assert problem.file == "solutions/halving/mutants.toml"
-    assert "mutants: 3, and an exercise of this size has at least 4" in problem.message
+def test_an_exercise_with_few_mutants_is_named(mini: Path, run: Callable[..., AuditReport]) -> None:
+    drop(mini / "solutions" / "halving" / "mistakes.py", "round(")
+    few, stale = run().problems
+    assert few.file == "solutions/halving/mistakes.py"
+    assert "mutants: 3, and an exercise of this size has at least 4" in few.message
+    assert stale.file == "solutions/halving/record.json"
+    assert stale.fix == "Run `course author build halving --accept`, and read what it says."
 
 
 def test_one_diagnosis_for_every_mistake_is_named(mini: Path, run: Callable[..., AuditReport]) -> None:
-    path = mini / MUTANTS
-    path.write_text(re.sub(r"diagnosis = .*", 'diagnosis = "WRONG"', path.read_text()))
-    assert "tell no mistakes apart" in " ".join(p.message for p in run().problems if p.file == MUTANTS)
+    path = mini / MISTAKES
+    path.write_text(re.sub(r'mistakes\("\w+"\)', 'mistakes("WRONG")', path.read_text()))
+    assert "tell no mistakes apart" in " ".join(p.message for p in run().problems if p.file == MISTAKES)
 
 
 def test_what_ruff_says_is_said_by_the_rules_of_the_course(
@@ -293,23 +296,12 @@ def test_what_ruff_says_is_said_by_the_rules_of_the_course(
     assert {(p.where, p.code, p.fix) for p in run().problems} == found
 
 
-def test_a_task_that_no_mutant_breaks_is_named(mini: Path, only_problem: Callable[[], AuditProblem]) -> None:
-    names = ("one_short.py", "starts_late.py", "stops_early.py", "doubles_first.py")
-    drop_mutants(mini, "doubling", *names)
-    for name in names:  # others of the other task, so that there are enough
-        (mini / "solutions" / "doubling" / "mutants" / name).write_text(
-            (mini / "solutions" / "doubling" / "mutants" / "squares.py").read_text() + f"# {name}\n"
-        )
-        entry = f'\n[[mutant]]\nfile = "{name}"\ntask = "double"\nmisconception = "The same."\n'
-        with (mini / MUTANTS).open("a") as file:
-            file.write(entry + 'check = "double_of_three"\ndiagnosis = "SQUARES_INSTEAD"\n')
-    assert "no mutant breaks task doublings" in only_problem().message
-
-
-def test_a_mutant_that_is_not_listed_is_named(mini: Path, only_problem: Callable[[], AuditProblem]) -> None:
-    path = mini / "solutions" / "doubling" / "mutants" / "extra.py"
-    path.write_text('"""Wrong."""\n')
-    assert only_problem().file == "solutions/doubling/mutants/extra.py"
+def test_a_task_that_no_mutant_breaks_is_named(mini: Path, run: Callable[..., AuditReport]) -> None:
+    path = mini / MISTAKES
+    drop(path, '"doublings"')
+    with path.open("a") as file:  # others of the other task, so that there are enough
+        file.write('\n' + 'mistakes("SQUARES_INSTEAD").edit("double", {"2.0 * x": "x * x"})\n' * 4)
+    assert "no mutant breaks task doublings" in run().problems[0].message
 
 
 @pytest.mark.turns(4)
@@ -338,8 +330,10 @@ def test_checks_without_markers_are_not_graded(
 ) -> None:
     edit(mini / CHECKS, "@pytest.mark.points(2)\n", "")
     assert not run().ok
-    proofs = (mini / "solutions" / "halving").glob("*/*.py")
-    assert set(oracle.graded) == {"stub", "solution", *(path.name for path in proofs)}
+    accepted = (path.name for path in (mini / "solutions" / "halving").glob("accepted/*.py"))
+    catalog = Catalog()
+    wrong = (one.name for one in mistakes_of(catalog, catalog.exercise("halving")).wrong)
+    assert set(oracle.graded) == {"stub", "solution", *accepted, *wrong}
 
 
 def test_one_exercise_or_lesson_can_be_audited_alone(mini: Path, run: Callable[..., AuditReport]) -> None:

@@ -48,15 +48,16 @@ def test_a_stub_that_cannot_be_loaded_is_found(mini: Path) -> None:
 
 
 def test_a_mutant_that_is_right_is_found(mini: Path) -> None:
-    edit(mini / "solutions/halving/mutants/rounds_down.py", "x // 2", "0.5 * x")
+    edit(mini / "solutions/halving/mistakes.py", '"x // 2"', '"0.5 * x"')
     (problem,) = audit(Catalog(), "halving").problems
-    assert "mutant rounds_down.py survives" in problem.message
-    assert problem.where == "solutions/halving/mutants.toml:7"
+    assert "mutant halve.INTEGER_DIVISION survives" in problem.message
+    assert problem.where == "solutions/halving/mistakes.py:7"
 
 
 def test_a_mutant_that_breaks_two_tasks_is_found(mini: Path) -> None:
-    path = mini / "solutions/doubling/mutants/squares.py"
-    path.write_text(path.read_text() + "\n\ndef doublings(x, n):\n    return [x]\n")
+    both = "def double(x):\n    return x * x\n\n\ndef doublings(x, n):\n    return [x]\n"
+    path = mini / "solutions/doubling/mistakes.py"
+    edit(path, '.edit("double", {"2.0 * x": "x * x"})', f'.program("double", {both!r})')
     problems = audit(Catalog(), "doubling").problems
     assert any("fails check doublings_length of task doublings" in p.message for p in problems)
 
@@ -86,7 +87,11 @@ def test_what_each_mutant_gets_to_read_can_be_listed(mini: Path) -> None:
         catalog, catalog.exercise("doubling"), on_progress=lambda done, *_: steps.append(done)
     )
     first = outcomes[0]
-    assert (first.mutant.file, first.diagnosis, first.lost) == ("squares.py", "SQUARES_INSTEAD", 4.0)
+    assert (first.mutant.name, first.diagnosis, first.lost) == (
+        "double.SQUARES_INSTEAD",
+        "SQUARES_INSTEAD",
+        4.0,
+    )
     assert first.caught_by == ("double_of_three", "double_of_negative")
     assert "multiplied by itself" in first.message
     assert first.help == "Add the number to itself, or multiply it by two."
@@ -95,10 +100,10 @@ def test_what_each_mutant_gets_to_read_can_be_listed(mini: Path) -> None:
 
 
 def test_a_field_that_no_failed_check_has_is_a_problem(mini: Path) -> None:
-    path = mini / "exercises/doubling/hints.toml"
+    path = mini / "exercises/doubling/exercise.toml"
     edit(path, "[task.fits]", '[task.yours]\n2 = ["At {x} it is {got}.", "At {y} too."]\n\n[task.fits]')
     (problem,) = audit(Catalog(), "doubling").problems
-    assert problem.where == "exercises/doubling/hints.toml:12"
+    assert problem.where == "exercises/doubling/exercise.toml:23"
     assert "no check of double that a mutant fails has the field {y}" in problem.message
     # A program that got no verdict may have it; it does not count as graded.
     some = audit(Catalog(), "doubling", grade=lambda sources: grade_sources(sources[:-1]))

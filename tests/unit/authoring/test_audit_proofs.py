@@ -14,7 +14,7 @@ from course.authoring.report import AuditProblem, AuditReport
 from course.catalog.load import Catalog
 from course.scoring.verdict import OURS, Problem, Status, Verdict
 
-MUTANTS = "solutions/doubling/mutants.toml"
+MISTAKES = "solutions/doubling/mistakes.py"
 Change = Callable[[Verdict], Verdict]
 
 
@@ -81,62 +81,62 @@ failing = {"status": Status.FAIL, "points": 0.0}
             "No such module.",
         ),
         (
-            "squares.py",
+            "double.SQUARES_INSTEAD",
             with_check("double_of_three", **passing, points=2.0),
-            f"{MUTANTS}:7",
+            f"{MISTAKES}:7",
             "mutant",
-            "mutant squares.py survives",
+            "mutant double.SQUARES_INSTEAD survives",
         ),
         (
-            "squares.py",
+            "double.SQUARES_INSTEAD",
             with_check("double_of_three", diagnosis="SIGN_LOST"),
-            f"{MUTANTS}:8",
+            f"{MISTAKES}:7",
             "mutant",
             "is diagnosed as SIGN_LOST by double_of_three (fail), not as SQUARES_INSTEAD",
         ),
         (
-            "squares.py",
+            "double.SQUARES_INSTEAD",
             with_check("doublings_length", status=Status.FAIL, points=0.0, message="No."),
-            f"{MUTANTS}:5",
+            f"{MISTAKES}:7",
             "mutant",
             "fails check doublings_length of task doublings, and should break double only",
         ),
         (
-            "squares.py",
+            "double.SQUARES_INSTEAD",
             with_check("doublings_values", status=Status.SKIP, points=0.0, blocked_by="x"),
-            f"{MUTANTS}:5",
+            f"{MISTAKES}:7",
             "mutant",
             "fails check doublings_values of task doublings",
         ),
         (
-            "squares.py",
+            "double.SQUARES_INSTEAD",
             with_check("double_of_three", points=2.0),
-            f"{MUTANTS}:7",
+            f"{MISTAKES}:7",
             "mutant",
             "loses no points",
         ),
         (
-            "squares.py",
+            "double.SQUARES_INSTEAD",
             with_check(
                 "double_of_three", traceback=f"{OURS}KeyError: 3 (graders/doubling/checks.py, line 4)"
             ),
             "graders/doubling/checks.py:4",
             "grader",
-            "the diagnosis of check double_of_three breaks on squares.py: KeyError: 3.",
+            "the diagnosis of check double_of_three breaks on double.SQUARES_INSTEAD: KeyError: 3.",
         ),
         (
-            "squares.py",
+            "double.SQUARES_INSTEAD",
             ending("ungradable", "Syntax."),
-            f"{MUTANTS}:4",
+            f"{MISTAKES}:7",
             "mutant",
-            "mutant squares.py could not be graded: Syntax.",
+            "mutant double.SQUARES_INSTEAD could not be graded: Syntax.",
         ),
         (
-            "squares.py",
+            "double.SQUARES_INSTEAD",
             ending("grader_error", "KeyError in a check."),
             "exercises/doubling/checks.py",
             "grader",
-            "the checks break on squares.py: KeyError in a check.",
+            "the checks break on double.SQUARES_INSTEAD: KeyError in a check.",
         ),
     ],
 )
@@ -157,7 +157,7 @@ def test_a_mutant_caught_only_by_another_check_is_reported(
         verdict = with_check("double_of_three", **passing, points=2.0)(verdict)
         return with_check("double_of_negative", status=Status.FAIL, points=0.0)(verdict)
 
-    oracle.changes["squares.py"] = by_the_other
+    oracle.changes["double.SQUARES_INSTEAD"] = by_the_other
     assert "is not caught by double_of_three" in only_problem().message
 
 
@@ -165,29 +165,28 @@ def test_a_mutant_caught_only_by_another_check_is_reported(
 def test_a_mutant_may_be_told_what_else_is_true_of_it(
     mini: Path, oracle: Any, run: Callable[..., AuditReport], told: str | None, accepted: bool
 ) -> None:
-    path = mini / MUTANTS
-    named = 'diagnosis = "SQUARES_INSTEAD"'
-    path.write_text(path.read_text().replace(named, f'{named}\nalso = ["SIGN_LOST", ""]', 1))
-    oracle.changes["squares.py"] = with_check("double_of_three", diagnosis=told)
-    found = [p.message for p in run().problems if "squares.py is diagnosed" in p.message]
+    path = mini / MISTAKES
+    path.write_text(path.read_text().replace('"x * x"})', '"x * x"}, also=("SIGN_LOST", ""))', 1))
+    oracle.changes["double.SQUARES_INSTEAD"] = with_check("double_of_three", diagnosis=told)
+    found = [p.message for p in run().problems if "double.SQUARES_INSTEAD is diagnosed" in p.message]
     assert (not found) is accepted
 
 
 @pytest.mark.parametrize(
-    ("check", "says"), [("no_such", "does not exist"), ("doublings_length", "belongs to task")]
+    ("check", "says"), [("no_such", "there is no such check"), ("doublings_length", "belongs to task")]
 )
-def test_a_mutant_must_name_a_check_of_its_task(
+def test_a_mutant_is_on_record_with_a_check_of_its_task(
     mini: Path, oracle: Any, run: Callable[..., AuditReport], check: str, says: str
 ) -> None:
-    path = mini / MUTANTS
-    path.write_text(path.read_text().replace('check = "double_of_three"', f'check = "{check}"'))
-    oracle.changes["squares.py"] = with_check("double_of_three", status=Status.FAIL, points=0.0)
-    found = [p for p in run().problems if says in p.message and "squares.py" in p.message]
-    assert [p.where for p in found] == [f"{MUTANTS}:7"]
+    path = mini / "solutions/doubling/record.json"
+    path.write_text(path.read_text().replace(':"double_of_three"', f':"{check}"'))
+    oracle.changes["double.SQUARES_INSTEAD"] = with_check("double_of_three", status=Status.FAIL, points=0.0)
+    found = [p for p in run().problems if says in p.message and "double.SQUARES_INSTEAD " in p.message]
+    assert [p.where for p in found] == [f"{MISTAKES}:7"]
 
 
 def test_a_check_that_breaks_is_reported_at_its_line(oracle: Any, run: Callable[..., AuditReport]) -> None:
-    oracle.changes["starts_late.py"] = with_check(
+    oracle.changes["doublings.STARTS_LATE"] = with_check(
         "doublings_values", status=Status.GRADER_ERROR, message="ZeroDivisionError"
     )
     found = [p for p in run().problems if p.code == "grader"]
@@ -219,7 +218,7 @@ def test_a_check_that_nothing_declares_is_reported(oracle: Any, run: Callable[..
 def test_a_hidden_check_must_not_say_its_values(
     oracle: Any, run: Callable[..., AuditReport], fields: dict[str, Any], number: str
 ) -> None:
-    oracle.changes["loses_the_sign.py"] = with_check("double_of_negative", **fields)
+    oracle.changes["double.SIGN_LOST"] = with_check("double_of_negative", **fields)
     found = [p for p in run().problems if p.code == "leak"]
     assert [p.where for p in found] == ["graders/doubling/checks.py:12"]
     assert f"shows the number {number}" in found[0].message
@@ -236,8 +235,8 @@ def test_a_hidden_check_must_not_say_its_values(
 def test_small_numbers_and_public_checks_may_be_said(
     oracle: Any, run: Callable[..., AuditReport], check: str, fields: dict[str, Any]
 ) -> None:
-    oracle.changes["loses_the_sign.py" if check == "double_of_negative" else "squares.py"] = with_check(
-        check, **fields
+    oracle.changes["double.SIGN_LOST" if check == "double_of_negative" else "double.SQUARES_INSTEAD"] = (
+        with_check(check, **fields)
     )
     assert run().ok
 

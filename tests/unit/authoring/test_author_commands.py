@@ -187,7 +187,7 @@ def test_mutants_are_listed_with_what_their_authors_read(
 ) -> None:
     assert run(["author", "mutants", "halving"]) == 0
     out = capsys.readouterr().out
-    assert "halving: rounds_down.py: breaks halve, loses 1 point" in out
+    assert "halving: halve.INTEGER_DIVISION: breaks halve, loses 1 point" in out
     assert "reads: Half of an odd number has lost its fraction." in out
     code, body = answer(capsys, "author", "mutants")
     assert (code, body["schema"], len(body["mutants"])) == (0, "course.author-mutants/1", 12)
@@ -195,8 +195,8 @@ def test_mutants_are_listed_with_what_their_authors_read(
 
 
 def test_a_surviving_mutant_exits_with_one(mini: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = mini / "solutions" / "halving" / "mutants" / "rounds_down.py"
-    path.write_text(path.read_text().replace("x // 2", "x / 2"))
+    path = mini / "solutions" / "halving" / "mistakes.py"
+    path.write_text(path.read_text().replace('"x // 2"', '"0.5 * x"'))
     assert run(["author", "mutants", "halving"]) == 1
     out = capsys.readouterr().out
     assert "survives: every check passes" in out
@@ -231,7 +231,7 @@ def test_a_new_warm_up_is_written_and_says_what_computes_its_table(
     command = ["author", "new", "warmup", "tripling", "--lesson", "half-as-much"]
     code, body = answer(capsys, *command)
     assert (code, body["kind"]) == (0, "warm-up")
-    assert "exercises/warm-ups/tripling/questions.py" in body["files"]
+    assert "solutions/warm-ups/tripling/mistakes.py" in body["files"]
     assert all((mini / name).is_file() for name in body["files"])
     assert run(command) == 2
     assert "nothing is overwritten" in capsys.readouterr().err

@@ -12,7 +12,7 @@ from course.authoring.exercises.grading import (
     accepted_files,
     compose,
     grade_sources,
-    mutant_files,
+    mistakes_of,
     solution_path,
 )
 from course.catalog.load import Catalog
@@ -47,7 +47,8 @@ def test_every_source_gets_the_verdict_of_all_checks(mini: Path, graders: int) -
     exercise = catalog.exercise("doubling")
     model = solution_path(catalog, exercise)
     sources = [compose(model, path) for path in accepted_files(catalog, exercise)]
-    sources += [compose(model, path) for path in mutant_files(catalog, exercise)]
+    text = model.read_text(encoding="utf-8")
+    sources += [one.composed(text, model).encode() for one in mistakes_of(catalog, exercise).wrong]
     sources += [f"{model.read_text('utf-8').rstrip()}\n\n\n{after}".encode() for after in AFTER.values()]
     sources += [exercise.stub_path.read_bytes(), b"def double(x):\n    return 2 * x\n", b"(", b""]
     found = dict(grade_sources([(exercise, source) for source in sources], graders=graders))

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from course.catalog.models import Hints, TaskHints
+from course.catalog.models import Hints, Task
 
-TASK = TaskHints(
+TASK = Task(
     id="throw",
+    title="Throw",
+    points=1.0,
     hints=("Look up.", "Count.", "Square it."),
     fits={"2": ("ONE_SHORT",), "3": ("NOT_SQUARED",)},
     yours={
@@ -50,4 +52,4 @@ def test_braces_in_a_students_value_stay_as_they_are():
     ],
 )
 def test_the_hint_that_fits_comes_before_the_mildest(diagnoses, given, following):
-    assert Hints(format_version=1, task=(TASK,)).after("throw", diagnoses, given) == following
+    assert Hints((TASK,)).after("throw", diagnoses, given) == following

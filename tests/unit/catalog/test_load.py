@@ -7,13 +7,11 @@ from pathlib import Path
 import pytest
 
 from course.catalog.load import Catalog
-from course.catalog.models import Exercise, Hints
+from course.catalog.models import Exercise, Syllabus
 from course.catalog.reading import read_toml
 from course.errors import ContentError, NotFoundError
 
 EXERCISE = "exercises/doubling/exercise.toml"
-HINTS = "exercises/doubling/hints.toml"
-MUTANTS = "solutions/doubling/mutants.toml"
 LESSON = "lessons/half-as-much.md"
 SYLLABUS = "lessons/syllabus.toml"
 
@@ -29,7 +27,6 @@ def read_everything(catalog: Catalog) -> None:
     catalog.lessons()
     for exercise in catalog.exercises():
         catalog.hints(exercise)
-        catalog.mutants(exercise)
 
 
 def refused(mini: Path, file: str) -> ContentError:
@@ -68,13 +65,6 @@ def test_an_exercise_knows_its_files(catalog: Catalog, mini: Path) -> None:
     assert exercise.stub_path == mini.resolve() / "exercises" / "doubling" / "doubling.py"
     assert exercise.max_points == 10
     assert catalog.hints(exercise).of("double").hints[0] == "What is a number added to itself?"
-    assert [mutant.file for mutant in catalog.mutants(exercise)][:2] == ["squares.py", "loses_the_sign.py"]
-
-
-def test_a_student_has_no_mutants(mini: Path) -> None:
-    (mini / "solutions").rename(mini / "elsewhere")
-    catalog = Catalog()
-    assert catalog.mutants(catalog.exercise("doubling")) == ()
 
 
 def test_listing_ids_opens_nothing_but_the_syllabus(mini: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -128,14 +118,14 @@ def test_an_unknown_id_is_answered_with_the_nearest(
         (EXERCISE, "order = 1", 'folder = "/tmp"\norder = 1', 6, "unknown key `folder`", "`"),
         (EXERCISE, "order = 1\n", "", 1, "lacks the key `order`", "Add a line `order = ...`."),
         (EXERCISE, "order = 1", 'order = "1"', 6, "`order` must be a whole number", "Write a whole number."),
-        (EXERCISE, "points = 6", 'points = "6"', 20, "`task[2].points` must be a number", "Write a number."),
+        (EXERCISE, "points = 6", 'points = "6"', 28, "`task[2].points` must be a number", "Write a number."),
         (EXERCISE, "points = 4\n", "", 11, "`task[1]` lacks the key `points`", "points = ..."),
         (EXERCISE, "points = 4", "point = 4", 14, "unknown key `point`", "Did you mean `points`?"),
         (EXERCISE, "points = 4", "points = 0", 14, "above 0", "public and hidden"),
         (EXERCISE, "points = 4", "points = nan", 14, "above 0", "public and hidden"),
         (EXERCISE, "points = 4", "points = inf", 14, "above 0", "public and hidden"),
-        (EXERCISE, 'id = "doublings"', 'id = "double"', 18, "listed twice", "rename"),
-        (EXERCISE, 'id = "doublings"', 'id = "a b"', 18, "not a Python name", "name of the function"),
+        (EXERCISE, 'id = "doublings"', 'id = "double"', 26, "listed twice", "rename"),
+        (EXERCISE, 'id = "doublings"', 'id = "a b"', 26, "not a Python name", "name of the function"),
         (EXERCISE, "order = 1", "order = 1\npass_mark = 70", 7, "`pass_mark`", "0.70 for 70 %"),
         (EXERCISE, "order = 1", "order = 1\npass_mark = 0", 7, "`pass_mark`", "0.70 for 70 %"),
         (EXERCISE, "order = 1", "order = 1\npass_mark = nan", 7, "`pass_mark`", "0.70 for 70 %"),
@@ -155,30 +145,24 @@ def test_an_unknown_id_is_answered_with_the_nearest(
         (EXERCISE, "format_version = 1\n", "", 1, "declares no format_version", "at the top"),
         (EXERCISE, "order = 1", "order = ", 6, "not valid TOML", "quotes"),
         (EXERCISE, "order = 1", "order = 1\norder = 2", 7, "not valid TOML", "quotes"),
-        (HINTS, 'id = "double"', 'id = "dubble"', 4, "has no task 'dubble'", "double, doublings"),
-        (HINTS, 'id = "doublings"', 'id = "double"', 15, "hints twice", "one list"),
-        (HINTS, '"Return x + x."', '""', 8, "`hints` is empty", "Fill it in."),
+        (EXERCISE, '"Return x + x."', '""', 19, "`hints` is empty", "Fill it in."),
         (
-            HINTS,
+            EXERCISE,
             "[task.fits]",
             '[task.yours]\n4 = ["It is {got}."]\n[task.fits]',
-            12,
+            23,
             "no hint number 4",
             "1 to 3",
         ),
         (
-            HINTS,
+            EXERCISE,
             "[task.fits]",
             '[task.yours]\n2 = ["It is 4."]\n[task.fits]',
-            12,
+            23,
             "has no field: 'It is 4.'",
             "{got}",
         ),
-        (HINTS, '"Return x + x."', "3", 8, "`task[1].hints[3]` must be text in quotes", "Write text"),
-        (MUTANTS, '"squares.py"', '"../squares.py"', 4, "not a plain Python file name", "wrong_sign.py"),
-        (MUTANTS, '"loses_the_sign.py"', '"squares.py"', 11, "listed twice", "Remove"),
-        (MUTANTS, 'task = "double"', 'task = "triple"', 5, "has no task 'triple'", "double, doublings"),
-        (MUTANTS, '"SQUARES_INSTEAD"', '""', 8, "`diagnosis` is empty", "Fill it in."),
+        (EXERCISE, '"Return x + x."', "3", 19, "`task[1].hints[3]` must be text in quotes", "Write text"),
         (LESSON, 'id = "half-as-much"', 'id = "half"', 3, "the file is called half-as-much.md", "rename"),
         (LESSON, "minutes = 2", "minutes = 0", 5, "more than 0", "how long"),
         (LESSON, '["Halve a number."]', "[]", 7, "`objectives` is empty", "one line each"),
@@ -208,8 +192,8 @@ def test_what_is_wrong_is_named_with_line_and_fix(
 
 
 def test_a_missing_file_is_named(mini: Path) -> None:
-    (mini / HINTS).unlink()
-    error = refused(mini, HINTS)
+    (mini / SYLLABUS).unlink()
+    error = refused(mini, SYLLABUS)
     assert error.line is None
     assert "missing" in error.problem
 
@@ -220,9 +204,9 @@ def test_a_lesson_without_a_file_is_named(mini: Path) -> None:
 
 
 def test_a_folder_in_a_files_place_is_named(mini: Path) -> None:
-    (mini / HINTS).unlink()
-    (mini / HINTS).mkdir()
-    assert "cannot be read" in refused(mini, HINTS).problem
+    (mini / SYLLABUS).unlink()
+    (mini / SYLLABUS).mkdir()
+    assert "cannot be read" in refused(mini, SYLLABUS).problem
 
 
 @pytest.mark.parametrize(
@@ -254,6 +238,6 @@ def test_a_folder_without_an_exercise_is_not_one(mini: Path) -> None:
 
 
 def test_any_toml_file_with_a_format_can_be_read_into_a_type(mini: Path) -> None:
-    assert read_toml(mini / HINTS, Hints).task[0].id == "double"
-    with pytest.raises(ContentError, match="unknown key `hints`"):
-        read_toml(mini / HINTS, Exercise)
+    assert read_toml(mini / EXERCISE, Exercise).task[0].id == "double"
+    with pytest.raises(ContentError, match="unknown key `module`"):
+        read_toml(mini / EXERCISE, Syllabus)

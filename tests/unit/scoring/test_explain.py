@@ -7,6 +7,7 @@ from pathlib import Path
 from time import process_time
 from types import SimpleNamespace
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -23,9 +24,8 @@ from course.scoring.explain.story import (
     is_right,
     matching,
     read_table,
-    read_words,
     story_of,
-    table_bytes,
+    table_path,
 )
 from course.scoring.judging.explaining import answer_numbers, tasks_asked
 
@@ -126,8 +126,8 @@ def test_of_an_answer_counts_what_its_reader_gives_and_what_it_cannot_read_is_an
 def test_of_the_programs_that_fit_those_with_fewest_mistakes_count(tmp_path: Path) -> None:
     rows = {"f": (Row(("A_B",), (1.0, 2.0)), Row(("A_B", "C_D"), (1.0, 2.0)), Row(("C_D",), (3.0, 2.0)))}
     table = Table(rows=rows, right={"f": ((0.0, 0.0),)}, made_from="x")
-    (tmp_path / "t.json").write_bytes(table_bytes(table))
-    table = read_table(tmp_path / "t.json")
+    table_path(tmp_path).write_bytes(msgspec.json.encode(table))
+    assert read_table(tmp_path) == table
     assert [row.codes for row in matching(table, "f", (1.0, 2.0000005))] == [("A_B",)]
     assert matching(table, "f", (1.0, 2.00001)) == ()
     assert matching(table, "f", (1.0, 2.1)) == ()
@@ -143,9 +143,9 @@ def test_answers_within_a_tolerance_are_compared_as_they_are(tmp_path: Path) -> 
 
 
 def test_a_damaged_table_says_which_command_makes_it_anew(tmp_path: Path) -> None:
-    (tmp_path / "t.json").write_text("{", encoding="utf-8")
+    table_path(tmp_path).write_text("{", encoding="utf-8")
     with pytest.raises(ContentError) as error:
-        read_table(tmp_path / "t.json")
+        read_table(tmp_path)
     assert "course author build" in str(error.value.help)
 
 
@@ -306,13 +306,20 @@ def test_what_is_kept_between_calls_comes_first_and_a_code_of_the_exercise_names
 
 
 def test_words_of_no_known_kind_are_refused(tmp_path: Path) -> None:
-    path = tmp_path / "diagnoses.toml"
-    path.write_text(
-        'format_version = 1\n[diagnosis.A_B]\nlooks_like = "x"\nadvice = "y"\nkind = "guess"\n', "utf-8"
-    )
+    words = '{"words": {"A_B": {"looks_like": "x", "advice": "y", "kind": "guess"}}}'
+    table_path(tmp_path).write_text(words, "utf-8")
     with pytest.raises(ContentError) as error:
-        read_words(path)
+        read_table(tmp_path)
     assert "'guess'" in str(error.value)
+
+
+def test_warm_ups_share_a_table_and_an_exercise_may_have_none(tmp_path: Path) -> None:
+    one, other = tmp_path / "warm-ups" / "one", tmp_path / "warm-ups" / "other"
+    assert read_table(one) is None
+    (tmp_path / "warm-ups").mkdir()
+    table = Table(words={"A_B": Entry("It is.", "Mend it.")})
+    table_path(one).write_bytes(msgspec.json.encode({"one": table}))
+    assert (read_table(one), read_table(other), read_table(tmp_path / "third")) == (table, None, None)
 
 
 def test_a_file_longer_than_any_honest_one_is_not_parsed_among_the_checks() -> None:

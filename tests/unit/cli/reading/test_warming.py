@@ -32,18 +32,14 @@ def add(folder: Path, name: str, order: int) -> None:
     (folder / "exercise.toml").write_text(
         f'format_version = 1\nkind = "warm-up"\nid = "{name}"\ntitle = "One thing {name}"\n'
         f'module = "{name}.py"\nlesson = "twice-as-much"\norder = {order}\nminutes = 5\nsummary = "Short."\n'
-        '[[task]]\nid = "first"\ntitle = "The first"\npoints = 1\n'
-        '[[task]]\nid = "second"\ntitle = "The second"\npoints = 1\n'
+        '[[task]]\nid = "first"\ntitle = "The first"\npoints = 1\nhints = ["Think.", "Write RIGHT."]\n'
+        '[[task]]\nid = "second"\ntitle = "The second"\npoints = 1\nhints = ["Think.", "Write RIGHT."]\n'
     )
     (folder / "README.md").write_text(f"# {name}\n\n`first(x)` gives one thing, `second(x)` another.\n")
     (folder / f"{name}.py").write_text(
         '"""Two."""\n\n\ndef first(x):\n    return x\n\n\ndef second(x):\n    return x\n'
     )
     (folder / "checks.py").write_text("")
-    hints = "".join(
-        f'[[task]]\nid = "{task}"\nhints = ["Think.", "Write RIGHT."]\n' for task in ("first", "second")
-    )
-    (folder / "hints.toml").write_text(f"format_version = 1\n{hints}")
 
 
 def write(workspace: Path, name: str, first: str, second: str) -> None:

@@ -32,7 +32,7 @@ def test_hints_come_one_per_attempt_and_are_never_counted(course, write):
 def test_a_hint_fits_what_the_check_thinks_is_wrong(course, write, monkeypatch, tmp_path):
     content = tmp_path / "content"
     shutil.copytree(MINI_COURSE, content)
-    hints = content / "exercises" / "doubling" / "hints.toml"
+    hints = content / "exercises" / "doubling" / "exercise.toml"
     hints.write_text(hints.read_text().replace("SQUARES_INSTEAD", "NOT_RIGHT"))
     monkeypatch.setenv("COURSE_CONTENT", str(content))
     write("wrong", "RIGHT")
@@ -50,7 +50,7 @@ def test_a_hint_goes_on_with_the_students_numbers_where_the_check_has_them(
 ):
     content = tmp_path / "content"
     shutil.copytree(MINI_COURSE, content)
-    hints = content / "exercises" / "doubling" / "hints.toml"
+    hints = content / "exercises" / "doubling" / "exercise.toml"
     sentences = (
         '1 = ["At {x} it is {got}."]\n2 = ["At {x} it is {got}.", "At h = {h} it is {got}, not {expected}."]'
     )

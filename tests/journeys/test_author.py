@@ -21,32 +21,29 @@ SCENE = ROOT / "course" / "authoring" / "templates" / "scene.toml.tmpl"
 #: What an author writes into the blanks of a warm-up, file by file and from top to bottom.
 THIRD = {
     "exercises/warm-ups/first-third": {
-        "exercise.toml": ["the-way-back", "A third"],
+        "exercise.toml": ["the-way-back", "A third", "What times three gives x?", "Return x / 3."],
         "README.md": ["Three thirds are one.", "gives a third of `x`.", "Nine digits have to be right."],
         "first_third.py": ["A third of ``x``, float."],
-        "hints.toml": ["What times three gives x?", "Return x / 3."],
         "checks.py": [
             "A third of one is one over three",
-            "one over three",
-            "round-off",
+            "one over three, to twelve digits",
             "The result is not a third of the number.",
             "Divide by three.",
-        ],
-        "questions.py": ["any number but zero"],
-        "diagnoses.toml": [
-            *("HALVES", "The results are halves of the numbers.", "Divide by three, not by two."),
-            *("TRIPLES", "The results are three times the numbers.", "Divide instead of multiplying."),
-            *("KEEPS", "The results are the numbers themselves.", "Divide what you return by three."),
+            "any number but zero",
         ],
     },
     "solutions/warm-ups/first-third": {
         "first_third.py": ["A third of ``x``.", "return x / 3"],
-        "mutants.toml": ["Half will do.", "HALVES", "Thirds are triples.", "TRIPLES", "It is done.", "KEEPS"],
-        "accepted/unusual_1.py": ["Multiplies.", "return x * (1 / 3)"],
-        "accepted/unusual_2.py": ["Takes two thirds away.", "return x - 2 * x / 3"],
-        "mutants/third_wrong_1.py": ["Halves.", "return x / 2"],
-        "mutants/third_wrong_2.py": ["Triples.", "return 3 * x"],
-        "mutants/third_wrong_3.py": ["Keeps.", "return x"],
+        "mistakes.py": [
+            *("HALVES", "The results are halves of the numbers.", "Divide by three, not by two."),
+            *("x / 3", "x / 2"),
+            *("TRIPLES", "The results are three times the numbers.", "Divide instead of multiplying."),
+            *("x / 3", "3 * x"),
+            *("KEEPS", "The results are the numbers themselves.", "Divide what you return by three."),
+            *("x / 3", "x"),
+            *("Multiplies.", "return x * (1 / 3)"),
+            *("Takes two thirds away.", "return x - 2 * x / 3"),
+        ],
     },
 }  # fmt: skip
 
@@ -81,7 +78,9 @@ def test_a_new_exercise_is_proved_and_a_class_is_graded_with_it(
     fill_tripling(mini)
     hidden = mini / "graders" / "tripling" / "checks.py"
     put(hidden, "points(6)", "points(8)")  # so that there is something to build: all else is in the template
-    assert "Wrote exercises/tripling/exercise.toml" in author("author", "build", "tripling").stdout
+    built = author("author", "build", "tripling", "--accept").stdout
+    assert "Wrote exercises/tripling/exercise.toml" in built
+    assert "Wrote solutions/tripling/record.json" in built
     proved = author("author", "check", "tripling").stdout
     # The stub, the solution, two that are right and four that are wrong.
     assert "All is well: 0 lessons, 1 exercise" in proved
@@ -104,7 +103,8 @@ def test_a_new_exercise_is_proved_and_a_class_is_graded_with_it(
     at = hidden.read_text("utf-8").split("\n").index(reads.strip()) + 1
     said = author("author", "check", "tripling", code=1).stdout
     assert f"graders/tripling/checks.py:{at}\n  a grader process does not have {accepted}, which" in said
-    assert "\n1 problem in" in said
+    assert "solutions/tripling/record.json\n" in said  # other checks may catch other programs
+    assert "\n2 problems in" in said
 
 
 def test_a_new_warm_up_is_proved_and_its_words_reach_a_student(
@@ -118,8 +118,8 @@ def test_a_new_warm_up_is_proved_and_its_words_reach_a_student(
             fill(mini / folder / name, lambda _, left=left: next(left))
             assert not list(left), name
     checks = mini / "exercises" / "warm-ups" / "first-third" / "checks.py"
-    put(checks, "expected = 1.0", "expected = 1 / 3")
-    table = "exercises/warm-ups/first-third/hypotheses.json"
+    put(checks, "[((1.0,), 1.0)]", "[((1.0,), 1 / 3)]")
+    table = "exercises/warm-ups/diagnoses.json"
     assert f"Wrote {table}" in author("author", "build", "first-third").stdout
     assert "1 check, 7 submissions graded" in author("author", "check", "first-third").stdout
 
@@ -133,7 +133,7 @@ def test_a_new_warm_up_is_proved_and_its_words_reach_a_student(
     student("start", "first-third", cwd=work)
     mine, solutions = work / "warm-ups/first-third/first_third.py", mini / "solutions/warm-ups/first-third"
     assert "Not written yet" in student("check", "first-third", cwd=work, code=1).stdout
-    shutil.copy(solutions / "mutants/third_wrong_2.py", mine)
+    mine.write_text("def third(x):\n    return 3 * x\n", "utf-8")
     assert "three times the numbers" in student("check", "first-third", cwd=work, code=1).stdout
     shutil.copy(solutions / "first_third.py", mine)
     assert "this warm-up is done" in student("check", "first-third", cwd=work).stdout

@@ -237,7 +237,7 @@ def hypotheses_of(catalog: Catalog, exercise: Exercise) -> Iterator[Wrong]:
         yield variant.task, (variant.code,), function
     tasks = {task.id for task in exercise.task}
     with blamed(file):
-        programs = list(mistakes.functions())
+        programs = [(task, codes, function) for task, codes, function in mistakes.functions()]
     for task, codes, function in programs:
         if task not in tasks:
             raise ContentError(file, None, f"{task!r} is no function of the exercise.", help="Correct it.")

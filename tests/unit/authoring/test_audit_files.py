@@ -171,7 +171,7 @@ def test_the_miniature_course_is_right(run: Callable[..., AuditReport]) -> None:
         (GRADERS, '"Try a negative number by hand."', '"Try 3.0 by hand."', None, "", ""),
         (MISTAKES, '"x * x"', '"x *"', '"x *"', "content", "is not valid Python"),
         (MISTAKES, '"2.0 * x": "x * x"', '"3.0 * x": "x * x"', "3.0", "content", "'3.0 * x' stands 0 times"),
-        (MISTAKES, '{"2.0 * x": "x * x"}', '{"x": "y"}', '"y"', "content", "'x' stands 4 times in double"),
+        (MISTAKES, '{"2.0 * x": "x * x"}', '{"x": "y"}', '"y"', "content", "'x' stands 3 times in double"),
         (MISTAKES, '"double", {"2', '"dubble", {"2', '"dubble"', "content", "has no function dubble"),
         (MISTAKES, '"SIGN_LOST"', '"sign lost"', "sign lost", "content", "'sign lost' is no code"),
         (MISTAKES, "mistakes = Mistakes()", "mistakes = [].pop()", "pop", "content", "IndexError"),
@@ -300,7 +300,7 @@ def test_a_task_that_no_mutant_breaks_is_named(mini: Path, run: Callable[..., Au
     path = mini / MISTAKES
     drop(path, '"doublings"')
     with path.open("a") as file:  # others of the other task, so that there are enough
-        file.write('\n' + 'mistakes("SQUARES_INSTEAD").edit("double", {"2.0 * x": "x * x"})\n' * 4)
+        file.write("\n" + 'mistakes("SQUARES_INSTEAD").edit("double", {"2.0 * x": "x * x"})\n' * 4)
     assert "no mutant breaks task doublings" in run().problems[0].message
 
 

@@ -87,11 +87,8 @@ def test_what_each_mutant_gets_to_read_can_be_listed(mini: Path) -> None:
         catalog, catalog.exercise("doubling"), on_progress=lambda done, *_: steps.append(done)
     )
     first = outcomes[0]
-    assert (first.mutant.name, first.diagnosis, first.lost) == (
-        "double.SQUARES_INSTEAD",
-        "SQUARES_INSTEAD",
-        4.0,
-    )
+    assert first.mutant.name == "double.SQUARES_INSTEAD"
+    assert (first.diagnosis, first.lost) == ("SQUARES_INSTEAD", 4.0)
     assert first.caught_by == ("double_of_three", "double_of_negative")
     assert "multiplied by itself" in first.message
     assert first.help == "Add the number to itself, or multiply it by two."

@@ -235,9 +235,8 @@ def test_a_hidden_check_must_not_say_its_values(
 def test_small_numbers_and_public_checks_may_be_said(
     oracle: Any, run: Callable[..., AuditReport], check: str, fields: dict[str, Any]
 ) -> None:
-    oracle.changes["double.SIGN_LOST" if check == "double_of_negative" else "double.SQUARES_INSTEAD"] = (
-        with_check(check, **fields)
-    )
+    name = "double.SIGN_LOST" if check == "double_of_negative" else "double.SQUARES_INSTEAD"
+    oracle.changes[name] = with_check(check, **fields)
     assert run().ok
 
 

@@ -1,7 +1,8 @@
-"""An exercise whose diagnoses are data, as its author builds it: what is optional may be missing."""
+"""An exercise with words beside its wrong programs, as its author builds it."""
 
 from __future__ import annotations
 
+import json
 import shutil
 from pathlib import Path
 
@@ -11,35 +12,36 @@ from course.authoring.audit import audit
 from course.catalog.load import Catalog
 from course.cli.frame.app import run
 from course.scoring.checks import collected
-from course.scoring.explain.story import read_table, read_words
+from course.scoring.explain.story import forget_tables, read_table
 
-CODES = ("INTEGER_DIVISION", "LOSES_SIGN")
+WORDS = '"INTEGER_DIVISION", "The fraction is lost.", "Use / and not //."'
 
 
 @pytest.fixture
 def halving(mini: Path) -> Path:
-    """Its folder for students; it has words and questions, and no hypotheses.py."""
-    forget()
+    """Its folder for students; its mistake has words, and there are questions."""
     folder = mini / "exercises" / "halving"
-    tables = [
-        f'[diagnosis.{code}]\nlooks_like = "It is {code}."\nadvice = "Mend it."' for code in codes(mini)
-    ]
-    (folder / "diagnoses.toml").write_text("format_version = 1\n\n" + "\n\n".join(tables) + "\n")
     (folder / "questions.py").write_text(
         '"""Q."""\n\nQUESTIONS = {"halve": [(7,), (-3,), (0.5,), (-8.0,)]}\n'
     )
+    edit(mistakes(mini), '"INTEGER_DIVISION"', WORDS)
     return folder
 
 
-def codes(mini: Path) -> list[str]:
-    catalog = Catalog()
-    found = [mutant.diagnosis for mutant in catalog.mutants(catalog.exercise("halving"))]
-    return list(dict.fromkeys(found))
+def mistakes(mini: Path) -> Path:
+    return mini / "solutions" / "halving" / "mistakes.py"
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+    forget()
 
 
 def forget() -> None:
-    for kept in (collected._load, read_table, read_words):
-        kept.cache_clear()
+    collected._load.cache_clear()
+    forget_tables()
 
 
 def problems() -> list[str]:
@@ -47,68 +49,97 @@ def problems() -> list[str]:
     return [f"{one.where}: {one.message} {one.fix}" for one in audit(Catalog(), "halving").problems]
 
 
-def test_without_hypotheses_everything_is_built_and_right(
-    halving: Path, mini: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert run(["author", "build", "halving", "--confusion"]) == 0
-    assert "Wrote solutions/halving/confusion.json" in capsys.readouterr().out
+def test_what_an_author_writes_is_built_and_right(halving: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["author", "build", "halving", "--accept"]) == 0
+    out = capsys.readouterr().out
+    assert "Wrote exercises/halving/diagnoses.json" in out
+    assert "Wrote solutions/halving/record.json" in out
     assert problems() == []
     assert run(["author", "build", "halving"]) == 0
     assert "up to date" in capsys.readouterr().out
 
 
+def test_other_words_ask_for_a_build_and_for_no_other_record(halving: Path, mini: Path) -> None:
+    assert run(["author", "build", "halving", "--accept"]) == 0
+    edit(mistakes(mini), "Use / and not //.", "Divide with a single stroke.")
+    (stale,) = problems()
+    assert stale.startswith("exercises/halving/diagnoses.json: it was made from other questions, mistakes or")
+    assert run(["author", "build", "halving"]) == 0
+    assert problems() == []
+    table = read_table(halving)
+    assert table is not None
+    assert table.words["INTEGER_DIVISION"].advice == "Divide with a single stroke."
+
+
+def test_a_program_that_lost_its_check_or_its_name_is_printed_before_it_is_accepted(
+    halving: Path, mini: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["author", "build", "halving", "--accept"]) == 0
+    record = mini / "solutions/halving/record.json"
+    kept = json.loads(record.read_text())
+    kept["caught"]["halve.INTEGER_DIVISION"] = "an_older_check"
+    record.write_text(json.dumps(kept))
+    assert "is caught by an_older_check on record, and there is no such check" in problems()[0]
+    edit(mistakes(mini), '"int(x / 2)"', '"[x / 2]"')
+    assert run(["author", "build", "halving"]) == 0
+    assert any("record of what wrong programs are told is out of date" in one for one in problems())
+    capsys.readouterr()
+    assert run(["author", "build", "halving", "--accept"]) == 0
+    out = capsys.readouterr().out
+    assert "halve.INTEGER_DIVISION: caught by half_of_odd, and was by an_older_check." in out
+    assert "halve.INTEGER_DIVISION.4: told" in out
+    assert "not INTEGER_DIVISION." in out
+    assert [one for one in problems() if "not as INTEGER_DIVISION" not in one] == []
+
+
 @pytest.mark.parametrize(
     ("text", "line", "says"),
     [
-        ("def hypotheses():\n    yield from [1 / 0]\n", 2, "it raises ZeroDivisionError"),
-        ("def hypotheses(:\n", 1, "it raises SyntaxError"),
-        ("import nothing_of_that_name\n", 1, "nothing_of_that_name"),
-        ("def others():\n    yield\n", None, "has no attribute 'hypotheses'"),
-        ('def hypotheses():\n    yield "halve"\n', None, "it raises ValueError"),
-        ('def hypotheses():\n    yield "halve", ("NO_WORDS",), abs\n', None, "no words for NO_WORDS"),
-        (
-            'ALSO = 3\n\n\ndef hypotheses():\n    yield "halve", ("INTEGER_DIVISION",), abs\n',
-            None,
-            "it raises",
-        ),
+        ("@mistakes.more\ndef others():\n    yield from [1 / 0]\n", 14, "it raises ZeroDivisionError"),
+        ("def others(:\n", 12, "it raises SyntaxError"),
+        ("import nothing_of_that_name\n", 12, "nothing_of_that_name"),
+        ('@mistakes.more\ndef others():\n    yield "halve"\n', None, "it raises ValueError"),
+        ('@mistakes.more\ndef o():\n    yield "halve", ("NO_WORDS",), abs\n', None, "no words for NO_WORDS"),
+        ('mistakes("INTEGER_DIVISION", "A.", "B.")\n', 12, "INTEGER_DIVISION has words twice"),
+        ('mistakes("OTHER", "A.", "B.", kind="guess")\n', 12, "'guess' is none of the kinds cause,"),
+        ("mistakes = None\n", None, "it makes no `mistakes`"),
     ],
 )
-def test_hypotheses_that_cannot_be_used_are_named_and_nothing_is_left_half_made(
+def test_mistakes_that_cannot_be_used_are_named_and_nothing_is_left_half_made(
     halving: Path, mini: Path, capsys: pytest.CaptureFixture[str], text: str, line: int | None, says: str
 ) -> None:
-    path = mini / "solutions" / "halving" / "hypotheses.py"
-    path.write_text(text)
-    assert run(["author", "build", "halving", "--confusion"]) == 70
+    path = mistakes(mini)
+    path.write_text(f"{path.read_text()}\n{text}")
+    before = path.with_name("record.json").read_bytes()
+    assert run(["author", "build", "halving", "--accept"]) == 70
     said = capsys.readouterr().err
     assert says in said
-    assert f"hypotheses.py:{line}:" in said or (line is None and "hypotheses.py: " in said)
+    assert f"mistakes.py:{line}:" in said or (line is None and "mistakes.py: " in said)
     assert "A fault in the course, not in your work" not in said
-    assert not path.with_name("confusion.json").exists()
-    if "ALSO" not in text:
-        found = problems()
-        assert says in found[0], "before the advice to build what cannot be built"
+    assert path.with_name("record.json").read_bytes() == before
+    assert not (halving / "diagnoses.json").exists()
+    found = problems()
+    assert says in found[0], "before the advice to build what cannot be built"
 
 
-def test_questions_and_mutants_that_raise_are_named(
+def test_questions_and_programs_that_raise_are_named(
     halving: Path, mini: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    questions = halving / "questions.py"
-    right = questions.read_text()
-    questions.write_text(right + "\n1 / 0\n")
+    edit(halving / "questions.py", "QUESTIONS", "1 / 0\nQUESTIONS")
     assert run(["author", "build", "halving"]) == 70
-    assert "questions.py:5: it raises ZeroDivisionError" in capsys.readouterr().err
-    questions.write_text(right)
+    assert "questions.py:3: it raises ZeroDivisionError" in capsys.readouterr().err
+    edit(halving / "questions.py", "1 / 0\n", "")
+    path = mistakes(mini)
+    path.write_text(path.read_text() + 'mistakes("INTEGER_DIVISION").program("halve", "1 / 0")\n')
     forget()
-    mutant = mini / "solutions/halving/mutants/rounds_down.py"
-    mutant.write_text(mutant.read_text() + "\n1 / 0\n")
     assert run(["author", "build", "halving"]) == 70
-    assert "rounds_down.py: it raises ZeroDivisionError" in capsys.readouterr().err
+    assert "mistakes.py: it raises ZeroDivisionError" in capsys.readouterr().err
 
 
 def test_what_is_out_of_date_comes_after_what_it_follows_from(halving: Path, mini: Path) -> None:
-    assert run(["author", "build", "halving", "--confusion"]) == 0
+    assert run(["author", "build", "halving", "--accept"]) == 0
     shutil.copy(halving / "halving.py", mini / "solutions/halving/accepted/unfinished.py")
     (halving / "README.md").write_text("# Halving\n")
     found = problems()
-    assert "hypotheses.json" in found[-1]
+    assert "diagnoses.json" in found[-1]
     assert "README does not show" in " ".join(found[:-1])

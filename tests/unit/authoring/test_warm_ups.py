@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 from pathlib import Path
@@ -15,16 +16,16 @@ from course.catalog.load import Catalog
 from course.cli.frame.app import run
 from course.errors import ContentError, UsageError
 from course.scoring.checks import collected
-from course.scoring.explain.story import read_table, read_words
+from course.scoring.explain.story import forget_tables, read_table, table_path
 
 WORDS = {
-    "exercise.toml": ["Tripling", "the-way-back", "Three times.", "Three times a number"],
+    "exercise.toml": [
+        *("Tripling", "the-way-back", "Three times.", "Three times a number"),
+        *("What is once more than twice?", "Return 3 * x."),
+    ],
     "README.md": ["Tripling", "It is about three.", "gives three times `x`.", "Numbers must agree."],
     "tripling.py": ["Tripling.", "Three times ``x``."],
-    "hints.toml": ["What is once more than twice?", "Return 3 * x."],
-    "checks.py": ["Three times one is three", "", "exact", "It is not three times the number.", "Count."],
-    "questions.py": [""],
-    "diagnoses.toml": [],
+    "checks.py": ["Three times one is three", "", "It is not three times the number.", "Count.", ""],
 }
 WRONG = {"DOUBLES": "2 * x", "ADDS_THREE": "3 + x", "CUBES": "x**3"}
 
@@ -37,29 +38,31 @@ def tripling(mini: Path) -> Path:
     for name, words in WORDS.items():
         fill(student / name, words)
     checks = (student / "checks.py").read_text()
-    (student / "checks.py").write_text(
-        checks.replace("expected = 1.0", "expected = 3.0").replace("  # \n", "\n")
-    )
-    tables = [
-        f'[diagnosis.{code}]\nlooks_like = "It is {rule}."\nadvice = "Mend it."'
-        for code, rule in WRONG.items()
-    ]
-    (student / "diagnoses.toml").write_text("format_version = 1\n\n" + "\n\n".join(tables) + "\n")
+    assert "[((1.0,), 1.0)]" in checks
+    (student / "checks.py").write_text(re.sub(r" *# \n", "", checks.replace("(1.0,), 1.0", "(1.0,), 3.0")))
     (solutions / "tripling.py").write_text('"""Tripling."""\n\n\ndef triple(x):\n    return 3 * x\n')
-    for number, rule in ((1, "x + x + x"), (2, "sum([x] * 3)")):
-        (solutions / f"accepted/unusual_{number}.py").write_text(
-            f'"""Adds."""\n\n\ndef triple(x):\n    return {rule}\n'
-        )
-    entries = (solutions / "mutants.toml").read_text()
-    for number, (code, rule) in enumerate(WRONG.items(), 1):
-        (solutions / f"mutants/triple_wrong_{number}.py").write_text(
-            f'"""{code}."""\n\n\ndef triple(x):\n    return {rule}\n'
-        )
-        for word in ("It is right.", code):
-            entries = re.sub(r"<<FILL IN[^>]*>>", word, entries, count=1)
-    (solutions / "mutants.toml").write_text(entries)
+    blanks = [
+        one for code, rule in WRONG.items() for one in (code, f"It is {rule}.", "Mend it.", "3 * x", rule)
+    ]
+    fill(mistakes(mini), [*blanks, "Adds.", "adds", "Sums.", "sums"])
+    text = mistakes(mini).read_text()
+    for name, rule in (("adds", "x + x + x"), ("sums", "sum([x] * 3)")):
+        text = text.replace(f'raise NotImplementedError("{name}")', f"return {rule}")
+    mistakes(mini).write_text(text)
     rebuilt()
     return student
+
+
+def mistakes(mini: Path) -> Path:
+    return mini / "solutions/warm-ups/tripling/mistakes.py"
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+    collected._load.cache_clear()
+    forget_tables()
 
 
 def fill(path: Path, words: list[str]) -> None:
@@ -73,8 +76,7 @@ def rebuilt() -> None:
     catalog = Catalog()
     collected._load.cache_clear()
     build(catalog, catalog.exercise("tripling"))
-    read_table.cache_clear()
-    read_words.cache_clear()
+    forget_tables()
 
 
 def problems() -> list[str]:
@@ -94,22 +96,14 @@ def test_a_new_warm_up_passes_the_audit_once_its_blanks_are_filled(tripling: Pat
     ("file", "old", "new", "said"),
     [
         ("exercise.toml", "the-way-back", "nowhere", "has no section 'nowhere'"),
-        ("hints.toml", '"What is once more than twice?", ', "", "has 1 hint, and needs 2"),
+        ("exercise.toml", '    "What is once more than twice?",\n', "", "has 1 hint, and needs 2"),
         ("README.md", "# Tripling", "Tripling", "the title is missing"),
-        ("diagnoses.toml", "[diagnosis.CUBES]", "[diagnosis.FOURTH]", "no words for CUBES"),
     ],
 )
 def test_the_audit_sees_what_a_warm_up_lacks(
     tripling: Path, file: str, old: str, new: str, said: str
 ) -> None:
-    text = (
-        " ".join((tripling / file).read_text().split("\n    "))
-        if file == "hints.toml"
-        else (tripling / file).read_text()
-    )
-    assert old in text
-    (tripling / file).write_text(text.replace(old, new))
-    read_words.cache_clear()
+    edit(tripling / file, old, new)
     assert any(said in message for message in problems()), problems()
 
 
@@ -131,26 +125,23 @@ def test_warm_ups_that_are_not_in_the_order_of_their_sections_are_named(mini: Pa
 
 
 @pytest.mark.parametrize(
-    ("folder", "said"),
+    ("entry", "said"),
     [
-        ("accepted", "accepted variants: 1, and an exercise of this size has at least 2"),
-        ("mutants", "mutants: 2, and an exercise of this size has at least 3"),
+        ("mistakes.accept(", "accepted variants: 1, and an exercise of this size has at least 2"),
+        ('mistakes(\n    "CUBES"', "mutants: 2, and an exercise of this size has at least 3"),
     ],
 )
 def test_the_audit_counts_the_programs_of_a_warm_up(
-    tripling: Path, mini: Path, folder: str, said: str
+    tripling: Path, mini: Path, entry: str, said: str
 ) -> None:
-    path = sorted((mini / "solutions/warm-ups/tripling" / folder).iterdir())[-1]
-    path.unlink()
-    entries = mini / "solutions/warm-ups/tripling/mutants.toml"
-    if folder == "mutants":
-        entries.write_text(entries.read_text().rpartition("[[mutant]]")[0])
+    above, _, after = mistakes(mini).read_text().rpartition(entry)
+    mistakes(mini).write_text(above + "".join(after.partition("\nmistakes")[1:]))
     rebuilt()
     assert any(said in message for message in problems())
 
 
 def test_a_stale_table_is_refused(tripling: Path) -> None:
-    path = tripling / "questions.py"
+    path = tripling / "checks.py"
     path.write_text(path.read_text() + "\n#: Another thought.\n")
     assert any("made from other questions" in message for message in problems())
 
@@ -158,28 +149,32 @@ def test_a_stale_table_is_refused(tripling: Path) -> None:
 def test_a_table_that_is_missing_is_named_and_made(
     tripling: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    table = tripling / "hypotheses.json"
+    table = table_path(tripling)
     before = table.read_bytes()
     table.unlink()
-    read_table.cache_clear()
-    assert problems() == ["it is missing."]
+    forget_tables()
+    assert problems() == ["it has nothing on tripling."]
     assert run(["author", "build", "tripling"]) == 0
-    assert "Wrote exercises/warm-ups/tripling/hypotheses.json" in capsys.readouterr().out
+    assert "Wrote exercises/warm-ups/diagnoses.json" in capsys.readouterr().out
     assert table.read_bytes() == before
     assert problems() == []
 
 
+def test_warm_ups_share_a_table_that_forgets_those_that_are_gone(tripling: Path) -> None:
+    path = table_path(tripling)
+    assert path == tripling.parent / "diagnoses.json"
+    tables = json.loads(path.read_bytes())
+    (tripling.parent / "other").mkdir()
+    tables |= {"other": tables["tripling"], "gone": tables["tripling"]}
+    path.write_text(json.dumps(tables))
+    edit(tripling / "checks.py", "Count.", "Count again.")
+    rebuilt()
+    assert sorted(json.loads(path.read_bytes())) == ["other", "tripling"]
+
+
 def test_questions_that_are_missing_are_named(tripling: Path) -> None:
-    (tripling / "questions.py").unlink()
+    edit(tripling / "checks.py", "QUESTIONS", "ANSWERS")
     assert ["what would tell wrong programs apart?" in message for message in problems()] == [True]
-
-
-def test_a_build_without_questions_says_that_they_are_missing(
-    tripling: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (tripling / "questions.py").unlink()
-    assert run(["author", "build", "tripling"]) == ContentError.exit_code
-    assert "questions.py: it is missing" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -190,51 +185,42 @@ def test_a_build_without_questions_says_that_they_are_missing(
     ],
 )
 def test_a_hypothesis_that_fits_nothing_is_named(tripling: Path, mini: Path, program: str, said: str) -> None:
-    path = mini / "solutions/warm-ups/tripling/hypotheses.py"
-    path.write_text(f"def hypotheses():\n    yield {program}, lambda x: x**3\n")
+    more = f"\n\n@mistakes.more\ndef others():\n    yield {program}, lambda x: x**3\n"
+    mistakes(mini).write_text(mistakes(mini).read_text() + more)
     with pytest.raises(ContentError, match=said):
         rebuilt()
 
 
 def test_a_question_about_no_function_is_named(tripling: Path) -> None:
-    path = tripling / "questions.py"
-    path.write_text(path.read_text().replace('"triple"', '"threefold"'))
-    with pytest.raises(ContentError, match=r"questions\.py: 'threefold' is no function of the exercise"):
+    edit(tripling / "checks.py", '    "triple": [', '    "threefold": [')
+    with pytest.raises(ContentError, match=r"checks\.py: 'threefold' is no function of the exercise"):
         rebuilt()
 
 
 def test_a_code_that_only_a_mutant_names_wants_another_question(tripling: Path) -> None:
-    path = tripling / "questions.py"
+    path = tripling / "checks.py"
     path.write_text(re.sub(r"(?s)QUESTIONS = .*", 'QUESTIONS = {"triple": [(0.0,)]}\n', path.read_text()))
     rebuilt()
     assert any("nothing gives the diagnosis CUBES" in message for message in problems()), problems()
 
 
-def test_words_without_an_entry_are_told_to_have_a_table(tripling: Path) -> None:
-    (tripling / "diagnoses.toml").write_text("format_version = 1\n")
-    read_words.cache_clear()
-    fixes = [problem.fix for problem in audit(Catalog(), "tripling").problems]
-    assert fixes == ["Add a table `[diagnosis.NAME]`."]
-
-
-def test_what_is_true_of_one_run_is_no_cause(tripling: Path) -> None:
-    words = tripling / "diagnoses.toml"
-    words.write_text(words.read_text().replace("It is 2 * x.", "Here it is 2 * x."))
-    read_words.cache_clear()
+def test_what_is_true_of_one_run_is_no_cause(tripling: Path, mini: Path) -> None:
+    edit(mistakes(mini), "It is 2 * x.", "Here it is 2 * x.")
+    rebuilt()
     assert problems() == ["DOUBLES is about one run, but as a cause it is said by every check of its task."]
 
 
 def test_a_table_is_the_same_whenever_it_is_built(tripling: Path, mini: Path) -> None:
     """A wrong program with chance of its own answers otherwise each time, so no answer is known of it."""
-    wrong = mini / "solutions/warm-ups/tripling/mutants/triple_wrong_3.py"
-    wrong.write_text('"""Guesses."""\n\n\ndef triple(x):\n    import random\n    return random.random()\n')
+    edit(mistakes(mini), 'x**3"', "__import__('random').random()\"")
     built = []
     for _ in range(2):
         rebuilt()
-        built.append((tripling / "hypotheses.json").read_bytes())
+        built.append(table_path(tripling).read_bytes())
     assert built[0] == built[1]
-    rows = read_table(tripling / "hypotheses.json").rows["triple"]
-    assert {row.codes for row in rows} == {("DOUBLES",), ("ADDS_THREE",)}
+    table = read_table(tripling)
+    assert table is not None
+    assert {row.codes for row in table.rows["triple"]} == {("DOUBLES",), ("ADDS_THREE",)}
 
 
 def test_a_warm_up_lies_with_the_warm_ups(tripling: Path) -> None:

@@ -23,7 +23,7 @@ right = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(right)
 
 questions = kit.companion("digital-twin", "questions")
-table = read_table(ROOT / "exercises" / "digital-twin" / "hypotheses.json")
+table = read_table(ROOT / "exercises" / "digital-twin")
 scanners = kit.companion("digital-twin", "lidar_probes")
 sensors = kit.companion("digital-twin", "sensor_probes")
 actuators = kit.companion("digital-twin", "actuator_probes")

@@ -32,7 +32,7 @@ questions = kit.companion("engine-comparison", "questions")
 lab = kit.reference("engine-comparison", "lab")
 instrument = kit.reference("engine-comparison", "instrument")
 right = kit.reference("engine-comparison", "choosing")
-hypotheses = kit.reference("engine-comparison", "hypotheses")
+mistakes = kit.reference("engine-comparison", "mistakes").mistakes
 choices = kit.sibling(HIDDEN, "choices")
 facts = kit.sibling(HIDDEN, "facts")
 
@@ -418,7 +418,7 @@ class Chooser:
 def test_every_slip_of_choosing_answers_the_questions_in_a_way_of_its_own():
     asked = questions.QUESTIONS["choose_engine"]
     answers = {}
-    for task, codes, function in hypotheses.hypotheses():
+    for task, codes, function in mistakes.functions():
         if task == "choose_engine" and len(codes) == 1 and codes != ("NOTHING_FITS",):
             answers.setdefault(repr([function(*question) for question in asked]), set()).add(codes)
     assert all(len(codes) == 1 for codes in answers.values()), answers

@@ -12,7 +12,7 @@ import pytest
 
 from course.physics import systems
 from course.scoring import kit
-from course.scoring.explain.story import TABLE, matching, read_table
+from course.scoring.explain.story import matching, read_table
 from course.scoring.judging.explaining import answer_numbers
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -497,7 +497,7 @@ def test_one_stage_of_rk4_at_another_point_of_the_step_is_known_by_its_answers(s
 
 def known(task, program):
     """The codes of the known programs that answer all questions as this one does."""
-    table = read_table(ROOT / "exercises/integrators" / TABLE)
+    table = read_table(ROOT / "exercises/integrators")
     said = answer_numbers(
         questions, task, lambda calls: [program(*call) for call in calls], table.within.get(task)
     )

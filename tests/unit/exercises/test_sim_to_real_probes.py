@@ -356,7 +356,7 @@ def test_the_grid_that_a_student_is_told_of_is_fine_enough_by_itself(i):
 def _told():
     """What is said of the grid: in the README, as a hint and as advice."""
     folder = ROOT / "exercises/sim-to-real"
-    texts = [(folder / name).read_text("utf-8") for name in ("README.md", "hints.toml", "diagnoses.toml")]
+    texts = [(folder / name).read_text("utf-8") for name in ("README.md", "exercise.toml", "diagnoses.json")]
     assert all("np.geomspace(2, 40, " in text for text in texts)
     return texts
 

@@ -409,16 +409,20 @@ def test_the_filter_of_the_report_is_honest_only_with_the_right_noise():
     assert average(2.0) < 1.4
 
 
+#: Wrong programs by name.
+WRONG = {one.name: one for one in kit.reference("validation", "mistakes").mistakes.wrong}
+
+
 class Fake:
     """A submission that runs here: the solution, or a mutant of it."""
 
     def __init__(self, mutant=""):
-        folder = ROOT / "solutions" / "validation"
-        path = folder / "mutants" / f"{mutant}.py" if mutant else folder / "validation.py"
-        self._functions = {}
-        exec(compile((folder / "validation.py").read_text(), "validation.py", "exec"), self._functions)
+        path = ROOT / "solutions" / "validation" / "validation.py"
+        source = path.read_text()
         if mutant:
-            exec(compile(path.read_text(), path.name, "exec"), self._functions)
+            source = WRONG[mutant].composed(source, path)
+        self._functions = {}
+        exec(compile(source, "validation.py", "exec"), self._functions)
 
     def set(self, name, value):
         self._functions[name] = value
@@ -454,12 +458,20 @@ def test_the_report_describes_the_figures_of_right_code():
 @pytest.mark.parametrize(
     ("mutant", "place", "now"),
     [
-        ("coverage_outside", 0, r"good twin: .*finds \d\.\d% inside"),
-        ("rmse_without_root", 0, r"good twin: .*your rmse is 0\.00\d m/s"),
-        ("nees_divided", 1, r"right, your NEES is [01]\.\d\d on average.* 0% above and at (9\d|100)% below"),
-        ("band_of_the_sum", 1, r"your band from 3\d\.\d\d to 7\d\.\d\d.* at 0% above and at 100% below"),
-        ("bootstrap_own_block", 2, r"7 of them hold\. All are 24\.\d mm wide"),
-        ("bootstrap_iid", 2, r"0 of them hold\. All are 10\.\d mm wide"),
+        ("coverage.OUTSIDE_COUNTED", 0, r"good twin: .*finds \d\.\d% inside"),
+        ("rmse.ROOT_MISSING", 0, r"good twin: .*your rmse is 0\.00\d m/s"),
+        (
+            "nees.DIVIDED_BY_D",
+            1,
+            r"right, your NEES is [01]\.\d\d on average.* 0% above and at (9\d|100)% below",
+        ),
+        (
+            "consistency_band.NOT_DIVIDED_BY_RUNS",
+            1,
+            r"your band from 3\d\.\d\d to 7\d\.\d\d.* at 0% above and at 100% below",
+        ),
+        ("block_bootstrap_ci.BLOCK_IGNORED", 2, r"7 of them hold\. All are 24\.\d mm wide"),
+        ("block_bootstrap_ci.IID_BOOTSTRAP", 2, r"0 of them hold\. All are 10\.\d mm wide"),
     ],
 )
 def test_the_report_describes_the_figures_that_wrong_code_gives(mutant, place, now):

@@ -191,6 +191,7 @@ class Recording:
 class Replay(msgspec.Struct, frozen=True, kw_only=True):
     """A recording that was read."""
 
+    path: Path
     head: Head
     inputs: tuple[Input, ...]
     hashes: tuple[Hash | End, ...]
@@ -250,7 +251,11 @@ def read(path: Path) -> Replay:
 
 
 def replay(recorded: Replay) -> Difference:
-    """Repeat everything, and compare."""
+    """Repeat everything, and compare.
+
+    Raises:
+        CourseError: something that was recorded cannot be done.
+    """
     here = _versions()
     then = recorded.head.versions
     other = {
@@ -265,7 +270,14 @@ def replay(recorded: Replay) -> Difference:
         while inputs and (inputs[-1].tick < point.tick or isinstance(point, End)):
             step = inputs.pop()
             world.step(step.tick - world.ticks)
-            act(world, step)
+            try:
+                act(world, step)
+            except UsageError as error:
+                raise UsageError(
+                    f"{recorded.path} cannot do {step.what!r} before step {step.tick + 1}: {error.message}",
+                    help="Replay the file as it was recorded.",
+                    code=error.code,
+                ) from error
         world.step(point.tick - world.ticks)
         if world.state_hash() != point.hash:
             return Difference(
@@ -308,7 +320,7 @@ def _checked(path: Path, lines: list[Line]) -> Replay:
     unknown = {line.what for line in inputs} - _INPUTS
     if unknown or lines[-1].tick > _MOST_TICKS:
         raise IntegrityError(f"{path} asks for what no recording holds.", code="damaged_recording")
-    return Replay(head=head, inputs=inputs, hashes=hashes)
+    return Replay(path=path, head=head, inputs=inputs, hashes=hashes)
 
 
 def _versions() -> dict[str, str]:

@@ -12,7 +12,7 @@ import math
 import platform
 import shutil
 import subprocess
-from collections import deque
+import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, assert_never, cast
@@ -342,6 +342,8 @@ _PAPER = "#ffffff"
 _INK = "#222222"
 _FAINT = "#c9ccd1"
 _MOST_FRAMES = 3000
+#: Of the frames of a GIF of a run, unpacked.
+_GIF_BYTES = 700_000_000
 #: Longest side of a picture, in pixels.
 _LARGEST = 1920
 
@@ -379,7 +381,8 @@ class Film:
         self.size = (width - width % 2, height - height % 2)
         self._scale = 2 * self.size[0] / (right - left)
         self._origin = left, top
-        self._frames: list[Image] = []
+        #: Packed: most of a frame is paper, and a thousand large ones fit into any memory.
+        self._frames: list[bytes] = []
         self._palette: Image | None = None
         #: What does not move, drawn once for each cast of bodies.
         self._still: tuple[int, Image] | None = None
@@ -399,7 +402,7 @@ class Film:
                 help="Give a shorter --duration.",
                 code="too_long",
             )
-        self._frames.append(self._reduced(self.draw(parts, snapshot), parts))
+        self._frames.append(zlib.compress(self._reduced(self.draw(parts, snapshot), parts).tobytes(), 1))
 
     def draw(self, parts: tuple[Part, ...], snapshot: Snapshot) -> Image:
         """One picture in full colour."""
@@ -420,19 +423,16 @@ class Film:
         return picture
 
     def gif(self, fps: float = 25.0) -> bytes:
-        """The film as an animated GIF that repeats; it takes the frames, so that none is in memory twice."""
+        """The film as an animated GIF that repeats."""
         # The format counts hundredths of a second.
         pause = max(2, round(100.0 / fps)) * 10
-        frames = deque(self._some())
-        self._frames.clear()
-        first = frames.popleft()
-        rest = (frames.popleft() for _ in range(len(frames)))
+        frames = self._some()
         data = io.BytesIO()
-        first.save(
+        next(frames).save(
             data,
             format="GIF",
             save_all=True,
-            append_images=rest,
+            append_images=frames,
             duration=pause,
             loop=0,
             optimize=False,
@@ -479,10 +479,20 @@ class Film:
         """The film as "gif" or "mp4"."""
         return self.gif(fps) if kind == "gif" else self.mp4(fps)
 
-    def _some(self) -> list[Image]:
-        if not self._frames:
+    def room(self, kind: str) -> int:
+        """Frames that fit into a film; PIL has all of a GIF in memory at once."""
+        width, height = self.size
+        return _MOST_FRAMES if kind == "mp4" else min(_MOST_FRAMES, _GIF_BYTES // (width * height))
+
+    def _some(self) -> Iterator[Image]:
+        from PIL import Image as Images
+
+        if self._palette is None:
             raise UsageError("There is no frame to make a film of.", code="no_frames")
-        return self._frames
+        for packed in self._frames:
+            image = Images.frombytes("P", self.size, zlib.decompress(packed))
+            image.putpalette(self._palette.getpalette() or [])
+            yield image
 
     def _draw_parts(
         self, pen: ImageDraw, parts: tuple[Part, ...], snapshot: Snapshot, *, fixed: bool

@@ -34,6 +34,7 @@ export class Prediction {
   open() {
     const { stage, comparison } = this.view.state;
     if (!this.view.scene.unit) return;
+    this.view.say(""); // on a phone it would lie on the answer's button
     if (!this.element.hidden) this.close();
     else this.show(stage === "done" && comparison ? this.compare(comparison) : this.ask());
     this.element.querySelector("input, summary")?.focus();

@@ -35,6 +35,7 @@ def test_the_repository_passes(command: tuple[str, ...]) -> None:
     assert done.returncode == 0, f"{done.stdout[-4000:]}\n{done.stderr[-1000:]}"
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     "script",
     [

@@ -76,6 +76,7 @@ sys.exit(pytest.main(["--collect-only", "-q", "-n0", "-p", "no:cacheprovider", "
 """
 
 
+@pytest.mark.turns(4)
 def test_tests_are_collected_without_any_extra() -> None:
     """As the README's second command has it; CI installs them all, and would hide such an import."""
     done = _run("-c", _WITHOUT_EXTRAS)

@@ -73,7 +73,7 @@ def _notebook(cell: str) -> bytes:
 CLASS: dict[str, tuple[str, bytes]] = {
     "a statement bomb": (
         "doubling.ipynb",
-        _notebook(f"# get_ipython\n{_WRONG.format('pass', 'pass')}" + "x = 1\n" * 60_000),
+        _notebook(f"# get_ipython\n{_WRONG.format('pass', 'pass')}" + "x = 1\n" * 30_000),
     ),
     "brackets": ("doubling.ipynb", _notebook("%magic\ndef double(x):\n    return None\n" + "(" * 100_000)),
     "ragged": ("doubling.py", _WRONG.format("return [[1], [2, 3]]", "return [[x], [x, x]]").encode()),

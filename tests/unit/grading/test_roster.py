@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import unicodedata
-from functools import partial
 from pathlib import Path
 
 import pytest
@@ -18,8 +17,9 @@ from course.grading.intake.downloads import class_list
 from course.grading.results.effective import override
 from course.grading.results.roster import Person, read_roster
 from course.grading.running.folder import open_results
-from course.grading.running.run import RunOptions, grade_class
+from course.grading.running.run import RunOptions
 from course.scoring.judging.submission import Terms
+from tests.unit.grading.made import graded_class
 from tests.unit.grading.pages import faults, read_page
 from tests.unit.grading.running.test_run import right
 
@@ -98,10 +98,9 @@ def made(folder: Path, platform: str) -> tuple[Path, Path]:
 
 
 def graded(folder: Path, catalog: Catalog, platform: str):
-    submissions, roster = made(folder, platform)
+    _, roster = made(folder, platform)
     options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(roster))
-    out = folder / "out"
-    return out, grade_class(submissions, out, catalog, options, lambda *_: None, grade=partial(right))
+    return folder / "out", graded_class(folder, catalog, options, grade=right)
 
 
 def rows(path: Path) -> dict[str, dict[str, str]]:
@@ -165,7 +164,7 @@ def test_work_of_somebody_who_is_not_enrolled_is_listed(tmp_path: Path, catalog:
     (submissions / "eve").mkdir()
     (submissions / "eve" / "doubling.py").write_text("def double(x):\n    return 2 * x\n")
     options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(roster))
-    summary = grade_class(submissions, tmp_path / "out", catalog, options, lambda *_: None, grade=right)
+    summary = graded_class(tmp_path, catalog, options, grade=right)
     assert (summary.missing, summary.strangers) == (["bob"], ["eve"])
     assert sorted(rows(tmp_path / "out" / "grades.csv")) == ["ada", "bob", "eve", "grace"]
 
@@ -179,7 +178,7 @@ def test_two_spellings_of_an_accent_are_one_student(tmp_path: Path, catalog: Cat
     options = RunOptions(
         exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(tmp_path / "roster.csv")
     )
-    summary = grade_class(submissions, tmp_path / "out", catalog, options, lambda *_: None, grade=right)
+    summary = graded_class(tmp_path, catalog, options, grade=right)
     assert (summary.missing, summary.strangers) == ([], [])
 
 
@@ -239,7 +238,7 @@ def test_who_is_in_no_row_is_told_which_columns_were_tried(tmp_path: Path, catal
     roster.write_text(CANVAS, "utf-8")
     options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(roster))
     (submissions / "grace").rename(submissions / "hopper")
-    summary = grade_class(submissions, tmp_path / "out", catalog, options, lambda *_: None, grade=right)
+    summary = graded_class(tmp_path, catalog, options, grade=right)
     tried = (
         "roster.csv has the columns Student, ID, SIS User ID, SIS Login ID, Section, Doubling (4711), "
         "Current Score. The name of a folder was looked for in ID, SIS User ID, SIS Login ID, Student; it "
@@ -338,7 +337,7 @@ def test_an_empty_folder_is_missing_without_a_roster_too(tmp_path: Path, catalog
     submissions, _ = made(tmp_path, "folders")
     (submissions / "eva").mkdir()
     options = RunOptions(terms=Terms(), seed=1)
-    summary = grade_class(submissions, tmp_path / "out", catalog, options, lambda *_: None, grade=right)
+    summary = graded_class(tmp_path, catalog, options, grade=right)
     assert (summary.missing, summary.exit_code) == (["eva"], 0)
     found = rows(tmp_path / "out" / "grades.csv")
     assert {name: row["state"] for name, row in found.items()} == {
@@ -346,7 +345,7 @@ def test_an_empty_folder_is_missing_without_a_roster_too(tmp_path: Path, catalog
     }  # fmt: skip
     (submissions / "eva" / "doubling.py").write_text("double = abs\n")
     again = RunOptions(terms=Terms(), resume=True)
-    summary = grade_class(submissions, tmp_path / "out", catalog, again, lambda *_: None, grade=right)
+    summary = graded_class(tmp_path, catalog, again, grade=right)
     assert (summary.missing, rows(tmp_path / "out" / "grades.csv")["eva"]["state"]) == ([], "graded")
 
 

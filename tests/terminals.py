@@ -12,6 +12,9 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 
+#: Where a program that has ended leaves the terminal: the usual screen, no mouse reports, a cursor.
+AS_IT_WAS = "0 0 1"
+
 needs_tmux = pytest.mark.skipif(shutil.which("tmux") is None, reason="tmux is not installed")
 
 

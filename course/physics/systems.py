@@ -16,7 +16,7 @@ library and numpy, and has neither an integrator nor a solution, which would giv
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol, overload
 
 import numpy as np
@@ -63,7 +63,7 @@ class _Plain:
 
     def params(self) -> dict[str, Any]:
         """Parameters as plain numbers and lists, by name."""
-        return {field.name: getattr(self, field.name) for field in fields(self)}  # type: ignore[arg-type]
+        return {name: getattr(self, name) for name in self.__match_args__}  # type: ignore[attr-defined]
 
     def __post_init__(self) -> None:
         for name, value in self.params().items():

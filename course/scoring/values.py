@@ -46,6 +46,8 @@ class Inspected:
 
 def as_number(value: Any, name: str = "the result") -> float:
     """One real number; a zero-dimensional array counts, a list of one number does not."""
+    if type(value) is float:  # nearly always
+        return value
     if isinstance(value, np.ndarray) and value.ndim == 0 and value.dtype.kind in "fiu":
         value = value.item()
     if isinstance(value, bool) or not isinstance(value, int | float | np.integer | np.floating):
@@ -105,7 +107,9 @@ def as_array(value: Any, shape: Sequence[int | None], name: str = "the result") 
     array = _real(value)
     if array is None:
         _refuse(value, name, "an array of numbers", f"numbers of shape {_spelled(shape)}")
-    if array.ndim != len(shape) or any(w not in (None, n) for w, n in zip(shape, array.shape, strict=True)):
+    if array.shape != tuple(shape) and (
+        array.ndim != len(shape) or any(w not in (None, n) for w, n in zip(shape, array.shape, strict=True))
+    ):
         _refuse_shape(array, name, _spelled(shape))
     return array
 
@@ -273,6 +277,8 @@ def _oddity(item: Any) -> str:
 
 def _real(value: Any) -> Array | None:
     """``value`` as a float array, or None if it is not real numbers of one regular shape."""
+    if type(value) is np.ndarray and value.dtype.kind == "f":  # nearly always
+        return value.astype(float)
     if not _is_numeric(value) or isinstance(value, bool):
         return None
     try:

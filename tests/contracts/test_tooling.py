@@ -35,6 +35,7 @@ def test_the_repository_passes(command: tuple[str, ...]) -> None:
     assert done.returncode == 0, f"{done.stdout[-4000:]}\n{done.stderr[-1000:]}"
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     "script",
     [
@@ -75,6 +76,7 @@ sys.exit(pytest.main(["--collect-only", "-q", "-n0", "-p", "no:cacheprovider", "
 """
 
 
+@pytest.mark.turns(4)
 def test_tests_are_collected_without_any_extra() -> None:
     """As the README's second command has it; CI installs them all, and would hide such an import."""
     done = _run("-c", _WITHOUT_EXTRAS)

@@ -1,8 +1,9 @@
 """Ways to type a command: a student's, from the built wheel, and an instructor's, from the checkout.
 
-In an ordinary run the wheel is unpacked, and what it needs comes from this environment; the parts of a
-journey that come in turn are those of the day. With ``COURSE_JOURNEYS=all``, as CI has it, the wheel is
-installed into an environment of its own, and every part is tried.
+In an ordinary run the wheel is unpacked, and what it needs comes from this environment; an instructor's
+commands run in the tests' own process; the parts of a journey that come in turn are those of the day. With
+``COURSE_JOURNEYS=all``, as CI has it, the wheel is installed into an environment of its own, every command is
+a process, and every part is tried.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 import pytest
+
+from tests.command_line import in_process
 
 if TYPE_CHECKING:
     T = TypeVar("T")
@@ -39,20 +42,29 @@ def in_turn(cases: Sequence[T], each: int = 1) -> list[T]:
 
 @dataclass
 class Way:
-    """Types commands, and fails with the whole line where one does not end as it should."""
+    """Types commands, and fails with the whole line where one does not end as it should.
+
+    Attributes:
+        here: whether a command runs in this process, where it has nothing to read.
+    """
 
     command: list[str]
     home: Path
     environment: dict[str, str] = field(default_factory=dict)
+    here: bool = False
 
     def __call__(
         self, *words: object, cwd: Path | None = None, code: int | None = 0, stdin: str = "", **more: str
     ) -> subprocess.CompletedProcess[str]:
-        line = [*self.command, *map(str, words)]
-        ran = subprocess.run(
-            line, cwd=cwd or self.home, env={**self.environment, **more}, input=stdin, timeout=600,
-            capture_output=True, text=True, encoding="utf-8", check=False,
-        )  # fmt: skip
+        line, environment = [*self.command, *map(str, words)], {**self.environment, **more}
+        if self.here and not stdin:
+            ran = in_process(*words, cwd=cwd or self.home, env=environment)
+            ran.stdout = ran.stdout.replace("\r\n", "\n")  # as of a process
+        else:
+            ran = subprocess.run(
+                line, cwd=cwd or self.home, env=environment, input=stdin, timeout=600,
+                capture_output=True, text=True, encoding="utf-8", check=False,
+            )  # fmt: skip
         shown = f"$ course {' '.join(map(str, words))}\n{ran.stdout}{ran.stderr}exit {ran.returncode}"
         assert code is None or ran.returncode == code, shown
         assert "Traceback (most recent call last)" not in ran.stderr, shown
@@ -96,7 +108,13 @@ def student(installed: tuple[list[str], dict[str, str]], tmp_path: Path) -> Way:
 
 
 @pytest.fixture
+def workspace(student: Way, tmp_path: Path) -> Path:
+    student("init", "work")
+    return tmp_path / "work"
+
+
+@pytest.fixture
 def instructor(tmp_path: Path) -> Way:
     """Commands of an instructor, in a checkout."""
     command = [sys.executable, "-P", "-m", "course"]
-    return Way(command, tmp_path, {**_environment(tmp_path), "PYTHONPATH": str(ROOT)})
+    return Way(command, tmp_path, {**_environment(tmp_path), "PYTHONPATH": str(ROOT)}, here=not ALL)

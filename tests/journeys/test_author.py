@@ -7,6 +7,7 @@ import math
 import re
 import shutil
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from itertools import count
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from course.catalog.reading import BLANK
 from tests.journeys.conftest import ROOT, Way
 from tests.unit.authoring.test_scaffold import fill as fill_tripling
 
+pytestmark = pytest.mark.turns(4)
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
 SCENE = ROOT / "course" / "authoring" / "templates" / "scene.toml.tmpl"
 #: What an author writes into the blanks of a warm-up, file by file and from top to bottom.
@@ -57,7 +59,7 @@ def mini(tmp_path: Path) -> Path:
 @pytest.fixture
 def author(instructor: Way, mini: Path) -> Way:
     """Commands of its author, who has a checkout of the program."""
-    return Way(instructor.command, instructor.home, {**instructor.environment, "COURSE_CONTENT": str(mini)})
+    return replace(instructor, environment={**instructor.environment, "COURSE_CONTENT": str(mini)})
 
 
 def put(path: Path, old: str, new: str) -> None:

@@ -13,7 +13,7 @@ import shutil
 import sys
 import tomllib
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -244,7 +244,8 @@ def typing(
             shutil.copytree(request.getfixturevalue(place), there)
         if line[:2] == ["grade", "run"]:  # "`grades` must be new", says the page
             shutil.rmtree(there / "grades")
-        way = instructor if place in {"graded", "checkout"} else student
+        # A process always: a copy of the checkout has a program of its own.
+        way = replace(instructor, here=False) if place in {"graded", "checkout"} else student
         own = {"PYTHONPATH": str(there)} if place == "checkout" else {}
         way(*line, cwd=there, code=code, **own)
 

@@ -268,6 +268,43 @@ def test_a_run_is_scrubbed_gone_on_from_the_middle_and_filmed(sandbox) -> None:
     assert Path(film.value.path()).read_bytes()[:6] == b"GIF89a"
 
 
+def test_a_drag_along_the_time_line_looks_where_the_pointer_is(sandbox) -> None:
+    at = sandbox("newtons-cradle")
+    at.until(lambda: at.frame[2] > 1.5)
+    line = at.page.locator("#line")
+    box = line.bounding_box()
+    at.page.mouse.move(box["x"] + box["width"] - 8, box["y"] + box["height"] / 2)
+    at.page.mouse.down()
+    at.page.mouse.move(box["x"] + box["width"] * 0.7, box["y"] + box["height"] / 2, steps=12)
+    at.until(lambda: at.status["at"] is not None)
+    at.page.wait_for_timeout(300)
+    assert line.bounding_box() == box, "what appears beside the line moved it under the pointer"
+    assert at.status["at"] == pytest.approx(0.7 * at.status["now"], abs=0.1 * at.status["now"])
+    at.page.mouse.up()
+
+
+def test_what_undo_does_to_a_slider_its_thumb_follows(sandbox) -> None:
+    at = sandbox("free-fall")
+    slider = at.page.get_by_role("slider", name="gravity")
+    before = slider.input_value()
+    slider.press("Home")
+    at.until(lambda: at.status["settings"]["gravity"] == 0)
+    at.page.keyboard.press("Control+z")
+    at.until(lambda: at.status["settings"]["gravity"] > 9)
+    at.until(lambda: slider.input_value() == before, patience=3)
+
+
+def test_when_everything_has_left_the_picture_the_page_says_how_to_see_it_again(sandbox) -> None:
+    at = sandbox("free-fall")
+    at.page.get_by_text("Everything has left the picture").wait_for()
+    at.page.keyboard.press("r")
+    at.page.get_by_text("Everything has left the picture").wait_for(state="detached")
+    at.page.keyboard.press("Space")
+    for _ in range(8):
+        at.page.get_by_role("button", name="Closer").click()
+    at.page.get_by_text("⤢ shows all of it").wait_for()
+
+
 def test_every_scene_opens_from_the_gallery_without_a_command(sandbox) -> None:
     at = sandbox(None)
     gallery = at.page.locator(".gallery .scene")

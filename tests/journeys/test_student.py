@@ -23,12 +23,6 @@ def model(exercise_id: str) -> Path:
     return ROOT / "solutions" / exercise.place / exercise.module
 
 
-@pytest.fixture
-def workspace(student: Way, tmp_path: Path) -> Path:
-    student("init", "work")
-    return tmp_path / "work"
-
-
 def test_the_first_hour(student: Way, tmp_path: Path) -> None:
     """The demonstration, a workspace, the first lesson read to its end with every prediction made."""
     assert "7.32 times its initial value" in student("demo").stdout
@@ -52,6 +46,7 @@ def test_the_first_hour(student: Way, tmp_path: Path) -> None:
     assert {lesson["id"]: lesson["read_at"] for lesson in overview["lessons"]}[first]
 
 
+@pytest.mark.turns(2)
 @pytest.mark.parametrize("shape", [(), ("--plain",)], ids=["fancy", "plain"])
 def test_five_tasks_in_a_row_without_leaving_the_loop(
     student: Way, workspace: Path, shape: tuple[str, ...]

@@ -257,6 +257,8 @@ def _raw(value: Any) -> bytes | memoryview:
 
 def _put_other(value: Any, parts: Parts, names: Names | None, depth: int) -> int:
     """Everything whose exact type has no entry: numpy scalars, subclasses, callables, strangers."""
+    if not isinstance(value, _FAMILIAR):
+        return _put_lowered(value, parts, names, depth)
     if isinstance(value, np.ndarray):
         return _put_array(np.asarray(value), parts, names, depth)
     if isinstance(value, np.generic):
@@ -270,6 +272,11 @@ def _put_other(value: Any, parts: Parts, names: Names | None, depth: int) -> int
     for base, write in _BASES:
         if isinstance(value, base):
             return write(value, parts, names, depth)
+    raise AssertionError(f"{_name_of(value)} is no kind of value")
+
+
+def _put_lowered(value: Any, parts: Parts, names: Names | None, depth: int) -> int:
+    """A callable, a right-hand side or a generator; nothing else can cross."""
     lowered = names.lower(value) if names is not None else None
     if isinstance(lowered, Reference):
         parts.append((b"c" if lowered.mine else b"w") + U32.pack(lowered.number))
@@ -311,6 +318,7 @@ _BASES: tuple[tuple[type, Callable[[Any, Parts, Names | None, int], int]], ...] 
     (tuple, _put_list),
     (dict, _put_dict),
 )
+_FAMILIAR = (np.ndarray, np.generic, complex, *(base for base, _ in _BASES))
 
 
 # ---

@@ -12,7 +12,7 @@ import math
 import platform
 import shutil
 import subprocess
-from collections import deque
+import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, assert_never, cast
@@ -191,6 +191,7 @@ class Recording:
 class Replay(msgspec.Struct, frozen=True, kw_only=True):
     """A recording that was read."""
 
+    path: Path
     head: Head
     inputs: tuple[Input, ...]
     hashes: tuple[Hash | End, ...]
@@ -250,7 +251,11 @@ def read(path: Path) -> Replay:
 
 
 def replay(recorded: Replay) -> Difference:
-    """Repeat everything, and compare."""
+    """Repeat everything, and compare.
+
+    Raises:
+        CourseError: something that was recorded cannot be done.
+    """
     here = _versions()
     then = recorded.head.versions
     other = {
@@ -265,7 +270,14 @@ def replay(recorded: Replay) -> Difference:
         while inputs and (inputs[-1].tick < point.tick or isinstance(point, End)):
             step = inputs.pop()
             world.step(step.tick - world.ticks)
-            act(world, step)
+            try:
+                act(world, step)
+            except UsageError as error:
+                raise UsageError(
+                    f"{recorded.path} cannot do {step.what!r} before step {step.tick + 1}: {error.message}",
+                    help="Replay the file as it was recorded.",
+                    code=error.code,
+                ) from error
         world.step(point.tick - world.ticks)
         if world.state_hash() != point.hash:
             return Difference(
@@ -308,7 +320,7 @@ def _checked(path: Path, lines: list[Line]) -> Replay:
     unknown = {line.what for line in inputs} - _INPUTS
     if unknown or lines[-1].tick > _MOST_TICKS:
         raise IntegrityError(f"{path} asks for what no recording holds.", code="damaged_recording")
-    return Replay(head=head, inputs=inputs, hashes=hashes)
+    return Replay(path=path, head=head, inputs=inputs, hashes=hashes)
 
 
 def _versions() -> dict[str, str]:
@@ -330,6 +342,8 @@ _PAPER = "#ffffff"
 _INK = "#222222"
 _FAINT = "#c9ccd1"
 _MOST_FRAMES = 3000
+#: Of the frames of a GIF of a run, unpacked.
+_GIF_BYTES = 700_000_000
 #: Longest side of a picture, in pixels.
 _LARGEST = 1920
 
@@ -367,7 +381,8 @@ class Film:
         self.size = (width - width % 2, height - height % 2)
         self._scale = 2 * self.size[0] / (right - left)
         self._origin = left, top
-        self._frames: list[Image] = []
+        #: Packed: most of a frame is paper, and a thousand large ones fit into any memory.
+        self._frames: list[bytes] = []
         self._palette: Image | None = None
         #: What does not move, drawn once for each cast of bodies.
         self._still: tuple[int, Image] | None = None
@@ -387,7 +402,7 @@ class Film:
                 help="Give a shorter --duration.",
                 code="too_long",
             )
-        self._frames.append(self._reduced(self.draw(parts, snapshot), parts))
+        self._frames.append(zlib.compress(self._reduced(self.draw(parts, snapshot), parts).tobytes(), 1))
 
     def draw(self, parts: tuple[Part, ...], snapshot: Snapshot) -> Image:
         """One picture in full colour."""
@@ -408,19 +423,16 @@ class Film:
         return picture
 
     def gif(self, fps: float = 25.0) -> bytes:
-        """The film as an animated GIF that repeats; it takes the frames, so that none is in memory twice."""
+        """The film as an animated GIF that repeats."""
         # The format counts hundredths of a second.
         pause = max(2, round(100.0 / fps)) * 10
-        frames = deque(self._some())
-        self._frames.clear()
-        first = frames.popleft()
-        rest = (frames.popleft() for _ in range(len(frames)))
+        frames = self._some()
         data = io.BytesIO()
-        first.save(
+        next(frames).save(
             data,
             format="GIF",
             save_all=True,
-            append_images=rest,
+            append_images=frames,
             duration=pause,
             loop=0,
             optimize=False,
@@ -467,10 +479,20 @@ class Film:
         """The film as "gif" or "mp4"."""
         return self.gif(fps) if kind == "gif" else self.mp4(fps)
 
-    def _some(self) -> list[Image]:
-        if not self._frames:
+    def room(self, kind: str) -> int:
+        """Frames that fit into a film; PIL has all of a GIF in memory at once."""
+        width, height = self.size
+        return _MOST_FRAMES if kind == "mp4" else min(_MOST_FRAMES, _GIF_BYTES // (width * height))
+
+    def _some(self) -> Iterator[Image]:
+        from PIL import Image as Images
+
+        if self._palette is None:
             raise UsageError("There is no frame to make a film of.", code="no_frames")
-        return self._frames
+        for packed in self._frames:
+            image = Images.frombytes("P", self.size, zlib.decompress(packed))
+            image.putpalette(self._palette.getpalette() or [])
+            yield image
 
     def _draw_parts(
         self, pen: ImageDraw, parts: tuple[Part, ...], snapshot: Snapshot, *, fixed: bool

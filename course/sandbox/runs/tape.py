@@ -172,14 +172,14 @@ class Tape:
         return np.array(places, dtype="<f4").reshape(-1, 3)
 
     def film(self, scene: Scene, kind: str, width: int, told: Callable[[float], bool]) -> bytes:
-        """This run as a film, or the moment of its last frame as a picture.
+        """This run as a film, or its last part, if it is long; or the moment of its last frame as a picture.
 
         Args:
             kind: "gif", "mp4" or "png".
             told: is told how far it is, 0 to 1, and answers whether to go on.
 
         Raises:
-            UsageError: it was stopped, or is too long.
+            UsageError: it was stopped.
             MissingCapabilityError: this machine cannot make one.
         """
         reel = Film(scene, width)
@@ -189,10 +189,11 @@ class Tape:
             return reel.png(self.casts[int(self.frames[-1][1])], shot_of(self.frames[-1]))
         slow = max(1.0, _LEAST / max(self.times[-1], 1e-9))
         count = int(self.times[-1] * slow * FILM_FPS) + 1
-        for number in range(count):
+        first = max(0, count - reel.room(kind))
+        for number in range(first, count):
             one = self.frames[self.at(number / FILM_FPS / slow)]
             reel.take(self.casts[int(one[1])], shot_of(one))
-            if not told((number + 1) / (count + 1)):
+            if not told((number + 1 - first) / (count + 1 - first)):
                 raise UsageError("The film was stopped.", code="stopped")
         return reel.made(kind, FILM_FPS)
 
@@ -264,13 +265,10 @@ class Filming:
     """
 
     def __init__(self, tape: Tape, scene: Scene, kind: str, width: int) -> None:
-        self.name, self.share, self.stopped, self.data, self.failed = (
-            f"{scene.id}.{kind}",
-            0.0,
-            False,
-            b"",
-            "",
-        )
+        room = Film(scene, width).room(kind) / FILM_FPS
+        part = f"-last-{room:.0f}-s" if kind != "png" and tape.times[-1] > room else ""
+        self.name, self.share, self.stopped = f"{scene.id}{part}.{kind}", 0.0, False
+        self.data, self.failed = b"", ""
         self._thread = Thread(target=self._make, args=(tape, scene, kind, width), daemon=True)
         self._thread.start()
 

@@ -22,6 +22,10 @@ from course.sandbox.scene.rules import SETTINGS, check_scene, checked, number
 FOLDER = Path(__file__).parents[1] / "scenes"
 
 
+#: Where the formula is that a run is compared with.
+_THEORY = ("prediction", "theory")
+
+
 class Chosen(msgspec.Struct, frozen=True, kw_only=True):
     """A scene with changed parameters and settings.
 
@@ -220,10 +224,12 @@ def _check_formulas(document: Document[Scene]) -> None:
     }
     if scene.prediction is not None:
         texts |= {("prediction", key): getattr(scene.prediction, key) for key in ("question", "why")}
+        texts[_THEORY] = f"{{{scene.prediction.theory}}}"
     texts = {where: text for where, text in texts.items() if "{" in text}
     if not texts:
         return
-    named = {name.rpartition(".")[2] for text in texts.values() for name in used(text)}
+    asked = [text for where, text in texts.items() if where != _THEORY]
+    named = {name.rpartition(".")[2] for text in asked for name in used(text)}
     for settings in _ends(scene, named):
         try:
             ready, parameters, rest = _put_in(scene, dict(settings))
@@ -231,6 +237,8 @@ def _check_formulas(document: Document[Scene]) -> None:
             continue  # that end is out of reach; a user who asks for it is told so
         values = values_of(Chosen(scene=ready, parameters=parameters, settings=rest, path=document.path))
         for where, text in texts.items():
+            if where == _THEORY and settings:
+                continue  # it may end where a range does, and then there is nothing to compare
             try:
                 fill(text, values)
                 if where[-1] == "time" and not settings:

@@ -290,8 +290,9 @@ class Stage:
         count = sum(one.tick <= tick for one in self.recording.inputs)
         self._push(self._undos, self._now("going on from earlier"))
         self._redos.clear()
-        there = Moment(self.chosen, self.recording, count, tick, self.at)
-        self._make(there, f"Going on from {self.at:.2f} s", paused=False, ghost=True)
+        t = self.tape.times[self.tape.at(self.at)]
+        there = Moment(self.chosen, self.recording, count, tick, t)
+        self._make(there, f"Going on from {t:.2f} s", paused=False, ghost=True)
 
     def undo(self) -> None:
         """Back to the moment before the last thing that was done."""
@@ -448,7 +449,8 @@ class Stage:
         there = stack.pop()
         self._push(other, self._now(there.why))
         self._last = ("", None, -math.inf)
-        self._make(there, f"{which.capitalize()}: {there.why}", paused=True, stacks=(undos, redos))
+        says = f"{which.capitalize()}: {there.why}, at {there.t:.2f} s"
+        self._make(there, says, paused=True, stacks=(undos, redos))
 
     def _make(
         self,
@@ -515,7 +517,7 @@ class Stage:
                 self.hear()
             self.tape.take()
             self.anew += 1
-            self.news.append(f"{says.rstrip('.')}: it is {world.t:.2f} s.")
+            self.news.append(f"{says}.")
 
         undos, redos = stacks if stacks else (self._undos[:-1], list(self._redos))
         self._work = _Work(steps(), done, says, stage={"undos": undos, "redos": redos})

@@ -1,8 +1,10 @@
 """Checks, collected once by pytest and run again for every submission.
 
 Only this module uses pytest's internals. ``pytest.main`` for each submission would cost about 30 ms, and more
-with time; collecting once and running the items again costs about 4 ms every time. A contract test covers the
-calls made here, and the project's metadata caps pytest at the majors it was run with.
+with time; collecting once and running the items again costs about half a millisecond each. A check that takes
+nothing but the fixtures of this module is a function to be called, and that costs nothing; one with fixtures,
+parameters, marks or a class of its author's goes through pytest. A contract test covers the calls made here,
+and the project's metadata caps pytest at the majors it was run with.
 
 Checks are ordinary pytest functions. What pytest would print about them is of no use here, so the report
 hook keeps the exception and builds no traceback text; the verdict is made from what the exception says.
@@ -10,9 +12,11 @@ hook keeps the exception and builds no traceback text; the verdict is made from 
 
 from __future__ import annotations
 
+import ast
 import contextlib
 import functools
 import importlib.util
+import inspect
 import os
 import re
 import sys
@@ -199,12 +203,16 @@ class CollectedChecks:
         self._session, items = _collect([path for path, _ in files], self._plugin)
         visibility = {path.resolve(): kind for path, kind in files}
         self._items: dict[str, pytest.Item] = {}
+        self._plain: dict[str, tuple[str, ...]] = {}  # of checks that can be called: the fixtures they take
         self._checks: list[Check] = []
         for item in items:
             check = _check_of(item, visibility[item.path.resolve()])
             if check.id in self._items:
                 raise _fault(item, f"two checks have the id {check.id!r}", "Rename one of the functions.")
             self._items[check.id] = item
+            taken = _plainly_taken(item)
+            if taken is not None:
+                self._plain[check.id] = taken
             self._checks.append(check)
         for check in self._checks:
             for required in check.requires:
@@ -237,12 +245,32 @@ class CollectedChecks:
 
     def run(self, check: Check, submission: RemoteSubmission) -> BaseException | None:
         """How the check ends for this submission: None if it passes, else what it raised."""
+        item = self._items[check.id]
         self._plugin.submission = submission
+        try:
+            with np.errstate(all="ignore"):  # a check may compute with whatever a submission returned
+                if check.id in self._plain:
+                    returned, outcome = self._called(item, self._plain[check.id])
+                    if returned is None:
+                        return outcome
+                # What returns something may be no test at all: pytest knows.
+                return self._through_pytest(item)
+        finally:
+            self._plugin.submission = None
+
+    def _called(self, item: Any, taken: tuple[str, ...]) -> tuple[object, BaseException | None]:
+        """What the function of a check returned, and what it raised."""
+        try:
+            return item.obj(**self._plugin.fixtures(item.name, taken)), None
+        except (KeyboardInterrupt, pytest.exit.Exception):  # ends pytest's own protocol, too
+            raise
+        except BaseException as error:  # noqa: BLE001 - whatever a check raises is how it ends
+            return None, error
+
+    def _through_pytest(self, item: pytest.Item) -> BaseException | None:
         self._plugin.outcome = None
         self._plugin.called = False
-        with np.errstate(all="ignore"):  # a check may compute with whatever a submission returned
-            _run_item(self._items[check.id])
-        self._plugin.submission = None
+        _run_item(item)
         outcome, self._plugin.outcome = self._plugin.outcome, None
         if outcome is None and not self._plugin.called:
             return RuntimeError("pytest did not call it")  # no news is not a pass
@@ -260,6 +288,34 @@ def _run_item(item: pytest.Item) -> None:
     from _pytest.runner import runtestprotocol
 
     runtestprotocol(item, log=False, nextitem=None)
+
+
+def _plainly_taken(item: Any) -> tuple[str, ...] | None:
+    """The fixtures that a check takes if all that pytest would do is to call it with them, else None.
+
+    Whatever an author can put around a check shows in one of these: fixtures of theirs, also those that are
+    used without being named, as ``setup_module`` is; parameters; marks; classes; code in an ``__init__.py``.
+    """
+    if type(item) is not pytest.Function or item.cls is not None or hasattr(item, "callspec"):
+        return None
+    info = item._fixtureinfo
+    known = {*OWN, "request"}  # ``rng`` asks for it
+    if not known.issuperset(item.fixturenames) or not OWN.issuperset(info.argnames):
+        return None
+    if any(len(found) > 1 for found in info.name2fixturedefs.values()):
+        return None
+    if any(mark.name not in _MARKS for mark in item.iter_markers()) or inspect.iscoroutinefunction(item.obj):
+        return None
+    packages = (node.path / "__init__.py" for node in item.listchain() if isinstance(node, pytest.Package))
+    return None if any(map(_does_something, packages)) else tuple(info.argnames)
+
+
+def _does_something(path: Path) -> bool:
+    """Whether a file has more in it than a docstring: ``setup_module`` of a package, perhaps."""
+    return not all(
+        isinstance(part, ast.Expr) and isinstance(part.value, ast.Constant)
+        for part in ast.parse(path.read_bytes()).body
+    )
 
 
 def _collect(paths: list[Path], plugin: CheckPlugin) -> tuple[pytest.Session, list[pytest.Item]]:
@@ -345,6 +401,9 @@ MARKERS = (
     "task(name): the function whose points these are",
     "requires(*checks): skipped unless these checks passed",
 )
+_MARKS = frozenset(marker.partition("(")[0] for marker in MARKERS)
+#: The fixtures that every check may take.
+OWN = frozenset({"submission", "rng", "draw"})
 
 
 class CheckPlugin:
@@ -369,6 +428,15 @@ class CheckPlugin:
             self.refused = call.excinfo.value
         return report
 
+    def fixtures(self, name: str, wanted: tuple[str, ...]) -> dict[str, Any]:
+        """Fixtures of ``OWN`` for the check function of that name."""
+        made: dict[str, Any] = {"submission": self.submission}
+        if "rng" in wanted or (self.draws and "draw" in wanted):
+            assert self.submission is not None
+            made["rng"] = np.random.default_rng([self.submission.seed, zlib.crc32(name.encode())])
+        made["draw"] = made.get("rng") if self.draws else None
+        return {fixture: made[fixture] for fixture in wanted}
+
     @pytest.fixture(name="submission")
     def _submission(self) -> Any:
         return self.submission
@@ -376,8 +444,8 @@ class CheckPlugin:
     @pytest.fixture
     def rng(self, request: pytest.FixtureRequest) -> np.random.Generator:
         """Random numbers of this check in this grading run: the same again in a regrade."""
-        assert self.submission is not None
-        return np.random.default_rng([self.submission.seed, zlib.crc32(request.node.name.encode())])
+        numbers: np.random.Generator = self.fixtures(request.node.name, ("rng",))["rng"]
+        return numbers
 
     @pytest.fixture
     def draw(self, rng: np.random.Generator) -> np.random.Generator | None:

@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from course.errors import ContentError
@@ -184,6 +185,126 @@ def test_skipping_from_within_is_no_pass(collect: Any) -> None:
     checks = collect(source)
     assert _run(checks, "skips", Fake()) is not None
     assert _run(checks, "expects_to_fail", Fake()) is not None
+
+
+@pytest.mark.parametrize("taken", ["submission", "submission, own"])
+def test_a_check_may_compute_with_infinite_numbers(taken: str, collect: Any) -> None:
+    source = f'''
+    import numpy as np
+    import pytest
+
+    @pytest.fixture
+    def own():
+        pass
+
+    @pytest.mark.task("a")
+    @pytest.mark.points(1)
+    def test_computes({taken}):
+        """It computes"""
+        submission.log.append(np.array([np.inf]) - np.inf)  # numpy would warn, and a warning may be an error
+    '''
+    submission = Fake()
+    assert _run(collect(source), "computes", submission) is None
+    assert np.isnan(submission.log).all()
+
+
+def test_a_check_that_pytest_never_called_is_no_pass(collect: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    checks = collect()
+    monkeypatch.setattr("course.scoring.checks.collected._run_item", lambda _item: None)
+    assert isinstance(_run(checks, "passes", Fake()), RuntimeError)
+
+
+_AROUND = '''
+import pytest
+
+{above}
+
+@pytest.mark.task("a")
+@pytest.mark.points(1)
+{mark}
+def test_it({taken}):
+    """It"""
+    {body}
+'''
+
+
+@pytest.mark.parametrize(
+    ("said", "above", "mark", "taken", "body"),
+    [
+        (["before", "it"], "def setup_function():\n    seen.append('before')", "", "", "seen.append('it')"),
+        (["before", "it"], "def setup_module():\n    seen.append('before')", "", "", "seen.append('it')"),
+        (
+            ["before", "it"],
+            "@pytest.fixture(autouse=True)\ndef own():\n    seen.append('before')",
+            "", "", "seen.append('it')",
+        ),
+        (
+            ["before", "it"],
+            "@pytest.fixture\ndef own():\n    seen.append('before')",
+            "@pytest.mark.usefixtures('own')", "", "seen.append('it')",
+        ),
+        (["theirs"], "@pytest.fixture\ndef rng():\n    return 'theirs'", "", "rng", "seen.append(rng)"),
+        (
+            ["theirs"],
+            "@pytest.fixture\ndef submission():\n    return 'theirs'",
+            "", "draw, submission", "seen.append(submission)",
+        ),
+        ([], "", "@pytest.mark.skip", "", "seen.append('it')"),
+        ([], "", "@pytest.mark.skipif(True, reason='always')", "", "seen.append('it')"),
+        (["test_it"], "", "", "request", "seen.append(request.node.name)"),
+    ],
+)  # fmt: skip
+def test_whatever_an_author_puts_around_a_check_counts(
+    said: list[str], above: str, mark: str, taken: str, body: str, collect: Any
+) -> None:
+    source = _AROUND.format(above="seen = []\n" + above, mark=mark, taken=taken, body=body)
+    checks = collect(source)
+    for _ in range(2):
+        checks._items["it"].obj.__globals__["seen"].clear()
+        outcome = _run(checks, "it", Fake())
+        assert checks._items["it"].obj.__globals__["seen"] == said
+        assert (outcome is None) == bool(said)
+
+
+def test_a_check_has_its_parameters(collect: Any) -> None:
+    mark = "@pytest.mark.parametrize('x', [1, 2])"
+    checks = collect(
+        _AROUND.format(above="", mark=mark, taken="submission, x", body="submission.log.append(x)")
+    )
+    submission = Fake()
+    assert [_run(checks, check.id, submission) for check in checks.checks] == [None, None]
+    assert submission.log == [1, 2]
+
+
+def test_a_package_around_the_checks_sets_itself_up(collect: Any, tmp_path: Path) -> None:
+    (tmp_path / "file0").mkdir()
+    (tmp_path / "file0" / "__init__.py").write_text(
+        "import os\ndef setup_module():\n    os.environ['SET_UP'] = 'yes'\n", "utf-8"
+    )
+    body = "import os\n    assert os.environ.pop('SET_UP') == 'yes'"
+    assert _run(collect(_AROUND.format(above="", mark="", taken="", body=body)), "it", Fake()) is None
+
+
+def test_a_check_that_gives_something_is_pytests_to_judge(collect: Any) -> None:
+    above = "class Later:\n    def __await__(self):\n        yield"
+    checks = collect(_AROUND.format(above=above, mark="", taken="", body="return Later()"))
+    assert "async def functions are not natively supported" in str(_run(checks, "it", Fake()))
+
+
+def test_it_makes_no_difference_whether_pytest_calls_a_check(
+    collect: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def outcomes(checks: CollectedChecks) -> list[Any]:
+        submission = Fake(seed=7)
+        said = [(name, str(_run(checks, name, submission))) for name in ("draws", "breaks")]
+        return [*said, *submission.log]
+
+    called = collect()
+    assert called._plain.keys() == {"draws", "breaks"}
+    monkeypatch.setattr("course.scoring.checks.collected._plainly_taken", lambda _item: None)
+    by_pytest = collect()
+    assert not by_pytest._plain
+    assert outcomes(called) == outcomes(by_pytest)
 
 
 def test_numbers_drawn_depend_on_the_seed_and_the_check_alone(collect: Any) -> None:

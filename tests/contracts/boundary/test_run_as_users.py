@@ -73,7 +73,7 @@ def _notebook(cell: str) -> bytes:
 CLASS: dict[str, tuple[str, bytes]] = {
     "a statement bomb": (
         "doubling.ipynb",
-        _notebook(f"# get_ipython\n{_WRONG.format('pass', 'pass')}" + "x = 1\n" * 60_000),
+        _notebook(f"# get_ipython\n{_WRONG.format('pass', 'pass')}" + "x = 1\n" * 30_000),
     ),
     "brackets": ("doubling.ipynb", _notebook("%magic\ndef double(x):\n    return None\n" + "(" * 100_000)),
     "ragged": ("doubling.py", _WRONG.format("return [[1], [2, 3]]", "return [[x], [x, x]]").encode()),
@@ -92,7 +92,9 @@ CLASS: dict[str, tuple[str, bytes]] = {
 @pytest.mark.parametrize(("level", "user"), LEVELS_AND_USERS)
 def test_a_class_of_what_once_broke_is_graded_to_the_end(level: str, user: str, tmp_path: Path) -> None:
     require_level(level)
-    for student, (name, content) in CLASS.items():
+    # The bomb takes seconds to be read, whatever level comes after: the strongest stands for all.
+    handed_in = {name: file for name, file in CLASS.items() if level == "L3" or name != "a statement bomb"}
+    for student, (name, content) in handed_in.items():
         (tmp_path / "class" / student).mkdir(parents=True)
         (tmp_path / "class" / student / name).write_bytes(content)
     out = tmp_path / "out"
@@ -100,7 +102,7 @@ def test_a_class_of_what_once_broke_is_graded_to_the_end(level: str, user: str, 
     assert told == "protection_level False\n"
     lines = [json.loads(line) for line in (out / "results.jsonl").read_text("utf-8").splitlines()]
     found = {line["student"]: line for line in lines}
-    assert found.keys() == CLASS.keys()
+    assert found.keys() == handed_in.keys()
     assert not [name for name, line in found.items() if line["state"] == "grader_error"]
     assert (found["zz model"]["score"], found["zz model"]["isolation"]) == (10, level)
     assert (found["tells"]["score"], HIDDEN in str(found["tells"])) == (2, True)

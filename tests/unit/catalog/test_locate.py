@@ -15,22 +15,6 @@ def _package(root: Path) -> Path:
     return root / "course"
 
 
-def test_a_checkout_has_everything(tmp_path: Path) -> None:
-    package = _package(tmp_path)
-    (tmp_path / "pyproject.toml").touch()
-    for folder in ("exercises", "solutions", "tests/graders"):
-        (tmp_path / folder).mkdir(parents=True)
-    found = locate._installed(package)
-    assert found.is_checkout
-    assert found.root == tmp_path
-    assert found.exercises == tmp_path / "exercises"
-    assert found.lessons == package / "lessons"
-    assert found.quiz == tmp_path / "quiz"
-    assert found.solutions == tmp_path / "solutions"
-    assert found.graders == tmp_path / "tests" / "graders"
-    assert found.syllabus == package / "lessons" / "syllabus.toml"
-
-
 def test_an_unpacked_source_archive_is_a_students(tmp_path: Path) -> None:
     package = _package(tmp_path)
     (tmp_path / "pyproject.toml").touch()

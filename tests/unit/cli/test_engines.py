@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 import re
 
 import pytest
@@ -18,10 +17,16 @@ from course.engines.scenarios import SCENARIOS
 MISSING = "pip install 'mujoco>=4.0'"
 
 
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory):
+    """Where what one of these tests measures is kept for the others."""
+    return tmp_path_factory.mktemp("measured")
+
+
 @pytest.fixture
-def bare(course, monkeypatch, tmp_path):
+def bare(course, monkeypatch, measured):
     """The command line on a machine without any extra: pymunk is there, and nothing else."""
-    monkeypatch.setenv("COURSE_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setenv("COURSE_CACHE", str(measured))
 
     def available(info):
         if info.id == "pymunk":
@@ -104,13 +109,14 @@ def test_the_rows_of_a_scenario_say_the_best_in_words(bare, monkeypatch):
     assert "DART crashed in clash (default): It was ended by SIGABRT." in ran.out
 
 
-def test_what_a_phase_could_change_makes_no_rank():
-    def row(engine, value, *samples):
-        return Row(
-            engine=engine, scenario="bounce", setting="default", dt=1 / 240, status="ok", value=value,
-            samples=samples,
-        )  # fmt: skip
+def row(engine, value, *samples, origin="measured"):
+    return Row(
+        engine=engine, scenario="bounce", setting="default", dt=1 / 240, status="ok", value=value,
+        samples=samples, origin=origin,
+    )  # fmt: skip
 
+
+def test_what_a_phase_could_change_makes_no_rank():
     sharp, near, far = row("physx", 0.2503, 0.2483, 0.2523), row("dart", 0.2511), row("ode", 0.2425)
     assert best_rows([sharp, near, far]) == {id(sharp), id(near)}
     # A wide range of its own does not make an engine best.
@@ -127,8 +133,9 @@ def test_nothing_that_can_run_is_exit_code_4_with_the_reference_shown(bare):
     assert (body["schema"], body["ok"], body["exit_code"]) == ("course.engines/1", False, 4)
 
 
-def test_compare_as_json_holds_every_number_and_where_it_is_from(bare):
-    words = (
+def test_compare_as_json_holds_every_number_and_where_it_is_from(bare, monkeypatch, tmp_path):
+    monkeypatch.setenv("COURSE_CACHE", str(tmp_path / "cache"))
+    words = [
         "engines",
         "compare",
         "--scenario",
@@ -138,9 +145,10 @@ def test_compare_as_json_holds_every_number_and_where_it_is_from(bare):
         "--engine",
         "mujoco",
         "--json",
-    )
-    body = bare(*words).json
-    rows = body["rows"]
+    ]
+    ran = bare(*words)
+    assert "A bounce" in ran.err, "words go to the other stream"
+    body, rows = ran.json, ran.json["rows"]
     assert [(row["engine"], row["origin"], row["status"]) for row in rows] == [
         ("pymunk", "measured", "ok"),
         ("pymunk", "measured", "ok"),
@@ -244,29 +252,9 @@ def test_help_has_every_option_of_the_contract(bare):
     assert "Example: course engines compare" in words
 
 
-def test_json_is_one_object_and_words_go_to_the_other_stream(bare):
-    ran = bare("engines", "compare", "--engine", "pymunk", "--scenario", "bounce", "--json")
-    json.loads(ran.out)
-    assert "A bounce" in ran.err
-
-
 def test_the_reference_is_never_the_best_and_ties_all_are():
-    from course.cli.engines.screen import best_rows
-    from course.engines.results import Row
-
-    def row(engine, value, origin="measured", setting="default"):
-        return Row(
-            engine=engine,
-            scenario="bounce",
-            setting=setting,
-            dt=1 / 240,
-            status="ok",
-            value=value,
-            origin=origin,
-        )
-
-    rows = [row("pymunk", 0.26), row("ode", 0.24), row("dart", 0.3), row("physx", 0.25, "reference")]
+    rows = [row("pymunk", 0.26), row("ode", 0.24), row("dart", 0.3), row("physx", 0.25, origin="reference")]
     best = best_rows(rows)
     assert [id(one) in best for one in rows] == [True, True, False, False]
     # Alone in its column nobody is the best of anything.
-    assert not best_rows([row("pymunk", 0.25), row("ode", 0.25, "reference")])
+    assert not best_rows([row("pymunk", 0.25), row("ode", 0.25, origin="reference")])

@@ -11,7 +11,6 @@ from course.engines import reference
 from course.engines.compare import LADDER, Request, compare
 from course.engines.registry import Availability
 from course.engines.results import Machine, Reference, Row
-from course.errors import NotFoundError
 
 
 class Stand:
@@ -168,10 +167,6 @@ def test_what_is_not_installed_says_so_and_comes_from_the_reference_labelled(sta
     assert (state.version, state.command) == (None, "pip install 'sapien'")
 
 
-def test_a_reference_alone_is_not_having_run(stand):
-    assert not compare(Request(("physx",), ("bounce",))).ran
-
-
 def test_the_integrator_s_scenarios_climb_a_ladder_of_steps_unless_told(stand):
     done = compare(Request(("mujoco",), ("free-fall", "bounce")))
     assert sorted({row.dt for row in done.rows if row.scenario == "free-fall"}, reverse=True) == list(LADDER)
@@ -222,16 +217,6 @@ def test_progress_counts_to_the_end(stand):
     seen = []
     compare(Request(("mujoco", "pymunk"), ("bounce",)), lambda done, total, what: seen.append((done, total)))
     assert sorted(seen) == [(i, 4) for i in (1, 2, 3, 4)]
-
-
-@pytest.mark.parametrize(
-    ("request_", "code"),
-    [(Request(("newton",)), "engine_not_found"), (Request((), ("tea",)), "scenario_not_found")],
-)
-def test_unknown_names_are_not_found(stand, request_, code):
-    with pytest.raises(NotFoundError) as caught:
-        compare(request_)
-    assert caught.value.code == code
 
 
 def test_a_folder_that_cannot_be_written_costs_only_the_memory(stand, monkeypatch, tmp_path):

@@ -5,13 +5,16 @@ from __future__ import annotations
 import subprocess
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
+from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import GradedExercise, Key, Result
 from course.grading.intake.downloads import class_list
 from course.grading.intake.students import Entry, read_student
 from course.grading.running.grader import Config
+from course.grading.running.run import RunOptions, Summary, grade_class
 from course.scoring.judging.submission import Submission
 from course.scoring.verdict import CheckResult, Problem, Status, Tolerance, Verdict, Visibility
 
@@ -30,6 +33,17 @@ def read_class(folder: Path, exercises: Sequence[Exercise], *, required: bool) -
     """Every student's entries, in order of name."""
     for student in class_list(folder).students:
         yield from read_student(student, exercises, required=required)
+
+
+def graded_class(
+    folder: Path,
+    catalog: Catalog,
+    options: RunOptions,
+    report: Callable[..., None] = lambda *_: None,
+    **more: Any,
+) -> Summary:
+    """Grade ``class`` in a folder, into ``out`` in it."""
+    return grade_class(folder / "class", folder / "out", catalog, options, report, **more)
 
 
 def digest(student: str) -> str:

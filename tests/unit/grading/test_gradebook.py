@@ -80,28 +80,6 @@ def test_a_fault_of_ours_does_not_count_as_graded(tmp_path: Path) -> None:
         assert not book.confirm(key(digest="b" * 64))
 
 
-def test_a_second_writer_is_told_and_changes_nothing(tmp_path: Path) -> None:
-    path = tmp_path / "g.sqlite"
-    with Gradebook(path, create=True, writing=True) as book:
-        book.add(Result(key(), verdict()))
-        with pytest.raises(UsageError, match="Another run is writing"):
-            Gradebook(path, writing=True)
-    with Gradebook(path, writing=True) as book:
-        assert len(list(book.results())) == 1
-
-
-def test_a_newer_gradebook_is_refused_and_left_alone(tmp_path: Path) -> None:
-    path = tmp_path / "g.sqlite"
-    Gradebook(path, create=True).close()
-    with sqlite3.connect(path) as db:
-        db.execute("PRAGMA user_version = 99")
-    before = path.read_bytes()
-    for writing in (True, False):
-        with pytest.raises(MissingCapabilityError, match="newer version"):
-            Gradebook(path, writing=writing)
-    assert path.read_bytes() == before
-
-
 @pytest.mark.parametrize("content", [b"this is no database, but it is long enough to be one" * 20, b""])
 def test_what_is_no_gradebook_is_said_to_be_none(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "g.sqlite"
@@ -182,12 +160,6 @@ def test_a_reported_result_survives_the_death_of_its_process(tmp_path: Path) -> 
     assert [item.name for item in tmp_path.iterdir()] == ["g.sqlite"]
 
 
-def test_a_closed_gradebook_is_one_file(tmp_path: Path) -> None:
-    with Gradebook(tmp_path / "g.sqlite", create=True, writing=True) as book:
-        book.add(Result(key(), verdict()))
-    assert [item.name for item in tmp_path.iterdir()] == ["g.sqlite"]
-
-
 def test_of_two_that_make_one_gradebook_the_second_is_told(tmp_path: Path) -> None:
     path = tmp_path / "g.sqlite"
     with Gradebook(path, create=True, writing=True) as book:
@@ -197,17 +169,6 @@ def test_of_two_that_make_one_gradebook_the_second_is_told(tmp_path: Path) -> No
     with Gradebook(path) as book:
         assert len(list(book.results())) == 1
     assert [item.name for item in tmp_path.iterdir()] == ["g.sqlite"]
-
-
-def test_reading_is_refused_while_a_run_writes_and_harms_nothing(tmp_path: Path) -> None:
-    path = tmp_path / "g.sqlite"
-    with Gradebook(path, create=True, writing=True) as book:
-        book.add(Result(key(), verdict()))
-        with pytest.raises(UsageError, match="Another run is writing"):
-            Gradebook(path)
-        book.add(Result(key("bob"), verdict()))
-    with Gradebook(path) as book:
-        assert len(list(book.results())) == 2
 
 
 def test_a_full_disk_is_said_plainly_and_what_was_kept_stays(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
 from course.grading.gradebook.book import Gradebook
-from course.grading.gradebook.records import PlatformIdentity, Result, SubmittedAt
+from course.grading.gradebook.records import Result, SubmittedAt
 from course.grading.results.effective import Results, lift, override
 from course.grading.results.late import Policy, lateness, parse_policy, read_policy, read_times, unknown_names
 from course.grading.results.roster import read_roster
@@ -227,70 +227,3 @@ def test_a_list_of_times_is_read_to_the_second(tmp_path: Path) -> None:
         path.write_text(f"student,exercise,submitted_at\nada,doubling,{bad}\n", "utf-8")
         with pytest.raises(UsageError, match="line 2"):
             read_times(path)
-
-
-# -- the roster ------------------------------------------------------------------------------------------
-
-
-def roster_of(tmp_path: Path, text: str):
-    path = tmp_path / "roster.csv"
-    path.write_bytes(text.encode("utf-8"))
-    return read_roster(path)
-
-
-def test_a_roster_is_read_with_quotes_marks_and_any_alphabet(tmp_path: Path) -> None:
-    text = '\ufeffname,student,canvas_id\r\n"漢字, é ""x""\nline two",=ada,42\r\n'
-    (person,) = roster_of(tmp_path, text).people
-    assert (person.student, person.name, person.canvas_id) == ("=ada", '漢字, é "x"\nline two', "42")
-
-
-@pytest.mark.parametrize(
-    ("text", "reason"),
-    [
-        ("name\nada\n", "no heading 'student'"),
-        ("student,grade\nada,1\n", "'grade'"),
-        ("student,student\nada,1\n", "two columns"),
-        ("student,name\nada\n", "line 2"),
-        ("student,name\nada,x,y\n", "line 2"),
-        ("student,name\n,x\n", "line 2: it names no student"),
-        ("student,canvas_id\nada,4a\n", "canvas_id '4a'"),
-        ("student,extension_days\nada,two\n", "extension_days"),
-        ("student,extension_days\nada,nan\n", "extension_days"),
-        ("student\nada\nada\n", "student 'ada' is in two rows"),
-        ("student,canvas_id\nada,1\nbob,1\n", "canvas_id '1' is in two rows"),
-        ('student\n"ada\n', "line"),
-    ],
-)
-def test_what_is_no_roster_is_refused_with_the_row(tmp_path: Path, text: str, reason: str) -> None:
-    with pytest.raises(UsageError) as caught:
-        roster_of(tmp_path, text)
-    assert caught.value.code == "invalid_roster"
-    assert reason in caught.value.message
-
-
-def test_students_are_found_by_id_and_never_guessed(tmp_path: Path) -> None:
-    roster = roster_of(
-        tmp_path,
-        "student,name,email,canvas_id,sis_user_id,moodle_key\n"
-        "a1,Ada  LOVELACE,ada@x.org,11,s1,m1\nb1,Bob,b@x.org,12,s2,m2\nb2,Bob,c@x.org,13,s3,m3\n",
-    )
-    downloads = {
-        "lovelace_11": PlatformIdentity("canvas", "11", "lovelace"),
-        "Ada Lovelace_900": PlatformIdentity("moodle", "900", "Ada Lovelace"),
-        "Bob_901": PlatformIdentity("moodle", "901", "Bob"),
-        "s2": PlatformIdentity("gradescope", "s2", "Bob", "", "s2"),
-        "Bob": PlatformIdentity("gradescope", "c@x.org", "Bob", "C@x.org", ""),
-    }
-    assert roster.find("a1").student == "a1"  # type: ignore[union-attr]
-    names = {name: roster.find(name, who) for name, who in downloads.items()}
-    assert {name: found and found.student for name, found in names.items()} == {
-        "lovelace_11": "a1", "Ada Lovelace_900": "a1", "Bob_901": None, "s2": "b1", "Bob": "b2",
-    }  # fmt: skip
-
-
-def test_two_folders_that_claim_one_row_are_both_unmatched(tmp_path: Path) -> None:
-    roster = roster_of(tmp_path, "student,canvas_id\nada,11\nbob,12\n")
-    downloads = {"x_11": PlatformIdentity("canvas", "11", "x")}
-    found, unmatched = roster.match(["ada", "bob", "x_11", "eve"], downloads)
-    assert list(found) == ["bob"]
-    assert unmatched == {"ada": "In one row with 'x_11'", "eve": "In no row", "x_11": "In one row with 'ada'"}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import unicodedata
-from functools import partial
 from pathlib import Path
 
 import pytest
@@ -18,8 +17,9 @@ from course.grading.intake.downloads import class_list
 from course.grading.results.effective import override
 from course.grading.results.roster import Person, read_roster
 from course.grading.running.folder import open_results
-from course.grading.running.run import RunOptions, grade_class
+from course.grading.running.run import RunOptions
 from course.scoring.judging.submission import Terms
+from tests.unit.grading.made import graded_class
 from tests.unit.grading.pages import faults, read_page
 from tests.unit.grading.running.test_run import right
 
@@ -98,10 +98,9 @@ def made(folder: Path, platform: str) -> tuple[Path, Path]:
 
 
 def graded(folder: Path, catalog: Catalog, platform: str):
-    submissions, roster = made(folder, platform)
+    _, roster = made(folder, platform)
     options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(roster))
-    out = folder / "out"
-    return out, grade_class(submissions, out, catalog, options, lambda *_: None, grade=partial(right))
+    return folder / "out", graded_class(folder, catalog, options, grade=right)
 
 
 def rows(path: Path) -> dict[str, dict[str, str]]:
@@ -165,7 +164,7 @@ def test_work_of_somebody_who_is_not_enrolled_is_listed(tmp_path: Path, catalog:
     (submissions / "eve").mkdir()
     (submissions / "eve" / "doubling.py").write_text("def double(x):\n    return 2 * x\n")
     options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(roster))
-    summary = grade_class(submissions, tmp_path / "out", catalog, options, lambda *_: None, grade=right)
+    summary = graded_class(tmp_path, catalog, options, grade=right)
     assert (summary.missing, summary.strangers) == (["bob"], ["eve"])
     assert sorted(rows(tmp_path / "out" / "grades.csv")) == ["ada", "bob", "eve", "grace"]
 
@@ -179,7 +178,7 @@ def test_two_spellings_of_an_accent_are_one_student(tmp_path: Path, catalog: Cat
     options = RunOptions(
         exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(tmp_path / "roster.csv")
     )
-    summary = grade_class(submissions, tmp_path / "out", catalog, options, lambda *_: None, grade=right)
+    summary = graded_class(tmp_path, catalog, options, grade=right)
     assert (summary.missing, summary.strangers) == ([], [])
 
 
@@ -239,7 +238,7 @@ def test_who_is_in_no_row_is_told_which_columns_were_tried(tmp_path: Path, catal
     roster.write_text(CANVAS, "utf-8")
     options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(roster))
     (submissions / "grace").rename(submissions / "hopper")
-    summary = grade_class(submissions, tmp_path / "out", catalog, options, lambda *_: None, grade=right)
+    summary = graded_class(tmp_path, catalog, options, grade=right)
     tried = (
         "roster.csv has the columns Student, ID, SIS User ID, SIS Login ID, Section, Doubling (4711), "
         "Current Score. The name of a folder was looked for in ID, SIS User ID, SIS Login ID, Student; it "
@@ -309,23 +308,6 @@ def test_what_platforms_hand_out_is_read_unchanged(tmp_path: Path) -> None:
     assert read_roster(path).people == (Person("ada@x.org", "Ada Lovelace", "ada@x.org"),)
 
 
-@pytest.mark.parametrize(
-    ("text", "why"),
-    [
-        ("Student,ID\nAda,abc\n", "line 2: ID 'abc' is not a number"),
-        ("Identifier,Full name\nsomebody,Ada\n", "line 2: Identifier 'somebody' ends in no number"),
-        ("Full name,Grade\nAda,1\n", "no heading 'student'"),
-        ("Student,ID\nAda,1,2\n", "another number of cells"),
-        ("Student,ID\nAda,7\nBob,7\n", "canvas_id '7' is in two rows"),
-    ],
-)
-def test_a_roster_that_cannot_be_used_says_where(tmp_path: Path, text: str, why: str) -> None:
-    path = tmp_path / "roster.csv"
-    path.write_text(text)
-    with pytest.raises(UsageError, match=why):
-        read_roster(path)
-
-
 def test_what_was_typed_into_canvas_and_who_is_anonymous_are_ordinary_rows(tmp_path: Path) -> None:
     for name in (
         "lovelaceada_101_9001_doubling.py", "hopper_102_text.html", "oneil_LATE_103_link.html",
@@ -355,7 +337,7 @@ def test_an_empty_folder_is_missing_without_a_roster_too(tmp_path: Path, catalog
     submissions, _ = made(tmp_path, "folders")
     (submissions / "eva").mkdir()
     options = RunOptions(terms=Terms(), seed=1)
-    summary = grade_class(submissions, tmp_path / "out", catalog, options, lambda *_: None, grade=right)
+    summary = graded_class(tmp_path, catalog, options, grade=right)
     assert (summary.missing, summary.exit_code) == (["eva"], 0)
     found = rows(tmp_path / "out" / "grades.csv")
     assert {name: row["state"] for name, row in found.items()} == {
@@ -363,5 +345,77 @@ def test_an_empty_folder_is_missing_without_a_roster_too(tmp_path: Path, catalog
     }  # fmt: skip
     (submissions / "eva" / "doubling.py").write_text("double = abs\n")
     again = RunOptions(terms=Terms(), resume=True)
-    summary = grade_class(submissions, tmp_path / "out", catalog, again, lambda *_: None, grade=right)
+    summary = graded_class(tmp_path, catalog, again, grade=right)
     assert (summary.missing, rows(tmp_path / "out" / "grades.csv")["eva"]["state"]) == ([], "graded")
+
+
+# -- a file of an instructor's own ------------------------------------------------------------------------
+
+
+def roster_of(tmp_path: Path, text: str):
+    path = tmp_path / "roster.csv"
+    path.write_bytes(text.encode("utf-8"))
+    return read_roster(path)
+
+
+def test_a_roster_is_read_with_quotes_marks_and_any_alphabet(tmp_path: Path) -> None:
+    text = '\ufeffname,student,canvas_id\r\n"漢字, é ""x""\nline two",=ada,42\r\n'
+    (person,) = roster_of(tmp_path, text).people
+    assert (person.student, person.name, person.canvas_id) == ("=ada", '漢字, é "x"\nline two', "42")
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("name\nada\n", "no heading 'student'"),
+        ("student,grade\nada,1\n", "'grade'"),
+        ("student,student\nada,1\n", "two columns"),
+        ("student,name\nada\n", "line 2"),
+        ("student,name\nada,x,y\n", "line 2"),
+        ("student,name\n,x\n", "line 2: it names no student"),
+        ("student,canvas_id\nada,4a\n", "canvas_id '4a'"),
+        ("student,extension_days\nada,two\n", "extension_days"),
+        ("student,extension_days\nada,nan\n", "extension_days"),
+        ("student\nada\nada\n", "student 'ada' is in two rows"),
+        ("student,canvas_id\nada,1\nbob,1\n", "canvas_id '1' is in two rows"),
+        ('student\n"ada\n', "line"),
+        ("Student,ID\nAda,abc\n", "line 2: ID 'abc' is not a number"),
+        ("Identifier,Full name\nsomebody,Ada\n", "line 2: Identifier 'somebody' ends in no number"),
+        ("Full name,Grade\nAda,1\n", "no heading 'student'"),
+        ("Student,ID\nAda,1,2\n", "another number of cells"),
+        ("Student,ID\nAda,7\nBob,7\n", "canvas_id '7' is in two rows"),
+    ],
+)
+def test_what_is_no_roster_is_refused_with_the_row(tmp_path: Path, text: str, reason: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        roster_of(tmp_path, text)
+    assert caught.value.code == "invalid_roster"
+    assert reason in caught.value.message
+
+
+def test_students_are_found_by_id_and_never_guessed(tmp_path: Path) -> None:
+    roster = roster_of(
+        tmp_path,
+        "student,name,email,canvas_id,sis_user_id,moodle_key\n"
+        "a1,Ada  LOVELACE,ada@x.org,11,s1,m1\nb1,Bob,b@x.org,12,s2,m2\nb2,Bob,c@x.org,13,s3,m3\n",
+    )
+    downloads = {
+        "lovelace_11": PlatformIdentity("canvas", "11", "lovelace"),
+        "Ada Lovelace_900": PlatformIdentity("moodle", "900", "Ada Lovelace"),
+        "Bob_901": PlatformIdentity("moodle", "901", "Bob"),
+        "s2": PlatformIdentity("gradescope", "s2", "Bob", "", "s2"),
+        "Bob": PlatformIdentity("gradescope", "c@x.org", "Bob", "C@x.org", ""),
+    }
+    assert roster.find("a1").student == "a1"  # type: ignore[union-attr]
+    names = {name: roster.find(name, who) for name, who in downloads.items()}
+    assert {name: found and found.student for name, found in names.items()} == {
+        "lovelace_11": "a1", "Ada Lovelace_900": "a1", "Bob_901": None, "s2": "b1", "Bob": "b2",
+    }  # fmt: skip
+
+
+def test_two_folders_that_claim_one_row_are_both_unmatched(tmp_path: Path) -> None:
+    roster = roster_of(tmp_path, "student,canvas_id\nada,11\nbob,12\n")
+    downloads = {"x_11": PlatformIdentity("canvas", "11", "x")}
+    found, unmatched = roster.match(["ada", "bob", "x_11", "eve"], downloads)
+    assert list(found) == ["bob"]
+    assert unmatched == {"ada": "In one row with 'x_11'", "eve": "In no row", "x_11": "In one row with 'ada'"}

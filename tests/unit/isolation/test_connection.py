@@ -21,7 +21,6 @@ from course.isolation.inside.wire import Codec, Kind
 from course.isolation.levels import Deadline, Exit, ticking
 from course.isolation.session import Connection, LoadRefusedError, RemoteFunction
 from course.physics import systems
-from course.printable import printable
 
 _SOURCE = b"def f(x):\n    return x\n\nlast = 1\n"
 
@@ -228,13 +227,6 @@ def test_what_a_submission_says_cannot_steer_a_terminal() -> None:
     assert connection.output() == "\\x1b[1A100/100"
     connection.close()
     assert connection.output() == "\\x1b[1A100/100"
-
-
-def test_printable_text_stays_as_it_is() -> None:
-    text = "naïve 数 Ω → 😀\n\tend"
-    assert printable(text) == text
-    assert printable("a\x00b") == "a\\x00b"
-    assert printable("abc", 2) == "ab"
 
 
 # -- callbacks ------------------------------------------------------------------------------------------

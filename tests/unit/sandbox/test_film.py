@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 
 import pytest
 from PIL import Image
@@ -11,6 +12,7 @@ from course.errors import MissingCapabilityError, UsageError
 from course.sandbox.runs import recording as films
 from course.sandbox.runs.recording import Film
 from course.sandbox.scene.loading import choose
+from course.sandbox.views.stage import Stage
 from course.sandbox.world.world import World
 
 
@@ -69,6 +71,24 @@ def test_ffmpeg_gets_every_frame_and_its_failure_is_told_in_words(monkeypatch, t
     fake.write_text("#!/bin/sh\necho no such encoder >&2\nexit 1\n")
     with pytest.raises(MissingCapabilityError, match="no such encoder"):
         film.mp4()
+
+
+def test_of_a_long_run_the_last_part_is_filmed_and_its_name_says_so(monkeypatch) -> None:
+    stage = Stage(choose("head-on"))
+    while stage.world.t < 4.0:
+        stage.tick(1 / 60, budget=60.0)
+    monkeypatch.setattr(films, "_GIF_BYTES", 25 * math.prod(Film(stage.chosen.scene, 640).size))
+    film = stage.film("gif", 640)
+    film.wait(60)
+    assert (film.failed, film.name) == ("", "head-on-last-1-s.gif")
+    assert Image.open(io.BytesIO(film.data)).n_frames == 25
+
+
+def test_large_frames_are_kept_packed() -> None:
+    film, world = Film(choose("head-on").scene, width=1920), World(choose("head-on").scene)
+    for _ in range(3):
+        film.take(world.parts, world.snapshot())
+    assert sum(map(len, film._frames)) < 0.05 * 3 * film.size[0] * film.size[1]
 
 
 def test_a_film_without_frames_or_too_long_is_refused(monkeypatch) -> None:

@@ -117,6 +117,22 @@ def test_a_recording_cut_off_or_damaged_is_refused(tmp_path: Path) -> None:
         read(tmp_path / "nothing.jsonl")
 
 
+def test_what_a_recording_cannot_do_is_named_with_the_file_and_the_step(tmp_path: Path) -> None:
+    world = World(choose("head-on").scene)
+    recording = Recording(world)
+    world.step(20)
+    head, *rest = recording.encode().splitlines()
+    path = tmp_path / "run.jsonl"
+    for what, said in (
+        (b'"remove","arguments":["nobody"]', "nobody"),
+        (b'"set","arguments":["step",1]', "step"),
+    ):
+        line = b'{"kind":"input","tick":5,"what":' + what + b"}"
+        path.write_bytes(b"\n".join([head, line, *rest]))
+        with pytest.raises(UsageError, match=f"run.jsonl cannot do .* before step 6: .*{said}"):
+            replay(read(path))
+
+
 @settings(max_examples=60)
 @given(st.data())
 def test_bytes_changed_anywhere_never_crash_a_replay(tmp_path_factory, data) -> None:

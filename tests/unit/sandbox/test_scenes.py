@@ -98,6 +98,7 @@ def test_every_scene_teaches_asks_and_shows_what_it_holds(scene) -> None:
         ('probe = "height"', 'probe = "hight"', 36, "no probe called hight"),
         ('theory = "ball.y', 'theory = "bell.y', 38, "bell.y"),
         ('theory = "ball.y', "theory = \"__import__('os')", 38, "formula"),
+        ('theory = "ball.y', 'theory = "9**9**9**9 * ball.y', 38, "has no value"),
         ("view = [-1, -1, 1, 1]", "view = [1, -1, -1, 1]", 8, "view is empty"),
         ("fixed = true", "fixed = true\nvelocity = [1, 0]", 15, "cannot move"),
         ("gravity = [0, -9.81]", "gravity = [0, -9810]", 9, "gravity"),

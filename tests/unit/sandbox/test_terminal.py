@@ -170,7 +170,8 @@ def test_a_drag_while_time_stands_still_places_and_the_other_button_aims():
         await pilot.mouse_down(offset=(x, y))
         await pilot.hover(offset=(x, y - 3))
         app.frames(1)
-        assert "course sandbox play head-on --web" in app.keys.text, "by eye it is better done in the page"
+        said = " ".join(app.keys.text.split())
+        assert "course sandbox play head-on --web" in said, "by eye it is better done in the page"
         await pilot.mouse_up(offset=(x, y - 3))
         assert app.at("left-puck") == (x, y - 3)
         await pilot.mouse_down(offset=(x, y - 3), button=3)
@@ -385,6 +386,48 @@ def test_any_size_works_and_a_resize_lays_everything_out_again(size: tuple[int, 
                 assert all(len(line) <= lines.size.width for line in lines.text.split("\n"))
 
     play("newtons-cradle", script, size=(100, 30))
+
+
+def test_a_sentence_longer_than_a_line_takes_lines_from_the_events_and_none_from_the_picture():
+    async def script(app: Played, pilot: Pilot[None]) -> None:
+        room = app.canvas.size
+        app.say("Theory and simulation agree, and this is what comes of it. p: the numbers")
+        app.frames(8)
+        await pilot.pause()
+        assert "p: the numbers" in app.keys.text
+        assert (app.keys.size.height, app.canvas.size) == (2, room)
+        app.now += 60
+        app.frames(8)
+        await pilot.pause()
+        assert (app.keys.size.height, app.canvas.size) == (1, room)
+        assert "? all keys" in app.keys.text, "on forty columns, too"
+
+    play("head-on", script, size=(40, 20))
+
+
+def test_the_gallery_says_what_a_scene_is_about_on_forty_columns():
+    async def script(app: Played, pilot: Pilot[None]) -> None:
+        await pilot.pause()
+        about = app.screen.query_one("#about", Static)
+        app.screen.move()
+        await pilot.pause()
+        assert about.size.width > 30
+        assert app.screen.query_one(OptionList).size.width > 30
+
+    play(None, script, size=(40, 20))
+
+
+def test_when_everything_has_left_the_picture_the_headline_says_so():
+    async def script(app: Played, pilot: Pilot[None]) -> None:
+        app.frames(30)
+        assert "out of view" not in app.head.text
+        app.frames(60)
+        assert "out of view: r" in app.head.text
+        await pilot.press("r")
+        app.frames(1)
+        assert "out of view" not in app.head.text
+
+    play("free-fall", script)
 
 
 def test_tab_hides_what_stands_beside_and_shows_it_again():

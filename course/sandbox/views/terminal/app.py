@@ -20,6 +20,7 @@ from course.sandbox.scene.rules import SETTINGS
 from course.sandbox.views.stage import Desk, Stage
 from course.sandbox.views.story import Experiment
 from course.sandbox.views.terminal.asking import (
+    NARROW,
     ChangeOverlay,
     Gallery,
     PageOverlay,
@@ -49,8 +50,6 @@ _FILM_WIDTH = 640
 _READ = 0.2
 #: Pictures a second for those who asked for little motion.
 _CALM_FPS = 4.0
-#: Below this many columns there is no room beside the picture.
-_NARROW = 60
 _LOWEST = 12
 #: Slowest and fastest, in simulated seconds a second.
 _SLOWEST, _FASTEST = 1 / 1024, 16.0
@@ -148,7 +147,7 @@ class SandboxApp(FullScreenApp):
         self._read_at = -1.0
         self._drawn_at = -1.0
         self._panel_wanted = True
-        self._room = Size(80, 24)
+        self._room, self._below = Size(80, 24), 1  # lines below the picture
         ink, paper, bar = (_COLOURS[name] if self.in_colour else None for name in ("ink", "paper", "bar"))
         self.canvas = Canvas(colour=self.in_colour, id="canvas")
         self.head = Lines(ink, bar, id="head")
@@ -210,11 +209,13 @@ class SandboxApp(FullScreenApp):
 
     def _lay_out(self) -> None:
         width, height = self._room
-        beside = self._panel_wanted and width >= _NARROW
+        beside = self._panel_wanted and width >= NARROW
         self.panel.display = beside
         self.panel.styles.width = 26 if width < 76 else 30 if width < 110 else 46
         self.events.display = height >= _LOWEST
-        self.events.styles.height = 2 if height < 20 else 3 if height < 30 else 5 if height < 40 else 8
+        events = 2 if height < 20 else 3 if height < 30 else 5 if height < 40 else 8
+        self._below = 1 + (events if self.events.display else 0)
+        self.keys.styles.height, self.events.styles.height = 1, events
         self._read_at = self._drawn_at = -1.0
 
     # -- time ------------------------------------------------------------------------------------
@@ -273,7 +274,9 @@ class SandboxApp(FullScreenApp):
             return f"Making the film: {100 * self._film.share:.0f} %, k stops it"
         if self.stage.at is not None:
             return f"of {self.world.t:.3f} s {('', '▶', '◀')[self.stage.way]}"
-        return "paused" if self.world.paused else ""
+        if self.world.paused:
+            return "paused"
+        return "all out of view: r or Home" if self.sight.empty else ""
 
     def _write(self) -> None:
         """Numbers, curves, events and keys."""
@@ -283,11 +286,14 @@ class SandboxApp(FullScreenApp):
             lines = panel(self.world, self._parameters(), width - len(rule) - 1, height) if height else []
             lines += [((" ", ""),)] * (height - len(lines))
             self.panel.show([((rule, "dim"), *line) for line in lines])
+        text = self.message or self.pointer.status()
+        said = wrapped(text, max(10, self._room.width - 2))[: self._below]
+        if self.keys.styles.height is None or self.keys.styles.height.value != len(said):
+            # A longer sentence takes its lines from the events: the picture keeps its size.
+            self.keys.styles.height, self.events.styles.height = len(said), self._below - len(said)
         self.events.show(self._told(self.events.size.width, self.events.size.height))
-        if self.message:
-            self.keys.show([((f" {self.message}", "bold"),)])
-        elif self.pointer.status():
-            self.keys.show([((f" {self.pointer.status()}", "bold"),)])
+        if text:
+            self.keys.show([((f" {piece}", "bold"),) for piece in said])
         else:
             paused = self.world.paused if self.stage.at is None else not self.stage.way
             self.keys.show([keys_line(self._room.width, paused=paused, past=self.stage.at is not None)])
@@ -330,7 +336,7 @@ class SandboxApp(FullScreenApp):
             return
         if self.experiment.stage == "done" and result is not None:
             page = comparison(result, scene.after)
-            hint = "Escape: go on   r: once more   p: guess"
+            hint = "Escape: back   r: again   p: guess"
 
             def read(key: str | None) -> None:
                 if key == "r":
@@ -485,7 +491,7 @@ class SandboxApp(FullScreenApp):
 
     def action_stop(self) -> None:
         """Let everything stand still."""
-        self._attempt(lambda: self.stage.act("stop"))
+        self._attempt(lambda: self.stage.act("stop") or "Everything stands still.")
 
     def action_zoom(self, factor: float) -> None:
         """Closer, farther, or all of it."""

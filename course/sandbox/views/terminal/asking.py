@@ -11,6 +11,7 @@ from rich.text import Text
 from textual.app import ComposeResult
 from textual.binding import Binding
 from textual.containers import Container, Horizontal, Vertical, VerticalScroll
+from textual.events import Resize
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
@@ -23,6 +24,8 @@ from course.sandbox.views.terminal.picture import Overlay as Drawn
 from course.sandbox.views.terminal.words import KEYS, Canvas, clean
 from course.sandbox.world.world import Snapshot
 
+#: Below this many columns there is no room beside a picture or a list.
+NARROW = 60
 #: A heading and paragraphs, or lines of two columns.
 Page = Sequence[str | tuple[str, str]]
 
@@ -43,7 +46,7 @@ class QuestionOverlay(Overlay[float]):
         """The question and a field for the answer."""
         with VerticalScroll(classes="box", can_focus=False) as box:
             box.border_title = "Before it runs: your guess"
-            box.border_subtitle = "Enter: run from the start and compare   Escape: back"
+            box.border_subtitle = "Enter: run, compare   Escape: back"
             yield Static(Text(clean(self._question), style="bold"))
             entry = Field(placeholder=f"a number in {clean(self._unit)}", id="guess")
             entry.cursor_blink = not self._calm
@@ -105,6 +108,9 @@ class Gallery(Overlay[str]):
     Gallery OptionList { width: 34; max-height: 100%; height: 100%; }
     Gallery .beside { width: 1fr; padding: 0 0 0 1; }
     Gallery Static { height: auto; max-height: 8; }
+    Gallery.narrow Horizontal { layout: vertical; }
+    Gallery.narrow OptionList { width: 100%; height: auto; max-height: 70%; }
+    Gallery.narrow .beside { width: 100%; height: 1fr; }
     """
     BINDINGS: ClassVar[list[Any]] = [Binding("q", "app.quit", show=False)]
 
@@ -122,7 +128,7 @@ class Gallery(Overlay[str]):
         """A list, a picture and what it is about."""
         with Container(classes="box") as box:
             box.border_title = "Scenes"
-            box.border_subtitle = "Enter: play   Escape: back   q: leave"
+            self._box = box
             with Horizontal():
                 options = (
                     Option(f"{'✓' if one.id in self._played else ' '} {clean(one.title)}", id=one.id)
@@ -139,6 +145,12 @@ class Gallery(Overlay[str]):
         chooser.highlighted = next((i for i, one in enumerate(self._found) if one.id == self._current), 0)
         chooser.focus()
         self.set_interval(1 / 4 if self._calm else 1 / 20, self.move)
+
+    def on_resize(self, event: Resize) -> None:
+        """Where there is no room beside the list, what it is about goes below."""
+        narrow = event.size.width < NARROW
+        self.set_class(narrow, "narrow")
+        self._box.border_subtitle = f"Enter: play   Escape: back{'' if narrow else '   q: leave'}"
 
     def move(self) -> None:
         """The next picture of the scene under the cursor."""

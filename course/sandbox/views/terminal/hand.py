@@ -209,10 +209,11 @@ class Sight:
         names: label every body.
         trace: the body whose path is drawn.
         ghost: draw the run before as well.
+        empty: nothing that moves was in the last frame.
     """
 
     def __init__(self, stage: Stage, *, colour: bool) -> None:
-        self.names = self.ghost = False
+        self.names = self.ghost = self.empty = False
         self.trace: str | None = None
         self.follow: str | None = None
         self._stage, self._colour = stage, colour
@@ -271,6 +272,7 @@ class Sight:
         if (columns, rows) != self._room:
             self._room = columns, rows
             self._aim_camera()
+        self.empty = self._empty(shot, parts)
         key = shot.version, self.camera
         if key not in self._pictures:
             self._pictures = {key: Picture(parts, self.camera, self._colour)}
@@ -278,6 +280,15 @@ class Sight:
         sparks = tuple(Spark(x, y, glow * (1 - (now - at) / _FLASH)) for x, y, glow, at in self._flashes)
         over = Overlay(pointer=pointer, pull=aim, sparks=sparks, names=self.names, dots=self._dots())
         return self._pictures[key].draw(shot, over)
+
+    def _empty(self, shot: Snapshot, parts: tuple[Part, ...]) -> bool:
+        free = np.array([not part.fixed for part in parts], dtype=bool)
+        x, y = self.camera.pixels(shot.x, shot.y)
+        wide, high = self.camera.columns, 2 * self.camera.rows
+        if not free.any() or (free & (x >= 0) & (x <= wide) & (y >= 0) & (y <= high)).any():
+            return False
+        size = reaches(parts) * self.camera.scale
+        return not (free & (x > -size) & (x < wide + size) & (y > -size) & (y < high + size)).any()
 
     def _shot(self) -> tuple[Snapshot, tuple[Part, ...]]:
         stage = self._stage

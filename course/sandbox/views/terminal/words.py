@@ -129,11 +129,12 @@ def keys_line(width: int, *, paused: bool, past: bool) -> Line:
     """The line below everything: as many keys as there is room for."""
     offered = [
         ("space", "run" if paused else "pause"),
-        *((("Enter", "go on from here"), ("k", "now")) if past else (("o", "scenes"), ("p", "predict"))),
+        *((("Enter", "go on"), ("k", "now")) if past else (("o", "scenes"),)),
+        ("?", "all keys"),
+        *(() if past else (("p", "predict"),)),
         (", .", "back, on"),
         ("r", "reset"),
         ("u", "undo"),
-        ("?", "all keys"),
         ("q", "leave"),
         ("/", "numbers"),
         ("-+", "speed"),

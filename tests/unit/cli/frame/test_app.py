@@ -291,15 +291,3 @@ def test_the_shell_completes_commands_and_ids(typed, expected):
         COURSE_CONTENT=str(content),
     )
     assert set(ran.stdout.split()) == expected
-
-
-def test_every_schema_in_the_code_is_named_after_a_command():
-    from course.cli.frame import replies as schemas
-
-    tags = {
-        kind.__struct_config__.tag
-        for kind in vars(schemas).values()
-        if isinstance(kind, type) and issubclass(kind, schemas.Envelope) and kind is not schemas.Envelope
-    }
-    known = {*registry.COMMANDS, "status", "check-all", "schema-list", "version", "help"}
-    assert {tag.removeprefix("course.").partition("/")[0] for tag in tags} <= known

@@ -160,9 +160,11 @@ author pack --solutions doubling -o released.coursepack
 
 
 def _stand_in_for_what_waits(monkeypatch):
-    """A watch ends at once, what `course open` starts is there already, and no film is made."""
+    """A watch ends at once, what `course open` starts is there, no film is made, and one engine is here."""
     from course.cli import loop
     from course.cli.author import pictures
+    from course.engines import compare
+    from course.engines.registry import Availability
     from course.notebooks import server
 
     def ended(*_):
@@ -170,6 +172,8 @@ def _stand_in_for_what_waits(monkeypatch):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(loop, "saves", ended)
+    here = {"pymunk": Availability("7"), "mujoco": Availability(None, "not installed", "pip install mujoco")}
+    monkeypatch.setattr(compare, "availability", lambda one: here.get(one.id, here["mujoco"]))
     monkeypatch.setattr(pictures, "PICTURES", {"sandbox.gif": (lambda: b"another film", bytes)})
     lab = server.Lab("http://localhost:8888/lab?token=1", None)
     monkeypatch.setattr(server, "started", lambda *_: contextlib.nullcontext(lab))

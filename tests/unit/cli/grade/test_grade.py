@@ -104,16 +104,6 @@ def test_wrong_calls_are_named_and_touch_nothing(
     assert before == {path: path.read_bytes() for path in graded.rglob("*.*") if path.is_file()}
 
 
-def test_a_damaged_gradebook_is_an_integrity_error(graded: Path, tmp_path: Path) -> None:
-    raw = bytearray((graded / "gradebook.sqlite").read_bytes())
-    at = raw.find(b'"score":6.0')
-    raw[at + 8 : at + 9] = b"9"
-    (tmp_path / "gradebook.sqlite").write_bytes(raw)
-    done = course("grade", "explain", tmp_path, "=bob", "doubling", "--json")
-    assert done.returncode == 7
-    assert "checksum" in json.loads(done.stdout)["error"]["message"]
-
-
 def test_a_students_installation_is_told_so(tmp_path: Path) -> None:
     import shutil
 

@@ -6,7 +6,6 @@ import csv
 import datetime as dt
 import io
 import shlex
-import sqlite3
 import subprocess
 import sys
 from pathlib import Path
@@ -292,18 +291,6 @@ def test_a_student_is_called_as_the_roster_calls_her(course, out: Path) -> None:
     assert "bob doubling: 9 of 10 counts" in course(*set_by_hand).out
     assert "bob doubling: oral" in course("grade", "log", "out", "Byrne, Bob").out
     assert course("grade", "explain", "out", "Nobody", "doubling").code == 5
-
-
-@pytest.mark.parametrize("words", [("log", "out"), ("explain", "out", "ada", "doubling")])
-def test_a_damaged_gradebook_answers_nothing(course, out: Path, words: tuple[str, ...]) -> None:
-    """Whichever row is damaged, and whichever is asked for."""
-    book = sqlite3.connect(out / "gradebook.sqlite")
-    book.execute("UPDATE results SET verdict = x'00' WHERE student = 'bob'")
-    book.commit()
-    book.close()
-    ran = course("grade", *words)
-    assert (ran.code, ran.out) == (7, "")
-    assert "damaged" in ran.err or "checksum" in ran.err
 
 
 @pytest.mark.parametrize(

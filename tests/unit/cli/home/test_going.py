@@ -18,6 +18,15 @@ def record(workspace):
     return Store(workspace / ".course" / "progress.sqlite")
 
 
+@pytest.fixture
+def real(course, tmp_path, monkeypatch):
+    """A workspace of the real course; the current folder."""
+    monkeypatch.delenv("COURSE_CONTENT")
+    monkeypatch.chdir(tmp_path)
+    assert course("init", ".").code == 0
+    return tmp_path
+
+
 def test_exercises_and_lessons_are_called_by_number_too(course, workspace):
     assert course("start", "1", "--json").json["exercise"] == "doubling", "its place among them"
     assert course("start", "2", "--json").json["exercise"] == "halving"
@@ -36,10 +45,7 @@ def test_a_number_that_meant_another_exercise_names_both(course, workspace):
     assert "before 2.0" not in course("start", "doubling").err
 
 
-def test_warm_ups_are_called_by_number_too(course, tmp_path, monkeypatch):
-    monkeypatch.delenv("COURSE_CONTENT", raising=False)
-    monkeypatch.chdir(tmp_path)
-    course("init", ".")
+def test_warm_ups_are_called_by_number_too(course, real):
     warm_ups = course("warmup", "--json").json["warm_ups"]
     assert [one["number"] for one in warm_ups] == list(range(1, len(warm_ups) + 1))
     assert f"4. {warm_ups[3]['title']}" in course("warmup").out
@@ -96,10 +102,7 @@ def someone(monkeypatch):
     return asked
 
 
-def test_the_dashboard_says_where_the_next_exercise_comes(course, tmp_path, monkeypatch):
-    monkeypatch.delenv("COURSE_CONTENT", raising=False)
-    monkeypatch.chdir(tmp_path)
-    course("init", ".")
+def test_the_dashboard_says_where_the_next_exercise_comes(course, real):
     ahead = "Exercise 1, integrators, comes after lesson 3. To start it now: course start integrators\n"
     assert ahead in course().out
     said = course("start", "integrators").out
@@ -114,12 +117,9 @@ def test_the_dashboard_says_where_the_next_exercise_comes(course, tmp_path, monk
     assert re.search(going, course().out)
 
 
-def test_the_dashboard_says_nothing_of_a_quiz_that_was_not_taken(course, tmp_path, monkeypatch):
-    monkeypatch.delenv("COURSE_CONTENT", raising=False)
-    monkeypatch.chdir(tmp_path)
-    course("init", ".")
+def test_the_dashboard_says_nothing_of_a_quiz_that_was_not_taken(course, real):
     assert "of 1 right" not in course().out
-    store = record(tmp_path)
+    store = record(real)
     store.append(START, "", {"attempt": "a", "seed": 1, "version": "1", "questions": ["why-simulate"]})
     store.append(
         DONE, "", {"attempt": "a", "right": {"why-simulate": False}, "score": 0, "passed": False, "total": 1}
@@ -176,13 +176,10 @@ def test_exercises_are_numbered_in_the_lessons_order_and_know_the_chapters_numbe
     assert catalog.exercise_called("1").id == "integrators"
 
 
-def test_the_dashboard_shows_the_evidence_for_each_objective(course, tmp_path, monkeypatch):
-    monkeypatch.delenv("COURSE_CONTENT", raising=False)
-    monkeypatch.chdir(tmp_path)
-    assert course("init", ".").code == 0
+def test_the_dashboard_shows_the_evidence_for_each_objective(course, real):
     before = course("--json").json["objectives"]
     assert not any(one["lessons_read"] or one["predictions"] or one["answered"] for one in before)
-    store = record(tmp_path)
+    store = record(real)
     store.append("lesson", "engines")
     for text in ("", "ODE", "ODE again"):  # a skip, and one key twice
         store.append("prediction", "engines", {"key": f"k{bool(text)}", "number": 1, "text": text})
@@ -201,13 +198,8 @@ def test_the_dashboard_shows_the_evidence_for_each_objective(course, tmp_path, m
     assert "exercise 3, engine-comparison: not started" in course().out
 
 
-def test_next_offers_the_warm_ups_of_the_lesson_just_read_and_then_its_exercise(
-    course, tmp_path, monkeypatch
-):
-    monkeypatch.delenv("COURSE_CONTENT", raising=False)
-    monkeypatch.chdir(tmp_path)
-    course("init", ".")
-    store, catalog = record(tmp_path), Catalog()
+def test_next_offers_the_warm_ups_of_the_lesson_just_read_and_then_its_exercise(course, real):
+    store, catalog = record(real), Catalog()
 
     def step():
         return course("next", "--quiet").out.strip()
@@ -225,11 +217,8 @@ def test_next_offers_the_warm_ups_of_the_lesson_just_read_and_then_its_exercise(
     assert step() == "course check integrators"
 
 
-def test_next_begins_with_a_task_and_goes_on_from_what_was_done_last(course, tmp_path, monkeypatch):
-    monkeypatch.delenv("COURSE_CONTENT", raising=False)
-    monkeypatch.chdir(tmp_path)
-    course("init", ".")
-    store, every = record(tmp_path), Catalog().every_task()
+def test_next_begins_with_a_task_and_goes_on_from_what_was_done_last(course, real):
+    store, every = record(real), Catalog().every_task()
 
     def step():
         return course("next", "--quiet").out.strip()
@@ -246,26 +235,20 @@ def test_next_begins_with_a_task_and_goes_on_from_what_was_done_last(course, tmp
     assert step() == "course quiz take", "warm-ups that were left out are left behind"
 
 
-def test_an_exercise_that_was_left_out_comes_at_the_end(course, tmp_path, monkeypatch):
-    monkeypatch.delenv("COURSE_CONTENT", raising=False)
-    monkeypatch.chdir(tmp_path)
-    course("init", ".")
-    store, every = record(tmp_path), Catalog().every_task()
+def test_an_exercise_that_was_left_out_comes_at_the_end(course, real):
+    store, every = record(real), Catalog().every_task()
     for task in every:
         if task.id != "collisions":
             store.append("check", task.id, passing())
     assert course("next", "--quiet").out == "course start collisions\n"
 
 
-def test_a_warm_up_that_was_begun_is_checked_and_moving_on_leaves_it_behind(course, tmp_path, monkeypatch):
-    monkeypatch.delenv("COURSE_CONTENT", raising=False)
-    monkeypatch.chdir(tmp_path)
-    course("init", ".")
-    record(tmp_path).append("lesson", "why-simulate")
+def test_a_warm_up_that_was_begun_is_checked_and_moving_on_leaves_it_behind(course, real):
+    record(real).append("lesson", "why-simulate")
     (first, *_) = Catalog().warm_ups("why-simulate")
     assert course("warmup", first.id).code == 0
     assert course("next", "--quiet").out == f"course check {first.id}\n"
-    record(tmp_path).append("lesson", "how-an-engine-works")
+    record(real).append("lesson", "how-an-engine-works")
     assert first.id not in course("next", "--quiet").out
 
 

@@ -26,7 +26,7 @@ from course.reading.parts import Cell
 from course.reading.record import Place, Writer
 from tests.unit.cli.reading.driving import drive, screen, settled
 
-LESSON = "numerical-integration"
+LESSON, LESSONS = "numerical-integration", Catalog().lesson_ids()
 #: What the issue of this reader asks for: a key's screen at 200 columns, in s of this process's own time.
 KEY_S = 0.05
 
@@ -77,6 +77,8 @@ async def to_question(app: ReaderApp, pilot: Any, number: int = 1) -> None:
     await pilot.pause()
 
 
+@pytest.mark.turns(4)
+@pytest.mark.parametrize("lesson", LESSONS)
 @pytest.mark.parametrize(
     "size",
     [
@@ -85,23 +87,21 @@ async def to_question(app: ReaderApp, pilot: Any, number: int = 1) -> None:
         pytest.param((160, 50), marks=pytest.mark.soak),
     ],
 )
-def test_every_lesson_is_read_by_space_alone_to_its_end(catalog, size):
-    async def journey(app, pilot):
-        for number, name in enumerate(catalog.lesson_ids(), 1):
-            app.page.open(name)
-            await settled(app, pilot)
-            assert not app.page.progress.read
-            title = catalog.lesson(name).title.split(":")[0][:20]
-            for _ in range(200):
-                if app.page.progress.read:
-                    break
-                shown = screen(app)
-                assert title in shown or f"Lesson {number} of" in shown  # where the title is too long
-                await pilot.press("space")
-            assert app.page.progress.read, name
-            assert "You have read this lesson." in screen(app)
+def test_every_lesson_is_read_by_space_alone_to_its_end(catalog, size, lesson):
+    title = catalog.lesson(lesson).title.split(":")[0][:20]
 
-    reading(catalog, journey, size=size)
+    async def journey(app, pilot):
+        assert not app.page.progress.read
+        for _ in range(200):
+            if app.page.progress.read:
+                break
+            shown = screen(app)
+            assert title in shown or f"Lesson {LESSONS.index(lesson) + 1} of" in shown  # if it is too long
+            await pilot.press("space")
+        assert app.page.progress.read
+        assert "You have read this lesson." in screen(app)
+
+    reading(catalog, journey, size=size, lesson=lesson)
 
 
 def test_a_prediction_is_typed_kept_and_compared(catalog, tmp_path):
@@ -542,19 +542,20 @@ def test_the_code_of_a_cell_is_printed_as_it_is_in_the_lesson(capsys):
     assert run(["lesson", LESSON, "--code", "99"]) == 5
 
 
-def test_a_figure_is_known_by_its_block(catalog):
+@pytest.mark.turns(4)
+@pytest.mark.parametrize("lesson", LESSONS)
+def test_a_figure_is_known_by_its_block(catalog, lesson):
     """Every figure of every lesson is an item of its own on the page, once its prediction is answered."""
-    for name in catalog.lesson_ids():
 
-        async def journey(app, pilot):
-            script = app.page.progress.script
-            for question in script.questions:
-                app.page.progress.predict(question, "")
-            app.page.rebuild()
-            figures = [i for i, one in enumerate(script.blocks) if isinstance(one, b.Figure)]
-            assert [item.block for item in app.page.book.items if isinstance(item, FigureItem)] == figures
+    async def journey(app, pilot):
+        script = app.page.progress.script
+        for question in script.questions:
+            app.page.progress.predict(question, "")
+        app.page.rebuild()
+        figures = [i for i, one in enumerate(script.blocks) if isinstance(one, b.Figure)]
+        assert [item.block for item in app.page.book.items if isinstance(item, FigureItem)] == figures
 
-        reading(catalog, journey, lesson=name)
+    reading(catalog, journey, lesson=lesson)
 
 
 def test_a_file_that_is_there_is_not_overwritten(tmp_path: Path, monkeypatch):

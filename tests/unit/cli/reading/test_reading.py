@@ -268,15 +268,6 @@ def test_the_page_with_a_prediction_does_not_show_its_answer(lesson: Lesson) -> 
     assert "four 4" not in written(console)
 
 
-@pytest.mark.parametrize("plain", [False, True])
-def test_the_pages_in_order_are_the_lesson(lesson: Lesson, plain: bool) -> None:
-    console = console_of()
-    reader = Reader(CATALOG, lesson, console, plain=plain)
-    for page in reader.pages:
-        reader.show(page)
-    assert written(console) == shown(lesson, plain=plain)
-
-
 @pytest.mark.parametrize(
     ("environ", "protocol"),
     [

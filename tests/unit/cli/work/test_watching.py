@@ -118,12 +118,12 @@ def test_saves_are_noticed_quickly(tmp_path, how):
     done: list[float] = []
 
     def save():
-        time.sleep(0.6)
+        time.sleep(0.2)
         if how.startswith("after"):
             folder.rename(tmp_path / "away")
-            time.sleep(1.5)
+            time.sleep(0.4)
             (tmp_path / "away").rename(folder)
-            time.sleep(1.0)
+            time.sleep(0.3)
         if how == "rename":
             scratch = folder / "other"
             scratch.write_text("two")

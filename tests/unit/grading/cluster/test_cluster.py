@@ -564,12 +564,3 @@ def test_ways_of_grading_exclude_each_other(
     assert course(["grade", "run", str(tmp_path), "--out", str(out), *words]) == 2
     assert said in capsys.readouterr().err
     assert not out.exists()
-
-
-def test_a_scheduler_that_is_not_there_is_said(catalog: Catalog, tmp_path: Path) -> None:
-    pytest.importorskip("distributed", reason="needs the extra `cluster`")
-    pytest.importorskip("cryptography", reason="needs the extra `cluster`")
-    cluster = connect.remote_cluster(str(tmp_path / "scheduler.json"))
-    with cluster, pytest.raises(MissingCapabilityError, match="No Dask scheduler answers") as raised:
-        next(cluster(iter(()), Terms(at_least="L2")))
-    assert raised.value.code == "no_scheduler"

@@ -17,9 +17,9 @@ from course.grading.exports.selection import ExportOptions
 from course.grading.results.effective import override
 from course.grading.results.roster import read_roster
 from course.grading.running.folder import open_results
-from course.grading.running.run import RunOptions, grade_class
+from course.grading.running.run import RunOptions
 from course.scoring.judging.submission import Terms
-from tests.unit.grading.made import read_by_php
+from tests.unit.grading.made import graded_class, read_by_php
 from tests.unit.grading.running.test_run import right
 
 HEADINGS = [
@@ -75,7 +75,7 @@ def out(tmp_path_factory: pytest.TempPathFactory, catalog: Catalog) -> Path:
         (place / module).write_text("def double(x):\n    return 2 * x\n")
     roster = read_roster(write(folder / "sheet.csv", SHEET))
     options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=roster)
-    summary = grade_class(folder / "class", folder / "out", catalog, options, lambda *_: None, grade=right)
+    summary = graded_class(folder, catalog, options, grade=right)
     assert summary.missing == ["=Bob_102"]
     return folder / "out"
 

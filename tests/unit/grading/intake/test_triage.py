@@ -25,9 +25,9 @@ from course.grading.intake.students import Candidate, Entry, found_for
 from course.grading.results.effective import override
 from course.grading.running.assign import assign, named, proposals, unsettled
 from course.grading.running.folder import open_results, previewed
-from course.grading.running.run import RunOptions, grade_class
+from course.grading.running.run import RunOptions
 from course.scoring.judging.submission import Terms
-from tests.unit.grading.made import read_class
+from tests.unit.grading.made import graded_class, read_class
 from tests.unit.grading.running.test_run import right
 
 pytestmark = pytest.mark.usefixtures("unpacked")
@@ -344,7 +344,7 @@ def test_one_file_is_proposed_where_its_functions_are(catalog: Catalog) -> None:
 
 def graded(tmp_path: Path, catalog: Catalog, **more: Any) -> Any:
     options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, **more)
-    return grade_class(tmp_path / "class", tmp_path / "out", catalog, options, lambda *_: None, grade=right)
+    return graded_class(tmp_path, catalog, options, grade=right)
 
 
 def counts(out: Path) -> dict[str, tuple[str, float | None]]:

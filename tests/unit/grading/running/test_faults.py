@@ -87,6 +87,7 @@ FAULTS: dict[str, tuple[Callable[[Path], None], str]] = {
 }
 
 
+@pytest.mark.turns(4)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_the_fault_of_one_exercise_is_named_and_costs_no_other(course: Path, fault: str) -> None:
     spoil, said = FAULTS[fault]

@@ -16,9 +16,10 @@ from course.grading.intake.students import Entry
 from course.grading.results.roster import read_roster
 from course.grading.running.batch import Graded
 from course.grading.running.folder import export_all, open_results
-from course.grading.running.run import RunOptions, grade_class
+from course.grading.running.run import RunOptions
 from course.scoring.judging.submission import Terms
 from tests.command_line import in_process
+from tests.unit.grading.made import graded_class
 from tests.unit.grading.running.test_run import make_class, right
 
 pytestmark = pytest.mark.usefixtures("unpacked")
@@ -47,14 +48,7 @@ def stopped(tmp_path: Path, catalog: Catalog, solution: bytes) -> Path:
     (tmp_path / "roster.csv").write_text(f"student,canvas_id,moodle_key\n{rows}", "utf-8")
     options = RunOptions(seed=3, roster=read_roster(tmp_path / "roster.csv"))
     with pytest.raises(KeyboardInterrupt):
-        grade_class(
-            tmp_path / "class",
-            tmp_path / "out",
-            catalog,
-            options,
-            lambda *_: None,
-            grade=interrupted_after(2),
-        )
+        graded_class(tmp_path, catalog, options, grade=interrupted_after(2))
     return tmp_path / "out"
 
 
@@ -123,7 +117,7 @@ def test_resuming_grades_them_and_the_log_holds_nothing_of_it(
     stopped: Path, tmp_path: Path, catalog: Catalog
 ) -> None:
     options = RunOptions(resume=True)
-    summary = grade_class(tmp_path / "class", stopped, catalog, options, lambda *_: None, grade=right)
+    summary = graded_class(tmp_path, catalog, options, grade=right)
     assert (summary.already, summary.states["graded"]) == (2, 5)
     with open_results(stopped) as results:
         assert results.waiting == set()
@@ -138,19 +132,16 @@ def test_a_resumed_run_that_is_interrupted_takes_back_what_the_files_said(
     make_class(tmp_path / "class", solution, 2)
     (tmp_path / "class" / "zoe").mkdir()
     out = tmp_path / "out"
-    grade_class(tmp_path / "class", out, catalog, RunOptions(seed=3), lambda *_: None, grade=right)
+    graded_class(tmp_path, catalog, RunOptions(seed=3), grade=right)
     assert states(out)["zoe", "doubling"] == "missing"
     (tmp_path / "class" / "zoe" / "doubling.py").write_bytes(solution)
     with pytest.raises(KeyboardInterrupt):
-        grade_class(
-            tmp_path / "class", out, catalog, RunOptions(resume=True), lambda *_: None,
-            grade=interrupted_after(0),
-        )  # fmt: skip
+        graded_class(tmp_path, catalog, RunOptions(resume=True), grade=interrupted_after(0))
     assert states(out)["zoe", "doubling"] == "not_graded_yet"
     rows = [line for line in (out / "grades.csv").read_text("utf-8").splitlines() if "zoe" in line]
     assert rows
     assert all("not_graded_yet" in row for row in rows)
-    grade_class(tmp_path / "class", out, catalog, RunOptions(resume=True), lambda *_: None, grade=right)
+    graded_class(tmp_path, catalog, RunOptions(resume=True), grade=right)
     assert states(out)["zoe", "doubling"] == "graded"
 
 
@@ -160,9 +151,9 @@ def test_what_came_after_a_run_had_ended_is_in_the_log(
     make_class(tmp_path / "class", solution, 1)
     (tmp_path / "class" / "zoe").mkdir()
     out = tmp_path / "out"
-    grade_class(tmp_path / "class", out, catalog, RunOptions(seed=3), lambda *_: None, grade=right)
+    graded_class(tmp_path, catalog, RunOptions(seed=3), grade=right)
     (tmp_path / "class" / "zoe" / "doubling.py").write_bytes(solution)
-    grade_class(tmp_path / "class", out, catalog, RunOptions(resume=True), lambda *_: None, grade=right)
+    graded_class(tmp_path, catalog, RunOptions(resume=True), grade=right)
     with open_results(out) as results:
         (noted,) = results.book.journal()
     assert (noted.student, noted.kind) == ("zoe", "resume")

@@ -31,7 +31,7 @@ from course.grading.running.run import RunOptions, Summary, grade_class
 from course.scoring.judging.submission import Terms
 from course.scoring.verdict import Verdict
 from tests.command_line import as_process, in_process
-from tests.unit.grading.made import read_class, stillborn
+from tests.unit.grading.made import graded_class, read_class, stillborn
 
 pytestmark = pytest.mark.usefixtures("unpacked")
 
@@ -77,7 +77,7 @@ def test_an_existing_folder_is_not_touched_without_resume(
     out.mkdir()
     (out / "mine.txt").write_text("keep", "utf-8")
     with pytest.raises(UsageError, match="nothing was touched"):
-        grade_class(tmp_path / "class", out, catalog, RunOptions(), lambda *_: None)
+        graded_class(tmp_path, catalog, RunOptions())
     assert [path.name for path in out.iterdir()] == ["mine.txt"]
 
 
@@ -109,22 +109,16 @@ def test_resume_grades_only_what_is_new_and_with_the_same_seed(
 ) -> None:
     make_class(tmp_path / "class", solution, 4)
     first = RunOptions(exercises=("doubling",), terms=Terms(), seed=5)
-    grade_class(tmp_path / "class", tmp_path / "out", catalog, first, lambda *_: None)
+    graded_class(tmp_path, catalog, first)
     (tmp_path / "class" / "student-001" / "doubling.py").write_bytes(solution + WRONG)
     again = RunOptions(exercises=("doubling",), terms=Terms(), resume=True)
     graded: list[str] = []
-    summary = grade_class(
-        tmp_path / "class",
-        tmp_path / "out",
-        catalog,
-        again,
-        lambda result, *_: graded.append(result.student),
-    )
+    summary = graded_class(tmp_path, catalog, again, lambda result, *_: graded.append(result.student))
     assert graded == ["student-001"]
     assert (summary.already, summary.seed) == (3, 5)
     assert scores(tmp_path / "out")["student-001"] == 6
     (tmp_path / "class" / "student-001" / "doubling.py").write_bytes(solution)
-    grade_class(tmp_path / "class", tmp_path / "out", catalog, again, lambda *_: None)
+    graded_class(tmp_path, catalog, again)
     with open_results(tmp_path / "out") as results:
         noted = results.book.journal()
     assert [(it.kind, it.student) for it in noted] == [("resume", "student-001")] * 2
@@ -231,14 +225,14 @@ def test_a_run_that_is_refused_leaves_its_name_free(
         raise MissingCapabilityError("No protection here.", help="Get some.", code="protection_level")
 
     with pytest.raises(MissingCapabilityError):
-        grade_class(tmp_path / "class", out, catalog, options, lambda *_: None, grade=refused)
+        graded_class(tmp_path, catalog, options, grade=refused)
     assert not out.exists()
-    summary = grade_class(tmp_path / "class", out, catalog, options, lambda *_: None, grade=right)
+    summary = graded_class(tmp_path, catalog, options, grade=right)
     assert summary.states["graded"] == 2
 
     # What was there before, or has a result in it, stays.
     with pytest.raises(UsageError):
-        grade_class(tmp_path / "class", out, catalog, options, lambda *_: None, grade=refused)
+        graded_class(tmp_path, catalog, options, grade=refused)
     assert (out / "gradebook.sqlite").exists()
 
     def broken_off(entries: Iterable[Entry], terms: Terms) -> Iterator[Graded]:
@@ -305,9 +299,7 @@ def test_quiz_attempts_that_travel_in_a_submission_are_scored_again(
         with zipfile.ZipFile(place / "mine.zip", "w") as target:
             target.writestr("submission.json", json.dumps(manifest))
     (tmp_path / "class" / "none").mkdir()
-    summary = grade_class(
-        tmp_path / "class", tmp_path / "out", catalog, RunOptions(exercises=("quiz",)), lambda *_: None
-    )
+    summary = graded_class(tmp_path, catalog, RunOptions(exercises=("quiz",)))
     assert (summary.exit_code, summary.states["graded"], summary.passed) == (6, 1, 1)
     (trouble,) = summary.troubled
     assert (trouble.student, trouble.exercise, trouble.code) == ("eve", "quiz", "quiz_record_inconsistent")
@@ -323,10 +315,10 @@ def test_a_question_that_is_not_finished_stops_only_a_run_with_the_quiz(
     monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
     make_class(tmp_path / "class", solution, 1)
     with pytest.raises(UsageError, match=r"unfinished\.toml"):
-        grade_class(tmp_path / "class", tmp_path / "out", Catalog(), RunOptions(), lambda *_: None)
+        graded_class(tmp_path, Catalog(), RunOptions())
     assert not (tmp_path / "out").exists()
     only = RunOptions(exercises=("doubling",))
-    grade_class(tmp_path / "class", tmp_path / "out", Catalog(), only, lambda *_: None, grade=right)
+    graded_class(tmp_path, Catalog(), only, grade=right)
     assert len(scores(tmp_path / "out")) == 1
 
 
@@ -342,7 +334,7 @@ def test_an_exercise_that_is_not_finished_is_refused_before_anything_is_graded(
     make_class(tmp_path / "class", solution, 1)
     for only in (RunOptions(), RunOptions(exercises=("doubling",))):
         with pytest.raises(UsageError) as caught:
-            grade_class(tmp_path / "class", tmp_path / "out", Catalog(), only, lambda *_: None)
+            graded_class(tmp_path, Catalog(), only)
         assert f"{file}:{line}: still to be filled in: more." in caught.value.message
     assert not (tmp_path / "out").exists()
 
@@ -357,10 +349,7 @@ def test_a_student_counts_as_done_when_graded_and_not_when_read(
     def all_at_once(entries: Iterable[Entry], more: Terms) -> Iterator[Graded]:
         yield from right(list(entries), more)
 
-    grade_class(
-        tmp_path / "class", tmp_path / "out", catalog, options,
-        lambda _result, done, _all: seen.append(done), grade=all_at_once,
-    )  # fmt: skip
+    graded_class(tmp_path, catalog, options, lambda _, done, __: seen.append(done), grade=all_at_once)
     assert seen == [1, 2, 3, 4]
 
 
@@ -372,9 +361,7 @@ def test_what_an_instructor_settled_is_no_trouble_any_more(
     options = RunOptions(exercises=("doubling",), resume=True)
 
     def run() -> Summary:
-        return grade_class(
-            tmp_path / "class", tmp_path / "out", catalog, options, lambda *_: None, grade=right
-        )
+        return graded_class(tmp_path, catalog, options, grade=right)
 
     summary = run()
     assert (summary.exit_code, summary.states["graded"], summary.passed) == (6, 2, 2)
@@ -393,10 +380,10 @@ def test_a_second_run_on_one_folder_is_told_and_the_first_goes_on(
     (tmp_path / "out").mkdir()
     with Gradebook(tmp_path / "out" / "gradebook.sqlite", create=True, writing=True) as first:
         with pytest.raises(UsageError, match="Another run is writing"):
-            grade_class(tmp_path / "class", tmp_path / "out", catalog, options, lambda *_: None)
+            graded_class(tmp_path, catalog, options)
         first.set_meta(seed="77")
     assert (tmp_path / "out" / "gradebook.sqlite").exists()
-    summary = grade_class(tmp_path / "class", tmp_path / "out", catalog, options, lambda *_: None)
+    summary = graded_class(tmp_path, catalog, options)
     assert (summary.seed, summary.states["graded"]) == (77, 1)
 
 
@@ -407,7 +394,7 @@ def test_a_run_killed_before_it_had_a_gradebook_is_begun_again(
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "gradebook.new-1-0").write_bytes(b"half")
     options = RunOptions(exercises=("doubling",), resume=True)
-    grade_class(tmp_path / "class", tmp_path / "out", catalog, options, lambda *_: None, grade=right)
+    graded_class(tmp_path, catalog, options, grade=right)
     names = {path.name for path in (tmp_path / "out").iterdir()}
     assert names == {
         "gradebook.backup-1.sqlite", "gradebook.sqlite", "grades.csv", "results.jsonl", "report.html",
@@ -472,10 +459,11 @@ def test_a_file_that_is_again_what_it_was_gets_its_earlier_score_without_grading
 
     def run(*, resume: bool) -> str:
         options = RunOptions(exercises=("doubling",), resume=resume)
-        grade_class(
-            tmp_path / "class", tmp_path / "out", catalog, options,
-            lambda item, *_: graded.append(item.result.key.submission_sha256), grade=right,
-        )  # fmt: skip
+
+        def report(item: Any, *_: object) -> None:
+            graded.append(item.result.key.submission_sha256)
+
+        graded_class(tmp_path, catalog, options, report, grade=right)
         with open_results(tmp_path / "out") as results:
             (found,) = results.all()
         return found.result.key.submission_sha256

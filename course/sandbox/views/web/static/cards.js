@@ -18,7 +18,8 @@ export class Prediction {
     const { scene } = this.view;
     this.chip.hidden = !question;
     const guessed = guess === null ? "Predict?" : `Your guess: ${plain(guess)}${unit(scene.unit)}`;
-    this.chip.textContent = stage === "touched" ? `You changed this run: nothing to compare. ${guessed}` : guessed;
+    this.chip.textContent = stage === "touched" ? `You changed this run. ${guessed}` : guessed;
+    this.chip.title = stage === "touched" ? "Theory is about the scene as it is: there is nothing to compare until the next run." : "";
     const key = JSON.stringify([stage, comparison]);
     if (before && stage === "done" && comparison && key !== this.said) {
       // Nobody's guess is taken out of their hands while they type it.
@@ -33,6 +34,7 @@ export class Prediction {
   open() {
     const { stage, comparison } = this.view.state;
     if (!this.view.scene.unit) return;
+    this.view.say(""); // on a phone it would lie on the answer's button
     if (!this.element.hidden) this.close();
     else this.show(stage === "done" && comparison ? this.compare(comparison) : this.ask());
     this.element.querySelector("input, summary")?.focus();
@@ -135,6 +137,7 @@ export class Body {
         const value = Number(input.value.replace(",", ".").replace("−", "-"));
         if (input.value.trim() === "" || !(value >= low && value <= high)) {
           this.view.say(`${name} is a number from ${plain(low)} to ${plain(high)}.`);
+          this.view.repaint(); // with the number that it has
         } else this.view.send({ do: "change", name: this.view.chosen, key: name, value });
       });
       input.addEventListener("keydown", (event) => event.key === "Escape" && this.view.canvas.focus());

@@ -104,8 +104,8 @@ class View {
     this.line.addEventListener("keydown", (event) => this.lineKey(event));
     this.marked = h("canvas", { "aria-hidden": "true" });
     this.lineShown = h("span", { class: "value" });
-    this.goOn = button("Go on from here", ask({ do: "go" }), { hidden: true });
-    this.now = button("Back to now", ask({ do: "look", t: null }), { hidden: true });
+    this.goOn = button("Go on from here", ask({ do: "go" }), { disabled: true });
+    this.now = button("Back to now", ask({ do: "look", t: null }), { disabled: true });
     this.film = h(
       "select",
       { "aria-label": "Save this run" },
@@ -277,7 +277,6 @@ class View {
     this.teaches.textContent = scene.teaches;
     this.note.textContent = scene.note;
     this.after.replaceChildren(h("strong", {}, "Think: "), scene.after);
-    this.tag.textContent = scene.above ? "Seen from above" : "";
     const [left, bottom, right, top] = scene.view;
     this.root.style.setProperty("--shape", `${right - left} / ${top - bottom}`);
     this.span = Math.min(Math.max(scene.duration, 0.01), 10);
@@ -341,8 +340,9 @@ class View {
     const input = h("input", { type: "range", id, min: "0", max: String(values.length - 1), step: "1" });
     input.values = values;
     const commit = () => {
-      this.show(key, values[input.value]);
       this.later(key, { do: does, key: knob.name, value: values[input.value] });
+      this.controls.get(key).sent = { value: values[input.value], at: performance.now() };
+      this.show(key, values[input.value]);
     };
     input.addEventListener("input", commit);
     // A slider at its end that shows what bodies have of their own moves no further, and yet it was meant.
@@ -356,14 +356,16 @@ class View {
   show(key, value) {
     const control = this.controls.get(key);
     if (!control) return;
-    const { knob, values, input, shown } = control;
+    const { knob, values, input, shown, sent } = control;
     if (!values) {
       input.checked = Boolean(value);
       return;
     }
     const unset = value === null;
     const usual = unset ? this.usual(knob.name) : value;
-    if (unset || document.activeElement !== input) input.value = String(nearest(values, usual));
+    // A thumb that a hand moves is ahead of the world; what undo does to it, it follows.
+    if (value === sent?.value && !this.waiting.has(key)) control.sent = null;
+    if (unset || !sent || performance.now() - sent.at > 1000) input.value = String(nearest(values, usual));
     const pair = knob.name === "restitution" || knob.name === "friction" ? `, two: ${plain(Number((value ** 2).toPrecision(2)))}` : "";
     const text = unset ? "as it is" : amount(value, knob.unit) + pair;
     shown.textContent = text;
@@ -397,7 +399,7 @@ class View {
     if (!status.ghost) this.ghost.frame = null;
     const past = status.at !== null;
     if (!past || !status.paused) this.sought = null;
-    this.goOn.hidden = this.now.hidden = !past;
+    this.goOn.disabled = this.now.disabled = !past;
     this.root.classList.toggle("past", past);
     const { working } = status;
     this.work.hidden = !working;
@@ -590,6 +592,8 @@ class View {
     if (document.activeElement !== this.line || this.state.at === null || !this.waiting.has("look")) this.line.value = String(t);
     this.line.setAttribute("aria-valuetext", `${t.toFixed(digits)} s of ${end.toFixed(digits)} s`);
     this.lineShown.textContent = this.state.at === null ? "now" : `${t.toFixed(digits)} of ${end.toFixed(digits)} s`;
+    this.lineShown.style.minWidth = `${2 * end.toFixed(digits).length + 6}ch`; // the line stays as long as it is
+    this.tag.textContent = this.gone() || (this.scene.above ? "Seen from above" : "");
     this.ticks(end);
     const colour = (name) => this.colour(name);
     const at = this.state.at === null ? null : t;
@@ -597,6 +601,24 @@ class View {
     this.energy.draw(this.past, this.span, colour, shown, at);
     this.momentum.draw(this.past, this.span, colour, shown, at);
     this.energy.sum.textContent = `start + given = ${short(n[22])} J`;
+  }
+
+  /** Where everything that moves has left the picture: how to see it again. */
+  gone() {
+    const [left, bottom, right, top] = this.scene.view;
+    const [x, y] = this.camera.centre;
+    const [wide, high] = this.camera.middle.map((half) => half / this.camera.scale);
+    let inScene = false;
+    for (const [i, body] of this.bodies.entries()) {
+      if (body.fixed) continue;
+      const [bx, by] = this.row(i);
+      const size = body.radius + Math.max(0, ...body.outline.map((p) => Math.hypot(...p)));
+      const within = (l, b, r, t) => bx > l - size && bx < r + size && by > b - size && by < t + size;
+      if (within(x - wide, y - high, x + wide, y + high)) return "";
+      inScene ||= within(left, bottom, right, top);
+    }
+    if (!this.bodies.some((body) => !body.fixed)) return "";
+    return inScene ? "Nothing moves in this part: ⤢ shows all of it." : "Everything has left the picture. Reset begins again.";
   }
 
   /** A tick for each contact on the time line. */

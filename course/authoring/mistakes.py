@@ -40,7 +40,8 @@ class Variant:
     """A right or a wrong program, as what differs from the model solution.
 
     Attributes:
-        name: of a wrong one ``task.CODE``, with a number from the second on; of a right one what is unusual.
+        name: of a wrong one its task, a dot and its code, with a number from the second on; of a right one
+            what is unusual.
         task: the function whose points a wrong one loses, and the only one; empty for a right one.
         code: of its mistake.
         also: codes that it gets under other draws of a grading run and that are as true of it; "" for none.

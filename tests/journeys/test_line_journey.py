@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from course.authoring.exercises.grading import compose, mutant_files, solution_path
+from course.authoring.exercises.grading import mistakes_of, solution_path
 from course.catalog.load import Catalog
 from course.progress.workspace import Workspace
 from tests.unit.cli.reading.test_each_fact_once import repeated
@@ -124,8 +124,9 @@ def task(lines: Lines, workspace: Workspace, name: str) -> None:
     assert path.is_file()
     once(lines.type("check"))
     assert "hint" in once(lines.type("hint")).lower()
-    solution, wrong = solution_path(CATALOG, exercise), mutant_files(CATALOG, exercise)
-    path.write_bytes(compose(solution, wrong[0]))
+    solution, wrong = solution_path(CATALOG, exercise), mistakes_of(CATALOG, exercise).wrong
+    model = solution.read_text("utf-8")
+    path.write_text(wrong[0].composed(model, solution), "utf-8")
     once(lines.type("check"))
     assert len(once(lines.type("hint")).split()) > 5
     path.write_bytes(solution.read_bytes())

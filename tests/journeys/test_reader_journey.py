@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 
-from course.authoring.exercises.grading import compose, mutant_files, solution_path
+from course.authoring.exercises.grading import mistakes_of, solution_path
 from course.catalog.load import Catalog
 from course.progress.workspace import Workspace
 from tests.terminals import AS_IT_WAS, Terminal, needs_tmux
@@ -114,12 +114,13 @@ class Student:
         self.terminal.keys("h")
         self.terminal.wait("The first hint follows")
         # A save is checked by itself, and so is one that comes while another is checked.
-        solution, wrong = solution_path(CATALOG, exercise), mutant_files(CATALOG, exercise)
-        path.write_bytes(compose(solution, wrong[0]))
+        solution, wrong = solution_path(CATALOG, exercise), mistakes_of(CATALOG, exercise).wrong
+        model = solution.read_text("utf-8")
+        path.write_text(wrong[0].composed(model, solution), "utf-8")
         self.checked(name, 2)
         self.terminal.keys("h")
         self.terminal.wait("Hint:")
-        path.write_bytes(compose(solution, wrong[1]))
+        path.write_text(wrong[1].composed(model, solution), "utf-8")
         self.begun(name, 3, path.touch)
         path.write_bytes(solution.read_bytes())
         self.terminal.wait("Done: every check passes.")

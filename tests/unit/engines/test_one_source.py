@@ -25,7 +25,7 @@ PAGES = (
     "course/lessons/what-contact-leaves-over.md",
     "quiz/which-engine.toml",
     "exercises/engine-comparison/README.md",
-    "exercises/engine-comparison/hints.toml",
+    "exercises/engine-comparison/exercise.toml",
     "solutions/engine-comparison/README.md",
     "docs/engines.md",
     "README.md",

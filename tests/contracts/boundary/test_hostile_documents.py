@@ -244,18 +244,17 @@ DOORS = {
     "gradebook-similar": _book("grade", "similar", "out"),
     "gradebook-salvaged": _book("grade", "salvage", "out", "--to", "new"),
     "exercise": Door("content/exercises/doubling/exercise.toml", "toml", ("exercises",)),
-    "hints": Door("content/exercises/doubling/hints.toml", "toml", ("-C", "ws", "hint", "doubling")),
     "syllabus": Door("content/lessons/syllabus.toml", "toml", ("lessons",)),
     "quiz-question": Door(
         "content/quiz/numerical-integration.toml", "toml", ("-C", "ws", "quiz", "take", "--questions"),
     ),
 }  # fmt: skip
 #: Of these a fault is one of the course, and its author's: exit code 70 with the file and the line.
-CONTENT = {"exercise", "hints", "syllabus", "quiz-question"}
+CONTENT = {"exercise", "syllabus", "quiz-question"}
 #: What cannot stand there: such a file is looked for, and not named by anybody.
 LOOKED_FOR = {
     "submission.py", "submission.ipynb", "submission.zip", "coursepack", "marker", "notebook-submitted",
-    "notebook-updated", "work", "work-diff", "work-submitted", "given", "metadata", "hints",
+    "notebook-updated", "work", "work-diff", "work-submitted", "given", "metadata",
     "quiz-question", "progress", "progress-next", "progress-repaired",
 }  # fmt: skip
 

@@ -19,6 +19,7 @@ from xml.etree import ElementTree as ET
 import pytest
 from packaging.requirements import Requirement
 
+from course.authoring.exercises.grading import mistakes_of
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.notebooks.build import exercise_cells
@@ -54,8 +55,8 @@ def model(exercise: Exercise) -> str:
 
 def wrong(exercise: Exercise) -> str:
     """The model with one of its known mistakes."""
-    first = min((SOLUTIONS / exercise.id / "mutants").glob("*.py"))
-    return f"{model(exercise)}\n\n{first.read_text('utf-8')}"
+    first = mistakes_of(CATALOG, exercise).wrong[0]
+    return first.composed(model(exercise), SOLUTIONS / exercise.id / exercise.module)
 
 
 def broken(exercise: Exercise) -> str:

@@ -1,6 +1,6 @@
 """The probes of ``validation``: what shows a mistake is recognised, what is right for nothing.
 
-What known wrong programs are told is in ``solutions/validation/confusion.json``, which the audit keeps; here
+What known wrong programs are told is in ``solutions/validation/record.json``, which the audit keeps; here
 are the pieces that it cannot reach, and the references that the hidden checks stand on.
 """
 

@@ -11,9 +11,12 @@ import hashlib
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
+import msgspec
+
 from course.catalog.load import Catalog
 from course.catalog.locate import PLACES, Content
 from course.catalog.models import Exercise
+from course.scoring.explain.story import read_table, table_path
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 #: The parts of this package that a grader process imports, and those that checks may import.
@@ -53,6 +56,9 @@ def grader_files(content: Content, exercises: Collection[str] | None = None) -> 
             continue
         for place in map(content.place_of, exercises):
             yield from _below(f"content/{name}/{place.as_posix()}", folder / place)
+            table = table_path(folder / place)
+            if table.parent != folder / place and table.is_file():  # one for all warm-ups
+                yield f"content/{name}/{table.relative_to(folder).as_posix()}", table
     if exercises is None:
         yield from _below("content/quiz", content.quiz)
 
@@ -76,4 +82,6 @@ def grader_version(exercise: Exercise, catalog: Catalog, package: Path = _PACKAG
     digest = hashlib.sha256()
     for label, path in sorted(file for name, folder in folders.items() for file in _below(name, folder)):
         digest.update(label.encode() + b"\0" + path.read_bytes() + b"\0")
+    if exercise.is_warm_up:  # its own part of the table that warm-ups share
+        digest.update(msgspec.json.encode(read_table(Path(exercise.folder))))
     return digest.hexdigest()[:16]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import json
 import os
 import shutil
 import signal
@@ -23,7 +24,8 @@ from course.grading.running.grader import Config
 from course.grading.running.rerun import RerunOptions, rerun
 from course.grading.running.run import RunOptions, grade_class
 from course.grading.running.snapshot import Snapshot, frozen, in_use
-from course.scoring.graders import grader_version
+from course.scoring.explain.story import forget_tables
+from course.scoring.graders import grader_files, grader_version
 from course.scoring.judging.submission import Terms
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.running.test_run import make_class, right
@@ -259,3 +261,31 @@ def test_the_gradebook_keeps_the_same_graders_once(tmp_path: Path, course: Catal
         assert book.snapshot(one.sha256) == one.packed
         assert book.snapshot("0" * 64) is None
         assert Results(book).book is book
+
+
+def test_a_warm_up_alone_takes_its_words_along_and_knows_when_they_change(
+    tmp_path: Path, course: Catalog
+) -> None:
+    """They stand in one file for all warm-ups, beside their folders."""
+    assert course.content.graders is not None
+    root = course.content.graders.parent
+    for place in ("exercises", "solutions"):
+        shutil.copytree(ROOT / place / "warm-ups" / "error-left", root / place / "warm-ups" / "error-left")
+    for name in ("lesson", "after"):  # of the course that it was taken from
+        path = root / "exercises" / "warm-ups" / "error-left" / "exercise.toml"
+        lines = path.read_text("utf-8").splitlines(keepends=True)
+        kept = [line for line in lines if not line.startswith(f"{name} =")]
+        path.write_text("".join(kept), "utf-8")
+    path.write_text(path.read_text("utf-8").replace("order =", 'lesson = "twice-as-much"\norder ='), "utf-8")
+    table = path.parent.with_name("diagnoses.json")
+    table.write_text(json.dumps({"error-left": {"words": {}}, "other": {}}), "utf-8")
+    files = {name for name, _ in grader_files(course.content, ["error-left"])}
+    assert "content/exercises/warm-ups/diagnoses.json" in files
+    warm_up = course.exercise("error-left")
+    before = grader_version(warm_up, course)
+    table.write_text(json.dumps({"error-left": {"words": {}}, "other": {"made_from": "x"}}), "utf-8")
+    forget_tables()
+    assert grader_version(warm_up, course) == before
+    table.write_text(json.dumps({"error-left": {"made_from": "x"}}), "utf-8")
+    forget_tables()
+    assert grader_version(warm_up, course) != before

@@ -144,7 +144,7 @@ def _notes(path: Path, name: str, raw: str, wanted: list[str], exercise: Exercis
     if base not in {exercise.module, PurePosixPath(exercise.module).with_suffix(".ipynb").name}:
         yield f"{base} was taken for {exercise.module}."
     above = PurePosixPath(name).parent.as_posix()
-    if above not in {".", exercise.place}:
+    if above not in {".", exercise.place, exercise.id}:
         yield f"The folder {above} was taken for {exercise.place}."
     if len(wanted) > 1:
         yield f"The same file is in {path.name} {len(wanted)} times: {', '.join(wanted)}."

@@ -53,8 +53,12 @@ def is_meant(name: str, wanted: str) -> bool:
 
 
 def is_folder_meant(name: str, wanted: str) -> bool:
-    """Whether a folder of this name is the wanted one, or the top, which is "."."""
-    return name in {".", wanted} or _NUMBERED.sub("", name).casefold() == wanted.casefold()
+    """Whether a folder of this name is the wanted one, or the top, which is ".".
+
+    A warm-up's is ``warm-ups/<id>`` in a workspace, and ``<id>`` alone where a student made it.
+    """
+    names = {wanted.casefold(), wanted.rpartition("/")[2].casefold()}
+    return name == "." or _NUMBERED.sub("", name).casefold() in names or name.casefold() in names
 
 
 Layout = Literal["auto", "folders", "canvas", "moodle", "gradescope"]

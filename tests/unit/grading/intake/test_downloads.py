@@ -10,7 +10,7 @@ import pytest
 
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
 from course.grading.gradebook.records import PlatformIdentity
-from course.grading.intake.downloads import ClassList, class_list
+from course.grading.intake.downloads import ClassList, Place, class_list, is_folder_meant
 from course.grading.intake.students import read_student
 from tests.unit.grading.intake.test_intake import archive
 
@@ -246,3 +246,13 @@ def test_an_empty_class_and_an_unknown_layout_are_said_plainly(tmp_path: Path) -
         class_list(tmp_path)
     with pytest.raises(UsageError, match="--layout"):
         class_list(tmp_path, "blackboard")
+
+
+@pytest.mark.parametrize("folder", ["warm-ups/error-left", "error-left", "Error-Left (1)", "."])
+def test_a_warm_up_is_found_in_its_folder_with_or_without_the_one_above(tmp_path: Path, folder: str) -> None:
+    path = tmp_path / folder / "error_left.py"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("x = 1\n")
+    assert Place(tmp_path).find("error_left.py", "warm-ups/error-left") == [path]
+    assert is_folder_meant(folder, "warm-ups/error-left")
+    assert not is_folder_meant("warm-ups", "warm-ups/error-left")

@@ -72,7 +72,8 @@ class Variant:
         try:
             compile(whole, str(file), "exec")
         except (SyntaxError, ValueError) as error:
-            said = f"{self.name}: the model solution with this is not valid Python: {error}."
+            why = getattr(error, "msg", error)
+            said = f"{self.name}: the model solution with this is not valid Python: {why}."
             raise ContentError(file, self.line, said, help="Correct its definitions.") from None
         return whole
 

@@ -67,24 +67,24 @@ class Function:
         """Its description in the README, after its name."""
         return self.gives or "<<FILL IN: what it gives, with formula, shapes and units of its arguments>>"
 
-    @property
-    def _arguments(self) -> tuple[str, ...]:
+    def _arguments(self, first: float = 1.0) -> dict[str, float]:
+        """By name; no two are equal, so that it shows when they are exchanged."""
         (node,) = ast.parse(f"def {self.signature}: ...").body
         assert isinstance(node, ast.FunctionDef)
-        return tuple(argument.arg for argument in node.args.args)
+        return {argument.arg: first + index / 2 for index, argument in enumerate(node.args.args)}
 
     @property
     def names(self) -> str:
         """The names of its arguments, as a tuple in Python."""
-        return _tuple([json.dumps(name) for name in self._arguments])
+        return _tuple([json.dumps(name) for name in self._arguments()])
 
-    def arguments(self, value: float) -> str:
+    def arguments(self, first: float) -> str:
         """Arguments of one call, as a tuple in Python."""
-        return _tuple([str(value) for _ in self._arguments])
+        return _tuple([str(value) for value in self._arguments(first).values()])
 
-    def case(self, value: float) -> str:
+    def case(self, first: float) -> str:
         """Arguments of one call, as a dict in Python."""
-        return f"{{{', '.join(f'{json.dumps(name)}: {value}' for name in self._arguments)}}}"
+        return json.dumps(self._arguments(first))
 
 
 def _tuple(items: Sequence[str]) -> str:
@@ -238,7 +238,7 @@ def new_scene(catalog: Catalog, scene_id: str) -> tuple[Path, ...]:
 
 
 def _module(function: str) -> str:
-    if function in {"checks", "diagnosis", "questions"}:
+    if function in {"checks", "diagnosis", "mistakes", "questions"}:
         raise UsageError(
             f"An exercise cannot be called {function}: its folder has a file of that name already.",
             help="Choose another id.",

@@ -39,15 +39,20 @@ THIRD = {
         "mistakes.py": [
             *("HALVES", "The results are halves of the numbers.", "Divide by three, not by two."),
             *("x / 3", "x / 2"),
-            *("TRIPLES", "The results are three times the numbers.", "Divide instead of multiplying."),
-            *("x / 3", "3 * x"),
-            *("KEEPS", "The results are the numbers themselves.", "Divide what you return by three."),
-            *("x / 3", "x"),
             *("Multiplies.", "return x * (1 / 3)"),
             *("Takes two thirds away.", "return x - 2 * x / 3"),
         ],
     },
 }  # fmt: skip
+#: The mistakes that its author adds below the one that is there.
+MORE = """
+mistakes(
+    "TRIPLES", "The results are three times the numbers.", "Divide instead of multiplying."
+).edit("third", {"x / 3": "3 * x"})
+mistakes(
+    "KEEPS", "The results are the numbers themselves.", "Divide what you return by three."
+).edit("third", {"x / 3": "x"})
+"""
 
 
 @pytest.fixture
@@ -119,6 +124,8 @@ def test_a_new_warm_up_is_proved_and_its_words_reach_a_student(
             left = iter(words)
             fill(mini / folder / name, lambda _, left=left: next(left))
             assert not list(left), name
+    with (mini / "solutions/warm-ups/first-third/mistakes.py").open("a", encoding="utf-8") as file:
+        file.write(MORE)
     checks = mini / "exercises" / "warm-ups" / "first-third" / "checks.py"
     put(checks, "[((1.0,), 1.0)]", "[((1.0,), 1 / 3)]")
     table = "exercises/warm-ups/diagnoses.json"

@@ -160,8 +160,7 @@ def _table_of(catalog: Catalog, exercise: Exercise, questions: ModuleType | None
     tasks = sorted(tasks_asked(questions))
     for task in tasks:
         if task not in {task.id for task in exercise.task}:
-            path = questions_path(exercise.id)
-            raise ContentError(path, None, f"{task!r} is no function of the exercise.", help="Correct it.")
+            raise _no_task(questions_path(exercise.id), None, task)
     right: dict[str, set[tuple[float, ...]]] = {}
     for task in tasks:
         for function in _right(catalog, exercise, task):
@@ -230,21 +229,27 @@ def hypotheses_of(catalog: Catalog, exercise: Exercise) -> Iterator[Wrong]:
     """
     solution, mistakes = solution_path(catalog, exercise), mistakes_of(catalog, exercise)
     model, file = read_text(solution), mistakes_path(solution.parent)
+    tasks = {task.id for task in exercise.task}
     for variant in (variant for variant in mistakes.wrong if variant.code in mistakes.words):
         source = variant.composed(model, file)
-        with blamed(file):
+        if variant.task not in tasks:
+            raise _no_task(file, variant.line, variant.task)
+        with blamed(file, variant.line):
             function = _executed(source.encode())[variant.task]
         yield variant.task, (variant.code,), function
-    tasks = {task.id for task in exercise.task}
     with blamed(file):
         programs = [(task, codes, function) for task, codes, function in mistakes.functions()]
     for task, codes, function in programs:
         if task not in tasks:
-            raise ContentError(file, None, f"{task!r} is no function of the exercise.", help="Correct it.")
+            raise _no_task(file, None, task)
         for code in codes:
             if code not in mistakes.words:
                 raise ContentError(file, None, f"there are no words for {code}.", help="Write them.")
         yield task, codes, function
+
+
+def _no_task(file: Path, line: int | None, task: str) -> ContentError:
+    return ContentError(file, line, f"{task!r} is no function of the exercise.", help="Correct it.")
 
 
 def _right(catalog: Catalog, exercise: Exercise, task: str) -> Iterator[Callable[..., Any]]:

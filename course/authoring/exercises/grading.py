@@ -80,20 +80,20 @@ def mistakes_of(catalog: Catalog, exercise: Exercise) -> Mistakes:
     with blamed(path):
         found = getattr(kit.reference(exercise.id, path.stem), "mistakes", None)
     if not isinstance(found, Mistakes):
-        raise ContentError(path, None, "it makes no `mistakes`.", help="Write: mistakes = Mistakes()")
+        raise ContentError(path, 1, "it makes no `mistakes`.", help="Write: mistakes = Mistakes()")
     return found
 
 
 @contextlib.contextmanager
-def blamed(path: Path) -> Iterator[None]:
-    """What an author's code raises, as a fault of its own file and line, or else of ``path``."""
+def blamed(path: Path, at: int | None = None) -> Iterator[None]:
+    """What an author's code raises, as a fault of its own file and line, or else of ``path`` and ``at``."""
     try:
         yield
     except CourseError:
         raise
     except Exception as error:
         place = place_of(error)
-        file, line = (content().root / place[0], place[1]) if place else (path, None)
+        file, line = (content().root / place[0], place[1]) if place else (path, at)
         if isinstance(error, SyntaxError) and error.filename:
             file, line = Path(error.filename), error.lineno
         problem = f"it raises {reason_of(error)}."

@@ -75,6 +75,10 @@ def plan(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[Proo
         _add(proofs, findings, partial(_accepted, solution, path))
     for variant in mistakes.right:
         _add(proofs, findings, partial(_proof, "accepted", file, model, variant))
+    if not mistakes.wrong:
+        message = "it has no wrong program, so nothing shows that the checks catch anything."
+        findings.add(file, None, "mutants", message, "Add the mistakes that students make.")
+        return tuple(proofs)
     for variant in mistakes.wrong:
         _add(proofs, findings, partial(_proof, "mutant", file, model, variant))
     _audit_mutants(exercise, mistakes, file, findings)

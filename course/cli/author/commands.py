@@ -281,8 +281,8 @@ def new_warm_up(
 ) -> int:
     """Write a warm-up with blanks to fill in.
 
-    Like `course author new exercise`, but smaller: only public checks, two accepted solutions, three wrong
-    ones. Once the blanks are filled, `course author build ID` computes the answers of the wrong ones.
+    Like `course author new exercise`, but smaller: six files, and all checks are public. Once the blanks are
+    filled, `course author build ID` computes what the wrong programs answer.
     """
     return _new_with_functions(scaffold.new_warm_up, "warm-up", name, function, title, summary, lesson)
 
@@ -361,10 +361,14 @@ def _report_new(catalog: Catalog, kind: str, name: str, files: tuple[Path, ...])
         console.line(path, indent=2)
     if kind == "lesson":
         console.note("Put its id into syllabus.toml, at the place where it is read.")
-    proved = ("author build", "author check")  # what the first writes, the second wants
-    then = {"exercise": proved, "warm-up": proved, "scene": ("sandbox play",)}.get(kind, ("author check",))
     own = kind == "scene" and files[0].parent == Path.cwd()  # known by its file alone
-    commands = ", then ".join(f"course {command} {files[0].name if own else name}" for command in then)
+    then = {
+        # What the first writes, the second wants.
+        "exercise": (f"author build {name} --accept", f"author check {name}"),
+        "warm-up": (f"author build {name}", f"author check {name}"),
+        "scene": (f"sandbox play {files[0].name if own else name}",),
+    }.get(kind, (f"author check {name}",))
+    commands = ", then ".join(f"course {command}" for command in then)
     console.note(f"Fill in the marked blanks, then run: {commands}")
     console.emit(AuthorNew(kind=kind, id=name, files=written))
     return 0

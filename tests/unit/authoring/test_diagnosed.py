@@ -102,7 +102,7 @@ def test_a_program_that_lost_its_check_or_its_name_is_printed_before_it_is_accep
         ('@mistakes.more\ndef o():\n    yield "halve", ("NO_WORDS",), abs\n', None, "no words for NO_WORDS"),
         ('mistakes("INTEGER_DIVISION", "A.", "B.")\n', 12, "INTEGER_DIVISION has words twice"),
         ('mistakes("OTHER", "A.", "B.", kind="guess")\n', 12, "'guess' is none of the kinds cause,"),
-        ("mistakes = None\n", None, "it makes no `mistakes`"),
+        ("mistakes = None\n", 1, "it makes no `mistakes`"),
     ],
 )
 def test_mistakes_that_cannot_be_used_are_named_and_nothing_is_left_half_made(
@@ -133,7 +133,7 @@ def test_questions_and_programs_that_raise_are_named(
     path.write_text(path.read_text() + 'mistakes("INTEGER_DIVISION").program("halve", "1 / 0")\n')
     forget()
     assert run(["author", "build", "halving"]) == 70
-    assert "mistakes.py: it raises ZeroDivisionError" in capsys.readouterr().err
+    assert "mistakes.py:11: it raises ZeroDivisionError" in capsys.readouterr().err
 
 
 def test_what_is_out_of_date_comes_after_what_it_follows_from(halving: Path, mini: Path) -> None:

@@ -34,7 +34,7 @@ SOLVED = {
     "graders/tripling/checks.py": CHECK,
     "solutions/tripling/tripling.py": ["Tripling.", "Three times ``x``.", "solved"],
     "solutions/tripling/README.md": ["Three times is twice and once more."],
-    "solutions/tripling/mistakes.py": [words for mistake in MISTAKES for words in mistake],
+    "solutions/tripling/mistakes.py": list(MISTAKES[0]),
     "solutions/tripling/accepted/unusual_1.py": ["Adds.", "added"],
     "solutions/tripling/accepted/unusual_2.py": ["Doubles and adds.", "more"],
 }  # fmt: skip
@@ -64,6 +64,12 @@ def fill(mini: Path) -> None:
         for old, new in CODE.items():
             text = text.replace(old, new)
         path.write_text(text, encoding="utf-8")
+    more = "".join(
+        f'mistakes("{code}", "{looks_like}", "{advice}").edit("tripling", {{"{old}": "{new}"}})\n'
+        for code, looks_like, advice, old, new in MISTAKES[1:]
+    )
+    with (mini / "solutions" / "tripling" / "mistakes.py").open("a", encoding="utf-8") as file:
+        file.write(more)
     lesson = mini / "lessons" / "half-as-much.md"
     lesson.write_text(lesson.read_text().replace('["halving"]', '["halving", "tripling"]'))
 
@@ -141,9 +147,9 @@ def test_what_is_known_of_an_exercise_stands_in_every_file_and_is_no_blank(mini:
         "    raise NotImplementedError\n\n\n"
         'def swings(t):\n    """Gives how often it swings in t."""\n    raise NotImplementedError\n'
     )
-    assert 'case = {"length": 1.0, "gravity": 1.0}' in texts["exercises/swinging/checks.py"]
+    assert 'case = {"length": 1.0, "gravity": 1.5}' in texts["exercises/swinging/checks.py"]
     for name in ("swing_period", "swings"):
-        assert texts["solutions/swinging/mistakes.py"].count(f'.edit("{name}", ') == 4
+        assert texts["solutions/swinging/mistakes.py"].count(f'.edit("{name}", ') == 1
     assert 'lesson = "twice-as-much"' in texts["exercises/swinging/exercise.toml"]
     assert "FILL IN" not in stub
 
@@ -174,7 +180,7 @@ def test_nothing_is_overwritten_and_nothing_half_written(mini: Path, taken: str)
     assert contents(mini) == before
 
 
-@pytest.mark.parametrize("name", ["Tripling", "../x", "checks", "diagnosis", "a_b", ""])
+@pytest.mark.parametrize("name", ["Tripling", "../x", "checks", "mistakes", "a_b", ""])
 def test_a_name_that_cannot_be_used_is_refused(mini: Path, name: str) -> None:
     before = contents(mini)
     with pytest.raises(UsageError):

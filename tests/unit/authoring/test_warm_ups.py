@@ -41,10 +41,13 @@ def tripling(mini: Path) -> Path:
     assert "[((1.0,), 1.0)]" in checks
     (student / "checks.py").write_text(re.sub(r" *# \n", "", checks.replace("(1.0,), 1.0", "(1.0,), 3.0")))
     (solutions / "tripling.py").write_text('"""Tripling."""\n\n\ndef triple(x):\n    return 3 * x\n')
-    blanks = [
-        one for code, rule in WRONG.items() for one in (code, f"It is {rule}.", "Mend it.", "3 * x", rule)
-    ]
-    fill(mistakes(mini), [*blanks, "Adds.", "adds", "Sums.", "sums"])
+    entry = 'mistakes(\n    "{}",\n    "It is {}.",\n    "Mend it.",\n).edit("triple", {{"3 * x": "{}"}})\n'
+    more = "".join(entry.format(code, rule, rule) for code, rule in [*WRONG.items()][1:])
+    fill(
+        mistakes(mini),
+        ["DOUBLES", "It is 2 * x.", "Mend it.", "3 * x", "2 * x", "Adds.", "adds", "Sums.", "sums"],
+    )
+    edit(mistakes(mini), "\nmistakes.accept(", f"{more}\nmistakes.accept(")
     text = mistakes(mini).read_text()
     for name, rule in (("adds", "x + x + x"), ("sums", "sum([x] * 3)")):
         text = text.replace(f'raise NotImplementedError("{name}")', f"return {rule}")

@@ -77,7 +77,7 @@ def decoded(raw: bytes) -> str:
 
 def in_utf8(source: bytes) -> bytes:
     """Python's source in UTF-8 where it is UTF-16 or Windows' western code page without saying so."""
-    with contextlib.suppress(SyntaxError, UnicodeDecodeError, LookupError):
+    with contextlib.suppress(SyntaxError, UnicodeError, LookupError):
         source.decode(tokenize.detect_encoding(io.BytesIO(source).readline)[0])
         if b"\0" not in source:
             return source

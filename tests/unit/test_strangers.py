@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from course.strangers import no_programs, read_bytes, toml
+from course.strangers import in_utf8, no_programs, read_bytes, toml
 
 
 @pytest.mark.parametrize(
@@ -105,3 +105,10 @@ def test_what_has_no_end_is_stopped() -> None:
         no_programs(database, millions=2)
         with pytest.raises(sqlite3.OperationalError, match="interrupted"):
             database.execute(f"SELECT count(*) FROM ({_ENDLESS})")
+
+
+@pytest.mark.parametrize("claimed", ["punycode", "idna", "base64", "no_such", "utf-16"])
+def test_an_encoding_that_a_module_only_claims_leaves_its_bytes_readable(claimed: str) -> None:
+    """Some codecs raise other errors than those of a byte that cannot be decoded."""
+    source = f"# coding: {claimed}\nx = 1  # ##\n".encode()
+    assert b"x = 1" in in_utf8(source)

@@ -92,6 +92,38 @@ def test_a_program_that_lost_its_check_or_its_name_is_printed_before_it_is_accep
     assert [one for one in problems() if "not as INTEGER_DIVISION" not in one] == []
 
 
+def test_what_is_lost_with_a_check_is_printed(
+    halving: Path, mini: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A check names a mistake no longer, no question tells it apart, and a program has become right."""
+    assert run(["author", "build", "halving", "--accept"]) == 0
+    assert "was by" not in capsys.readouterr().out
+    edit(mini / "graders/halving/checks.py", '        diagnose="INTEGER_DIVISION",\n', "")
+    edit(halving / "questions.py", "(7,), (-3,), (0.5,), (-8.0,)", "(8,)")
+    edit(mistakes(mini), '"round(x / 2)"', '"0.5 * x"')
+    assert run(["author", "build", "halving", "--accept"]) == 0
+    out = capsys.readouterr().out
+    assert "halve.INTEGER_DIVISION.3: caught by no check, and was by half_of_odd." in out
+    assert "halve.INTEGER_DIVISION: told nothing, not INTEGER_DIVISION." in out
+    assert "halve: INTEGER_DIVISION is no longer named." in out
+
+
+def test_a_record_that_is_missing_damaged_or_of_other_programs_is_named(halving: Path, mini: Path) -> None:
+    assert run(["author", "build", "halving", "--accept"]) == 0
+    record, again = mini / "solutions/halving/record.json", "Run `course author build halving --accept`"
+    kept = record.read_bytes()
+    record.unlink()
+    (missing,) = problems()
+    assert missing.startswith(f"solutions/halving/record.json: it is missing. {again}")
+    record.write_text("{")
+    assert all(one.startswith("solutions/halving/record.json: it cannot be read") for one in problems())
+    assert problems()
+    record.write_bytes(kept.replace(b'"halve.INTEGER_DIVISION.4"', b'"halve.ROUNDED"'))
+    (stale,) = problems()
+    assert stale.startswith("solutions/halving/record.json: the record of what wrong programs")
+    assert again in stale
+
+
 @pytest.mark.parametrize(
     ("text", "line", "says"),
     [

@@ -172,7 +172,10 @@ def test_warm_ups_share_a_table_that_forgets_those_that_are_gone(tripling: Path)
     path.write_text(json.dumps(tables))
     edit(tripling / "checks.py", "Count.", "Count again.")
     rebuilt()
-    assert sorted(json.loads(path.read_bytes())) == ["other", "tripling"]
+    built = json.loads(path.read_bytes())
+    assert sorted(built) == ["other", "tripling"]
+    assert built["other"] == tables["other"], "it is not built anew"
+    assert built["tripling"]["made_from"] != tables["tripling"]["made_from"]
 
 
 def test_questions_that_are_missing_are_named(tripling: Path) -> None:

@@ -132,7 +132,7 @@ def test_friction_absent(submission, draw):
         bundles.FRICTION,
         "friction_absent",
         draw,
-        "The velocities of this pair, with little friction or none, are wrong.",
+        "The velocities of this pair are wrong.",
         "Friction needs mu > 0, a slip and an approach; without one of them the result is that of `resolve`.",
     )
 

@@ -531,18 +531,26 @@ def audit_diagnoses(catalog: Catalog, exercise: Exercise, findings: Findings) ->
             return
         _audit_codes(catalog, exercise, table, mistakes, findings)
     if not exercise.is_warm_up:
-        _audit_record(catalog, exercise, mistakes, findings)
+        _audit_record(catalog, exercise, findings)
 
 
-def _audit_record(catalog: Catalog, exercise: Exercise, mistakes: Mistakes, findings: Findings) -> None:
+def is_older(catalog: Catalog, exercise: Exercise) -> bool:
+    """Whether the record of an exercise is of other programs or checks than there are, or is not there."""
+    if exercise.is_warm_up:
+        return False
+    kept, mistakes = read_record(catalog, exercise) or Record(), mistakes_of(catalog, exercise)
+    # Without words nothing is told but what checks say by themselves, and that is graded each time.
+    told = kept.made_from == made_from(catalog, exercise) or not mistakes.words
+    return not told or kept.caught.keys() != {variant.name for variant in mistakes.wrong}
+
+
+def _audit_record(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
     path, kept = record_path(catalog, exercise), read_record(catalog, exercise)
     again = f"Run `course author build {exercise.id} --accept`, and read what it says."
     if kept is None:
         findings.add(path, None, "stale", "it is missing.", again)
         return
-    # Without words nothing is told but what checks say by themselves, and that is graded each time.
-    told = kept.made_from == made_from(catalog, exercise) or not mistakes.words
-    if not told or kept.caught.keys() != {variant.name for variant in mistakes.wrong}:
+    if is_older(catalog, exercise):
         message = "the record of what wrong programs are told is out of date."
         findings.add(path, None, "stale", message, again)
         return
@@ -564,7 +572,9 @@ def _audit_codes(
     known = {code for rows in table.rows.values() for row in rows for code in row.codes}
     given, named = set(_literals(catalog, exercise)), {variant.code for variant in mistakes.wrong}
     for code in sorted(mistakes.words.keys() - known - given):
-        fix = "Add a question that its program answers in its own way." if code in named else "Take it out."
+        fix = "Take it out."
+        if code in named:
+            fix = "Add a question that its program answers in its own way, or see whether it is wrong at all."
         findings.add(file, mistakes.lines[code], "words", f"nothing gives the diagnosis {code}.", fix)
 
 

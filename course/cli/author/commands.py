@@ -486,7 +486,10 @@ def build(
                 console.line(change, indent=2)
     for file in written:
         console.line(f"Wrote {file}")
-    if not written:
+    older = [exercise.id for exercise in chosen if diagnosis.is_older(catalog, exercise)]
+    for one in older:
+        console.note(f"The record of {one} is older than its files: course author build {one} --accept")
+    if not written and not older:
         console.note("All of it is up to date.")
     console.emit(AuthorBuild(files=tuple(written)))
     return 0

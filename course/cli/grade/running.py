@@ -415,7 +415,7 @@ def _show_result(
         if verdict.error.help:
             console.item("advice", verdict.error.help, width=10)
     console.blank()
-    known = catalog.exercise_ids()
+    known = (*catalog.exercise_ids(), *catalog.warm_up_ids())
     if verdict.checks and verdict.exercise in known:
         show_everything(console, catalog.exercise(verdict.exercise), verdict.checks)
     else:

@@ -252,8 +252,8 @@ def samples(value, t_end, h, names, given, width=None):
             n + 1,
             name=name,
             input=given,
-            message="The number of samples is not one more than the number of steps.",
-            help="N = round(t_end / h) steps connect N + 1 states.",
+            message="The number of samples is not N + 1, with N = round(t_end / h).",
+            help="N steps connect N + 1 states.",
             diagnose=lambda rows=rows: tracks.of_count(len(kit.as_list(rows)), t_end, h, kit.as_vector(t)),
         )
     t = kit.as_array(t, (n + 1,), names[0])

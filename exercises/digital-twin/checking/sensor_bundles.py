@@ -238,7 +238,7 @@ def expect_gyroscope_draws(submission, seed, dt):
             quantity=f"std of {name}",
             units="rad/s",
             input={"dt": dt, "noise_density": 0.01, "bias_random_walk": 0.01, "samples": n},
-            message="With white noise and a walk together, the std of one of them is wrong.",
+            message=f"With white noise and a walk together, the std of {name} is wrong.",
             diagnose=lambda: sensors.of_imu(submission),
         )
     with np.errstate(all="ignore"):

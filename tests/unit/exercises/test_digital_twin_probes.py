@@ -272,7 +272,7 @@ def test_a_noise_that_is_not_finite_is_not_said_to_differ_with_the_same_generato
 
     with pytest.raises(kit.CheckFailed) as failed:
         sensor_bundles.expect_gyroscope_draws(Fake("imu", imu), 5, 0.02)
-    assert "std of one of them" in failed.value.finding.message
+    assert "a walk together, the std of " in failed.value.finding.message
 
 
 def test_densities_that_are_right_are_not_said_to_be_too_small():

@@ -66,6 +66,20 @@ def test_explain_shows_hidden_values_to_the_instructor(graded: Path) -> None:
     assert "I saw -17.25" in done.stdout
 
 
+def test_a_warm_up_is_graded_where_its_message_says_to_put_it_and_is_explained(tmp_path: Path) -> None:
+    place = tmp_path / "class" / "ada" / "error-left"
+    place.mkdir(parents=True)
+    wrong = "def error_left(coarse, fine, factor, order):\n    return (coarse - fine) / factor**order\n"
+    (place / "error_left.py").write_text(wrong)
+    run = ("grade", "run", tmp_path / "class", "--exercise", "error-left", "--out", tmp_path / "out")
+    done = in_process(*run, "--seed", "4", env=dict(os.environ))
+    assert done.returncode == 0, done.stderr
+    explain = ("grade", "explain", tmp_path / "out", "ada", "error-left")
+    said = in_process(*explain, env=dict(os.environ)).stdout
+    assert "without the minus one" in said
+    assert "diagnosis: MINUS_ONE_FORGOTTEN" in said
+
+
 def test_explain_says_why_there_is_no_grade(graded: Path) -> None:
     done = course("grade", "explain", graded, "cy", "doubling", "--json")
     body = json.loads(done.stdout)

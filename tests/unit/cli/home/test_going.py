@@ -172,7 +172,8 @@ def test_exercises_are_numbered_in_the_lessons_order_and_know_the_chapters_numbe
     for tasks in (catalog.exercises(), catalog.warm_ups(), catalog.every_task()):
         places = [catalog.lesson_ids().index(one.lesson) for one in tasks]
         assert places == sorted(places)
-    assert [catalog.place_of(one) for one in catalog.exercises()] == [1, 2, 3, 4, 5, 6]
+    places = [catalog.place_of(one) for one in catalog.exercises()]
+    assert places == list(range(1, len(places) + 1))
     assert catalog.exercise_called("1").id == "integrators"
 
 
@@ -195,7 +196,9 @@ def test_the_dashboard_shows_the_evidence_for_each_objective(course, real):
         if a != b
     ]
     assert changed == [(["engines"], 1, ["which-engine"])]
-    assert "exercise 3, engine-comparison: not started" in course().out
+    catalog = Catalog()
+    place = catalog.place_of(catalog.exercise("engine-comparison"))
+    assert f"exercise {place}, engine-comparison: not started" in course().out
 
 
 def test_next_offers_the_warm_ups_of_the_lesson_just_read_and_then_its_exercise(course, real):

@@ -4,6 +4,6 @@ Nothing is imported eagerly: ``course --help`` stays fast, and a worker that run
 never finds more of this package than it was given.
 """
 
-__version__ = "1.2.0"
+__version__ = "2.0.0"
 
 __all__ = ["__version__"]

@@ -60,7 +60,7 @@ from course.scoring.explain.story import (
     table_path,
     tables_in,
 )
-from course.scoring.judging.explaining import answer_numbers, answers, tasks_asked
+from course.scoring.judging.explaining import Explainer, answer_numbers, answers, tasks_asked
 from course.scoring.judging.session import GradingSession, Scope
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import Status
@@ -306,26 +306,39 @@ class _Rehearsal(GradingSession):
 
 
 def rows_of(
-    catalog: Catalog, exercise: Exercise, *, on_progress: Progress | None = None, each: int = _EACH
+    catalog: Catalog,
+    exercise: Exercise,
+    *,
+    scopes: tuple[str, ...] = ("public", "full", "alone"),
+    on_progress: Progress | None = None,
+    each: int = _EACH,
 ) -> dict[str, tuple[Reported, ...]]:
-    """Try ``each`` known wrong programs for every task: all with one mistake, then some with two."""
+    """Try ``each`` known wrong programs for every task: all with one mistake, then some with two.
+
+    Returns:
+        By scope, what they are told at home ("public"), in a grading run ("full"), and in one that knows none
+        of them ("alone"; those with one mistake): as a program that nobody foresaw, only a check's own probe
+        can name it.
+    """
     known = list(hypotheses_of(catalog, exercise))
-    chosen = [item for item in known if len(item[1]) == 1]
+    single = [item for item in known if len(item[1]) == 1]
+    chosen = list(single)
     for task in (task.id for task in exercise.task):
         left = each - sum(item[0] == task for item in chosen)
         pairs = [item for item in known if len(item[1]) > 1 and item[0] == task]
         # Spread evenly over all there are.
         some = [pairs[i * len(pairs) // left] for i in range(left)] if left < len(pairs) else pairs
         chosen += [as_one(exercise, item) for item in some]
+    tried = {scope: single if scope == "alone" else chosen for scope in scopes}
     rows: dict[str, tuple[Reported, ...]] = {}
-    done, scopes = 0, ("public", "full")
-    for scope in scopes:
+    done, total = 0, sum(map(len, tried.values()))
+    for scope, programs in tried.items():
         counts: Counter[tuple[str, tuple[str, ...], str]] = Counter()
-        for task, codes, said in _tried(catalog, exercise, scope, chosen):  # type: ignore[arg-type]
+        for task, codes, said in _tried(catalog, exercise, scope, programs):
             counts[task, codes, said] += 1
             done += 1
             if on_progress:
-                on_progress(done, len(scopes) * len(chosen), exercise.id)
+                on_progress(done, total, exercise.id)
         rows[scope] = tuple(Reported(*key, count) for key, count in sorted(counts.items()))
     return rows
 
@@ -373,13 +386,16 @@ def code_of(catalog: Catalog, exercise: Exercise) -> bytes:
 def _tried(
     catalog: Catalog,
     exercise: Exercise,
-    scope: Scope,
+    scope: str,
     chosen: list[Wrong],
 ) -> Iterator[tuple[str, tuple[str, ...], str]]:
     source = solution_path(catalog, exercise).read_text(encoding="utf-8")
-    own = words(exercise.id)
-    with _Rehearsal(exercise, catalog, scope=scope, terms=Terms(timeout=60.0)) as session:
+    own, table = words(exercise.id), read_table(exercise.readme_path.parent)
+    of_checks: Scope = "public" if scope == "public" else "full"
+    with _Rehearsal(exercise, catalog, scope=of_checks, terms=Terms(timeout=60.0)) as session:
         session.source = source
+        if scope == "alone" and table is not None and (questions := questions_of(exercise.id)):
+            session._explainer = Explainer(msgspec.structs.replace(table, rows={}), questions)
         every = session._checks.in_order()
         for task, codes, function in chosen:
             session.program = task, function
@@ -491,12 +507,14 @@ def accept(catalog: Catalog, exercise: Exercise, *, on_progress: Progress | None
         if (one.diagnosis or "") not in (one.mutant.code, *one.mutant.also)
     ]
     rows, fate = rows_of(catalog, exercise, on_progress=on_progress), fate_of(catalog, exercise)
-    named = {(r.task, r.codes) for r in before.rows.get("full", ()) if fate(r) == "named"}
-    still = {(r.task, r.codes) for r in rows["full"] if fate(r) == "named"}
-    known = {(r.task, r.codes) for r in rows["full"]}
-    changes += [
-        f"{task}: {' and '.join(codes)} is no longer named." for task, codes in sorted(named & known - still)
-    ]
+    for scope, where in {"full": "", "alone": " by a check alone"}.items():
+        named = {(r.task, r.codes) for r in before.rows.get(scope, ()) if fate(r) == "named"}
+        still = {(r.task, r.codes) for r in rows[scope] if fate(r) == "named"}
+        known = {(r.task, r.codes) for r in rows[scope]}
+        changes += [
+            f"{task}: {' and '.join(codes)} is no longer named{where}."
+            for task, codes in sorted(named & known - still)
+        ]
     record = Record(made_from=made_from(catalog, exercise), caught=caught, rows=rows)
     path = write_record(catalog, exercise, record)
     return Accepted(path, tuple(changes), tally(fate, rows["full"]))
@@ -555,7 +573,9 @@ def _audit_record(catalog: Catalog, exercise: Exercise, findings: Findings) -> N
         findings.add(path, None, "stale", message, again)
         return
     fate = fate_of(catalog, exercise)
-    for row in (row for rows in kept.rows.values() for row in rows if fate(row) == "otherwise"):
+    # What a probe says "alone" is often a wider name for the same, and true.
+    said = (row for scope, rows in kept.rows.items() if scope != "alone" for row in rows)
+    for row in (row for row in said if fate(row) == "otherwise"):
         message = f"{row.task}: programs with {', '.join(row.codes)} are told {row.said}, which is untrue."
         findings.add(path, None, "words", message, "Narrow the probe that says it.")
     for row in kept.rows.get("full", ()):

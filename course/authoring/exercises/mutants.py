@@ -192,7 +192,8 @@ class Record(msgspec.Struct, frozen=True, kw_only=True):
     Attributes:
         made_from: digest of all that the rows follow from.
         caught: the id of the check that catches each program, by its name.
-        rows: of programs that are functions, at home ("public") and in a grading run ("full").
+        rows: of all programs, at home ("public"), in a grading run ("full"), and in a run that knows
+            no wrong program, where only the checks' probes can name a mistake ("alone").
     """
 
     made_from: str = ""

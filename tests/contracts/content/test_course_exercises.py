@@ -6,7 +6,9 @@ import math
 
 import pytest
 
-from tests.contracts.content.audited import EACH, EXERCISES, IN_PART, changed, on_record, programs, wrong
+from course.authoring.exercises.diagnosis import rows_of
+from course.authoring.exercises.mutants import read_record
+from tests.contracts.content.audited import CATALOG, EACH, EXERCISES, IN_PART, changed, on_record, programs, wrong
 
 
 @pytest.mark.parametrize("exercise", EXERCISES)
@@ -25,3 +27,14 @@ def test_the_audit_finds_nothing_wrong_with_any_program(exercise: str) -> None:
     assert wrong(report) == []
     assert report.exercises == (exercise,)
     assert report.graded == programs(exercise)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("exercise", EXERCISES)
+def test_what_checks_say_where_no_wrong_program_is_known_is_on_record(exercise: str) -> None:
+    it = CATALOG.exercise(exercise)
+    kept = read_record(CATALOG, it)
+    assert kept is not None
+    told = rows_of(CATALOG, it, scopes=("alone",))["alone"]
+    assert [row for row in told if row not in kept.rows["alone"]] == []
+    assert len(told) == len(kept.rows["alone"])

@@ -8,7 +8,16 @@ import pytest
 
 from course.authoring.exercises.diagnosis import rows_of
 from course.authoring.exercises.mutants import read_record
-from tests.contracts.content.audited import CATALOG, EACH, EXERCISES, IN_PART, changed, on_record, programs, wrong
+from tests.contracts.content.audited import (
+    CATALOG,
+    EACH,
+    EXERCISES,
+    IN_PART,
+    changed,
+    on_record,
+    programs,
+    wrong,
+)
 
 
 @pytest.mark.parametrize("exercise", EXERCISES)

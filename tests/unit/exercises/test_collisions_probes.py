@@ -168,27 +168,6 @@ def head_on_code(change):
     return found and found.code
 
 
-def test_an_impact_at_another_moment_is_told_from_a_wrong_rest_of_the_step_and_from_late_velocities():
-    change = np.array([1.0, -0.9])
-
-    def moved(way, by, t, x, v, meeting):
-        late = (t > meeting.contact)[:, None]
-        return x + late * by * way, v
-
-    def other_moment(by):
-        return lambda t, x, v, m: moved(change - np.array(m.after), by, t, x, v, m)
-
-    def to_the_sample(t, x, v, m):
-        return other_moment(math.ceil(m.contact / 0.1) * 0.1 - m.contact)(t, x, v, m)
-
-    assert head_on_code(other_moment(0.013)) == "MOMENT_IN_STEP_WRONG"
-    assert head_on_code(other_moment(0.23)) is None, "in another step"
-    assert head_on_code(to_the_sample) == "IMPACT_AT_SAMPLE"
-    assert head_on_code(lambda t, x, v, m: moved(np.array(m.after), 0.03, t, x, v, m)) == "TIME_LEFT_WRONG"
-    late = lambda t, x, v, m: (x, np.where((t < m.contact + 0.1)[:, None], v[0], v))  # noqa: E731
-    assert head_on_code(late) == "VELOCITIES_LATE"
-
-
 def test_what_the_first_of_several_impacts_does_decides():
     """Impulses of half the size come again at every step, until nothing is left of the approach."""
 
@@ -208,15 +187,6 @@ def test_a_ball_that_rests_elsewhere_does_not_jitter(height, code):
     z, v = (array.copy() for array in scene.at(t, truth.times, truth.speeds))
     z[t > truth.may] = height
     assert tracks.of_drop(scene, truth, t, z, v, h).code == code
-
-
-def test_bodies_that_are_left_out_are_told_from_one_of_two_that_is_wrong():
-    calls = [draws.impact(np.random.default_rng(seed), 3) for seed in range(4)]
-    right = [formulas.RIGHT["resolve"](*call) for call in calls]
-    spared = [right[0], (calls[1][2], calls[1][3]), *right[2:]]
-    assert probes.of_calls("resolve", calls, spared, right).code == "SOME_PAIRS_SPARED"
-    half = [(a, b + 0.1) for a, b in right]
-    assert probes.of_calls("resolve", calls, half, right).code == "ONE_BODY_RIGHT"
 
 
 def test_a_pair_that_is_struck_again_and_again_is_recognised():
@@ -322,23 +292,6 @@ def test_the_report_draws_the_program_that_is_still_to_be_mended():
     assert "not written yet" in second.text
 
 
-def test_a_constant_none_is_told_from_tunnelling():
-    calls = scenes("time_of_impact")
-    assert said("time_of_impact", calls, [None] * len(calls)) == "NEVER_FINDS_A_CONTACT"
-
-
-def test_a_search_in_small_steps_is_told_from_a_missed_contact():
-    calls = [draws.passing(np.random.default_rng(seed), 3, 0.3) for seed in range(4)]
-    truth = [formulas.RIGHT["time_of_impact"](*call) for call in calls]
-    rough = [0.01 * math.ceil(t / 0.01) for t in truth]
-    assert said("time_of_impact", calls, rough) == "MOMENT_TOO_COARSE"
-    assert said("time_of_impact", calls, [None, *rough[1:]]) == "TUNNELS"
-    # Spheres that are taken for smaller ones meet late, too.
-    assert (
-        said("time_of_impact", calls, [None, *(t + 1.234567891e-3 for t in truth[1:])]) == "CONTACTS_MISSED"
-    )
-
-
 def test_contacts_that_are_missed_beside_exact_ones_are_not_laid_to_a_search():
     calls = [draws.passing(np.random.default_rng(seed), 3, 0.3) for seed in range(4)]
     truth = [formulas.RIGHT["time_of_impact"](*call) for call in calls]
@@ -353,22 +306,6 @@ def test_a_number_for_a_miss_is_not_a_contact_in_the_past():
     for number in (-1.0, 0.0, math.inf):
         values = [number if right is None else right for right in truth]
         assert said("time_of_impact", calls, values) == "MISS_IS_A_NUMBER"
-
-
-def test_a_pair_that_meets_within_the_first_step_and_passes_is_told_so():
-    scene = paths.HeadOn((1.0, 2.0), (-0.5, 0.54), (2.0, -2.0), 0.5, 0.5)
-    t = 0.05 * np.arange(21)
-    x, v = scene.at(t, math.inf, None)
-    found = tracks.of_head_on(scene, motions.meeting(scene), t, x, v, 0.05)
-    assert found.code == "FIRST_STEP_MISSED"
-
-
-def test_a_ball_that_stays_on_the_floor_it_is_thrown_from_is_told_so():
-    scene, h = paths.Drop(0.2, 2.5, 0.2, 0.6), 0.01
-    t = h * np.arange(51)
-    still = np.full(51, 0.2), np.concatenate([[2.5], np.zeros(50)])
-    truth = motions.bounces(scene, 0.51, h)
-    assert tracks.of_drop(scene, truth, t, *still, h).code == "LAUNCH_IGNORED"
 
 
 def test_friction_where_none_belongs_is_too_strong_and_not_askew():
@@ -417,17 +354,6 @@ def head_on_path(h=0.05):
     return scene, t, *path(scene, t)
 
 
-def test_velocities_that_are_late_are_told_from_differences_of_positions():
-    scene, t, x, v = head_on_path()
-    truth = motions.meeting(scene)
-    k = int(np.searchsorted(t, truth.contact))
-    late = v.copy()
-    late[k] = scene.v0
-    apart = np.vstack([scene.v0, np.diff(x, axis=0) / 0.05])
-    codes = [tracks.of_head_on(scene, truth, t, x, other, 0.05).code for other in (late, apart)]
-    assert codes == ["VELOCITIES_LATE", "VELOCITIES_APART"]
-
-
 def test_a_path_in_single_precision_is_told_so():
     scene, t, x, v = head_on_path()
     rough = (a.astype(np.float32).astype(float) for a in (x, v))
@@ -468,14 +394,6 @@ def test_velocities_that_count_downwards_are_told_from_a_wrong_flight():
     assert found is None or found.code != "SPEED_AT_STEP_END"
 
 
-def test_a_special_case_for_masses_that_are_very_nearly_equal_is_told_so():
-    rng = np.random.default_rng(4)
-    calls = [draws.line(rng), *(change(rng, draws.line(rng)) for change in (draws.alike, draws.twins))]
-    truth = [formulas.RIGHT["impulse_1d"](*call) for call in calls]
-    values = [*truth[:2], (1 + calls[2][4]) * (calls[2][2] - calls[2][3]) * calls[2][0] / 2]
-    assert probes.of_calls("impulse_1d", calls, values, truth).code == "ONLY_NEARLY_EQUAL"
-
-
 def test_a_ball_that_settles_at_once_would_still_fly_by_a_rule_that_is_not_that_of_g_h():
     rng = np.random.default_rng(5)
     for _ in range(50):
@@ -488,20 +406,6 @@ def test_a_ball_that_settles_at_once_would_still_fly_by_a_rule_that_is_not_that_
             rest = math.ceil(contact * scene.fastest / slowest) - contact * scene.fastest / slowest
             assert scene.fastest > slowest * rest
         assert motions.bounces(scene, t_end, h).must < 5 * scene.fastest / scene.g
-
-
-@pytest.mark.parametrize("form", [(1, 4, 1), (1, 4, 2), (2, 1, 1), (2, 1, 2)])
-def test_a_quadratic_formula_mixed_of_two_forms_is_told_by_its_times(form):
-    calls = scenes("time_of_impact")
-    # Nearly touching at the start, so that a form whose discriminant is too small has its roots there too.
-    calls += [draws.passing(np.random.default_rng(seed), 3, 0.1) for seed in range(3)]
-    calls += [(xa, va, 0.98 * float(np.linalg.norm(xb - xa)), xb, vb, 0.01, dt)
-              for xa, va, _, xb, vb, _, dt in calls[-3:]]  # fmt: skip
-    mixed = formulas._mixed(*form)
-    # Of its own here: what overlaps has no contact to come, so no known program gives all the same answers.
-    values = [None if probes._overlap(call) else mixed(*call) for call in calls]
-    assert said("time_of_impact", calls, values) == "QUADRATIC_MIXED"
-    assert said("time_of_impact", calls, [t and t + 1e-3 for t in values]) != "QUADRATIC_MIXED"
 
 
 @pytest.mark.parametrize("factor", [0.5, 1.0, 2.0, 3.0])
@@ -535,16 +439,6 @@ def test_a_floor_at_another_height_is_told_however_the_ball_comes_to_rest_there(
     path = other.at(t, theirs.times, theirs.speeds)
     found = tracks.of_drop(scene, motions.bounces(scene, 1.0, h), t, *path, h)
     assert (found and found.code) == code
-
-
-@pytest.mark.parametrize("radii", [0, 1, 3, 4])
-def test_another_distance_of_contact_is_told_of_two_balls_even_if_it_is_met_steps_later(radii):
-    scene = paths.HeadOn((1.0, 2.0), (-1.2, 1.37), (1.0, -0.9), 0.35, 0.5)
-    t, truth = 0.1 * np.arange(21), motions.meeting(scene)
-    path = scene.at(t, (2.57 - radii * 0.35) / 1.9, truth.after)
-    found = tracks.of_head_on(scene, truth, t, *path, 0.1)
-    names = {0: "RADIUS_IGNORED", 1: "ONE_RADIUS_ONLY", 4: "RADIUS_ADDED_TWICE"}
-    assert (found and found.code) == names.get(radii)
 
 
 def dropped(e, speed_of, h=0.02, often=True):
@@ -601,28 +495,6 @@ def test_energy_and_momentum_are_said_of_the_first_wrong_pair_alone():
     for first, second, code in ((weaker, created, "MOMENTUM_LOST"), (created, weaker, "ENERGY_CREATED")):
         calls, right = ([slow, fast], truth) if code == "MOMENTUM_LOST" else ([fast, slow], truth[::-1])
         assert probes._by_law("resolve", calls, [first, second], right) == code
-
-
-def test_code_that_works_for_vectors_of_one_length_alone_is_told_so():
-    class Flat:
-        def call_each(self, task, calls):
-            if any(len(args[4]) != 2 for args in calls):
-                raise kit.StudentFailure("error", type="ValueError")
-            return [args[2:4] for args in calls]
-
-    calls = [(1.0, 1.0, np.zeros(d), np.zeros(d), np.eye(d)[0], 1.0) for d in (2, 3)]
-    with pytest.raises(kit.CheckFailed) as failed:
-        bundles.answers(Flat(), "resolve", calls)
-    assert failed.value.finding.diagnosis == "ONE_DIMENSION_ONLY"
-    with pytest.raises(kit.StudentFailure):
-        bundles.answers(Flat(), "resolve", calls[1:])
-
-
-def test_a_depth_without_its_sign_is_told_where_touching_is_right():
-    calls = [(np.zeros(2), 1.0, np.array([x, 0.0]), 1.0) for x in (1.0, 2.5, 4.0)]
-    truth = [formulas.RIGHT["detect_sphere_sphere"](*call) for call in calls]
-    values = [(touching, n, abs(depth)) for touching, n, depth in truth]
-    assert probes._of_contact("detect_sphere_sphere", calls, values, truth) == "DEPTH_UNSIGNED"
 
 
 def test_no_tolerance_is_explained_by_what_a_student_cannot_see():

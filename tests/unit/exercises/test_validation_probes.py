@@ -19,7 +19,6 @@ import pytest
 from course.scoring import kit
 
 ROOT = Path(__file__).resolve().parents[3]
-GRADERS = ROOT / "tests" / "graders" / "validation" / "checks.py"
 
 probes = kit.companion("validation", "probes")
 shared = kit.companion("validation", "expectations")
@@ -547,14 +546,3 @@ def test_a_band_without_alpha_and_a_symmetric_one_are_recognised():
         solution = Fake()
         solution.set("consistency_band", band)
         assert code(probes.of_band(solution, (2, 20, 0.05), ends, right)) == expected
-
-
-@pytest.mark.parametrize(
-    ("exercise", "first"), [("validation", "`rmse`"), ("engine-comparison", "`linear_damping`")]
-)
-def test_a_readme_is_short_and_begins_with_something_to_write(exercise, first):
-    text = (ROOT / "exercises" / exercise / "README.md").read_text(encoding="utf-8")
-    reading, exact = text.split("\n## What is checked")
-    assert len(reading.split()) <= 900
-    assert len(exact.split()) <= 500
-    assert first in " ".join(reading.split()[:200])

@@ -75,38 +75,6 @@ def resampled(asked, ends=None):
 ITSELF = np.arange(250.0)
 
 
-RESAMPLES = {
-    "right": (blocks(12), None),
-    "single": (blocks(1), "IID_BOOTSTRAP"),
-    "short": (blocks(4), "BLOCK_IGNORED"),
-    "long": (blocks(60), "BLOCK_IGNORED"),
-    "one block": ([row[:12] for row in blocks(12)], "RESAMPLE_SIZE"),
-    "whole blocks": ([row[:240] for row in blocks(12)], "RESAMPLE_SIZE"),
-    "itself": ([ITSELF] * 24, "NOT_RESAMPLED"),
-    "asked once": (blocks(12)[:1], "OTHER_NUMBER_OF_RESAMPLES"),
-    "asked seldom": (blocks(12)[:2], "OTHER_NUMBER_OF_RESAMPLES"),
-    "asked of the series alone": ([ITSELF], "STATISTIC_IGNORED"),
-    "never asked": ([], "STATISTIC_IGNORED"),
-    "drawn once": (blocks(12)[:1] * 24, "DRAWN_ONCE"),
-    "too many": (blocks(12, 2000), "OTHER_NUMBER_OF_RESAMPLES"),
-    "too few": (blocks(12)[:23], "OTHER_NUMBER_OF_RESAMPLES"),
-    "shifted": ([row + 0.1 for row in blocks(12)], "NOT_OF_THE_SERIES"),
-    "shuffled": ([np.roll(ITSELF, i) for i in range(1, 25)], "DRAWN_WITHOUT_REPLACEMENT"),
-    "first part": ([row % 50 for row in blocks(12)], "PART_OF_SERIES"),
-    "blocks in another order": (
-        [np.random.default_rng(i).permutation(ITSELF.reshape(25, 10)).ravel() for i in range(24)],
-        "DRAWN_WITHOUT_REPLACEMENT",
-    ),
-    "asked twice": ([*blocks(12), *[ITSELF] * 24], "OTHER_NUMBER_OF_RESAMPLES"),
-    "basic interval": ([ITSELF, *blocks(12)], None),
-}
-
-
-@pytest.mark.parametrize(("asked", "expected"), list(RESAMPLES.values()), ids=list(RESAMPLES))
-def test_resamples_are_recognised(asked, expected):
-    assert probes.of_resamples(resampled(asked)) == expected
-
-
 def quantiles(values, low, high):
     return np.quantile(values, [low, high])
 
@@ -144,33 +112,6 @@ def folds(fitted, asked):
     return seen
 
 
-@pytest.mark.parametrize(
-    ("fitted", "asked", "expected"),
-    [
-        ([[2, 3], [0, 1]], [[0, 1], [2, 3]], None),
-        ([[0, 1], [2, 3], [0, 1, 2, 3]], [[3, 2], [1, 0], []], None),
-        ([[0, 1, 2, 3]], [[0, 1, 2, 3]], "FITS_ONCE"),
-        ([[1, 2, 3], [0, 1]], [[0, 1], [2, 3]], "LEAKS_HELD_OUT"),
-        ([[0, 1], [2, 3]], [[0, 1], [2, 3]], "SCORES_TRAINING"),
-        ([[1, 3], [0, 2]], [[0, 2], [1, 3]], "NOT_CONTIGUOUS"),
-        ([[1, 2, 3], [0]], [[0], [1, 2, 3]], "FOLDS_UNEVEN"),
-        ([[2, 3], [0, 1]], [[0, 1], [2]], "FOLDS_UNEVEN"),
-        ([[2], [0, 1]], [[0, 1], [2, 3]], "TRAINS_ON_TOO_LITTLE"),
-        ([[0], [1, 2], [3]], [[1, 2, 3], [0, 3], [0, 1, 2]], "FITS_THE_FOLD"),
-        ([[0], [1, 2], [3]], [[0], [1, 2], [3]], "FITS_THE_FOLD"),
-        ([], [], "NEVER_PREDICTS"),
-        # A model for each run of a fold, fitted to the same runs, is one model.
-        ([[2, 3], [3, 2], [0, 1]], [[0], [1], [2, 3]], None),
-        ([[2, 3], [3, 2], [0, 1, 2], [0, 1]], [[0], [1], [2], [3]], "LEAKS_HELD_OUT"),
-        # But not where that would make another fold of them.
-        ([[2], [0, 3], [2]], [[0], [1, 2], [3]], "FOLDS_UNEVEN"),
-        ([[2], [0, 1], [2]], [[0, 1], [2], [3]], "FOLDS_UNEVEN"),
-    ],
-)
-def test_folds_are_recognised_by_who_was_fitted_to_what(fitted, asked, expected):
-    assert folds(fitted, asked).fault(2) == expected
-
-
 def test_predict_and_fit_refuse_what_they_cannot_use():
     seen = folds([], [])
     with pytest.raises(kit.CheckFailed) as refused:
@@ -188,31 +129,6 @@ def three_runs(lates=(0.05, 0.05, 0.05), offset=-0.02):
     sim, real = twins.simulated(recorded, late=lates, offset=offset), twins.measured(recorded)
     case = bundles.Case(recorded, sim, real, lates)
     return case, bundles.facts(case)
-
-
-@pytest.mark.parametrize(
-    ("lates", "value", "expected"),
-    [
-        ((0.05, 0.05, 0.05), -0.05, "LAG_SIGN"),
-        ((0.05, 0.05, 0.05), 0.04, "LAG_WHOLE_SAMPLES"),
-        ((0.05, 0.05, 0.05), 2.5, "LAG_IN_SAMPLES"),
-        ((0.05, 0.05, 0.05), 0.123, "LAG_NOT_BEST"),
-        ((0.05, 0.05, 0.05), 0.25, "LAG_AT_THE_END"),
-        # Where the simulation is neither late nor early, no wrong lag is a number of samples.
-        *(((0.0, 0.0, 0.0), value, "LAG_NOT_BEST") for value in (0.011, 0.09, -0.15)),
-        ((0.0, 0.0, 0.0), 0.7, "LAG_AT_THE_END"),
-    ],
-)
-def test_a_wrong_lag_is_recognised(lates, value, expected):
-    _, right = three_runs(lates)
-    assert code(verdict.of_lag(value, math.nan, right)) == expected
-
-
-def test_a_mean_of_lags_is_told_from_the_lag_of_all():
-    _, right = three_runs((0.01, 0.05, 0.09))
-    mean, half = right.averages[0]
-    assert code(verdict.of_lag(mean, half, right)) == "LAG_MEAN_OF_RUNS"
-    assert code(verdict.of_lag(mean, math.nan, right)) == "LAG_NOT_BEST"
 
 
 @pytest.mark.parametrize(
@@ -267,28 +183,6 @@ def test_of_two_mistakes_a_check_names_the_one_that_its_own_number_shows(new, ex
         bundles.expect_measures(changed(report, **new), case, right, {})
     assert failed.value.guess.code == expected
     assert kit.words("validation").kind(expected) != "cause"  # it is not said of checks that do not show it
-
-
-@pytest.mark.parametrize(
-    ("key", "wrong", "expected"),
-    [
-        ("peak", lambda sim, real: (np.max(real) - np.max(sim)) / np.max(real), "WRONG_SIGN"),
-        ("impulse", lambda sim, real: (np.sum(real) - np.sum(sim)) / np.sum(real), "WRONG_SIGN"),
-        ("impulse", lambda sim, real: np.sum(np.abs(sim - real)) / np.sum(real), "IMPULSE_OF_ABSOLUTE"),
-        ("peak", lambda sim, real: 0.123, None),
-        # By the larger of the two, which here is the simulated one: neither name is certain.
-        ("peak", lambda sim, real: 1 - np.max(real) / np.max(sim), None),
-    ],
-)
-def test_peak_and_impulse_are_each_told_by_their_own_number(key, wrong, expected):
-    t = 0.001 * np.arange(61)
-    sim, real = shared.pulse(t, 0.021, 0.016, 88.0, 0.6), shared.pulse(t, 0.012, 0.02, 80.0, 0.4)
-    assert code(probes.of_force(key, wrong(sim, real), sim, real, 0.001)) == expected
-
-
-def test_rows_after_a_return_inside_the_loop_are_seen():
-    assert code(probes.of_rows(np.array([2.0, 0.0, 0.0]), np.array([2.0, 3.0, 4.0]))) == "FIRST_ROW_ALONE"
-    assert probes.of_rows(np.array([2.0, 3.0, 0.0]), np.array([2.0, 3.0, 4.0])) is None
 
 
 def test_what_alpha_leaves_out_is_told_before_the_length_of_the_resamples():
@@ -499,50 +393,3 @@ def test_a_variance_that_is_right_near_zero_is_told_from_one_in_single_precision
         solution = Fake()
         solution.set("bias_variance", lambda e, variance=variance: (np.mean(e), variance(e)))
         assert code(probes.of_offset(solution, e)) == expected
-
-
-@pytest.mark.parametrize(
-    ("factor", "expected"), [(0.95, "ROUGH_QUANTILES"), (1.05, "ROUGH_QUANTILES"), (0.5, None)]
-)
-def test_a_band_that_is_near_is_told_from_one_that_is_not(factor, expected):
-    right = formulas.exactly()(2, 20, 0.05)
-    solution = Fake()
-    solution.set("consistency_band", lambda dof, runs, alpha: [factor * alpha, alpha])
-    ends = [factor * right[0], right[1]]
-    assert code(probes.of_band(solution, (2, 20, 0.05), ends, right)) == expected
-
-
-def test_a_search_that_ends_too_early_is_told_from_one_without_alpha():
-    exactly = formulas.exactly()
-    solution = Fake()
-    solution.set(
-        "consistency_band", lambda *setting: [min(end, 900.0 / setting[1]) for end in exactly(*setting)]
-    )
-    setting = 5, 400, 0.05
-    assert code(probes.of_band(solution, setting, [2.25, 2.25], exactly(*setting))) == "FEW_DEGREES_ONLY"
-
-
-def test_an_array_of_the_type_of_whole_numbers_is_recognised():
-    def nees(err, covariance):
-        result = np.zeros_like(err[:, 0])
-        result[:] = np.einsum("ni,nij,nj->n", err, np.linalg.inv(covariance), err)
-        return result
-
-    solution, whole = Fake(), [np.array([[3, 0], [1, 4]]), np.array([[[2, 1], [1, 3]], [[5, -2], [-2, 4]]])]
-    solution.set("nees", nees)
-    right = np.einsum("ni,nij,nj->n", whole[0], np.linalg.inv(whole[1]), whole[0])
-    fits = lambda rows: np.allclose(rows, right)  # noqa: E731
-    assert code(probes.of_whole(solution, "nees", whole, fits)) == "WHOLE_NUMBERS"
-    assert probes.of_whole(solution, "nees", [part.astype(float) for part in whole], fits) is None
-    assert probes.of_whole(solution, "nees", whole, lambda rows: np.allclose(rows, 2 * right)) is None
-
-
-def test_a_band_without_alpha_and_a_symmetric_one_are_recognised():
-    right = formulas.exactly()(2, 20, 0.05)
-    for ends, band, expected in (
-        ([1.2, 3.1], lambda *_: [1.2, 3.1], "ALPHA_IGNORED"),
-        ([1.4, 2.6], lambda dof, runs, alpha: [1.4 - alpha, 2.6 + alpha], "NORMAL_BAND"),
-    ):
-        solution = Fake()
-        solution.set("consistency_band", band)
-        assert code(probes.of_band(solution, (2, 20, 0.05), ends, right)) == expected

@@ -222,9 +222,7 @@ def _list(console: Console, name: str | None) -> tuple[Scene, ...]:
         raise NotFoundError("There are no scenes.", help="Install the course again.", code="no_scenes")
     for place, scene in enumerate(found, 1):
         _describe(console, scene, place, whole=name is not None)
-    example = name or found[0].id
-    step = f"course sandbox play {example}" if name else f"course sandbox list {example}"
-    console.note((f"Next: {step}", "bold"))
+    console.note((f"Next: course sandbox play {name or found[0].id}", "bold"))
     console.emit(SandboxList(scenes=tuple(_entry(scene) for scene in found)))
     return found
 

@@ -364,23 +364,57 @@ def as_one(exercise: Exercise, program: Wrong) -> Wrong:
 def made_from(catalog: Catalog, exercise: Exercise) -> str:
     """A digest of every file that affects the diagnosis of a wrong program; how it is worded does not."""
     file = mistakes_path(solutions_folder(catalog, exercise))
-    tree = parse(file) if file.is_file() else ast.Module([], [])
-    for node in ast.walk(tree):
+    mistakes = parse(file) if file.is_file() else ast.Module([], [])
+    for node in ast.walk(mistakes):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "mistakes":
             node.args[1:] = []
-    mistakes = ast.dump(tree).encode()
-    code = _digest(catalog, exercise, mistakes).encode() + code_of(catalog, exercise)
+    code = _digest(catalog, exercise, _dumped(mistakes).encode()).encode() + code_of(catalog, exercise)
     return hashlib.sha256(code).hexdigest()[:16]
 
 
 def code_of(catalog: Catalog, exercise: Exercise) -> bytes:
-    """The code that decides about a program, in a row: the exercise's, its graders' and the references'."""
+    """The code that decides about a program, in a row: the exercise's, its graders' and the references'.
+
+    How it is worded does not decide: comments, docstrings (a check's is its title) and what is said beside a
+    comparison are left out.
+    """
     solution = solution_path(catalog, exercise)
     folders = (exercise.readme_path.parent, exercise_graders(catalog, exercise))
     paths = [p for folder in folders for p in sorted(folder.rglob("*.py"), key=attrgetter("name"))]
     others = sorted(solution.parent.glob("*.py"))
     paths += [path for path in others if path not in (solution, mistakes_path(solution.parent))]
-    return b"".join(path.name.encode() + b"\0" + path.read_bytes() + b"\0" for path in paths)
+    return b"".join(path.name.encode() + b"\0" + _unworded(path) + b"\0" for path in paths)
+
+
+#: Arguments of a check's comparison that are only read.
+_WORDS = frozenset({"message", "quantity", "source"})
+
+
+def _unworded(path: Path) -> bytes:
+    tree = parse(path)
+    for node in ast.walk(tree):
+        if (
+            isinstance(node, ast.Module | ast.FunctionDef | ast.ClassDef)
+            and ast.get_docstring(node) is not None
+        ):
+            node.body[:1] = []
+        if isinstance(node, ast.Call):
+            node.keywords = [
+                one
+                for one in node.keywords
+                if one.arg not in _WORDS or not isinstance(one.value, ast.Constant)
+            ]
+    return _dumped(tree).encode()
+
+
+def _dumped(node: Any) -> str:
+    """A tree as text; `ast.dump` writes empty lists in some versions of Python and not in others."""
+    if isinstance(node, list):
+        return f"[{','.join(map(_dumped, node))}]"
+    if not isinstance(node, ast.AST):
+        return repr(node)
+    fields = (f"{name}={_dumped(value)}" for name, value in ast.iter_fields(node) if value not in (None, []))
+    return f"{type(node).__name__}({','.join(fields)})"
 
 
 def _tried(

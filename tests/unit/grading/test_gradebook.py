@@ -68,7 +68,8 @@ def test_the_newest_result_counts_and_the_older_one_is_kept(tmp_path: Path) -> N
         book.add(Result(key(digest="b" * 64), verdict(2)))
         (found,) = book.results()
         assert found.verdict.score == 2
-    assert sqlite3.connect(path).execute("SELECT count(*) FROM results").fetchone() == (2,)
+    with contextlib.closing(sqlite3.connect(path)) as db:
+        assert db.execute("SELECT count(*) FROM results").fetchone() == (2,)
 
 
 def test_a_fault_of_ours_does_not_count_as_graded(tmp_path: Path) -> None:
@@ -93,7 +94,7 @@ def test_a_changed_result_fails_its_checksum_and_names_the_student(tmp_path: Pat
     path = tmp_path / "g.sqlite"
     with Gradebook(path, create=True) as book:
         book.add(Result(key(), verdict()))
-    with sqlite3.connect(path) as db:
+    with contextlib.closing(sqlite3.connect(path)) as db, db:
         db.execute("UPDATE results SET verdict = replace(verdict, '5.0', '9.0')")
     with Gradebook(path) as book, pytest.raises(IntegrityError, match="'ada'"):
         list(book.results())

@@ -86,7 +86,7 @@ def pendulum(build: Build, dt: float, quick: bool) -> Measured:  # noqa: ARG001
     rest = -G
     start = 0.0 - rest
     left = energy(scene, world.motion()) - rest
-    return 100.0 * float(off.max()), {"steps": n, "energy_change_percent": 100.0 * (left / start - 1.0)}
+    return 100.0 * float(np.max(off)), {"steps": n, "energy_change_percent": 100.0 * (left / start - 1.0)}
 
 
 def double_pendulum(build: Build, dt: float, quick: bool) -> Measured:
@@ -310,7 +310,7 @@ def _movement(build: Build, scene: Scene, seconds: float) -> Measured:
     end: Motion = world.motion().checked()
     gone = np.linalg.norm(end.x - start.x, axis=1)
     points, depth = world.contacts()
-    return 1000.0 * float(gone.max()), {"contacts": points, "deepest_overlap_mm": 1000.0 * depth}
+    return 1000.0 * float(np.max(gone)), {"contacts": points, "deepest_overlap_mm": 1000.0 * depth}
 
 
 def _piles(masses: list[float], dt: float, quick: bool) -> list[Scene]:

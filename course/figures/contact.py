@@ -166,7 +166,7 @@ def rebounds(model: Constraint, parts: Array = PHASES, h: float = _STEP_S) -> Ar
     for part in parts:
         height = 1.0 + float(part) * h * math.sqrt(2 * _G)
         gaps, speeds = drop(model, height, 0.0, h, round(1.1 / h), _G)
-        tops.append(float(gaps[int(np.argmax(speeds > 0)) :].max()) / height)
+        tops.append(float(np.max(gaps[int(np.argmax(speeds > 0)) :])) / height)
     return np.array(tops)
 
 
@@ -237,14 +237,14 @@ def corners() -> Figure:
         low, high = shape.min(axis=0), shape.max(axis=0)
         upright = np.array([low, (high[0], low[1]), high, (low[0], high[1])])
         left.fill(*upright.T, facecolor="none", edgecolor=PALETTE["grey"], linewidth=0.8, linestyle=":")
-        shadow = np.array([(shape @ slant).min(), (shape @ slant).max()])
+        shadow = np.array([np.min(shape @ slant), np.max(shape @ slant)])
         left.plot(
             *(shadow[:, None] * slant + 1.25 * across).T,
             color=PALETTE[color],
             linewidth=4.0,
             solid_capstyle="butt",
         )
-    gap = ((half @ slant).max() + (turned @ slant).min()) / 2 * slant + 1.25 * across
+    gap = (np.max(half @ slant) + np.min(turned @ slant)) / 2 * slant + 1.25 * across
     note(left, "a gap between\nthe shadows", (float(gap[0]), float(gap[1])), (1.35, -1.45), PALETTE["black"])
     left.set(xlim=(-0.9, 3.0), ylim=(-1.7, 1.9), xticks=range(3), yticks=range(-1, 2), aspect="equal")
     left.set_title("Apart in one direction")

@@ -265,7 +265,7 @@ def _projectile(result: Result) -> Figure:
         axes.plot([far.simulated], [0.0], marker="s", color=PALETTE["vermillion"], markersize=7,
                   linestyle="none", label=f"landing: {far.simulated:.5g} m away")  # fmt: skip
     axes.set(xlabel="distance (m)", ylabel="height (m)")
-    axes.set_ylim(bottom=min(0.0, float(z.min())) - 0.03 * float(np.ptp(z) or 1.0))
+    axes.set_ylim(bottom=min(0.0, float(np.min(z))) - 0.03 * float(np.ptp(z) or 1.0))
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     figure.subplots_adjust(right=0.68)
     return figure

@@ -79,9 +79,8 @@ def standing() -> Figure:
         ],
     )
     axes[0].set_ylabel("reaction to the speed of leaning (N m s/rad)")
-    share = np.count_nonzero((before == STANDING) & (after == STANDING)) / np.count_nonzero(
-        before == STANDING
-    )
+    stood = before == STANDING
+    share = float(np.mean(after[stood] == STANDING))
     title(figure, f"Of the gains that work in the simulator, {100 * share:.0f} % work on the robot")
     return figure
 

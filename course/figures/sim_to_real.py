@@ -61,8 +61,8 @@ def _mean_time(world: str) -> Array:
 
 def chosen_gains() -> dict[str, float]:
     """The gain that looks best in each world, 1/s, and the one that is best for the real joint."""
-    best = {world: float(GAINS[_mean_time(world).argmin()]) for world in WORLDS}
-    return best | {"real": float(GAINS[settles(GAINS, *REAL)[:, 0].argmin()])}
+    best = {world: float(GAINS[np.argmin(_mean_time(world))]) for world in WORLDS}
+    return best | {"real": float(GAINS[np.argmin(settles(GAINS, *REAL)[:, 0])])}
 
 
 def settling() -> Figure:
@@ -240,7 +240,7 @@ def splits() -> tuple[tuple[int, int, float], ...]:
     """Substeps, iterations and the greatest stretch of a link (share): equal work over 2 s."""
     halves = range(round(math.log2(_WORK)) + 1)
     pairs = [(2**k, _WORK // 2**k) for k in halves]
-    return tuple((s, i, float(Chain().stretch(2.0, 1 / 60, s, i).max())) for s, i in pairs)
+    return tuple((s, i, float(np.max(Chain().stretch(2.0, 1 / 60, s, i)))) for s, i in pairs)
 
 
 def substeps() -> Figure:

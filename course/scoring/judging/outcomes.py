@@ -201,8 +201,10 @@ def _after(sentence: str) -> str:
 def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
     """The finding for a file that is not valid Python."""
     failure = refused.failure
-    # A MemoryError, which is what deep nesting ends in, says nothing.
-    reason = failure.message or "it is nested more deeply than Python can read"
+    # A MemoryError, which is what deep nesting ends in, says nothing, or that the parser has no room left.
+    reason = failure.message
+    if not reason or failure.type == "MemoryError":
+        reason = "it is nested more deeply than Python can read"
     encoded = "UnicodeError" in failure.bases or "missing encoding" in reason or "codec can't" in reason
     if encoded or not failure.line:
         said = "it is saved in another encoding than UTF-8, or it is no text" if encoded else reason

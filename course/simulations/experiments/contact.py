@@ -237,7 +237,7 @@ def _out_of_an_overlap(p: Mapping[str, Any]) -> tuple[Row, ...]:
     rows = []
     for name, split in (("in the velocity", False), ("split impulse", True)):
         gaps, _ = drop(Constraint(erp=p["erp"], split=split), -p["overlap"], 0.0, h, math.ceil(1.0 / h), g)
-        hop = max(0.0, float(gaps.max()))
+        hop = max(0.0, float(np.max(gaps)))
         rows.append(Row(f"hop out of the overlap, ERP {name}", hop, "m", 0.0, "nothing pushed it"))
     return tuple(rows)
 
@@ -246,7 +246,7 @@ def _of_bounces(rebound: Mapping[str, Array], kept: Mapping[str, Array], e: floa
     words = {"none": "no correction", "erp": "ERP in the velocity", "split": "split impulse"}
     rows = []
     for name, values in rebound.items():
-        for which, value in (("lowest", values.min()), ("highest", values.max())):
+        for which, value in (("lowest", np.min(values)), ("highest", np.max(values))):
             rows.append(Row(f"{which} rebound, {words[name]}", float(value), "1", e**2, "e²"))
     for name, values in kept.items():
         rows.append(Row(f"energy kept at e = 1, {words[name]}", float(values.mean()), "1", 1.0, "conserved"))
@@ -260,7 +260,7 @@ def _rebound(model: ContactModel, height: float, h: float, g: float) -> float:
     rising = speeds > 0
     first = int(np.argmax(rising))
     falls = np.flatnonzero(~rising[first:])
-    return float(gaps[first : first + falls[0] + 1].max()) if rising.any() and falls.size else 0.0
+    return float(np.max(gaps[first : first + falls[0] + 1])) if rising.any() and falls.size else 0.0
 
 
 CONTACT_MODELS = Simulation(
@@ -301,7 +301,7 @@ def _run_solver_iterations(p: Mapping[str, Any]) -> Result:
             "cos²(π / (2 n))")
         for n in heights
     ]  # fmt: skip
-    chain = {k: float(Chain().stretch(2.0, 1 / 60, 1, k).max()) for k in _CHAIN_ITERATIONS}
+    chain = {k: float(np.max(Chain().stretch(2.0, 1 / 60, 1, k))) for k in _CHAIN_ITERATIONS}
     rows += [Row(f"20-link chain, stretch after {k} iterations a frame", s, "1", 0.0, "stiff links")
              for k, s in chain.items()]  # fmt: skip
     done = float(histories[boxes][-1])
@@ -364,7 +364,7 @@ def _run_substeps(p: Mapping[str, Any]) -> Result:
     if len(splits) > 6:
         splits = [splits[round(i * (len(splits) - 1) / 5)] for i in range(6)]
     series = {split: chain.stretch(p["duration"], h, *split) for split in splits}
-    worst = {split: float(values.max()) for split, values in series.items()}
+    worst = {split: float(np.max(values)) for split, values in series.items()}
     rows = tuple(
         Row(f"greatest stretch, {_words(*split)}", stretch, "1", 0.0, "stiff links")
         for split, stretch in worst.items()

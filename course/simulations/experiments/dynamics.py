@@ -393,7 +393,7 @@ def _slide(p: Mapping[str, Any], friction: Array) -> Array:
         surface=Surface(0.0, friction),
         stepper=SemiImplicitEuler(),
     )
-    slowest = p["speed"] / (float(friction.min()) * p["gravity"])
+    slowest = p["speed"] / (float(np.min(friction)) * p["gravity"])
     record = engine.run(_steps(slowest, p["step"]))
     return np.asarray(record.position[-1, 0, :, 0])
 

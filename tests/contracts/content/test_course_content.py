@@ -94,8 +94,8 @@ def test_no_known_wrong_program_is_told_a_mistake_that_it_does_not_have(catalog:
     assert len(found) >= 6  # the course's own; another author's exercise may have its words in code
     for exercise, table in found.items():
         fate = fate_of(catalog, exercise)
-        assert set(table.rows) == {"public", "full"}
-        rows = [row for scope in table.rows.values() for row in scope]
+        assert set(table.rows) == {"public", "full", "alone"}
+        rows = [*table.rows["public"], *table.rows["full"]]
         assert [row for row in rows if fate(row) == "otherwise"] == []
 
 
@@ -122,9 +122,18 @@ def test_what_decides_about_a_program_includes_what_answers_for_it(catalog: Cata
     """A reference that draws other engines decides as much as a check; the model solution is a program."""
     exercise = catalog.exercise("engine-comparison")
     code = code_of(catalog, exercise)
-    reference = solution_path(catalog, exercise).with_name("lab.py")
-    assert reference.read_bytes() in code
-    assert solution_path(catalog, exercise).read_bytes() not in code
+    reference = solution_path(catalog, exercise).with_name("lab.py").read_text("utf-8")
+    assert "_SHOWN_ALIKE" in reference
+    assert b"_SHOWN_ALIKE" in code
+    assert "def _linear_damping" in solution_path(catalog, exercise).read_text("utf-8")
+    assert b"FunctionDef(name='_linear_damping'" not in code
+
+
+def test_how_a_check_is_worded_decides_about_no_program(catalog: Catalog) -> None:
+    exercise = catalog.exercise("engine-comparison")
+    checks = (exercise.readme_path.parent / "checks.py").read_text("utf-8")
+    title = next(line for line in checks.splitlines() if line.startswith('    """')).strip(' "')
+    assert title.encode() not in code_of(catalog, exercise)
 
 
 @pytest.mark.parametrize("code", ["RETURNS_ARGUMENT", "MUTATES_INPUT"])

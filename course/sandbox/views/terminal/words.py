@@ -219,7 +219,7 @@ def _curve(
 ) -> list[Line]:
     """A name, a curve and a number; the curve may be several lines high."""
     room = width - _NAME - _NUMBER
-    drawn = bars(values, max(0, room), float(values.min()) if len(values) else 0.0, span, tall)
+    drawn = bars(values, max(0, room), float(np.min(values)) if len(values) else 0.0, span, tall)
     lines: list[Line] = [((" " * _NAME, ""), (text, colour)) for text in drawn[:-1]]
     number = f"{shown(value, scale):>{_NUMBER}}"
     return [*lines, ((f"{label:<{_NAME}}", ""), (drawn[-1], colour), (number, "bold"))]

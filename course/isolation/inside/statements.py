@@ -264,7 +264,7 @@ def _timed(node: ast.stmt) -> str | None:
 _PIECE = re.compile(
     # A string that is not closed ends with its line: looking for its end at each quote takes for ever.
     r"""(?P<comment>\#[^\n]*)|(?P<triple>'{3}|\"{3})|(?P<string>'(?:\\.|[^'\\\n])*'?|"(?:\\.|[^"\\\n])*"?)"""
-    r"""|(?P<open>[(\[{])|(?P<close>[)\]}])|(?P<joined>\\\n)|(?P<end>\n)|(?P<other>.)""",
+    r"""|(?P<open>[(\[{])|(?P<close>[)\]}])|(?P<joined>\\\n)|(?P<end>\n)|(?P<other>[^\#'\"()\[\]{}\\\n]+|.)""",
     re.DOTALL | re.VERBOSE,
 )
 

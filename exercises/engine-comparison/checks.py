@@ -74,35 +74,35 @@ def asked(draw, told):
 @pytest.mark.task("characterise")
 @pytest.mark.points(4)
 def test_order(submission, draw):
-    """The order of anvil, balsa, cork and an engine of third order is found"""
+    """The order of three engines is found, and at home that of one of third order"""
     judging.expect_key(known_and("order", submission, draw), "order", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(2)
 def test_symplectic(submission, draw):
-    """The report says which of anvil, balsa and cork conserve area"""
+    """The report says which of three engines conserve area"""
     judging.expect_key(known(submission, draw), "symplectic", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(4)
 def test_linear_damping(submission, draw):
-    """The damping of anvil, balsa and cork is found"""
+    """The damping of three engines is found"""
     judging.expect_key(known(submission, draw), "linear_damping", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(3)
 def test_max_stable_step(submission, draw):
-    """The largest stable step of anvil, balsa and cork is found"""
+    """The largest stable step of three engines is found"""
     judging.expect_key(known(submission, draw), "max_stable_step", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(0)
 def test_max_stable_step_at_its_ends(submission, draw):
-    """Zero, infinity and the first of two limits are found"""
+    """The largest stable step is found, at home also where it is zero, infinite or the first of two"""
     found = known(submission, draw) if draw is not None else ends(submission)
     judging.expect_key(found, "max_stable_step", SPARED)
 
@@ -110,21 +110,21 @@ def test_max_stable_step_at_its_ends(submission, draw):
 @pytest.mark.task("characterise")
 @pytest.mark.points(2)
 def test_friction_anisotropy(submission, draw):
-    """How much harder a diagonal push must be is found for anvil, balsa and cork"""
+    """How much harder a diagonal push must be is found for three engines"""
     judging.expect_key(known(submission, draw), "friction_anisotropy", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(2)
 def test_rest_penetration(submission, draw):
-    """How deep a body sinks into the floor is found for anvil, balsa and cork"""
+    """How deep a body sinks into the floor is found for three engines"""
     judging.expect_key(known(submission, draw), "rest_penetration", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(2)
 def test_restitution(submission, draw):
-    """The restitution of anvil, balsa and cork is found"""
+    """The restitution of three engines is found"""
     judging.expect_key(known(submission, draw), "restitution", SPARED)
 
 
@@ -138,7 +138,7 @@ def test_tunnelling_speed(submission, draw):
 @pytest.mark.task("characterise")
 @pytest.mark.points(2)
 def test_deterministic(submission, draw):
-    """The report says which of anvil, balsa and cork never repeats itself"""
+    """The report says which of three engines never repeats itself"""
     judging.expect_key(known(submission, draw), "deterministic", SPARED)
 
 
@@ -152,7 +152,7 @@ def test_report_complete(submission, draw):
 @pytest.mark.task("choose_engine")
 @pytest.mark.points(3)
 def test_choose_by_report(submission, draw):
-    """Of anvil, balsa and cork, the cheapest that meets every requirement is chosen"""
+    """Of three engines, the cheapest that meets every requirement is chosen"""
     reports = _priced(cork=5.0, anvil=8.0, balsa=1.0)
     needs = [need("order", ">=", 2)]
     told = asked(
@@ -191,7 +191,7 @@ def test_choose_by_report(submission, draw):
 
 
 def _priced(**costs):
-    """The right reports of anvil, balsa and cork, in the order given, with what each costs."""
+    """The right reports of three engines, in the order given, with what each costs."""
     return {name: {**boxes.TRUTH[name], "cost": cost} for name, cost in costs.items()}
 
 

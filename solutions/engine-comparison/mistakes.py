@@ -283,7 +283,7 @@ mistakes(
 mistakes(
     "NO_ZERO",
     "An engine that is unstable even at the smallest step gets a positive limit.",
-    "Return 0.0 if h = 0.05/omega is unstable. Slow growth does not show in a few hundred steps: look at the eigenvalues of one step.",
+    "Return 0.0 if h = 0.05/omega is unstable. The eigenvalues of one step say so; in a few hundred steps slow growth does not show.",
     kind="consequence",
 ).body(
     "characterise",
@@ -1089,7 +1089,7 @@ mistakes("NOT_A_NUMBER").body(
 )
 mistakes(
     "DAMPING_NOT_LOG",
-    "The result is the fraction of the speed that is lost. That is less than the rate.",
+    "The result is the fraction of the speed that is lost, in all or per second. That is less than the rate.",
     "The speed falls as exp(-c t): take -ln(v/v0) / t.",
 ).body(
     "characterise",
@@ -1561,8 +1561,8 @@ mistakes(
 )
 mistakes(
     "STABLE_BY_NORM",
-    "The limits are those of a norm of the matrix, or of a matrix that is not on (q, v/omega).",
-    "A stable step may enlarge the state once: look at the eigenvalues. Start from (1, 0) and (0, omega), and divide both resulting velocities by omega.",
+    "The limits are those of a norm of the matrix, or of a matrix that is not on (q, v/omega): one of the two.",
+    "A stable step may enlarge the state once, so a norm says too little: take the largest modulus of the eigenvalues. If you do, see that the matrix is on (q, v/omega): start from (1, 0) and (0, omega), and divide both resulting velocities by omega.",
 )
 mistakes(
     "TOLERANCE_TOO_LOOSE",

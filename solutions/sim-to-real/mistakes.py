@@ -611,7 +611,7 @@ mistakes(
 mistakes(
     "NO_CART_SETTLES",
     "With these gains no cart drawn from the box settles: each passes the mark by more than 0.10 m, or is not at the mark when the run ends.",
-    "Search on a grid first, because a descent sees no slope where every cart fails. Take the gains with the least mean (argmin). Draw the carts from the box, around the estimate.",
+    "Draw the carts from the box, around the estimate, and take the gains with the least mean over the carts (argmin). If the search is a descent, start it from a grid: where every cart fails there is no slope.",
     kind="fact",
 ).body(
     "tune",
@@ -828,8 +828,8 @@ mistakes(
 )
 mistakes(
     "SEARCH_ENDED_EARLY",
-    "Other gains do clearly better on the carts that were asked for: the search ends at its edge, between coarse points or in a local minimum, or what it minimises is not the mean over these carts.",
-    "First search a grid, kp in np.geomspace(2, 40, 20) and kd/kp in np.linspace(0.2, 0.8, 13): a coarser one may miss the best gains. Then refine around its best point. Use the same noise for all gains, several hundred carts from the box, and their mean settling time.",
+    "Other gains do clearly better on the carts that were asked for: what is minimised is not the mean over these carts, or the search ends at its edge, between coarse points or in a local minimum.",
+    "Look at the carts first: several hundred from the box, each parameter drawn by itself and log-uniformly, the same noise for all gains, and the mean of all settling times. Then at the search: a grid of kp in np.geomspace(2, 40, 20) and kd/kp in np.linspace(0.2, 0.8, 13), since a coarser one may miss the best gains, refined around its best point.",
     kind="consequence",
 ).body(
     "tune",
@@ -892,7 +892,7 @@ mistakes(
 )
 mistakes(
     "EXCITATION_NOT_FULL",
-    "The force stays below u_max. The same signal, scaled up to it, could show m, b, Fc and the lag well enough to the best possible estimator.",
+    "The force stays below u_max. On one bench at least the same signal, scaled up to it, could show m, b, Fc and the lag well enough to the best possible estimator.",
     "Scale the finished signal so that its largest absolute value is u_max: the noise stays the same.",
 ).program(
     "design_excitation",

@@ -329,7 +329,7 @@ def expect_command_closes_loop(submission, rng):
         for (before, after), target in zip(frictions, targets, strict=True)
     ]
     x, v, b = np.zeros(2), np.array([cart.v for cart in carts]), np.array([before for before, _ in frictions])
-    drives, places, gain = np.zeros(2), np.zeros((n + 1, 2)), 0.0
+    drives, places, gains = np.zeros(2), np.zeros((n + 1, 2)), [0.0]
     ask = lambda: twins.of_command(submission)  # noqa: E731
     given = {"targets": targets, "frictions before and after 5 s": frictions}
     for k in range(n):
@@ -352,7 +352,7 @@ def expect_command_closes_loop(submission, rng):
             diagnose=ask,
         )
         far = np.abs(targets - v) > 0.1
-        gain = max([gain, *((drives - b * targets)[far] / (targets - v)[far]).tolist()])
+        gains += ((drives - b * targets)[far] / (targets - v)[far]).tolist()
         a = drives - b * v
         x, v = x + step * v + step**2 / 2 * a, v + step * a
         for cart, drive in zip(carts, drives, strict=True):
@@ -374,14 +374,21 @@ def expect_command_closes_loop(submission, rng):
         "correction must push towards that speed, forwards and backwards.",
         diagnose=ask,
     )
-    kit.expect_bounded(
-        gain,
-        high=twins.LARGEST_GAIN,
-        source="the README's",
-        quantity="largest correction over the difference of the speeds",
-        units="1/s",
-        input=given,
-        message="The gain of `command` is not one of those that the README allows.",
-        help="Multiply the difference of the speeds by 0.2 to 3 per second.",
-        diagnose=ask,
-    )
+    # Beyond what a twin learns here: a correction by the friction itself may push away from the target there.
+    slow = [(b, target) for b in (0.3, 2.0) for target in targets.tolist()]
+    calls = [(scenes.new_twin(b, 0.0, speed=0.5 * target), target) for b, target in slow]
+    for (b, target), drive in zip(slow, submission.call_each("command", calls), strict=True):
+        gains.append((kit.as_number(drive, "the drive") - b * target) / (0.5 * target))
+    for gain, quantity in ((max(gains), "largest"), (min(gains), "least")):
+        kit.expect_bounded(
+            gain,
+            low=-1e-6,
+            high=twins.LARGEST_GAIN,
+            source="the README's, with room for rounding",
+            quantity=f"{quantity} of what is added, over the difference of the speeds",
+            units="1/s",
+            input=given,
+            message="What `command` adds to friction times target speed is none of the corrections allowed.",
+            help="Add nothing, or the difference of the speeds times 0.2 to 3 per second.",
+            diagnose=ask,
+        )

@@ -345,6 +345,7 @@ def of_command(submission):
     untargeted = max(abs(faster - first), abs(sticky_faster - sticky), abs(ahead - 0.4 * 0.5)) < 1e-9
     at_target = np.array([first, slower, slick, back, slowest, sticky, stickiest])
     balance = _FRICTIONS * _TARGETS
+    balanced = np.max(np.abs(at_target - balance)) < 1e-9
     limits = float(np.min(at_target)), float(np.max(at_target))
     cut_off = limits[0] < -1e-9 and limits[1] > 0.08 + 1e-9 and np.max(np.abs(at_target - balance)) > 1e-9
     tests = (
@@ -358,7 +359,7 @@ def of_command(submission):
         ("DIVIDES_BY_FRICTION", slick > first > sticky),
         *_laws(at_target),
         ("BACKWARDS_NOT_DRIVEN", back > -1e-9 and first > 1e-9),
-        ("PUSHES_AWAY", behind < first - 1e-9),
+        ("PUSHES_AWAY", behind < first - 1e-9 or (balanced and sticky_faster < 2.0 * 3.0 - 1e-9)),
         ("GAIN_TOO_LARGE", behind - first > LARGEST_GAIN * 0.75),
     )
     return next((named(code) for code, seen in tests if seen), None)

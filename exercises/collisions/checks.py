@@ -133,7 +133,8 @@ def test_friction_absent(submission, draw):
         "friction_absent",
         draw,
         "The velocities of this pair are wrong.",
-        "Friction needs mu > 0, a slip and an approach; without one of them the result is that of `resolve`.",
+        "Friction takes at most mu J from the slip, and no more than stops it; without mu, slip or approach "
+        "the result is that of `resolve`.",
     )
 
 

@@ -143,7 +143,10 @@ def _inputs(given: Mapping[str, Any]) -> list[tuple[str, float]]:
             found += [(f"the first of `{name}`", value[0]), (f"the last of `{name}`", value[-1])]
         else:
             found.append((f"`{name}`", value))
-    return [(n, float(v)) for n, v in found if isinstance(v, int | float) and not isinstance(v, bool)]
+    numbers = ((n, v) for n, v in found if isinstance(v, int | float) and not isinstance(v, bool))
+    return [
+        (n, float(v)) for n, v in numbers if math.isfinite(v)
+    ]  # whatever it is, infinity times it is infinite
 
 
 def _of_ratio(a: float, e: float, inputs: Sequence[tuple[str, float]]) -> str:
@@ -254,9 +257,10 @@ def _of_parts(a: Array, e: Array, given: Mapping[str, Any]) -> str:
 def _named(off: NDArray[np.intp], a: Array) -> str:
     if a.ndim > 1:
         return " and ".join(str([int(i) for i in one]) for one in off[:2])
-    return " and ".join(
-        f"the {_PLACES[i]} value" if (i := int(one[0])) < len(_PLACES) else f"[{i}]" for one in off
-    )
+    places = [int(one[0]) for one in off]
+    if max(places) >= len(_PLACES):
+        return " and ".join(f"[{i}]" for i in places)
+    return " and ".join(f"the {_PLACES[i]}" for i in places) + " of these numbers"
 
 
 def _of_all(a: Array, e: Array, given: Mapping[str, Any]) -> str:

@@ -272,7 +272,7 @@ def expect_wall(submission, task, rng):
         task,
         calls,
         "With a body of infinite mass (a wall) the velocities are wrong.",
-        "Write the formulas with inverse masses; one over infinity is zero.",
+        "The inverse of an infinite mass is zero: formulas with inverse masses need no case for it.",
     )
 
 

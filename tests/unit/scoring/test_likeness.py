@@ -80,9 +80,9 @@ def test_a_number_is_compared_with_the_right_one_and_with_what_went_in(
         ([0.0, 1.0, 2.0], [1.0, 2.0], "one too many, at the beginning"),
         ([1.0, 2.0, 9.0], [1.0, 2.0], "one too many, at the end"),
         ([-1.0, -2.0], [1.0, 2.0], "Only the signs are wrong."),
-        ([1.0, -2.0], [1.0, 2.0], "Only the sign of the second value is wrong."),
-        ([1.0, 4.0], [1.0, 2.0], "Only the second value is wrong: it is twice the right one."),
-        ([1.5, 2.0, 4.0], [1.0, 2.0, 4.0], "Only the first value is wrong."),
+        ([1.0, -2.0], [1.0, 2.0], "Only the sign of the second of these numbers is wrong."),
+        ([1.0, 4.0], [1.0, 2.0], "Only the second of these numbers is wrong: it is twice the right one."),
+        ([1.5, 2.0, 4.0], [1.0, 2.0, 4.0], "Only the first of these numbers is wrong."),
         ([3 / 7, -4 / 7], [0.6, -0.8], "Every value is 0.714286 times the right one."),
         ([2.0, 4.0], [1.0, 2.0], "Every value is twice the right one."),
         ([1.5, 2.5, 4.5], [1.0, 2.0, 4.0], "Every value is too large by the same 0.5."),
@@ -243,3 +243,10 @@ def test_of_an_exception_in_several_lines_the_first_is_repeated_where_the_advice
     assert finding.help.endswith("has no `np.float`. Use `float`.")
     whole = finding_of(StudentFailure("error", type="ValueError", message="a\nb"), shown=True)
     assert whole.message == "Your code raised ValueError: a\\nb."
+
+
+def test_an_infinite_input_is_no_factor() -> None:
+    """A wall's mass was once said to be the factor between two velocities."""
+    assert (
+        likeness([-1.5, 1.9], [-1.5, 0.1], {"mb": math.inf}) == "Only the second of these numbers is wrong."
+    )

@@ -84,7 +84,7 @@ class _Motion:
     def energy(self) -> tuple[float, float]:
         """The least and the most energy, in units of the energy at the start."""
         energy = self.v**2 + (RATE * self.x) ** 2
-        return float(np.min(energy) / energy[0]), float(np.max(energy) / energy[0])
+        return float(min(energy) / energy[0]), float(max(energy) / energy[0])
 
 
 def demo() -> int:

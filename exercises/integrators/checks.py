@@ -281,7 +281,7 @@ def test_observed_order_scattered(submission, draw):
             quantity="order",
             input={"hs": hs, "errors": errors},
             message="Through points that scatter, observed_order does not return the least-squares slope.",
-            help="Fit one line to all points, each error over its own step.",
+            help="It is one line through all points as they are, each error over its own step.",
             diagnose=lambda value=value, hs=hs, errors=errors: probes.of_order(submission, value, hs, errors),
         )
 

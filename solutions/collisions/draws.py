@@ -272,20 +272,6 @@ def short_hop(rng):
     return paths.Drop(radius + float(high), float(up), radius, float(rng.uniform(0.45, 0.85)), g), 20 * h, h
 
 
-def slow_launch(rng):
-    """A ball thrown up from the floor, more slowly than it may come to rest: it flies, and then rests."""
-    radius, g, h = (
-        float(rng.uniform(0.05, 0.3)),
-        float(rng.uniform(4.0, 15.0)),
-        float(rng.uniform(0.01, 0.03)),
-    )
-    return (
-        paths.Drop(radius, float(rng.uniform(0.65, 0.95)) * g * h, radius, float(rng.uniform(0.3, 0.8)), g),
-        20 * h,
-        h,
-    )
-
-
 def twice_in_a_step(rng):
     """A ball that touches early in the second step, too fast to rest, and again, to rest, before its end."""
     radius, g, h = (

@@ -845,7 +845,7 @@ mistakes("RESULT_OVERWRITTEN").program(
 mistakes(
     "SEARCH_TOO_COARSE",
     "The result is off by less than 0.25/omega, but by more than 1 %.",
-    "Take two neighbouring steps, one stable and the next unstable, and bisect until they are less than 1 % apart: a share of the step, not a number of seconds. A step is stable up to a spectral radius of 1 + 1e-8.",
+    "A step is stable up to a spectral radius of 1 + 1e-8: see first that this, and nothing else, decides. Then bisect between two neighbouring steps, one stable and one unstable, until they are less than 1 % apart: a share of the step, not a number of seconds.",
     kind="consequence",
 ).body(
     "max_stable_step",
@@ -1396,7 +1396,7 @@ mistakes(
 )
 mistakes(
     "COUNT_NOT_ROUNDED",
-    "The number of samples is right where h is exact in floating point, as for 1 s in steps of 0.25 s, and wrong where h is rounded.",
+    "The number of samples is right where h is exact in floating point, as for 1 s in steps of 0.25 s, and can be wrong where h is rounded.",
     "n = round(t_end / h), and n + 1 samples of each: not int(...), // or math.ceil(...), no running sum of h, and no np.arange with a step of h.",
 )
 mistakes(

@@ -221,7 +221,7 @@ mistakes(
 )
 mistakes(
     "REMAINDER_SIGN",
-    "Negative angles come out in another range: the remainder has the sign of the angle.",
+    "Some angles come out below the range: a remainder such as that of math.fmod has the sign of what is divided.",
     "math.fmod and np.fmod do that. Use % or np.mod: (e + pi) % (2 pi) - pi.",
 ).edit(
     "wrap_angle",
@@ -345,7 +345,7 @@ mistakes(
 mistakes(
     "NORMAL_BAND",
     "The band is symmetric about dof, like a normal distribution. A chi-square is not.",
-    "Use quantiles of the chi-square distribution: `course hint validation consistency_band` shows two ways.",
+    "Use quantiles of the chi-square distribution: `course hint validation --task consistency_band` shows how.",
 ).body(
     "consistency_band",
     """
@@ -1424,7 +1424,7 @@ mistakes(
 mistakes(
     "ROUGH_QUANTILES",
     "The band is roughly right, but off by more than 1 %.",
-    "Check the levels alpha/2 and 1 - alpha/2 first. Then use a better approximation: `course hint validation consistency_band` shows two.",
+    "Check the levels alpha/2 and 1 - alpha/2 first. Then use a better approximation: `course hint validation --task consistency_band` shows some.",
     kind="consequence",
 ).body(
     "consistency_band",

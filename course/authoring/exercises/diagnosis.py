@@ -387,7 +387,7 @@ def code_of(catalog: Catalog, exercise: Exercise) -> bytes:
 
 
 #: Arguments of a check's comparison that are only read.
-_WORDS = frozenset({"message", "quantity", "source"})
+_WORDS = frozenset({"message", "help", "quantity", "source"})
 
 
 def _unworded(path: Path) -> bytes:

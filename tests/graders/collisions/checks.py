@@ -400,7 +400,6 @@ def test_drop_rest(submission, rng):
     cases += [
         draws.settling_at_once(rng),
         draws.lying(rng),
-        draws.slow_launch(rng),
         draws.twice_in_a_step(rng),
     ]
     values = submission.call_each(bundles.DROP, [scene.args(t_end, h) for scene, t_end, h in cases])

@@ -245,7 +245,7 @@ def expect_slopes(submission, points):
             quantity="order",
             input={"hs": hs, "errors": errors},
             message=message,
-            help="Slope of log error over log h by least squares, whatever the order of the points.",
+            help="It is the slope of log error over log h by least squares, of all points as they are.",
             diagnose=lambda value=value, hs=hs, errors=errors: probes.of_order(submission, value, hs, errors),
         )
 

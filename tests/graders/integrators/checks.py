@@ -144,10 +144,10 @@ def test_verlet_frequency(submission, rng):
         2 / h * math.asin(z / 2),
         rel=1e-6,
         source="exact on a linear spring: only rounding is allowed",
-        quantity="angular frequency",
+        quantity="angular frequency, from x[k+1] + x[k-1] over x[k]",
         units="rad/s",
         input={"omega": omega, "h": h},
-        message="The frequency of the spring under your velocity Verlet is not the one that theory gives.",
+        message="On a spring, three positions in a row are not those of velocity Verlet.",
         help="Look at the factor of the acceleration in the position and at both kicks.",
         diagnose=lambda: probes.of_step(submission, VERLET),
     )
@@ -239,7 +239,7 @@ def test_rk4_decay(submission, rng):
         quantity="energy lost per step",
         input={"omega": omega, "h": h, "steps": n, "q0": start[0], "v0": start[1]},
         message="On a spring, RK4 loses about z**6/72 of its energy a step with z = h*omega; yours does not.",
-        help="Check the weights and how far along each slope is taken.",
+        help="Check which slope each stage starts with, how far along it goes, and the weights.",
         diagnose=lambda: probes.of_energy(submission, RK4, -loss, -expected, (system, *start, h, n, 0.0)),
     )
 

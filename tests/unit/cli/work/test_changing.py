@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-
-def _all_files(root):
-    return {path: path.read_bytes() for path in root.rglob("*") if path.is_file()}
+from tests.unit.cli.conftest import files_in
 
 
 def test_diff_of_an_untouched_file_says_so(course, workspace):
@@ -42,11 +40,11 @@ def test_reset_keeps_a_copy_and_prints_its_path(course, workspace, write):
 
 
 def test_reset_of_an_exercise_that_was_not_started_makes_nothing_of_it(course, workspace):
-    before = _all_files(workspace)
+    before = files_in(workspace)
     ran = course("reset", "halving", "--yes", "--json")
     assert (ran.code, ran.json["error"]["code"]) == (5, "not_started")
     assert "course start halving" in ran.json["error"]["help"]
-    assert _all_files(workspace) == before
+    assert files_in(workspace) == before
 
 
 def test_reset_writes_nothing_if_the_copy_cannot_be_made(course, workspace, write):
@@ -77,9 +75,9 @@ def test_update_replaces_what_was_not_edited_and_puts_the_rest_beside(
     mine = write("mine").read_bytes()
     folder = workspace / "doubling"
     old_readme = (folder / "README.md").read_bytes()
-    before = _all_files(workspace)
+    before = files_in(workspace)
     dry = course("update", "--dry-run", "--json").json
-    assert _all_files(workspace) == before
+    assert files_in(workspace) == before
     body = course("update", "--json").json
     assert (
         [c["action"] for c in body["changes"]]
@@ -97,10 +95,10 @@ def test_update_replaces_what_was_not_edited_and_puts_the_rest_beside(
 def test_a_second_update_has_nothing_to_do(course, workspace, write, newer_content):
     write("mine")
     course("update")
-    before = {p: d for p, d in _all_files(workspace).items() if p.suffix != ".sqlite"}
+    before = {p: d for p, d in files_in(workspace).items() if p.suffix != ".sqlite"}
     ran = course("update")
     assert "up to date with the installed course" in ran.out
-    assert {p: d for p, d in _all_files(workspace).items() if p.suffix != ".sqlite"} == before
+    assert {p: d for p, d in files_in(workspace).items() if p.suffix != ".sqlite"} == before
 
 
 def test_update_keeps_an_earlier_new_file(course, workspace, write, newer_content):

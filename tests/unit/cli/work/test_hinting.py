@@ -3,10 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
-from pathlib import Path
-
-MINI_COURSE = Path(__file__).resolve().parents[3] / "fixtures" / "mini_course"
 
 
 def test_hints_come_one_per_attempt_and_are_never_counted(course, write):
@@ -16,8 +12,11 @@ def test_hints_come_one_per_attempt_and_are_never_counted(course, write):
     first = course("hint", "--json").json
     assert first["given"]
     assert first["task"] == "double"
-    again = course("hint", "--json").json
-    assert (again["given"], again["reason"], again["hint"]) == (False, "unchanged", first["hint"])
+    for extra in ("", "# thinking\n"):  # a comment is no attempt
+        write("wrong", "wrong", extra)
+        course("check")
+        again = course("hint", "--json").json
+        assert (again["given"], again["reason"], again["hint"]) == (False, "unchanged", first["hint"])
     write("wrong # a comment does count inside a string", "wrong")
     course("check")
     second = course("hint", "--json").json
@@ -29,12 +28,9 @@ def test_hints_come_one_per_attempt_and_are_never_counted(course, write):
         assert " of 3" not in words
 
 
-def test_a_hint_fits_what_the_check_thinks_is_wrong(course, write, monkeypatch, tmp_path):
-    content = tmp_path / "content"
-    shutil.copytree(MINI_COURSE, content)
-    hints = content / "exercises" / "doubling" / "exercise.toml"
+def test_a_hint_fits_what_the_check_thinks_is_wrong(course, write, students_content):
+    hints = students_content / "exercises" / "doubling" / "exercise.toml"
     hints.write_text(hints.read_text().replace("SQUARES_INSTEAD", "NOT_RIGHT"))
-    monkeypatch.setenv("COURSE_CONTENT", str(content))
     write("wrong", "RIGHT")
     course("check")
     assert course("hint", "--json").json["hint"] == "Try your function on a negative number too."
@@ -45,17 +41,12 @@ def test_a_hint_fits_what_the_check_thinks_is_wrong(course, write, monkeypatch, 
     assert course("hint", "--json").json["hint"] == "What is a number added to itself?"
 
 
-def test_a_hint_goes_on_with_the_students_numbers_where_the_check_has_them(
-    course, write, monkeypatch, tmp_path
-):
-    content = tmp_path / "content"
-    shutil.copytree(MINI_COURSE, content)
-    hints = content / "exercises" / "doubling" / "exercise.toml"
+def test_a_hint_goes_on_with_the_students_numbers_where_the_check_has_them(course, write, students_content):
+    hints = students_content / "exercises" / "doubling" / "exercise.toml"
     sentences = (
         '1 = ["At {x} it is {got}."]\n2 = ["At {x} it is {got}.", "At h = {h} it is {got}, not {expected}."]'
     )
     hints.write_text(hints.read_text().replace("[task.fits]", f"[task.yours]\n{sentences}\n\n[task.fits]"))
-    monkeypatch.setenv("COURSE_CONTENT", str(content))
     write("wrong", "RIGHT")
     course("check")
     assert course("hint", "--json").json["hint"] == "What is a number added to itself?"
@@ -90,15 +81,6 @@ def test_a_function_that_is_not_begun_has_no_hint_and_another_one_that_fails_goe
     reply = course("hint", "--json").json
     assert (reply["given"], reply["reason"], reply["hint"]) == (False, "unchanged", reply["hint"])
     assert course("hint", "--task", "double", "--json").json["reason"] == "passing"
-
-
-def test_a_comment_is_no_attempt(course, write):
-    write("wrong", "wrong")
-    course("check")
-    course("hint")
-    write("wrong", "wrong", extra="# thinking\n")
-    course("check")
-    assert course("hint", "--json").json["reason"] == "unchanged"
 
 
 def test_hints_go_to_the_first_failing_task_or_the_one_asked_for(course, write):

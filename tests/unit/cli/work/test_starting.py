@@ -5,10 +5,7 @@ from __future__ import annotations
 import pytest
 
 from course.progress.store import Store
-
-
-def _all_files(root):
-    return {path: path.read_bytes() for path in root.rglob("*") if path.is_file()}
+from tests.unit.cli.conftest import files_in
 
 
 def test_the_dashboard_outside_of_a_workspace_says_how_to_begin(course):
@@ -36,11 +33,11 @@ def test_the_dashboard_survives_a_damaged_record(course, workspace):
 
 
 def test_init_twice_changes_nothing_and_says_so(course, workspace):
-    before = _all_files(workspace)
+    before = files_in(workspace)
     ran = course("init")
     assert ran.code == 0
     assert "already" in ran.out
-    assert _all_files(workspace) == before
+    assert files_in(workspace) == before
 
 
 def test_init_inside_a_workspace_is_refused(course, workspace):

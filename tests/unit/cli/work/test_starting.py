@@ -75,14 +75,8 @@ def test_start_brings_back_what_was_removed(course, workspace):
     assert (workspace / "doubling" / "doubling.py").is_file()
 
 
-def test_an_unknown_exercise_is_not_found_and_a_close_one_is_offered(course, workspace):
-    ran = course("start", "doublin", "--json")
-    assert (ran.code, ran.json["error"]["code"]) == (5, "exercise_not_found")
-    assert "doubling" in ran.json["error"]["help"]
-
-
 @pytest.mark.parametrize(
-    "command", ["start doubling", "check", "hint", "diff", "submit", "progress", "watch", "update"]
+    "command", ["start doubling", "go", "check", "hint", "diff", "submit", "progress", "watch", "update"]
 )
 def test_outside_of_a_workspace_a_command_says_how_to_make_one(course, command):
     ran = course(*command.split())

@@ -29,7 +29,11 @@ def real(course, tmp_path, monkeypatch):
 @pytest.fixture
 def step(course):
     """What `course next` names."""
-    return lambda: course("next", "--quiet").out.strip()
+
+    def named():
+        return course("next", "--quiet").out.strip()
+
+    return named
 
 
 def test_exercises_and_lessons_are_called_by_number_too(course, workspace):

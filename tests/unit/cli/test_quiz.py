@@ -256,20 +256,17 @@ def test_the_answer_of_a_script_has_everything(quiz, bank, tmp_path):
     assert [entry["question"] for entry in body["review"]] == ["which-engine"]
 
 
-def test_the_seed_may_be_given_beside_the_file(quiz, bank, tmp_path):
-    path = tmp_path / "a.json"
-    path.write_text(json.dumps({"answers": key(bank)}), encoding="utf-8")
-    lost = quiz("take", "--answers", str(path))
-    assert (lost.code, "does not say which questions" in lost.err) == (2, True)
-    assert quiz("take", "--answers", str(path), "--seed", str(SEED)).code == 0
-
-
-def test_answers_for_another_seed_are_refused_and_not_recorded(quiz, bank, tmp_path):
+def test_the_seed_may_be_given_beside_the_file_but_no_other_than_the_files_own(quiz, bank, tmp_path):
     path = save(tmp_path / "a.toml", key(bank))
     ran = quiz("take", "--answers", path, "--seed", "8")
     assert ran.code == 2
     assert f"{path}:1: these answers are for seed 7" in ran.err
+    path = tmp_path / "a.json"
+    path.write_text(json.dumps({"answers": key(bank)}), encoding="utf-8")
+    lost = quiz("take", "--answers", str(path))
+    assert (lost.code, "does not say which questions" in lost.err) == (2, True)
     assert quiz("history", "--json").json["attempts"] == []
+    assert quiz("take", "--answers", str(path), "--seed", str(SEED)).code == 0
 
 
 @pytest.mark.parametrize(
@@ -299,17 +296,15 @@ def test_outside_of_a_workspace_or_without_a_quiz_that_is_said(course, workspace
     assert course("quiz", "history").code == 5
 
 
-def test_a_file_may_finish_an_attempt_that_was_begun(quiz, bank, types, tmp_path):
-    letters = key(bank)
+def test_a_file_may_finish_an_attempt_that_was_begun_and_the_same_seed_counts_once(
+    quiz, bank, types, tmp_path
+):
+    letters = key(bank, ("why-simulate", "digital-twin"))
     types(letters["why-simulate"])
     assert quiz("take", "--seed", str(SEED)).code == 130
     path = save(tmp_path / "a.toml", letters)
     assert quiz("take", "--answers", path, "--json").json["resumed"] is True
     assert len(quiz("history", "--json").json["attempts"]) == 1
-
-
-def test_the_same_seed_counts_once(quiz, bank, tmp_path):
-    quiz("take", "--answers", save(tmp_path / "a.toml", key(bank, ("why-simulate", "digital-twin"))))
     assert quiz("take", "--answers", save(tmp_path / "b.toml", key(bank))).code == 0
     body = quiz("history", "--json").json
     assert [(entry["score"], entry["counts"]) for entry in body["attempts"]] == [(3, True), (5, False)]

@@ -28,10 +28,11 @@ def _console(*, terminal=True, environ=None, **settings):
     return Console(Settings(**settings), stdout=out, stderr=err, environ=environ or {}), out, err
 
 
-def test_a_pipe_gets_one_fact_a_line_however_long():
+def test_a_pipe_gets_one_fact_a_line_however_long_and_a_table_with_every_name():
     console, out, _ = _console(terminal=False)
     console.item("fail", "word " * 60, "end", indent=2)
-    assert out.getvalue() == "  fail: " + "word " * 60 + "end\n"
+    console.table(("Id", "Score"), [("one", "3/4"), ("two", "")])
+    assert out.getvalue() == "  fail: " + "word " * 60 + "end\nId: one; Score: 3/4\nId: two\n"
 
 
 def test_a_terminal_gets_lines_that_fit_it(monkeypatch):
@@ -77,12 +78,6 @@ def test_a_narrow_window_gets_facts_in_place_of_a_table(monkeypatch, columns):
         "numerical-integration",
         "  Lesson How a simulator moves time",
     ]
-
-
-def test_a_table_in_a_pipe_names_every_value():
-    console, out, _ = _console(terminal=False)
-    console.table(("Id", "Score"), [("one", "3/4"), ("two", "")])
-    assert out.getvalue() == "Id: one; Score: 3/4\nId: two\n"
 
 
 @pytest.mark.parametrize("terminal", [True, False])

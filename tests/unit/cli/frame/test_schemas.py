@@ -234,23 +234,6 @@ def test_a_schema_takes_no_other_command_s_reply():
     assert broken(schema_of("course.check/1"), {**error, "schema": "course.watch/1"})
 
 
-@pytest.mark.parametrize(
-    ("line", "tag"),
-    [
-        ("demo extra", "course.demo/2"),
-        ("quiz history --nonsense", "course.quiz-history/1"),
-        ("sandbox list nothing-like-it", "course.sandbox-list/1"),
-        ("check --all --nonsense", "course.check-all/1"),
-        ("sim run --all --nonsense", "course.sim-all/1"),
-        ("author new lesson", "course.author-new/1"),
-        ("author", "course.error/1"),
-    ],
-)
-def test_an_error_has_the_schema_of_its_command(course, line, tag):
-    body = course(*line.split(), "--json").json
-    assert (body["schema"], body["ok"]) == (tag, False)
-
-
 def test_the_command_lists_and_prints(course):
     listed = course("schema", "--json").json["schemas"]
     assert listed == list(reply_types())

@@ -194,7 +194,8 @@ def test_gradescopes_download_says_names_where_there_is_no_roster(course, out: P
     assert course("grade", "explain", "out", "Ada L", "doubling").out.startswith(
         "ada (Ada L), doubling: graded"
     )
-    course("grade", "export", "out", "--format", "gradescope", "--accept-zeros")
+    ran = course("grade", "export", "out", "--format", "gradescope", "--accept-zeros")
+    assert "/autograder/results/results.json" in ran.out
     index = (out / "gradescope" / "index.csv").read_text("utf-8-sig")
     assert '"ada","Ada L","a@x.org","doubling"' in index
     assert '"bob","","","doubling"' in index

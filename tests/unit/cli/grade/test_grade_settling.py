@@ -224,9 +224,11 @@ def test_the_summary_says_what_passes_and_whose_files_there_are(course, here: Pa
     assert "0 of 10 would count; no check ran." in ran.out
 
 
-@pytest.mark.parametrize("encoding", ["cp1252", "utf-16"])
-def test_work_in_an_undeclared_encoding_is_settled_by_its_own_name(
-    course, here: Path, monkeypatch: pytest.MonkeyPatch, encoding: str
+@pytest.mark.parametrize(
+    ("encoding", "named"), [("cp1252", "Windows' western code page"), ("utf-16", "UTF-16")]
+)
+def test_work_in_an_undeclared_encoding_is_settled_by_its_own_name_and_named_and_proposed(
+    course, here: Path, monkeypatch: pytest.MonkeyPatch, encoding: str, named: str
 ) -> None:
     graded: list[bytes] = []
 
@@ -235,20 +237,14 @@ def test_work_in_an_undeclared_encoding_is_settled_by_its_own_name(
         graded.extend(source for entry in given for source in entry.submission.files.values())
         return right(given, terms)
 
-    monkeypatch.setattr(batch, "grade_all", kept)
-    (here / "class" / "bob" / "hw.py").write_bytes(("# ça va – très bien\n" + SOURCE).encode(encoding))
-    ran = course("grade", "assign", "out", "bob", "hw.py", "--reason", "by mail")
+    for student, name in (("ada", "doubling.py"), ("bob", "hw.py")):
+        text = f"# ça va – très bien\n{SOURCE}"
+        (here / "class" / student / name).write_bytes(text.encode(encoding))
+    with monkeypatch.context() as patch:
+        patch.setattr(batch, "grade_all", kept)
+        ran = course("grade", "assign", "out", "bob", "hw.py", "--reason", "by mail")
     assert ran.code == 0, ran.err
-    assert [source.decode() for source in graded[-1:]] == ["# ça va – très bien\n" + SOURCE]
-
-
-@pytest.mark.parametrize(
-    ("encoding", "named"), [("cp1252", "Windows' western code page"), ("utf-16", "UTF-16")]
-)
-def test_a_right_name_in_an_undeclared_encoding_is_named_and_proposed(
-    course, here: Path, encoding: str, named: str
-) -> None:
-    (here / "class" / "ada" / "doubling.py").write_bytes(("# ça va – très bien\n" + SOURCE).encode(encoding))
+    assert [source.decode() for source in graded[-1:]] == [text]
     ran = course("grade", "run", "class", "--out", "new", "--exercise", "doubling")
     assert f"ada doubling: syntax_error: doubling.py is saved in {named}" in " ".join(ran.out.split())
     listed = course("grade", "assign", "new").out

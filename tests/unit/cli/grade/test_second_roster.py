@@ -204,11 +204,6 @@ def test_a_roster_without_the_column_is_refused_for_that(course, out: Path, name
     assert "worksheet" in error["help"] or "Canvas' gradebook export" in error["help"]
 
 
-def test_the_files_for_gradescope_say_what_they_are_for(course, out: Path) -> None:
-    ran = course("grade", "export", "out", "--format", "gradescope")
-    assert "/autograder/results/results.json" in ran.out
-
-
 def test_scores_are_on_the_scale_of_the_gradebook_that_canvas_gave(course, out: Path) -> None:
     """Canvas would rescale what it gets: its own file says how many points an assignment has there."""
     text = CANVAS.replace("Doubling (4711)", '"Doubling, first try (4711)"').replace(",,10\n", ",,5\n")

@@ -103,30 +103,6 @@ def test_no_prediction_keeps_a_task_closed(catalog: Catalog) -> None:
         assert closed == [], lesson
 
 
-def test_one_is_started_checked_mended_and_done_in_its_place(catalog: Catalog, workspace: Workspace) -> None:
-    async def journey(app: ReaderApp, pilot: Any) -> None:
-        assert "Which line comes first?" in screen(app)
-        assert "Enter puts its file into your workspace" in screen(app)
-        await pilot.press("enter")
-        await pilot.pause()
-        path = file_of(workspace)
-        assert path.is_file()
-        await pilot.press("r")
-        await answered(app, pilot)
-        assert "every step adds energy" in screen(app)
-        # Saved by an editor of the student's: checked without a key.
-        path.write_bytes(solution_path(catalog, catalog.exercise(TASK)).read_bytes())
-        await pilot.pause(0.6)
-        await answered(app, pilot)
-        assert f"Fixed: {catalog.exercise(TASK).task[0].id}" in screen(app)
-        assert "Done: every check passes." in screen(app)
-
-    doing(catalog, workspace, journey)
-    passed = [event.data["all_pass"] for event in workspace.store.events("check", TASK)]
-    assert passed == [False, True]
-    assert [event.subject for event in workspace.store.events("start")] == [TASK]
-
-
 @pytest.mark.parametrize("how", ["escape", "ctrl+q", "SIGTERM", "SIGHUP"])
 def test_what_is_typed_into_its_file_is_kept_however_the_editor_or_the_reader_is_left(
     catalog: Catalog, workspace: Workspace, how: str
@@ -235,17 +211,21 @@ def test_its_editor_opens_at_the_function_that_the_finding_is_about(
     assert at[0].startswith(f"def {task.id}(")
 
 
-def test_a_hint_is_offered_once_one_is_due_and_a_task_that_was_done_says_so_when_it_is_opened_again(
+def test_one_is_started_checked_hinted_at_mended_and_done_in_its_place_and_is_so_when_opened_again(
     catalog: Catalog, workspace: Workspace
 ) -> None:
     async def journey(app: ReaderApp, pilot: Any) -> None:
-        path = file_of(workspace)
+        assert "Which line comes first?" in screen(app)
+        assert "Enter puts its file into your workspace" in screen(app)
         await pilot.press("enter")
         await pilot.pause()
         assert "h hint" not in screen(app)
         await pilot.press("r")
         await answered(app, pilot)
+        assert "every step adds energy" in screen(app)
         assert "hint" not in screen(app), "nothing was tried yet"
+        # Saved by an editor of the student's: checked without a key.
+        path = file_of(workspace)
         path.write_text(path.read_text().replace("return", "return -1.0 *", 1))
         await pilot.pause(0.6)
         await answered(app, pilot)
@@ -253,6 +233,8 @@ def test_a_hint_is_offered_once_one_is_due_and_a_task_that_was_done_says_so_when
         path.write_bytes(solution_path(catalog, catalog.exercise(TASK)).read_bytes())
         await pilot.pause(0.6)
         await answered(app, pilot)
+        assert f"Fixed: {catalog.exercise(TASK).task[0].id}" in screen(app)
+        assert "Done: every check passes." in screen(app)
 
     async def again(app: ReaderApp, pilot: Any) -> None:
         await pilot.press(*["down"] * 12)
@@ -261,6 +243,9 @@ def test_a_hint_is_offered_once_one_is_due_and_a_task_that_was_done_says_so_when
 
     doing(catalog, workspace, journey)
     doing(catalog, workspace, again)
+    passed = [event.data["all_pass"] for event in workspace.store.events("check", TASK)]
+    assert passed == [False, False, True]
+    assert [event.subject for event in workspace.store.events("start")] == [TASK]
 
 
 def test_the_curve_of_a_failed_check_stands_above_its_finding(catalog: Catalog, workspace: Workspace) -> None:

@@ -139,6 +139,7 @@ def test_a_line_in_a_notebook_is_that_of_its_text():
 def test_init_writes_what_is_asked_for(course, tmp_path):
     ran = course("init", "mine", "--with", "github,devcontainer,vscode", "--json")
     assert ran.code == 0
+    assert ran.json["next"]["command"] == "course go"
     root = tmp_path / "mine"
     assert [file["path"] for file in ran.json["files"]] == [
         str(root / name)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 
+from course.catalog.pack import pack_bytes
+
 
 def test_hints_come_one_per_attempt_and_are_never_counted(course, write):
     write("wrong", "wrong")
@@ -120,14 +122,11 @@ def test_a_file_that_could_not_run_is_sent_back_to_its_check(course, write):
     assert course("hint", "--json").json["reason"] == "ungradable"
 
 
-def test_no_solution_before_a_pass(course, write):
+def test_a_checkout_shows_its_solution_after_a_pass_and_not_before(course, write):
     write("wrong", "RIGHT")
     course("check")
     ran = course("solution", "--json")
     assert (ran.code, ran.json["error"]["code"]) == (5, "not_passed")
-
-
-def test_a_checkout_shows_its_solution_after_a_pass(course, write):
     write("RIGHT", "RIGHT")
     course("check")
     ran = course("solution", "--json")
@@ -135,29 +134,18 @@ def test_a_checkout_shows_its_solution_after_a_pass(course, write):
     assert "def double" in ran.json["files"]["doubling.py"]
 
 
-def test_a_student_without_a_pack_is_told_where_one_comes_from(course, write, students_content):
+def test_a_pack_in_the_workspace_is_opened_and_without_one_it_is_told_where_one_comes_from(
+    course, workspace, write, students_content
+):
     write("RIGHT", "RIGHT")
     course("check")
     ran = course("solution")
     assert ran.code == 5
     assert ".coursepack" in ran.err
-
-
-def test_a_pack_in_the_workspace_is_opened(course, workspace, write, students_content):
-    from course.catalog.pack import pack_bytes
-
-    write("RIGHT", "RIGHT")
-    course("check")
-    (workspace / "week 1.coursepack").write_bytes(
-        pack_bytes("mini", "1.0.0", {"doubling": {"doubling.py": b"def double(x):\n    return x + x\n"}})
-    )
+    pack, model = workspace / "week 1.coursepack", "def double(x):\n    return x + x\n"
+    pack.write_bytes(pack_bytes("mini", "1.0.0", {"doubling": {"doubling.py": model.encode()}}))
     body = course("solution", "--json").json
-    assert body["files"] == {"doubling.py": "def double(x):\n    return x + x\n"}
+    assert body["files"] == {"doubling.py": model}
     assert body["source"].endswith("week 1.coursepack")
-
-
-def test_a_damaged_pack_is_an_integrity_error(course, workspace, write, students_content):
-    write("RIGHT", "RIGHT")
-    course("check")
-    (workspace / "a.coursepack").write_bytes(b"no zip")
-    assert course("solution").code == 7
+    pack.write_bytes(b"no zip")
+    assert course("solution").code == 7, "it is damaged"

@@ -60,25 +60,22 @@ def test_submit_keeps_what_it_replaces(course, workspace, write):
     assert course("submit", "-o", "mine.zip", "--json").json["backup"] is None
 
 
-def test_submit_leaves_an_untouched_stub_out(course, workspace, write):
+def test_submit_leaves_an_untouched_stub_out_and_says_what_the_checks_say_of_the_rest(
+    course, workspace, write
+):
     course("start", "halving")
     write("RIGHT", "wrong")
     body = course("submit", "--json").json
-    assert [f["path"] for f in body["files"]] == ["doubling/doubling.py"]
+    (file,) = body["files"]
+    assert (file["path"], file["last_score"], file["max_score"]) == ("doubling/doubling.py", 2.0, 4.0)
     assert body["left_out"] == [{"path": "halving/halving.py", "action": "still the stub"}]
+    assert "2/4 points from the public checks" in course("submit").out
 
 
 def test_submit_with_nothing_written_writes_nothing(course, workspace):
     ran = course("submit", "--json")
     assert (ran.code, ran.json["error"]["code"]) == (3, "nothing_to_submit")
     assert not list(workspace.glob("*.zip"))
-
-
-def test_submit_says_what_the_checks_say_of_what_goes_in(course, workspace, write):
-    write("RIGHT", "wrong")
-    (file,) = course("submit", "--json").json["files"]
-    assert (file["last_score"], file["max_score"]) == (2.0, 4.0)
-    assert "2/4 points from the public checks" in course("submit").out
 
 
 def test_submit_warns_about_a_file_that_cannot_be_graded(course, workspace):

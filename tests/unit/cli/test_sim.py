@@ -32,15 +32,12 @@ def test_list_as_json_is_typed(course):
     assert "rk4" in method["choices"]
 
 
-def test_run_shows_simulated_theory_and_error_with_units(course):
+def test_run_shows_simulated_theory_and_error_with_units_and_quiet_leaves_the_finding(course):
     ran = course("sim", "run", "free-fall", "--plain")
     assert ran.code == 0
     assert "Measured: time to the ground; Simulated: 1.4278 s; Theory: 1.4278 s; Error: " in ran.out
     assert "semi-implicit Euler; Simulated: -9.7181 m; Theory: -9.6200 m; Error: -0.0981 m" in ran.out
     assert "The ball reaches the ground after 1.428 s" in ran.out
-
-
-def test_quiet_leaves_the_finding(course):
     out = course("sim", "run", "collision", "--quiet").out
     assert out.startswith("The surfaces touch at 2.25 s")
     assert out.count("\n") == 1

@@ -55,13 +55,16 @@ def test_a_run_leaves_a_gradebook_and_what_is_made_from_it(graded: Path) -> None
     assert {row["student"]: row["score"] for row in rows} == {"'=bob": "6", "ada": "10", "cy": "0"}
 
 
-def test_explain_shows_hidden_values_to_the_instructor(graded: Path) -> None:
+def test_explain_shows_hidden_values_to_the_instructor_or_why_there_is_no_grade(graded: Path) -> None:
     done = course("grade", "explain", graded, "=bob", "doubling")
     assert done.returncode == 0, done.stderr
     assert "6 of 10" in done.stdout
     assert re.search(r"double_of_negative, hidden, 0/\d points\]", done.stdout)
     assert "-34.5" in done.stdout
     assert "I saw -17.25" in done.stdout
+    body = json.loads(course("grade", "explain", graded, "cy", "doubling", "--json").stdout)
+    assert (body["schema"], body["state"], body["exit_code"]) == ("course.grade/1", "ungradable", 3)
+    assert body["error"]["code"] == "syntax_error"
 
 
 def test_a_warm_up_is_graded_where_its_message_says_to_put_it_and_is_explained(tmp_path: Path) -> None:
@@ -76,13 +79,6 @@ def test_a_warm_up_is_graded_where_its_message_says_to_put_it_and_is_explained(t
     said = in_process(*explain, env=dict(os.environ)).stdout
     assert "without the minus one" in said
     assert "diagnosis: MINUS_ONE_FORGOTTEN" in said
-
-
-def test_explain_says_why_there_is_no_grade(graded: Path) -> None:
-    done = course("grade", "explain", graded, "cy", "doubling", "--json")
-    body = json.loads(done.stdout)
-    assert (body["schema"], body["state"], body["exit_code"]) == ("course.grade/1", "ungradable", 3)
-    assert body["error"]["code"] == "syntax_error"
 
 
 @pytest.mark.parametrize(

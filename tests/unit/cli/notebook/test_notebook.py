@@ -87,15 +87,6 @@ def test_what_cannot_be_used_is_refused(course, tmp_path, words, code, error):
     assert (ran.code, ran.json["error"]["code"]) == (code, error)
 
 
-def test_without_its_extra_executed_says_what_to_install(course, monkeypatch):
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    ran = course("notebook", "build", "--executed", "--json")
-    assert (ran.code, ran.json["error"]["code"]) == (4, "missing_extra")
-    for requirement in ("jupyterlab>=4", "nbclient", "ipykernel", "anywidget"):
-        assert f"'{requirement}" in ran.json["error"]["help"]
-    assert course("notebook", "build").code == 0
-
-
 def test_check_says_what_is_wrong_and_passes_when_it_is_right(course, workspace):
     path = workspace / "doubling" / "doubling.ipynb"
     course("notebook", "build", "doubling")
@@ -213,7 +204,7 @@ def test_nbgrader_notebooks_carry_its_marks(course, tmp_path):
             assert text.index("def ") < text.index("### BEGIN SOLUTION") < text.index("### END SOLUTION")
 
 
-def test_open_says_in_one_sentence_what_is_missing(course, workspace, monkeypatch):
+def test_open_and_executed_say_in_one_sentence_what_is_missing(course, workspace, monkeypatch):
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name == "jupyterlab" else object())
     ran = course("open", "doubling", "--json")
     assert ran.code == 4
@@ -221,6 +212,12 @@ def test_open_says_in_one_sentence_what_is_missing(course, workspace, monkeypatc
     assert error["message"] == "Opening a notebook needs jupyterlab, which is not installed."
     assert error["help"].startswith("Install what it needs: pip install 'jupyterlab")
     assert not (workspace / "doubling" / "doubling.ipynb").exists()
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    ran = course("notebook", "build", "--executed", "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (4, "missing_extra")
+    for requirement in ("jupyterlab>=4", "nbclient", "ipykernel", "anywidget"):
+        assert f"'{requirement}" in ran.json["error"]["help"]
+    assert course("notebook", "build").code == 0
 
 
 def test_open_leaves_it_to_the_course_whether_a_browser_is_opened(course, workspace, monkeypatch):

@@ -106,11 +106,12 @@ def test_a_failed_check_is_an_annotation_at_its_function_from_the_top_of_the_rep
     assert where["file"] == "my course é/doubling/doubling.py"
 
 
-def test_everything_right_is_no_annotation(course, write):
+def test_everything_right_is_no_annotation_and_an_unknown_format_is_refused(course, write):
     write("RIGHT", "RIGHT")
     ran = course("check", "--all", "--format", "github")
     assert ran.code == 0
     assert not annotations(ran.out)
+    assert course("check", "--format", "xml").code == 2
 
 
 def test_a_file_that_cannot_be_read_is_marked_where_it_cannot(course, write):
@@ -120,10 +121,6 @@ def test_a_file_that_cannot_be_read_is_marked_where_it_cannot(course, write):
         assert ran.code == 3
         ((level, where, message),) = annotations(ran.out)
         assert (level, where["line"], message) == ("error", "7", "Line 1 cannot be read.\nLook at line 1.")
-
-
-def test_an_unknown_format_is_refused(course, write):
-    assert course("check", "--format", "xml").code == 2
 
 
 def test_a_line_in_a_notebook_is_that_of_its_text():

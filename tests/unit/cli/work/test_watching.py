@@ -219,11 +219,17 @@ def test_what_is_in_the_files_already_counts(course, workspace, write, pressed):
     assert "Write RIGHT" not in said, "a file as it was handed out waits for its first save"
 
 
-def test_a_task_as_it_was_handed_out_is_checked_at_the_first_save_or_on_r(course, workspace, pressed):
-    pressed("r", "q")
+def test_a_task_as_it_was_handed_out_is_checked_on_r_and_skipped_it_is_where_the_next_go_is_not(
+    course, workspace, pressed
+):
+    pressed("r", "s", "q")
     said = course("go").out
     assert said.count("Keys: r check, l lesson, t text, s skip, q leave") == 1
     assert said.count("Keys: v more, l lesson, t text, s skip, q leave") == 1
+    assert "Exercise 2 of 2" in said
+    pressed("q")
+    assert "Exercise 1 of 2" not in course("go").out
+    assert "Exercise 1 of 2" in course("watch", "-C", "doubling").out, "a folder keeps to its task first"
 
 
 def test_keys_lead_to_other_tasks_and_back_and_a_task_that_is_done_stays(course, workspace, write, pressed):
@@ -237,14 +243,6 @@ def test_keys_lead_to_other_tasks_and_back_and_a_task_that_is_done_stays(course,
         "Exercise 2 of 2: halving",
     ]
     assert "b back, s skip" in said
-
-
-def test_what_was_skipped_is_where_the_next_go_is_not(course, workspace, pressed):
-    pressed("s", "q")
-    assert "Exercise 2 of 2" in course("go").out
-    pressed("q")
-    assert "Exercise 1 of 2" not in course("go").out
-    assert "Exercise 1 of 2" in course("watch", "-C", "doubling").out, "a folder keeps to its task first"
 
 
 def test_the_lesson_the_text_and_the_way_back_are_keys(course, workspace, pressed, monkeypatch):
@@ -263,13 +261,6 @@ def test_the_lesson_the_text_and_the_way_back_are_keys(course, workspace, presse
     assert said.out.count("Waiting for a save of doubling/doubling.py.") == 4
     assert "# Doubling" in said.out, "the whole text"
     assert (said.code, said.err) == (0, "There is no such lesson.\n"), "and the loop goes on"
-
-
-def test_a_named_watch_stays_with_its_exercise(course, workspace, pressed):
-    pressed(_solve("doubling"), "s", "b", "q")
-    said = course("watch", "doubling").out
-    assert "All 2 public checks pass" in said
-    assert "halving" not in said
 
 
 def test_with_no_task_left_nothing_is_handed_in_unasked(course, workspace, pressed, write):
@@ -297,7 +288,13 @@ def test_after_the_last_task_each_further_step_is_asked_about(course, workspace,
     assert len(asked) == said.count("Next: ") == 2
 
 
-def test_a_named_watch_works_where_the_record_cannot_be_read(course, workspace, pressed):
+def test_a_named_watch_stays_with_its_exercise_and_works_where_the_record_cannot_be_read(
+    course, workspace, pressed
+):
+    pressed(_solve("doubling"), "s", "b", "q")
+    said = course("watch", "doubling").out
+    assert "All 2 public checks pass" in said
+    assert "halving" not in said
     (workspace / ".course" / "progress.sqlite").write_bytes(b"not a database, not at all, no" * 10)
     pressed("q")
     assert course("watch", "doubling").code == 0

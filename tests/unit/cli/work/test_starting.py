@@ -32,14 +32,6 @@ def test_the_dashboard_survives_a_damaged_record(course, workspace):
     assert "Next: course doctor" in ran.out
 
 
-def test_init_twice_changes_nothing_and_says_so(course, workspace):
-    before = files_in(workspace)
-    ran = course("init")
-    assert ran.code == 0
-    assert "already" in ran.out
-    assert files_in(workspace) == before
-
-
 def test_init_changes_nothing_in_a_workspace_where_a_file_is_or_where_course_toml_is_damaged(
     course, workspace
 ):
@@ -58,19 +50,20 @@ def test_init_changes_nothing_in_a_workspace_where_a_file_is_or_where_course_tom
     assert (workspace / "course.toml").read_text() == "[[["
 
 
-def test_start_never_overwrites(course, workspace, write):
+def test_start_and_init_never_overwrite_and_start_brings_back_what_was_removed(course, workspace, write):
     path = write("mine")
-    before = path.read_bytes()
+    before = files_in(workspace)
+    ran = course("init")
+    assert ran.code == 0
+    assert "already" in ran.out
+    assert files_in(workspace) == before
     ran = course("start", "doubling")
     assert ran.code == 0
     assert "was not changed" in ran.out
-    assert path.read_bytes() == before
-
-
-def test_start_brings_back_what_was_removed(course, workspace):
-    (workspace / "doubling" / "doubling.py").unlink()
+    assert path.read_bytes() == before[path]
+    path.unlink()
     assert course("start", "doubling/").code == 0
-    assert (workspace / "doubling" / "doubling.py").is_file()
+    assert path.is_file()
 
 
 @pytest.mark.parametrize(

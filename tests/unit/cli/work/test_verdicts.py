@@ -174,7 +174,7 @@ ABSENT = {"message": "No such function.", "help": "Define it.", "diagnosis": "MI
         ),
         (
             [_check(name, "rk4", Status.FAIL, message="Wrong.", help="Try.") for name in "ab"],
-            {"a works": 1, "b works": 1, "Try.": 1},
+            {"a works": 1, "b works": 1, "Wrong.": 1, "Try.": 1},
         ),
         (
             [FAILS, _check("b", "euler", Status.SKIP, blocked_by="a")],

@@ -216,6 +216,7 @@ def test_one_is_started_checked_hinted_at_mended_and_done_in_its_place_and_is_so
 ) -> None:
     async def journey(app: ReaderApp, pilot: Any) -> None:
         assert "Which line comes first?" in screen(app)
+        await pilot.pause(0.6)  # longer than between two looks at a file, which is not there yet
         assert "Enter puts its file into your workspace" in screen(app)
         await pilot.press("enter")
         await pilot.pause()

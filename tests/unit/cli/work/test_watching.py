@@ -291,14 +291,17 @@ def test_after_the_last_task_each_further_step_is_asked_about(course, workspace,
 def test_a_named_watch_stays_with_its_exercise_and_works_where_the_record_cannot_be_read(
     course, workspace, pressed
 ):
+    record = workspace / ".course" / "progress.sqlite"
+    kept = record.read_bytes()
+    record.write_bytes(b"not a database, not at all, no" * 10)
+    pressed("q")
+    assert course("watch", "doubling").code == 0
+    assert course("go").code != 0
+    record.write_bytes(kept)
     pressed(_solve("doubling"), "s", "b", "q")
     said = course("watch", "doubling").out
     assert "All 2 public checks pass" in said
     assert "halving" not in said
-    (workspace / ".course" / "progress.sqlite").write_bytes(b"not a database, not at all, no" * 10)
-    pressed("q")
-    assert course("watch", "doubling").code == 0
-    assert course("go").code != 0
 
 
 def test_q_while_checks_run_drops_them_and_records_nothing(watching, write):

@@ -109,6 +109,11 @@ class FakeSession:
         )
 
 
+def files_in(root):
+    """Every file in a folder, with what it holds."""
+    return {path: path.read_bytes() for path in root.rglob("*") if path.is_file()}
+
+
 @functools.cache
 def validator(tag):
     return jsonschema.Draft202012Validator(schema_of(tag))

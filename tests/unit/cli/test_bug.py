@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from course import __file__ as package
+from course import __version__
 from course.cli.frame.app import INSTALLATION
 
 USER, HOST = "planted.person", "planted-laptop"
@@ -95,9 +96,8 @@ def test_the_name_in_full_is_one_of_them(somebody, monkeypatch):
     assert redacted("/media/Ada Planted/disk and adaptive") == "/media/<user>/disk and adaptive"
 
 
-def test_a_report_has_versions_and_the_level(course, somebody):
-    from course import __version__
-
+def test_a_report_has_versions_and_the_level_and_keeps_the_one_before(course, somebody, tmp_path):
+    Path("it.txt").write_text("mine")
     ran = course("bug", "-o", "it.txt")
     text = Path("it.txt").read_text("utf-8")
     assert f"course {__version__}, Python {platform.python_version()}" in text
@@ -105,13 +105,16 @@ def test_a_report_has_versions_and_the_level(course, somebody):
     assert "msgspec" in text
     assert "No crash of the course was found" in text
     assert "it.txt" in ran.out
+    (kept,) = tmp_path.glob("it.old-*.txt")
+    assert kept.read_text() == "mine"
 
 
-def test_what_was_typed_is_left_out(course, somebody):
-    _, temporary = somebody
-    (temporary / "course-crash-1.txt").write_text(
-        f"course 1\n{HERE}command: ['course', 'grade', 'override', 'Anna Student']\n\nTraceback\n"
-    )
+def test_what_was_typed_is_left_out_and_so_is_a_crash_of_another_installation(course, somebody):
+    crash = somebody[1] / "course-crash-1.txt"
+    crash.write_text(f"{INSTALLATION}/opt/other/course\nTraceback\n")
+    assert course("bug", "--json").json["traceback"] is False
+    typed = "command: ['course', 'grade', 'override', 'Anna Student']"
+    crash.write_text(f"course 1\n{HERE}{typed}\n\nTraceback\n")
     course("bug")
     text = Path("course-bug.txt").read_text("utf-8")
     assert "Anna" not in text
@@ -131,16 +134,3 @@ def test_the_newest_crash_counts_and_a_link_is_none(course, somebody, tmp_path):
     assert "crash number 2" in text
     assert "hours ago" in text
     assert "somebody else's" not in text
-
-
-def test_a_crash_of_another_installation_is_not_in_the_report(course, somebody):
-    _, temporary = somebody
-    (temporary / "course-crash-1.txt").write_text(f"{INSTALLATION}/opt/other/course\nTraceback\n")
-    assert course("bug", "--json").json["traceback"] is False
-
-
-def test_a_second_report_keeps_the_first(course, somebody, tmp_path):
-    Path("course-bug.txt").write_text("mine")
-    course("bug")
-    (kept,) = tmp_path.glob("course-bug.old-*.txt")
-    assert kept.read_text() == "mine"

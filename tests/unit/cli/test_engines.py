@@ -48,9 +48,6 @@ def test_list_names_engines_with_licence_and_the_command_that_installs_them(bare
     assert "pybullet has no wheel for Python 3.13 on Linux x86_64." in ran.out
     for name in SCENARIOS:
         assert re.search(rf"^\s+{name}: ", ran.out, re.MULTILINE)
-
-
-def test_list_as_json_is_typed(bare):
     body = bare("engines", "list", "--json").json
     assert body["schema"] == "course.engines-list/1"
     engines = {engine["id"]: engine for engine in body["engines"]}
@@ -90,15 +87,10 @@ def test_the_rows_of_a_scenario_say_the_best_in_words(bare, monkeypatch):
         def ask(self, job, seconds):
             if self.engine == "dart":
                 return {"status": "crash", "message": "It was ended by SIGABRT."}
-            tuned = job["setting"] == "tuned"
-            value = replies.get(self.engine, 5.0) + (0.1 if tuned else 0.0)
-            return {
-                "status": "ok",
-                "value": value,
-                "details": {},
-                "options": {"a": 1} if tuned else {},
-                "why": ["b"] if tuned else [],
-            }
+            value = replies.get(self.engine, 5.0)
+            if job["setting"] != "tuned":
+                return {"status": "ok", "value": value, "details": {}, "options": {}, "why": []}
+            return {"status": "ok", "value": value + 0.1, "details": {}, "options": {"a": 1}, "why": ["b"]}
 
     monkeypatch.setattr(comparing, "EngineProcess", Stand)
     ran = bare("engines", "compare", "--scenario", "clash", "--plain")
@@ -116,14 +108,6 @@ def row(engine, value, *samples, origin="measured"):
     )  # fmt: skip
 
 
-def test_what_a_phase_could_change_makes_no_rank():
-    sharp, near, far = row("physx", 0.2503, 0.2483, 0.2523), row("dart", 0.2511), row("ode", 0.2425)
-    assert best_rows([sharp, near, far]) == {id(sharp), id(near)}
-    # A wide range of its own does not make an engine best.
-    wide = row("bullet", 0.3095, 0.148, 0.418)
-    assert best_rows([sharp, wide]) == {id(sharp)}
-
-
 def test_nothing_that_can_run_is_exit_code_4_with_the_reference_shown(bare):
     ran = bare("engines", "compare", "--engine", "mujoco", "--scenario", "bounce", "--plain")
     assert ran.code == 4
@@ -135,17 +119,8 @@ def test_nothing_that_can_run_is_exit_code_4_with_the_reference_shown(bare):
 
 def test_compare_as_json_holds_every_number_and_where_it_is_from(bare, monkeypatch, tmp_path):
     monkeypatch.setenv("COURSE_CACHE", str(tmp_path / "cache"))
-    words = [
-        "engines",
-        "compare",
-        "--scenario",
-        "bounce",
-        "--engine",
-        "pymunk",
-        "--engine",
-        "mujoco",
-        "--json",
-    ]
+    line = "engines compare --scenario bounce --engine pymunk --engine mujoco --json"
+    words = line.split()
     ran = bare(*words)
     assert "A bounce" in ran.err, "words go to the other stream"
     body, rows = ran.json, ran.json["rows"]
@@ -173,21 +148,14 @@ def test_steps_are_taken_as_numbers_or_fractions(bare):
     assert "Step: 1/200 s" in bare(*words, "--dt", "1/100", "--dt", "0.005", "--plain").out
 
 
-@pytest.mark.parametrize("step", ["0", "-1", "1/0", "nan", "tea", "1/10", "1e-9", "1/2/3"])
-def test_a_step_that_is_none_is_a_usage_error(bare, step):
-    ran = bare("engines", "compare", f"--dt={step}", "--json")
-    assert ran.code == 2
-    assert ran.json["error"]["code"] == "bad_step"
-
-
 @pytest.mark.parametrize(
-    ("option", "word", "code"),
-    [("--engine", "newton", "engine_not_found"), ("--scenario", "tea", "scenario_not_found")],
+    ("word", "code", "error"),
+    [(f"--dt={step}", 2, "bad_step") for step in ("0", "-1", "1/0", "nan", "tea", "1/10", "1e-9", "1/2/3")]
+    + [("--engine=newton", 5, "engine_not_found"), ("--scenario=tea", 5, "scenario_not_found")],
 )
-def test_unknown_names_exit_with_5(bare, option, word, code):
-    ran = bare("engines", "compare", option, word, "--json")
-    assert ran.code == 5
-    assert ran.json["error"]["code"] == code
+def test_a_step_that_is_none_and_unknown_names_are_refused(bare, word, code, error):
+    ran = bare("engines", "compare", word, "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (code, error)
 
 
 def test_csv_has_a_line_for_every_row_and_every_digit(bare, tmp_path):
@@ -217,20 +185,17 @@ def test_a_file_of_the_wrong_kind_is_refused_before_anything_is_measured(bare, m
     assert bare("engines", "compare", "--csv", "f.txt").code == 2
 
 
-def test_repetitions_show_their_spread_only_where_there_is_one(bare):
-    ran = bare("engines", "compare", "--engine", "pymunk", "--scenario", "bounce", "--repeat", "2", "--plain")
-    assert "±" not in ran.out
-    assert bare("engines", "compare", "--repeat", "0").code == 2
-
-
-def test_a_value_of_several_runs_is_followed_by_their_range(bare):
-    words = ("engines", "compare", "--engine", "pymunk", "--scenario", "bounce", "--scenario", "slide")
+def test_repetitions_show_their_spread_only_where_there_is_one_and_several_runs_their_range(bare):
+    line = "engines compare --engine pymunk --scenario bounce --scenario slide"
+    words = (*line.split(), "--repeat", "2")
     ran = bare(*words, "--plain")
+    assert "±" not in ran.out
     assert re.search(r"As it comes: 0.2454 m \(0.239 to 0.252\); Well set", ran.out)
     assert re.search(r"Engine: pymunk \(2-D\); As it comes: -6e-13 %; Well set", ran.out)
     rows = {(row["scenario"], row["setting"]): row for row in bare(*words, "--json").json["rows"]}
     assert len(rows["bounce", "default"]["samples"]) == 64
     assert rows["slide", "default"]["samples"] == []
+    assert bare("engines", "compare", "--repeat", "0").code == 2
 
 
 @pytest.mark.parametrize("columns", [60, 80, 120])
@@ -252,9 +217,14 @@ def test_help_has_every_option_of_the_contract(bare):
     assert "Example: course engines compare" in words
 
 
-def test_the_reference_is_never_the_best_and_ties_all_are():
+def test_the_reference_is_never_the_best_ties_all_are_and_what_a_phase_could_change_makes_no_rank():
     rows = [row("pymunk", 0.26), row("ode", 0.24), row("dart", 0.3), row("physx", 0.25, origin="reference")]
     best = best_rows(rows)
     assert [id(one) in best for one in rows] == [True, True, False, False]
     # Alone in its column nobody is the best of anything.
     assert not best_rows([row("pymunk", 0.25), row("ode", 0.25, origin="reference")])
+    sharp, near, far = row("physx", 0.2503, 0.2483, 0.2523), row("dart", 0.2511), row("ode", 0.2425)
+    assert best_rows([sharp, near, far]) == {id(sharp), id(near)}
+    # A wide range of its own does not make an engine best.
+    wide = row("bullet", 0.3095, 0.148, 0.418)
+    assert best_rows([sharp, wide]) == {id(sharp)}

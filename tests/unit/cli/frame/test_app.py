@@ -31,9 +31,10 @@ STUDENT = [
 HEAVY = {"numpy", "matplotlib", "pymunk", "pytest", "msgspec", "sqlite3", "textual", "nbformat"}
 
 
-def _python(*words, **environ):
+def _python(*words, cwd=None, **environ):
     return subprocess.run(
         [sys.executable, *words],
+        cwd=cwd,
         capture_output=True,
         text=True,
         encoding="utf-8",
@@ -43,30 +44,22 @@ def _python(*words, **environ):
     )
 
 
-def _real(entry):
-    import importlib
-
-    return getattr(importlib.import_module(f"course.cli.{entry.module}"), entry.name)
-
-
-def test_every_promised_command_is_there():
-    assert set(STUDENT) <= set(registry.COMMANDS)
+def _imported(*words, **environ):
+    """The packages that are imported meanwhile."""
+    ran = _python("-X", "importtime", *words, **environ)
+    assert ran.returncode == 0
+    return {line.rpartition("|")[2].strip().partition(".")[0] for line in ran.stderr.splitlines()}
 
 
 @pytest.mark.parametrize("name", STUDENT)
-def test_every_command_has_help_with_an_example(course, name):
+def test_every_promised_command_has_its_own_summary_and_help_with_an_example(course, name):
+    entry = registry.COMMANDS[name]
+    assert registry.find(entry.module, entry.name).__doc__.splitlines()[0] == entry.summary
     ran = course(name, "--help")
     assert ran.code == 0
-    entry = registry.COMMANDS[name]
     assert entry.summary in ran.out
     assert f"Example: {entry.example}" in ran.out
     assert entry.example.startswith(f"course {name}")
-
-
-@pytest.mark.parametrize("name", STUDENT)
-def test_the_summary_in_the_list_is_the_command_s_own(name):
-    entry = registry.COMMANDS[name]
-    assert _real(entry).__doc__.splitlines()[0] == entry.summary
 
 
 def test_the_list_of_commands_names_them_all(course):
@@ -75,18 +68,10 @@ def test_the_list_of_commands_names_them_all(course):
         assert re.search(rf"^\s+{name}\s+{re.escape(entry.summary)}", words, re.MULTILINE)
 
 
-def test_help_loads_nothing_heavy():
-    ran = _python("-X", "importtime", "-m", "course", "--help")
-    assert ran.returncode == 0
-    loaded = {line.rpartition("|")[2].strip().partition(".")[0] for line in ran.stderr.splitlines()}
-    assert "typer" in loaded
-    assert not loaded & HEAVY
-
-
-def test_help_on_a_terminal_loads_nothing_heavy_either():
-    ran = _python("-X", "importtime", "-m", "course", "--help", FORCE_COLOR="1")
-    loaded = {line.rpartition("|")[2].strip().partition(".")[0] for line in ran.stderr.splitlines()}
-    assert "rich" in loaded
+@pytest.mark.parametrize(("environ", "needed"), [({}, "typer"), ({"FORCE_COLOR": "1"}, "rich")])
+def test_help_loads_nothing_heavy(environ, needed):
+    loaded = _imported("-m", "course", "--help", **environ)
+    assert needed in loaded
     assert not loaded & HEAVY
 
 
@@ -94,8 +79,7 @@ def test_a_lesson_opens_without_numpy_and_matplotlib():
     """They cost a quarter of the time to the first page, and no page needs them."""
     modules = "course.cli.frame.app, course.cli.reading.commands, course.cli.reading.screen.app"
     drawing = "course.cli.reading.screen.running"
-    ran = _python("-X", "importtime", "-c", f"import {modules}, {drawing}")
-    loaded = {line.rpartition("|")[2].strip().partition(".")[0] for line in ran.stderr.splitlines()}
+    loaded = _imported("-c", f"import {modules}, {drawing}")
     assert "textual" in loaded
     assert not loaded & {"numpy", "matplotlib", "PIL"}
 
@@ -117,7 +101,9 @@ def test_version_wins_wherever_it_stands(course, words):
         ("init", "course.init/1", 0),
         ("lessons", "course.lessons/1", 0),
         ("lesson", "course.lesson/1", 0),
+        ("lesson twice", "course.lesson/1", 5),
         ("start doubling", "course.start/1", 0),
+        ("start doublin", "course.start/1", 5),
         ("check doubling", "course.check/1", 1),
         ("check --all", "course.check-all/1", 1),
         ("hint doubling", "course.hint/1", 0),
@@ -133,6 +119,12 @@ def test_version_wins_wherever_it_stands(course, words):
         ("check --nonsense", "course.check/1", 2),
         ("chekc", "course.error/1", 2),
         ("check one two", "course.check/1", 2),
+        ("check --all --nonsense", "course.check-all/1", 2),
+        ("demo extra", "course.demo/2", 2),
+        ("quiz history --nonsense", "course.quiz-history/1", 2),
+        ("sandbox list nothing-like-it", "course.sandbox-list/1", 5),
+        ("sim run --all --nonsense", "course.sim-all/1", 2),
+        ("author new lesson", "course.author-new/1", 2),
         ("author", "course.error/1", 2),
         ("-C nowhere check", "course.check/1", 5),
         ("check -C", "course.check/1", 2),
@@ -210,16 +202,13 @@ def test_anything_else_is_one_line_and_a_report_in_a_file(failing, error, tmp_pa
     assert type(error).__name__ in report.read_text()
 
 
-def test_a_crash_is_in_the_envelope_too(failing, tmp_path, monkeypatch):
-    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+def test_a_crash_whose_report_cannot_be_written_is_still_one_line_and_in_the_envelope(
+    failing, tmp_path, monkeypatch
+):
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "not there"))
     ran = failing(ZeroDivisionError())("doctor", "--json")
     assert (ran.code, ran.json["error"]["code"], ran.json["schema"]) == (70, "internal", "course.doctor/1")
-
-
-def test_a_crash_whose_report_cannot_be_written_is_still_one_line(failing, tmp_path, monkeypatch):
-    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "not there"))
-    ran = failing(ZeroDivisionError())("doctor")
-    assert (ran.code, ran.err.count("\n")) == (70, 1)
+    assert ran.err.count("\n") == 1
 
 
 def test_ctrl_c_exits_130_and_is_told_in_one_word(failing):
@@ -256,38 +245,6 @@ def test_a_reader_that_stops_reading_is_no_error(tmp_path):
 
 def test_the_folder_of_the_student_is_not_importable(tmp_path):
     (tmp_path / "typer.py").write_text("raise SystemExit('hijacked')")
-    ran = subprocess.run(
-        [sys.executable, "-m", "course", "--version"],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    ran = _python("-m", "course", "--version", cwd=tmp_path)
     assert ran.returncode == 0
     assert "hijacked" not in ran.stderr
-
-
-# -- completion ------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("typed", "expected"),
-    [
-        ("course check do", {"doubling"}),
-        ("course check --json ", {"doubling", "halving"}),
-        ("course --plain lesson ha", {"half-as-much"}),
-        ("course hi", {"hint"}),
-    ],
-)
-def test_the_shell_completes_commands_and_ids(typed, expected):
-    content = ROOT / "tests" / "fixtures" / "mini_course"
-    ran = _python(
-        "-m",
-        "course",
-        _COURSE_COMPLETE="complete_bash",
-        COMP_WORDS=typed,
-        COMP_CWORD=str(typed.count(" ")),
-        COURSE_CONTENT=str(content),
-    )
-    assert set(ran.stdout.split()) == expected

@@ -42,23 +42,18 @@ def test_a_long_line_of_a_lesson_goes_on_further_in_behind_a_sign(width: int) ->
                 far = indent_of(before) if MARK in before else indent_of(before) + 2
                 assert indent_of(row) == far
         assert "".join("".join(row.replace(MARK, "").split()) for row in rows) == "".join(source.split())
+    assert any(MARK in row for source in SOURCES for row in rows_of(source, 36)), "some are that long"
 
 
-def test_some_lines_of_the_lessons_are_longer_than_a_narrow_window() -> None:
-    assert any(MARK in row for source in SOURCES for row in rows_of(source, 36))
-
-
-def test_a_line_breaks_between_words_where_it_can() -> None:
-    assert rows_of("total = first_of_all + second_of_all", 24) == [
-        "total = first_of_all +",
-        "  ↳ second_of_all",
-    ]
-    assert rows_of("x" * 30, 24) == ["x" * 24, "  ↳ " + "x" * 6]
-
-
-def test_letters_of_two_columns_fit_too() -> None:
-    assert rows_of("'" + "積" * 12 + "'", 20) == ["'" + "積" * 9, "  ↳ " + "積" * 3 + "'"]
-
-
-def test_code_as_wide_as_the_window_stays_as_it_is() -> None:
-    assert rows_of("if x:\n\n    return 1\n", 12) == ["if x:", "", "    return 1"]
+@pytest.mark.parametrize(
+    ("source", "width", "rows"),
+    [
+        ("total = first_of_all + second_of_all", 24, ["total = first_of_all +", "  ↳ second_of_all"]),
+        ("x" * 30, 24, ["x" * 24, "  ↳ " + "x" * 6]),
+        ("'" + "積" * 12 + "'", 20, ["'" + "積" * 9, "  ↳ " + "積" * 3 + "'"]),
+        ("if x:\n\n    return 1\n", 12, ["if x:", "", "    return 1"]),
+    ],
+    ids=["between words", "where it must", "letters of two columns", "as wide as the window"],
+)
+def test_a_line_breaks_between_words_where_it_can(source: str, width: int, rows: list[str]) -> None:
+    assert rows_of(source, width) == rows

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sqlite3
-import subprocess
-import sys
 import typing
 
 import pytest
 
 from course.cli.frame.app import SHELLS, main
 from course.cli.frame.registry import COMMANDS, find
+from tests.command_line import as_process
 
 #: Values that are words or places of one's own, so that there is nothing to choose from.
 FREE = {
@@ -72,6 +72,9 @@ def complete(typed, monkeypatch, capsys):
 @pytest.mark.parametrize(
     ("typed", "expected"),
     [
+        ("course hi", {"hint"}),
+        ("course check --json ", {"doubling", "halving"}),
+        ("course --plain lesson ha", {"half-as-much"}),
         ("course check doubling --only double_", {"double_of_three"}),
         ("course hint doubling --task ", {"double", "doublings"}),
         ("course grade run in --layout ca", {"canvas"}),
@@ -100,51 +103,38 @@ def test_students_of_a_run_come_from_its_gradebook(course, tmp_path, monkeypatch
     assert complete("course grade explain out ", monkeypatch, capsys) == set()
     assert not (tmp_path / "out").exists()
     (tmp_path / "out").mkdir()
-    book = sqlite3.connect(tmp_path / "out" / "gradebook.sqlite")
-    book.execute("CREATE TABLE results (student TEXT)")
-    book.executemany("INSERT INTO results VALUES (?)", [("anna",), ("anna",), ("bo",)])
-    book.execute("CREATE TABLE students (student TEXT)")
-    book.execute("INSERT INTO students VALUES ('cy')")
-    book.execute("CREATE TABLE runs (number INTEGER)")
-    book.execute("INSERT INTO runs VALUES (7)")
-    book.commit()
-    book.close()
+    with contextlib.closing(sqlite3.connect(tmp_path / "out" / "gradebook.sqlite")) as book:
+        book.executescript(
+            "CREATE TABLE results (student TEXT); CREATE TABLE students (student TEXT);"
+            "CREATE TABLE runs (number INTEGER); INSERT INTO runs VALUES (7);"
+            "INSERT INTO results VALUES ('anna'), ('anna'), ('bo'); INSERT INTO students VALUES ('cy');"
+        )
     assert complete("course grade explain out ", monkeypatch, capsys) == {"anna", "bo", "cy"}
     assert complete("course grade rerun out --against ", monkeypatch, capsys) == {"7"}
 
 
 @pytest.mark.parametrize("shell", SHELLS)
-def test_each_shell_gets_its_own_script(course, shell):
+def test_each_shell_gets_its_own_script_and_an_unknown_one_is_named_with_them(course, shell):
     ran = course("--show-completion", shell)
     assert ran.code == 0
     marks = {"bash": "complete -o default", "zsh": "#compdef course", "fish": "complete --command course"}
     assert marks.get(shell, "Register-ArgumentCompleter") in ran.out
     assert f"complete_{shell.replace('pwsh', 'powershell')}" in ran.out
-
-
-def test_an_unknown_shell_is_named_with_those_that_are_known(course):
-    ran = course("--show-completion", "tcsh")
-    assert ran.code == 2
-    assert "bash, zsh, fish" in ran.err
+    refused = course("--show-completion", "tcsh")
+    assert (refused.code, shell in refused.err) == (2, True)
 
 
 def test_zsh_is_answered_in_its_own_form():
     """What zsh's script asks with, in a process of its own, as it does."""
     asked = {**os.environ, "_COURSE_COMPLETE": "complete_zsh", "_TYPER_COMPLETE_ARGS": "course schema chec"}
-    ran = subprocess.run(
-        [sys.executable, "-m", "course"], env=asked, capture_output=True, text=True, check=True
-    )
+    ran = as_process(env=asked)
     assert ran.stdout.startswith("_arguments")
     assert "check-all" in ran.stdout
 
 
-def test_completion_is_written_where_the_shell_looks(course, tmp_path, monkeypatch):
+def test_completion_is_written_where_the_shell_looks_as_help_says(course, tmp_path, monkeypatch):
+    assert "name it: zsh" in course("--help").out
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setenv("USERPROFILE", str(tmp_path))
-    ran = course("--install-completion", "zsh")
-    assert ran.code == 0
+    assert course("--install-completion", "zsh").code == 0
     assert "#compdef course" in (tmp_path / ".zfunc" / "_course").read_text()
-
-
-def test_help_says_that_a_shell_can_be_named(course):
-    assert "name it: zsh" in course("--help").out

@@ -28,10 +28,11 @@ def _console(*, terminal=True, environ=None, **settings):
     return Console(Settings(**settings), stdout=out, stderr=err, environ=environ or {}), out, err
 
 
-def test_a_pipe_gets_one_fact_a_line_however_long():
+def test_a_pipe_gets_one_fact_a_line_however_long_and_a_table_with_every_name():
     console, out, _ = _console(terminal=False)
     console.item("fail", "word " * 60, "end", indent=2)
-    assert out.getvalue() == "  fail: " + "word " * 60 + "end\n"
+    console.table(("Id", "Score"), [("one", "3/4"), ("two", "")])
+    assert out.getvalue() == "  fail: " + "word " * 60 + "end\nId: one; Score: 3/4\nId: two\n"
 
 
 def test_a_terminal_gets_lines_that_fit_it(monkeypatch):
@@ -79,12 +80,6 @@ def test_a_narrow_window_gets_facts_in_place_of_a_table(monkeypatch, columns):
     ]
 
 
-def test_a_table_in_a_pipe_names_every_value():
-    console, out, _ = _console(terminal=False)
-    console.table(("Id", "Score"), [("one", "3/4"), ("two", "")])
-    assert out.getvalue() == "Id: one; Score: 3/4\nId: two\n"
-
-
 @pytest.mark.parametrize("terminal", [True, False])
 def test_control_characters_are_shown_and_not_obeyed(terminal):
     console, out, err = _console(terminal=terminal, environ={"NO_COLOR": "1"})
@@ -100,17 +95,12 @@ def test_control_characters_are_shown_and_not_obeyed(terminal):
         assert "\\x1b" in text
 
 
-def test_under_json_people_are_spoken_to_on_standard_error():
+def test_under_json_people_are_spoken_to_on_standard_error_and_a_second_object_is_refused():
     console, out, err = _console(json=True)
     console.line("words")
     console.emit(Bare(schema="course.x/1", ok=True, exit_code=0))
     assert err.getvalue() == "words\n"
     assert json.loads(out.getvalue()) == {"schema": "course.x/1", "ok": True, "exit_code": 0}
-
-
-def test_a_second_object_is_refused():
-    console, _, _ = _console(json=True)
-    console.emit(Bare(schema="course.x/1", ok=True, exit_code=0))
     with pytest.raises(InternalError):
         console.emit(Bare(schema="course.x/1", ok=True, exit_code=0))
 
@@ -139,46 +129,30 @@ def test_a_reader_that_goes_away_is_no_error():
     assert gone.writes == 1
 
 
-def test_nobody_there_means_no(monkeypatch):
-    monkeypatch.setattr("sys.stdin", io.StringIO("y\n"))
-    console, out, _ = _console()
-    assert not console.confirm("Really?")
-    assert out.getvalue() == ""
-
-
-@pytest.mark.parametrize(("answer", "agreed"), [("y\n", True), ("Yes\n", True), ("\n", False), ("", False)])
-def test_a_person_is_asked(monkeypatch, answer, agreed):
-    class Person(io.StringIO):
-        def isatty(self):
-            return True
-
-    monkeypatch.setattr("sys.stdin", Person(answer))
+@pytest.mark.parametrize(
+    ("answer", "agreed"),
+    [("y\n", True), ("Yes\n", True), ("\n", False), ("", False), (io.StringIO("y\n"), False)],
+)
+def test_a_person_is_asked_and_nobody_there_means_no(monkeypatch, answer, agreed):
+    there = isinstance(answer, str)
+    monkeypatch.setattr("sys.stdin", Terminal(answer) if there else answer)
     console, out, _ = _console()
     assert console.confirm("Really?") is agreed
-    assert out.getvalue() == "Really? [y/N] "
+    assert out.getvalue() == ("Really? [y/N] " if there else "")
 
 
-@pytest.mark.parametrize(("answer", "on"), [("\n", True), ("q\n", False), ("n\n", False), ("", False)])
-def test_a_person_is_asked_whether_to_go_on(monkeypatch, answer, on):
-    console, _, _ = _console()
-    monkeypatch.setattr("sys.stdin", io.StringIO(answer))
-    assert console.go_on("Page 1 of 2.") is on
-
-
-@pytest.mark.parametrize(("then", "on"), [("\n", True), ("q\n", False), ("", False)])
-def test_a_command_typed_where_enter_is_asked_for_does_not_go_on(monkeypatch, then, on):
-    console, out, _ = _console()
-    monkeypatch.setattr("sys.stdin", io.StringIO("course check spring\n" + then))
-    assert console.go_on("Page 1 of 2.") is on
-    assert "'course check spring' was not run: this is not the shell yet." in out.getvalue()
-
-
-def test_a_question_breaks_between_words_and_leaves_room_for_the_answer(monkeypatch):
+@pytest.mark.parametrize(("then", "on"), [("\n", True), ("q\n", False), ("n\n", False), ("", False)])
+def test_a_person_is_asked_whether_to_go_on_and_a_command_typed_there_does_not(monkeypatch, then, on):
+    for typed in ("", "course check spring\n"):
+        console, out, _ = _console()
+        monkeypatch.setattr("sys.stdin", io.StringIO(typed + then))
+        assert console.go_on("Page 1 of 2.") is on
+        refused = "'course check spring' was not run: this is not the shell yet." in out.getvalue()
+        assert refused is bool(typed)
     monkeypatch.setenv("COLUMNS", "40")
-    monkeypatch.setattr("sys.stdin", io.StringIO("\n"))
     console, out, _ = _console()
     console.go_on("Next: both motions.")
-    assert out.getvalue() == "Next: both motions. Enter goes on, q\nstops: "
+    assert out.getvalue() == "Next: both motions. Enter goes on, q\nstops: ", "room for the answer"
 
 
 @pytest.mark.parametrize("indent", [0, 4])
@@ -199,16 +173,9 @@ def test_numbers_that_json_has_not_are_words():
     assert encode(body) == b'{"values":["nan",{"a":"inf"},["-inf",1.5,true,null]]}'
 
 
-class Enter(io.StringIO):
-    """Somebody who types these lines."""
-
-    def isatty(self):
-        return True
-
-
 @pytest.mark.parametrize(("typed", "seen"), [("\n\n\n\n", 20), ("\nq\n", 10), ("", 5)])
 def test_a_long_answer_stops_at_each_screenful(monkeypatch, typed, seen):
-    monkeypatch.setattr("sys.stdin", Enter(typed))
+    monkeypatch.setattr("sys.stdin", Terminal(typed))
     monkeypatch.setenv("LINES", "6")
     monkeypatch.setenv("COLUMNS", "60")
     console, out, _ = _console()
@@ -223,7 +190,7 @@ def test_a_long_answer_stops_at_each_screenful(monkeypatch, typed, seen):
 
 
 def test_a_short_answer_and_a_pipe_stop_nowhere(monkeypatch):
-    monkeypatch.setattr("sys.stdin", Enter(""))
+    monkeypatch.setattr("sys.stdin", Terminal(""))
     monkeypatch.setenv("LINES", "6")
     for terminal, lines in ((True, 5), (False, 50)):
         console, out, _ = _console(terminal=terminal)

@@ -24,27 +24,28 @@ PLOT = Plot(
 
 
 def terminal(**given):
-    given = {"force_terminal": True, "color_system": "truecolor", "width": 60} | given
-    return Console(file=io.StringIO(), **given)
+    defaults = {"file": io.StringIO(), "force_terminal": True, "color_system": "truecolor", "width": 60}
+    return Console(**defaults | given)
 
 
 def make():
     return draw(PLOT)
 
 
-def test_kitty_s_bytes_are_the_figure():
+def test_kitty_s_and_iterm_s_bytes_are_the_figure():
+    """Kitty's arrive in chunks of 4096."""
     console = terminal()
     console.print(picture(console, {"KITTY_WINDOW_ID": "1"}, make, 60))
-    chunks = re.findall(r"\x1b_G[^;]*;([^\x1b]*)\x1b\\", console.file.getvalue())
-    assert len(chunks) > 1
-    same(base64.b64decode("".join(chunks)))
-
-
-def test_iterm_s_bytes_are_the_figure():
+    chunks = re.findall(r"\x1b_G([^;]*);([^\x1b]*)\x1b\\", console.file.getvalue())
+    assert [head for head, _ in chunks] == ["a=T,f=100,q=2,c=60,m=1", *["m=1"] * (len(chunks) - 2), "m=0"]
+    assert all(len(data) <= 4096 for _, data in chunks)
+    same(base64.b64decode("".join(data for _, data in chunks)))
     console = terminal()
     console.print(picture(console, {"TERM_PROGRAM": "iTerm.app"}, make, 60))
-    (data,) = re.findall(r"\x1b\]1337;File=[^:]*:([^\x07]*)\x07", console.file.getvalue())
-    same(base64.b64decode(data))
+    head, data = re.search(r"\x1b\]1337;File=([^:]*):([^\x07]*)\x07", console.file.getvalue()).groups()
+    sent = base64.b64decode(data)
+    assert head == f"inline=1;size={len(sent)};width=60;preserveAspectRatio=1"
+    same(sent)
 
 
 @pytest.mark.parametrize(
@@ -96,10 +97,6 @@ def from_sixels(sent):
     return pixels[:height]
 
 
-def test_an_old_konsole_gets_half_blocks():
-    assert not isinstance(picture(terminal(), {"KONSOLE_VERSION": "210801"}, make, 60), InlinePicture)
-
-
 def same(sent):
     """The pixels that were sent are those of the file that a report writes."""
     assert np.array_equal(imread(io.BytesIO(sent)), imread(io.BytesIO(render(PLOT))))
@@ -145,8 +142,13 @@ def test_a_picture_is_as_wide_as_asked_and_says_what_the_figure_says(width):
 
 @pytest.mark.parametrize(
     "given",
-    [{"no_color": True}, {"color_system": "standard"}, {"force_terminal": False}],
-    ids=["NO_COLOR", "16 colours", "no terminal"],
+    [
+        {"no_color": True},
+        {"color_system": "standard"},
+        {"force_terminal": False},
+        {"file": io.TextIOWrapper(io.BytesIO(), encoding="ascii")},
+    ],
+    ids=["NO_COLOR", "16 colours", "no terminal", "no letters beyond ASCII"],
 )
 def test_where_nothing_can_be_seen_nothing_is_drawn(given):
     def never():
@@ -155,14 +157,11 @@ def test_where_nothing_can_be_seen_nothing_is_drawn(given):
     assert picture(terminal(**given), {}, never, 60) is None
 
 
-def test_a_terminal_without_letters_beyond_ascii_gets_no_half_blocks():
-    ascii_only = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
-    console = Console(file=ascii_only, force_terminal=True, color_system="truecolor", width=60)
-    assert picture(console, {}, make, 60) is None
-
-
-def test_a_protocol_wins_over_half_blocks():
-    assert isinstance(picture(terminal(), {"TERM": "xterm-kitty"}, make, 60), InlinePicture)
+@pytest.mark.parametrize(
+    ("environ", "sent"), [({"TERM": "xterm-kitty"}, True), ({"KONSOLE_VERSION": "210801"}, False)]
+)
+def test_a_protocol_that_the_terminal_knows_wins_over_half_blocks(environ, sent):
+    assert isinstance(picture(terminal(), environ, make, 60), InlinePicture) is sent
 
 
 @pytest.fixture

@@ -51,7 +51,7 @@ def ran(course, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 @pytest.mark.parametrize("words", WAYS.values(), ids=WAYS)
-def test_somebody_elses_graders_do_not_run_where_nobody_can_be_asked(course, ran, words) -> None:
+def test_somebody_elses_graders_run_where_nobody_can_be_asked_only_with_yes(course, ran, words) -> None:
     refused = course(*words, "--json")
     error = json.loads(refused.out)["error"]
     assert (refused.code, error["code"], ran) == (2, "foreign_graders", [])
@@ -59,27 +59,23 @@ def test_somebody_elses_graders_do_not_run_where_nobody_can_be_asked(course, ran
     assert "content/graders/doubling/checks.py" in error["message"]
     assert "--yes" in error["help"]
     assert [run["kind"] for run in course("grade", "log", "out", "--json").json["runs"]] == ["run"]
-
-
-@pytest.mark.parametrize("words", WAYS.values(), ids=WAYS)
-def test_they_run_with_yes_and_it_is_said_whose_they_are(course, ran, words) -> None:
     done = course(*words, "--yes")
     assert done.code in {0, 6}
     assert ran
     assert "eve began the run" in done.err
 
 
-@pytest.mark.parametrize(("answer", "agreed"), [(True, True), (False, False)])
 @pytest.mark.parametrize("words", WAYS.values(), ids=WAYS)
-def test_a_person_at_a_terminal_is_asked(course, ran, words, answer, agreed, monkeypatch) -> None:
+def test_a_person_at_a_terminal_is_asked(course, ran, words, monkeypatch) -> None:
     asked: list[str] = []
     monkeypatch.setattr(Console, "interactive", property(lambda self: True))
-    monkeypatch.setattr(Console, "confirm", lambda self, question: asked.append(question) or answer)
-    done = course(*words)
-    assert len(asked) == 1
-    assert "eve began the run" in done.out
-    assert (done.code in {0, 6}, bool(ran)) == (agreed, agreed)
-    assert agreed or "Nothing was run" in done.err
+    monkeypatch.setattr(Console, "confirm", lambda _, question: asked.append(question) or len(asked) > 1)
+    for times, agreed in ((1, False), (2, True)):
+        done = course(*words)
+        assert len(asked) == times
+        assert "eve began the run" in done.out
+        assert (done.code in {0, 6}, bool(ran)) == (agreed, agreed)
+        assert agreed or "Nothing was run" in done.err
 
 
 @pytest.mark.parametrize("words", WAYS.values(), ids=WAYS)

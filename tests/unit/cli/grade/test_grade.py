@@ -7,24 +7,22 @@ import io
 import json
 import os
 import re
+import shutil
 import subprocess
-from functools import partial
 from pathlib import Path
 
 import pytest
 
-from tests.command_line import as_process, in_process
+from tests.command_line import in_process
+from tests.unit.cli.conftest import files_in
 
 ROOT = Path(__file__).resolve().parents[4]
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
 WRONG = b"\ndef double(x):\n    print('I saw', x)\n    return x\n"
 
 
-def course(*arguments: object, way=in_process, **environment: str) -> subprocess.CompletedProcess[str]:
-    return way(*arguments, env={**os.environ, "COURSE_CONTENT": str(MINI), **environment})
-
-
-process = partial(course, way=as_process)
+def course(*arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
+    return in_process(*arguments, env={**os.environ, "COURSE_CONTENT": str(MINI), **environment})
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +34,7 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
         place = folder / "class" / student
         place.mkdir(parents=True)
         (place / "doubling.py").write_bytes(source)
-    done = process(
+    done = course(
         "grade", "run", folder / "class", "--exercise", "doubling", "--out", folder / "out",
         "--isolation", "process", "--seed", "4",
     )  # fmt: skip
@@ -57,13 +55,16 @@ def test_a_run_leaves_a_gradebook_and_what_is_made_from_it(graded: Path) -> None
     assert {row["student"]: row["score"] for row in rows} == {"'=bob": "6", "ada": "10", "cy": "0"}
 
 
-def test_explain_shows_hidden_values_to_the_instructor(graded: Path) -> None:
-    done = process("grade", "explain", graded, "=bob", "doubling")
+def test_explain_shows_hidden_values_to_the_instructor_or_why_there_is_no_grade(graded: Path) -> None:
+    done = course("grade", "explain", graded, "=bob", "doubling")
     assert done.returncode == 0, done.stderr
     assert "6 of 10" in done.stdout
     assert re.search(r"double_of_negative, hidden, 0/\d points\]", done.stdout)
     assert "-34.5" in done.stdout
     assert "I saw -17.25" in done.stdout
+    body = json.loads(course("grade", "explain", graded, "cy", "doubling", "--json").stdout)
+    assert (body["schema"], body["state"], body["exit_code"]) == ("course.grade/1", "ungradable", 3)
+    assert body["error"]["code"] == "syntax_error"
 
 
 def test_a_warm_up_is_graded_where_its_message_says_to_put_it_and_is_explained(tmp_path: Path) -> None:
@@ -78,13 +79,6 @@ def test_a_warm_up_is_graded_where_its_message_says_to_put_it_and_is_explained(t
     said = in_process(*explain, env=dict(os.environ)).stdout
     assert "without the minus one" in said
     assert "diagnosis: MINUS_ONE_FORGOTTEN" in said
-
-
-def test_explain_says_why_there_is_no_grade(graded: Path) -> None:
-    done = course("grade", "explain", graded, "cy", "doubling", "--json")
-    body = json.loads(done.stdout)
-    assert (body["schema"], body["state"], body["exit_code"]) == ("course.grade/1", "ungradable", 3)
-    assert body["error"]["code"] == "syntax_error"
 
 
 @pytest.mark.parametrize(
@@ -103,24 +97,18 @@ def test_explain_says_why_there_is_no_grade(graded: Path) -> None:
 def test_wrong_calls_are_named_and_touch_nothing(
     graded: Path, arguments: tuple[str, ...], code: int, error: str
 ) -> None:
-    places = {
-        "OUT": graded,
-        "CLASS": graded.parent / "class",
-        "NOWHERE": graded / "no",
-        "NEW": graded.parent / "new",
-    }
-    before = {path: path.read_bytes() for path in graded.rglob("*.*") if path.is_file()}
+    home = graded.parent
+    places = {"OUT": graded, "CLASS": home / "class", "NOWHERE": graded / "no", "NEW": home / "new"}
+    before = files_in(graded)
     done = course("grade", *[places.get(word, word) for word in arguments], "--json")
     assert done.returncode == code, done.stdout + done.stderr
     body = json.loads(done.stdout)
     assert (body["ok"], body["exit_code"], body["error"]["code"]) == (False, code, error)
     assert body["error"]["help"]
-    assert before == {path: path.read_bytes() for path in graded.rglob("*.*") if path.is_file()}
+    assert before == files_in(graded)
 
 
 def test_a_students_installation_is_told_so(tmp_path: Path) -> None:
-    import shutil
-
     student = tmp_path / "course"
     shutil.copytree(MINI, student)
     shutil.rmtree(student / "graders")
@@ -172,7 +160,5 @@ def test_students_who_are_called_as_exercises_are_graded_and_it_is_said(tmp_path
     assert ran.returncode == 0, ran.stderr
     assert "taken for a student" in ran.stderr
     table = csv.DictReader((tmp_path / "out" / "grades.csv").read_text("utf-8-sig").splitlines())
-    assert {row["student"]: row["score"] == row["max_score"] for row in table} == {
-        "doubling": True,
-        "halving": True,
-    }
+    full = {row["student"]: row["score"] == row["max_score"] for row in table}
+    assert full == {"doubling": True, "halving": True}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import shutil
 import sqlite3
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 
 from course.grading.gradebook.book import Gradebook
 from course.grading.running.folder import export_all, open_results
+from tests.unit.cli.conftest import files_in
 from tests.unit.grading.made import HALF, RIGHT, make_book
 
 RUN = ("run", "class", "--out", "out", "--exercise", "doubling")
@@ -29,19 +31,23 @@ READING = [
 ]
 
 
-@pytest.fixture
-def out(tmp_path: Path) -> Path:
-    folder = tmp_path / "out"
-    make_book(folder, {f"student {number:02}": HALF for number in range(30)} | {"ada": RIGHT}).close()
-    with open_results(folder) as results:
-        export_all(folder, results)
-    (tmp_path / "class" / "ada").mkdir(parents=True)
-    (tmp_path / "class" / "ada" / "doubling.py").write_text("def double(x):\n    return 2 * x\n", "utf-8")
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A class and its gradebook with what is made from it, written once for all tests."""
+    folder = tmp_path_factory.mktemp("made")
+    verdicts = {f"student {number:02}": HALF for number in range(30)} | {"ada": RIGHT}
+    make_book(folder / "out", verdicts).close()
+    with open_results(folder / "out") as results:
+        export_all(folder / "out", results)
+    (folder / "class" / "ada").mkdir(parents=True)
+    (folder / "class" / "ada" / "doubling.py").write_text("def double(x):\n    return 2 * x\n", "utf-8")
     return folder
 
 
-def contents(folder: Path) -> dict[str, bytes]:
-    return {str(path): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+@pytest.fixture
+def out(made: Path, tmp_path: Path) -> Path:
+    shutil.copytree(made, tmp_path, dirs_exist_ok=True)
+    return tmp_path / "out"
 
 
 def newer(path: Path) -> None:
@@ -80,22 +86,22 @@ def test_a_gradebook_that_cannot_be_read_is_said_to_be_so_and_left_as_it_is(
     course, out: Path, words, spoil, code: int, error: str, sentence: str
 ) -> None:
     spoil(out / "gradebook.sqlite")
-    before = contents(out.parent)
+    before = files_in(out.parent)
     ran = course("grade", *words, "--json")
     assert (ran.code, ran.json["error"]["code"]) == (code, error)
     assert sentence in ran.json["error"]["message"]
     assert ran.json["error"]["help"]
-    assert contents(out.parent) == before
+    assert files_in(out.parent) == before
 
 
 @pytest.mark.parametrize("words", WRITING + READING, ids=" ".join)
 def test_while_a_run_writes_every_other_command_is_told_and_the_run_goes_on(course, out: Path, words) -> None:
     with Gradebook(out / "gradebook.sqlite", writing=True) as book:
         book.set_meta(seed="7")
-        before = contents(out / "students")
+        before = files_in(out / "students")
         ran = course("grade", *words, "--json")
         assert (ran.code, ran.json["error"]["code"]) == (2, "gradebook_locked")
-        assert contents(out / "students") == before
+        assert files_in(out / "students") == before
         book.set_meta(note="still writing")
     assert not (out.parent / "elsewhere").exists()
     with Gradebook(out / "gradebook.sqlite") as book:
@@ -130,14 +136,14 @@ def test_pages_that_cannot_be_written_cost_nothing_but_themselves(
     def write_pages(path: Path, *_: object) -> None:
         raise MissingCapabilityError(f"{path} cannot be written.", help="-o", code="cannot_write")
 
-    before = contents(out / "students")
+    before = files_in(out / "students")
     with monkeypatch.context() as patch:
         patch.setattr(pages, "write_pages", write_pages)
         words = ("override", "out", "ada", "doubling", "--score", "1", "--reason", "oral exam")
         ran = course("grade", *words, "--json")
     assert (ran.code, ran.json["error"]["code"]) == (4, "cannot_write")
     assert "The gradebook is complete" in ran.json["error"]["help"]
-    assert contents(out / "students") == before
+    assert files_in(out / "students") == before
     assert course("grade", "explain", "out", "ada", "doubling", "--json").json["score"] == 1
     assert course("grade", "late", "out", "--clear").code == 0
     assert "oral exam" in (out / "report.html").read_text("utf-8")

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import shutil
-from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from course.cli.frame.here import load_catalog
 from course.progress.store import Store
 from course.reading.parts import read_script
+from tests.unit.cli.conftest import MINI_COURSE
 
-MINI = Path(__file__).resolve().parents[3] / "fixtures" / "mini_course"
 ASKED = "## Once\n\n> **Predict.** What is twice five?\n\n> **Answer.** Ten.\n"
 
 
@@ -19,7 +19,7 @@ ASKED = "## Once\n\n> **Predict.** What is twice five?\n\n> **Answer.** Ten.\n"
 def asking(course, workspace, monkeypatch, tmp_path_factory):
     """The command line on a mini course with a prediction, in a workspace; and the question."""
     folder = tmp_path_factory.mktemp("content") / "mini"
-    shutil.copytree(MINI, folder)
+    shutil.copytree(MINI_COURSE, folder)
     lesson = folder / "lessons" / "twice-as-much.md"
     lesson.write_text(lesson.read_text().replace("## Once\n", ASKED))
     monkeypatch.setenv("COURSE_CONTENT", str(folder))
@@ -53,20 +53,17 @@ def test_a_wrong_prediction_is_shown_with_its_section_to_read_again(asking, work
     assert course("lesson", "twice-as-much", "--plain").out.count("Section: ") > opened.count("Section: ")
 
 
-def test_a_right_prediction_sends_nobody_back(asking, workspace):
+def test_a_right_prediction_sends_nobody_back_and_a_question_that_is_asked_no_more_still_counts(
+    asking, workspace
+):
     course, question = asking
     say(workspace, question, text="ten")
     say(workspace, question, judged="right")
+    say(workspace, SimpleNamespace(key="gone"), text="x")
     body = course("progress", "--json").json
     assert body["predictions"]["all"]["right"] == 1
     assert body["revisit"] == []
-
-
-def test_a_question_that_the_lesson_asks_no_more_still_counts(asking, workspace):
-    course, _ = asking
-    store = Store(workspace / ".course" / "progress.sqlite")
-    store.append("prediction", "twice-as-much", {"key": "gone", "number": 9, "text": "x"})
-    (said,) = course("progress", "--json").json["predictions"]["each"]
+    (said,) = [one for one in body["predictions"]["each"] if one["said"] == "x"]
     assert (said["question"], said["section"], said["judged"]) == ("", "", None)
 
 
@@ -78,7 +75,9 @@ def test_a_mistake_is_seen_then_mended_and_its_section_goes_with_it(course, work
     assert (mistake["diagnosis"], mistake["task"], mistake["mended_at"]) == ("NOT_RIGHT", "double", None)
     assert mistake["read"] == "twice-as-much#once"
     assert body["revisit"][0]["why"] == ["double in doubling: NOT_RIGHT"]
-    assert "(doubling: double)\n" in course("progress", "--plain").out
+    shown = course("progress", "--plain").out
+    assert "(doubling: double)\n" in shown
+    assert "Mistakes: 1 made, 0 fixed\n" in shown
     write("RIGHT", "RIGHT")
     course("check")
     body = course("progress", "--json").json
@@ -94,12 +93,6 @@ def test_an_exception_is_named_among_the_mistakes(course, workspace):
         store.append("check", "doubling", {"state": "graded", "checks": [check | more]})
         words = course("progress", "--json").json["mistakes"][0]["looks_like"]
         assert words == f"Raised {more.get('raised', 'an exception')}."
-
-
-def test_a_function_that_was_to_be_written_has_mistakes_of_its_author(course, workspace, write):
-    write("wrong", "RIGHT")
-    course("check")
-    assert "Mistakes: 1 made, 0 fixed" in course("progress").out
 
 
 def test_who_did_nothing_yet_reads_nothing_about_it(course, workspace):

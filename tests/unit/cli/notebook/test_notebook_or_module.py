@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import io
 import json
 from pathlib import Path
 
 import pytest
 
+from course.cli.frame.console import Console, Settings
+from course.cli.frame.here import Here
+from course.cli.loop import Watcher
+from course.handed_in import attempts as sessions
 from course.progress.store import Store
+from course.progress.workspace import Workspace
 from tests.unit.cli.notebook.test_notebook import GOOD, OTHER, write_into
 
 WRONG = "def double(x):\n    'wrong'"
@@ -21,8 +27,6 @@ def notebook(course, workspace) -> Path:
 
 
 def attempts(workspace: Path) -> list[dict]:
-    from course.progress.workspace import Workspace
-
     return [dict(event.data) for event in Workspace.find(workspace).store.events("check")]
 
 
@@ -34,20 +38,18 @@ def test_check_reads_the_notebook_where_the_module_is_still_the_stub_and_says_so
     assert course("check", "--json").json["score"] == 4.0
 
 
-def test_check_reads_the_notebook_where_there_is_no_module(course, notebook):
-    notebook.with_suffix(".py").unlink()
-    ran = course("check", "doubling")
-    assert ran.code == 1
-    assert "Reading doubling/doubling.ipynb." in ran.out
-
-
-def test_check_reads_the_module_where_nobody_worked_in_the_notebook(course, notebook, write):
-    ran = course("check", "doubling")
-    assert "Reading" not in ran.out
+def test_check_reads_the_module_where_nobody_worked_in_the_notebook_while_there_is_one(
+    course, notebook, write
+):
+    assert "Reading" not in course("check", "doubling").out
     write("RIGHT", "RIGHT")
     ran = course("check", "doubling")
     assert ran.code == 0
     assert "Reading" not in ran.out + ran.err
+    notebook.with_suffix(".py").unlink()
+    ran = course("check", "doubling")
+    assert ran.code == 1
+    assert "Reading doubling/doubling.ipynb." in ran.out
 
 
 def test_where_both_were_worked_in_the_module_counts_and_the_other_is_named(course, notebook, write):
@@ -62,25 +64,19 @@ def test_where_both_were_worked_in_the_module_counts_and_the_other_is_named(cour
     assert named.code == 1
     assert "Reading doubling/doubling.ipynb." in named.out
     assert "worked in too" not in named.err
-
-
-def test_the_same_code_in_both_is_nothing_to_speak_of(course, notebook):
     write_into(notebook, GOOD, OTHER)
     notebook.with_suffix(".py").write_text(f'"""Doubling."""\n\n{GOOD}\n\n\n{OTHER}\n')
-    assert "worked in too" not in course("check", "doubling").err
+    assert "worked in too" not in course("check", "doubling").err, "the same code in both"
 
 
-@pytest.mark.parametrize("words", ["doubling.py", "./doubling.ipynb", "../doubling/doubling.ipynb"])
-def test_a_file_may_be_named_from_anywhere(course, notebook, monkeypatch, words):
-    monkeypatch.chdir(notebook.parent)
-    assert course("check", words, "--json").json["exercise"] == "doubling"
-
-
-def test_a_file_that_is_no_exercises_is_refused(course, notebook):
+def test_a_file_may_be_named_from_anywhere_but_not_one_that_is_no_exercises(course, notebook, monkeypatch):
     (notebook.parent / "other.ipynb").write_bytes(notebook.read_bytes())
     ran = course("check", "doubling/other.ipynb", "--json")
     assert (ran.code, ran.json["error"]["code"]) == (5, "exercise_not_found")
     assert "course notebook check" in ran.json["error"]["help"]
+    monkeypatch.chdir(notebook.parent)
+    for words in ("doubling.py", "./doubling.ipynb", "../doubling/doubling.ipynb"):
+        assert course("check", words, "--json").json["exercise"] == "doubling"
 
 
 def test_a_damaged_notebook_is_not_taken_for_an_untouched_one(course, notebook):
@@ -168,26 +164,17 @@ def test_a_report_on_a_notebook_names_its_cells(course, notebook):
 
 
 def test_a_watch_of_a_notebook_grades_each_save(course, notebook):
-    import io
-
-    from course.cli.frame.console import Console, Settings
-    from course.cli.frame.here import Here
-    from course.cli.loop import Watcher
-    from course.handed_in import attempts
-
     here = Here.load()
     exercise = here.exercise("doubling")
     console = Console(Settings(), stdout=io.StringIO(), stderr=io.StringIO())
     watcher = Watcher(console=console, here=here, exercise=exercise)
-    session = attempts.open_session(exercise, here.catalog)
+    session = sessions.open_session(exercise, here.catalog)
     write_into(notebook, GOOD)
     assert watcher.look(session)
     assert not watcher.look(session)
-    notebook.write_text("{")
-    assert watcher.look(session)
-    write_into_again = json.dumps({"nbformat": 4, "cells": [], "metadata": {}})
-    notebook.write_text(write_into_again)
-    assert watcher.look(session)
+    for text in ("{", json.dumps({"nbformat": 4, "cells": [], "metadata": {}})):
+        notebook.write_text(text)
+        assert watcher.look(session)
     assert [run.state for run in watcher.runs] == ["graded", "ungradable", "ungradable"]
     assert watcher.runs[0].score == 2.0
 

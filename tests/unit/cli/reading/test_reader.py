@@ -71,6 +71,39 @@ async def ran(app: ReaderApp, pilot: Any) -> None:
     pytest.fail("the cell never ended")
 
 
+def everything(app: ReaderApp) -> str:
+    """The whole page, also above and below the screen."""
+    assert app.page.book is not None
+    return "\n".join("".join(s.text for s in line) for line in app.page.book.lines)
+
+
+def figures_of(app: ReaderApp) -> list[int]:
+    return [i for i, one in enumerate(app.page.progress.script.blocks) if isinstance(one, b.Figure)]
+
+
+async def to_cell(app: ReaderApp, pilot: Any) -> Cell:
+    """The first cell of the lesson, at hand: its prediction is skipped."""
+    cell = app.page.progress.script.shown_cells[0]
+    await to_question(app, pilot)
+    await pilot.press("s")
+    app._chosen(f"block:{cell.index}")
+    await pilot.pause()
+    return cell
+
+
+async def editing(app: ReaderApp, pilot: Any) -> Cell:
+    """The first cell of the lesson, in the editor."""
+    cell = await to_cell(app, pilot)
+    await pilot.press("e")
+    await pilot.pause()
+    return cell
+
+
+def below(app: ReaderApp) -> str:
+    """What a box says at its lower edge."""
+    return app.screen.query_one(".box").border_subtitle
+
+
 async def to_question(app: ReaderApp, pilot: Any, number: int = 1) -> None:
     question = app.page.progress.script.questions[number - 1]
     app._chosen(f"block:{question.index}")
@@ -87,7 +120,7 @@ async def to_question(app: ReaderApp, pilot: Any, number: int = 1) -> None:
         pytest.param((160, 50), marks=pytest.mark.soak),
     ],
 )
-def test_every_lesson_is_read_by_space_alone_to_its_end(catalog, size, lesson):
+def test_every_lesson_is_read_by_space_alone_to_its_end_and_each_figure_is_an_item(catalog, size, lesson):
     title = catalog.lesson(lesson).title.split(":")[0][:20]
 
     async def journey(app, pilot):
@@ -100,22 +133,25 @@ def test_every_lesson_is_read_by_space_alone_to_its_end(catalog, size, lesson):
             await pilot.press("space")
         assert app.page.progress.read
         assert "You have read this lesson." in screen(app)
+        for question in app.page.progress.script.questions:
+            app.page.progress.predict(question, "")
+        app.page.rebuild()
+        assert [item.block for item in app.page.book.items if isinstance(item, FigureItem)] == figures_of(app)
 
     reading(catalog, journey, size=size, lesson=lesson)
 
 
-def test_a_prediction_is_typed_kept_and_compared(catalog, tmp_path):
+def test_a_prediction_is_typed_kept_and_compared_and_a_skip_is_kept_too(catalog, tmp_path):
     store = Store(tmp_path / "progress.sqlite")
 
     async def journey(app, pilot):
         await to_question(app, pilot)
-        question = app.page.progress.script.questions[0]
+        question, second = app.page.progress.script.questions[:2]
         assert "Enter predict" in screen(app)
         cell = app.page.progress.script.shown_cells[0]
         recorded = cell.output.splitlines()[0]
-        everything = "\n".join("".join(s.text for s in line) for line in app.page.book.lines)
-        assert recorded not in everything
-        assert "the answer is shown here" in everything
+        assert recorded not in everything(app)
+        assert "the answer is shown here" in everything(app)
         assert screen(app).count("skip") == 2, "once under the question, once among the keys"
         await pilot.press("r")  # not yet
         assert app.page.bench is None or app.page.bench.cell is None
@@ -123,22 +159,21 @@ def test_a_prediction_is_typed_kept_and_compared(catalog, tmp_path):
         await pilot.press(*"half a metre", "enter")
         await pilot.pause()
         assert app.page.progress.prediction(question).text == "half a metre"
-        everything = "\n".join("".join(s.text for s in line) for line in app.page.book.lines)
-        assert recorded in everything
-        assert "You said" in everything
-        assert "You will see below whether you were right." in everything
+        for part in (recorded, "You said", "You will see below whether you were right."):
+            assert part in everything(app)
         app._chosen(f"block:{question.answer}")
         await pilot.pause()
         await pilot.press("3")
         assert "wrong" in screen(app)
-        everything = "\n".join("".join(s.text for s in line) for line in app.page.book.lines)
-        assert "You were wrong." in everything, "below the question, too"
-        assert "You will see below" not in everything
+        assert "You were wrong." in everything(app), "below the question, too"
+        assert "You will see below" not in everything(app)
+        await to_question(app, pilot, 2)
+        await pilot.press("s")
+        assert app.page.progress.prediction(second).skipped
 
     reading(catalog, journey, store=store)
-    kept = [event.data for event in store.events("prediction")]
-    assert kept[0]["text"] == "half a metre"
-    assert kept[1]["judged"] == "wrong"
+    said, judged, skipped = [event.data for event in store.events("prediction")]
+    assert (said["text"], judged["judged"], skipped["text"]) == ("half a metre", "wrong", "")
 
 
 def test_a_second_key_that_closes_a_box_closes_nothing_else(catalog):
@@ -212,25 +247,9 @@ def test_the_bar_is_empty_until_the_whole_lesson_is_laid_out(catalog, monkeypatc
     reading(catalog, journey)
 
 
-def test_a_skip_is_kept_too(catalog, tmp_path):
-    store = Store(tmp_path / "progress.sqlite")
-
+def test_a_cell_runs_is_changed_fails_is_stopped_and_reset(catalog):
     async def journey(app, pilot):
-        await to_question(app, pilot)
-        await pilot.press("s")
-        assert app.page.progress.prediction(app.page.progress.script.questions[0]).skipped
-
-    reading(catalog, journey, store=store)
-    assert store.last("prediction", LESSON).data["text"] == ""
-
-
-def test_a_cell_runs_is_changed_fails_is_stopped_and_reset(catalog, tmp_path):
-    async def journey(app, pilot):
-        await to_question(app, pilot)
-        await pilot.press("s")
-        cell = app.page.progress.script.shown_cells[0]
-        app._chosen(f"block:{cell.index}")
-        await pilot.pause()
+        cell = await to_cell(app, pilot)
         await pilot.press("r")
         await ran(app, pilot)
         state = app.page.progress.cell(cell)
@@ -272,15 +291,9 @@ def test_nothing_that_takes_an_answer_as_read_is_on_the_screen_of_its_prediction
     reading(catalog, journey, size=(80, 90))
 
 
-def test_the_editor_keeps_runs_and_drops(catalog):
+def test_the_editor_keeps_and_drops(catalog):
     async def journey(app, pilot):
-        cell = app.page.progress.script.shown_cells[0]
-        await to_question(app, pilot)
-        await pilot.press("s")
-        app._chosen(f"block:{cell.index}")
-        await pilot.pause()
-        await pilot.press("e")
-        await pilot.pause()
+        cell = await editing(app, pilot)
         await pilot.press("x", "escape")
         await pilot.pause()
         assert app.page.progress.cell(cell).source.startswith("x")
@@ -288,10 +301,10 @@ def test_the_editor_keeps_runs_and_drops(catalog):
         await pilot.pause()
         await pilot.press("y", "ctrl+d")
         await pilot.pause()
-        assert "again" in app.screen.query_one(".box").border_subtitle, "it asks once"
+        assert "again" in below(app), "it asks once"
         await pilot.press("z")
         await pilot.pause()
-        assert "again" not in app.screen.query_one(".box").border_subtitle
+        assert "again" not in below(app)
         await pilot.press("ctrl+d", "ctrl+d")
         await pilot.pause()
         assert app.page.progress.cell(cell).source.startswith("xf")
@@ -324,32 +337,22 @@ def test_keys_that_come_in_a_burst_act_in_their_order(catalog):
     reading(catalog, journey)
 
 
-async def editing(app: ReaderApp, pilot: Any) -> Cell:
-    """The first cell of the lesson, in the editor."""
-    cell = app.page.progress.script.shown_cells[0]
-    await to_question(app, pilot)
-    await pilot.press("s")
-    app._chosen(f"block:{cell.index}")
-    await pilot.pause()
-    await pilot.press("e")
-    await pilot.pause()
-    return cell
-
-
-def test_ctrl_c_in_the_editor_copies_what_is_selected_and_never_loses_what_was_typed(catalog):
+def test_the_editor_copies_indents_and_goes_to_both_ends_and_ctrl_c_never_loses_what_was_typed(catalog):
     async def journey(app, pilot):
         cell = await editing(app, pilot)
         await pilot.press(*"abc", "shift+left", "shift+left", "ctrl+c")
         assert app.clipboard == "bc"
-        assert "Copied" in app.screen.query_one(".box").border_subtitle
+        assert "Copied" in below(app)
         await pilot.press("right", "d", "ctrl+c")
         assert app.clipboard == "bc"
-        assert "Nothing is selected" in app.screen.query_one(".box").border_subtitle
-        await pilot.press("e", "ctrl+c")
+        assert "Nothing is selected" in below(app)
+        await pilot.press("ctrl+end", "enter", *"if 1:  ", "enter", "1", "enter", "ctrl+home", "#", "ctrl+c")
         assert isinstance(app.screen, Edit), "who goes on typing is asked again"
         await pilot.press("ctrl+c")
         await pilot.pause()
-        assert app.page.progress.cell(cell).source.startswith("abcde")
+        changed = app.page.progress.cell(cell).source
+        assert changed.startswith("#abcd")
+        assert changed.endswith("\n    if 1:  \n        1\n        "), "it stands in a loop"
         assert len(app.screen_stack) == 1
 
     reading(catalog, journey)
@@ -370,14 +373,20 @@ def test_ctrl_c_in_the_editor_stops_a_cell_that_runs(catalog):
     reading(catalog, journey)
 
 
-@pytest.mark.parametrize("how", ["ctrl+q", "SIGINT", "SIGTERM", "SIGHUP"])
-def test_what_is_typed_is_kept_however_the_reader_is_left(catalog, tmp_path, how):
+def test_what_is_typed_is_kept_however_the_reader_is_left(catalog, tmp_path):
     store = Store(tmp_path / "progress.sqlite")
-    seen = []
+    left = ["ctrl+q", "SIGINT", "SIGTERM", "SIGHUP"]
+    typed = ""
 
     async def journey(app, pilot):
+        source = app.page.progress.cell(app.page.progress.script.shown_cells[0]).source
+        assert source.startswith(typed)
+        assert ("cell 1, changed" in screen(app)) is bool(typed)
+        if not left:
+            return
+        how = left.pop()
         await editing(app, pilot)
-        await pilot.press(*"abc")
+        await pilot.press(str(len(left)), "a")
         if how.startswith("SIG"):
             signal.raise_signal(getattr(signal, how))
             await pilot.pause(0.2)
@@ -385,50 +394,32 @@ def test_what_is_typed_is_kept_however_the_reader_is_left(catalog, tmp_path, how
             await pilot.press(how)
         assert app._exit
 
-    async def again(app, pilot):
-        seen.append(app.page.progress.cell(app.page.progress.script.shown_cells[0]).source)
-        assert "cell 1, changed" in screen(app)
-
-    reading(catalog, journey, store=store)
-    reading(catalog, again, store=store)
-    assert seen[0].startswith("abc")
+    for expected in ("", "3a", "2a3a", "1a2a3a", "0a1a2a3a"):
+        typed = expected
+        reading(catalog, journey, store=store)
 
 
-def test_the_editor_indents_after_a_colon_and_goes_to_both_ends(catalog):
-    async def journey(app, pilot):
-        cell = app.page.progress.script.shown_cells[0]
-        await to_question(app, pilot)
-        await pilot.press("s")
-        app._chosen(f"block:{cell.index}")
-        await pilot.pause()
-        await pilot.press("e")
-        await pilot.pause()
-        await pilot.press("ctrl+end", "enter", *"if 1:  ", "enter", "1", "enter", "ctrl+home", "#", "escape")
-        await pilot.pause()
-        changed = app.page.progress.cell(cell).source
-        assert changed.startswith("#")
-        assert changed.endswith("\n    if 1:  \n        1\n        "), "it stands in a loop"
-
-    reading(catalog, journey)
-
-
-def test_the_place_is_kept_to_the_line_at_another_width(catalog, tmp_path):
+def test_the_place_is_kept_to_the_line_and_only_a_section_that_there_is_goes_before_it(catalog, tmp_path):
     store = Store(tmp_path / "progress.sqlite")
-    seen = {}
+    seen = []
 
     async def forward(app, pilot):
         for _ in range(6):
             await pilot.press("space")
-        seen["place"] = app.page.place()
+        seen.append(app.page.place())
 
     async def back(app, pilot):
-        seen["again"] = app.page.place()
+        seen.append(app.page.place())
+        seen.append(screen(app).splitlines()[0])
 
     reading(catalog, forward, store=store)
-    reading(catalog, back, store=store)
-    assert seen["again"] == seen["place"]
+    reading(catalog, back, store=store, section="no-such-section")
     reading(catalog, back, store=store, size=(40, 20))
-    assert seen["again"].block == seen["place"].block
+    reading(catalog, back, store=store, section="swap-two-lines")
+    place, again, _, narrow, _, _, title = seen
+    assert again == place
+    assert narrow.block == place.block
+    assert "· Swap two lines" in title
 
 
 def test_the_place_is_kept_by_a_window_that_closes_as_it_changes(catalog, tmp_path, monkeypatch):
@@ -486,14 +477,21 @@ def test_tab_comes_to_predictions_cells_and_tasks_before_the_links_beside_them(c
 
 
 def test_tab_reaches_everything_that_can_be_acted_on(catalog):
+    def key_of(item):
+        return type(item), item.block, item.number
+
     async def journey(app, pilot):
-        wanted = len(app.page.book.items)
         seen = set()
-        for _ in range(4 * wanted):
+        for _ in range(4 * len(app.page.book.items)):
             await pilot.press("tab")
             if app.page.item is not None:
-                seen.add((type(app.page.item), app.page.item.block, app.page.item.number))
-        assert seen >= {(type(item), item.block, item.number) for item in app.page.book.items}
+                seen.add(key_of(app.page.item))
+            if seen >= {key_of(item) for item in app.page.book.items}:
+                break
+        else:
+            pytest.fail("something is never reached")
+        await pilot.press("G", "space")
+        assert app.message == "This is the end. Enter: go on"
 
     reading(catalog, journey, size=(60, 20), lesson="why-simulate")
 
@@ -542,22 +540,6 @@ def test_the_code_of_a_cell_is_printed_as_it_is_in_the_lesson(capsys):
     assert run(["lesson", LESSON, "--code", "99"]) == 5
 
 
-@pytest.mark.turns(4)
-@pytest.mark.parametrize("lesson", LESSONS)
-def test_a_figure_is_known_by_its_block(catalog, lesson):
-    """Every figure of every lesson is an item of its own on the page, once its prediction is answered."""
-
-    async def journey(app, pilot):
-        script = app.page.progress.script
-        for question in script.questions:
-            app.page.progress.predict(question, "")
-        app.page.rebuild()
-        figures = [i for i, one in enumerate(script.blocks) if isinstance(one, b.Figure)]
-        assert [item.block for item in app.page.book.items if isinstance(item, FigureItem)] == figures
-
-    reading(catalog, journey, lesson=lesson)
-
-
 def test_a_file_that_is_there_is_not_overwritten(tmp_path: Path, monkeypatch):
     from course.cli.reading.screen.running import write_new
 
@@ -567,37 +549,23 @@ def test_a_file_that_is_there_is_not_overwritten(tmp_path: Path, monkeypatch):
     assert first.read_text() == "x = 1\n"
 
 
-@pytest.mark.parametrize("columns", [40, 80, 90, 120])
-def test_a_box_leaves_no_letters_of_the_page_beside_it(catalog, columns):
-    rows = []
-
+def test_a_box_leaves_no_letters_of_the_page_beside_it(catalog):
     async def journey(app, pilot):
-        await pilot.press("question_mark")
-        await pilot.pause(0.2)
-        rows.extend("".join(s.text for s in strip) for strip in app.screen._compositor.render_strips())
-        await pilot.press("escape")
+        for columns in (40, 80, 90, 120):
+            await pilot.resize_terminal(columns, 24)
+            await settled(app, pilot)
+            await pilot.press("question_mark")
+            await pilot.pause(0.2)
+            rows = ["".join(s.text for s in strip) for strip in app.screen._compositor.render_strips()]
+            await pilot.press("escape")
+            await pilot.pause(0.2)
+            within = [re.split("[│╭╰╮╯]", row) for row in rows if set(row) & {*"│╭╰"}]
+            assert {len(row) for row in rows} == {columns}
+            assert len(within) > 10
+            for left, *_, right in within:
+                assert not left.strip() + right.strip()
 
-    reading(catalog, journey, size=(columns, 24))
-    within = [re.split("[│╭╰╮╯]", row) for row in rows if set(row) & {*"│╭╰"}]
-    assert len(within) > 10
-    for left, *_, right in within:
-        assert not left.strip() + right.strip()
-
-
-def test_it_opens_at_a_section_whatever_place_was_kept(catalog: Catalog, tmp_path: Path) -> None:
-    async def page_on(app: ReaderApp, pilot: Any) -> None:
-        await pilot.press("space", "space")
-
-    async def look(app: ReaderApp, _: Any) -> None:
-        seen.append(screen(app))
-
-    seen: list[str] = []
-    store = Store(tmp_path / "progress.sqlite")
-    reading(catalog, page_on, store=store)
-    reading(catalog, look, store=store, section="swap-two-lines")
-    reading(catalog, look, store=store, section="no-such-section")
-    assert "· Swap two lines" in seen[0].splitlines()[0]
-    assert seen[1] == seen[0]  # the last place
+    reading(catalog, journey)
 
 
 def test_a_block_that_is_laid_out_again_below_leaves_the_screen_as_it_was_cut(catalog: Catalog) -> None:
@@ -606,10 +574,7 @@ def test_a_block_that_is_laid_out_again_below_leaves_the_screen_as_it_was_cut(ca
         assert book is not None
         cut = page.end()
         assert cut < page.top + page.room
-        figures = [
-            n for n, block in enumerate(app.page.progress.script.blocks) if isinstance(block, b.Figure)
-        ]
-        app.page.rebuild(figures[-1])
+        app.page.rebuild(figures_of(app)[-1])
         await pilot.pause()
         assert page.end() == cut
 

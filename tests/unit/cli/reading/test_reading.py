@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import io
 import re
 from pathlib import Path
@@ -12,7 +11,7 @@ import pytest
 from rich.console import Console
 
 from course.catalog.models import Lesson
-from course.cli.frame.pictures import InlinePicture, protocol_of
+from course.cli.frame.pictures import protocol_of
 from course.cli.reading.lesson import Reader, sentences, value_spoken, value_text
 from course.errors import NotFoundError
 
@@ -128,22 +127,27 @@ def read_whole(lesson: Lesson, console: Console, **options: Any) -> tuple[Path, 
 
 
 @pytest.mark.parametrize("width", [40, 60, 80, 120])
-def test_no_line_is_wider_than_the_screen_or_than_prose_should_be(lesson: Lesson, width: int) -> None:
-    assert max(map(len, shown(lesson, width).splitlines())) <= min(width, 80)
+def test_no_line_is_wider_than_the_screen_or_than_prose_should_be_or_ends_in_blanks(
+    lesson: Lesson, width: int
+) -> None:
+    lines = shown(lesson, width).splitlines()
+    assert max(map(len, lines)) <= min(width, 80)
+    assert not [line for line in lines if line != line.rstrip()]
+    assert any(re.fullmatch(r"  method +order", line) for line in lines), "a table that fits breaks no word"
+    assert "…" not in "".join(lines)
+    assert shown(lesson, width, plain=True) == shown(lesson, 20, plain=True), "no line is broken to a width"
 
 
-def test_no_line_ends_in_blanks_that_would_be_copied_along(lesson: Lesson) -> None:
-    assert not [line for line in shown(lesson).splitlines() if line != line.rstrip()]
-
-
-def test_the_screen_shows_formulae_numbers_code_output_drawing_and_commands(lesson: Lesson) -> None:
+def test_the_screen_shows_what_is_there_with_a_name_and_a_figure_by_its_caption(lesson: Lesson) -> None:
     text = shown(lesson)
-    for part in ("hω", "4.4 × 10⁸", "z²", 'print("four", 2 + 2)', "four 4", "qₙ₊₁ = qₙ", "A ──▶ B"):
+    for part in (
+        "hω", "4.4 × 10⁸", "z²", 'print("four", 2 + 2)', "four 4", "qₙ₊₁ = qₙ", "A ──▶ B",
+        "$ course check integrators\n      looks at your file", "more (course lesson other)", "1. one",
+        "Then practise: course start an-exercise", "┃ Myth\n  ┃ All is well.", "Figure 1. They cross.",
+        "To be seen: Two lines that cross at one", "course lesson a-lesson --figures DIR",
+    ):  # fmt: skip
         assert part in text
-    assert "$ course check integrators\n      looks at your file" in text
-    assert "more (course lesson other)" in text
-    assert "1. one" in text
-    assert "Then practise: course start an-exercise" in text
+    assert "x = 1" not in text, "a hidden cell"
 
 
 @pytest.mark.parametrize("width", range(30, 60))
@@ -152,23 +156,6 @@ def test_a_short_formula_is_never_broken_over_two_lines(lesson: Lesson, width: i
         "+++\n+++\n\nThe growth of it all is $1 + z^2$ on each step.", encoding="utf-8"
     )
     assert "1 + z²" in shown(lesson, width)
-
-
-def test_a_hidden_cell_is_not_shown(lesson: Lesson) -> None:
-    assert "x = 1" not in shown(lesson)
-    assert "x = 1" not in shown(lesson, plain=True)
-
-
-def test_passages_are_named_in_words_and_not_by_colour_alone(lesson: Lesson) -> None:
-    assert "┃ Myth\n  ┃ All is well." in shown(lesson)
-    assert "Myth: All is well." in shown(lesson, plain=True)
-
-
-def test_a_figure_without_pictures_is_its_caption_what_is_seen_and_the_command(lesson: Lesson) -> None:
-    text = shown(lesson)
-    assert "Figure 1. They cross." in text
-    assert "To be seen: Two lines that cross at one" in text
-    assert "course lesson a-lesson --figures DIR" in text
 
 
 @pytest.mark.parametrize("plain", [False, True])
@@ -190,16 +177,12 @@ def test_a_table_too_wide_for_the_screen_becomes_facts(lesson: Lesson) -> None:
     assert "incomprehensible: two" not in shown(lesson, 80)
 
 
-def test_a_table_that_fits_breaks_no_word(lesson: Lesson) -> None:
-    lines = shown(lesson, 40).splitlines()
-    assert any(re.fullmatch(r"  method +order", line) for line in lines)
-    assert "…" not in "".join(lines)
-
-
 def test_plain_is_words_only(lesson: Lesson) -> None:
     text = shown(lesson, 60, plain=True)
     assert not set(text) & set("─│┃┌▶•ωₙ²")
+    assert "x = 1" not in text, "a hidden cell"
     for line in (
+        "Myth: All is well.",
         "Opening words with h omega and 4.4 times 10 to the power 8 in one line.",
         "Section: First section",
         "Row 2",
@@ -213,10 +196,6 @@ def test_plain_is_words_only(lesson: Lesson) -> None:
         "Source 1: E. Hairer, A book, 2003. example.org",
     ):
         assert f"{line}\n" in text
-
-
-def test_plain_breaks_no_line_to_the_width(lesson: Lesson) -> None:
-    assert shown(lesson, 20, plain=True) == shown(lesson, 120, plain=True)
 
 
 def test_a_terminal_that_cannot_show_the_letters_gets_what_a_screen_reader_gets(lesson: Lesson) -> None:
@@ -248,21 +227,14 @@ def test_without_colour_code_keeps_its_marks(lesson: Lesson) -> None:
     assert "It takes steps steps." in texts[1]
 
 
-def test_a_page_ends_where_a_section_or_a_prediction_does(lesson: Lesson) -> None:
-    pages = Reader(CATALOG, lesson, console_of()).pages
-    assert [page.section for page in pages] == [
-        "",
-        "First section",
-        "First section",
-        "Second section",
-        "Sources",
-    ]
-    assert [page.first for page in pages] == [True, False, False, False, False]
-
-
-def test_the_page_with_a_prediction_does_not_show_its_answer(lesson: Lesson) -> None:
+def test_a_page_ends_where_a_section_or_a_prediction_does_whose_answer_it_does_not_show(
+    lesson: Lesson,
+) -> None:
     console = console_of()
     reader = Reader(CATALOG, lesson, console)
+    sections = ["", "First section", "First section", "Second section", "Sources"]
+    assert [page.section for page in reader.pages] == sections
+    assert [page.first for page in reader.pages] == [True, False, False, False, False]
     reader.show(reader.pages[1])
     assert "What comes out?" in written(console)
     assert "four 4" not in written(console)
@@ -278,30 +250,15 @@ def test_the_page_with_a_prediction_does_not_show_its_answer(lesson: Lesson) -> 
         ({"TERM": "xterm-256color"}, None),
         ({"KITTY_WINDOW_ID": "1", "TMUX": "/tmp/tmux"}, None),
         ({"KITTY_WINDOW_ID": "1", "TERM": "dumb"}, None),
+        (None, None),
     ],
 )
 def test_pictures_are_shown_only_where_the_terminal_is_known_to_show_them(
-    environ: dict[str, str], protocol: str | None
+    environ: dict[str, str] | None, protocol: str | None
 ) -> None:
-    assert protocol_of(console_of(force_terminal=True), environ) == protocol
-
-
-def test_a_pipe_gets_no_pictures() -> None:
-    assert protocol_of(console_of(), {"KITTY_WINDOW_ID": "1"}) is None
-
-
-def test_a_kitty_picture_arrives_whole_in_chunks_of_4096() -> None:
-    png = bytes(range(256)) * 40
-    codes = re.findall(r"\x1b_G([^;]*);([^\x1b]*)\x1b\\", InlinePicture(png, "kitty", 70).escape_codes())
-    assert codes[0][0] == "a=T,f=100,q=2,c=70,m=1"
-    assert [head for head, _ in codes[1:]] == ["m=1"] * (len(codes) - 2) + ["m=0"]
-    assert all(len(data) <= 4096 for _, data in codes)
-    assert base64.b64decode("".join(data for _, data in codes)) == png
-
-
-def test_an_iterm_picture_arrives_whole() -> None:
-    code = InlinePicture(b"abc", "iterm2", 70).escape_codes()
-    assert code == "\x1b]1337;File=inline=1;size=3;width=70;preserveAspectRatio=1:YWJj\x07"
+    """And never through a pipe."""
+    console = console_of(force_terminal=environ is not None)
+    assert protocol_of(console, environ or {"KITTY_WINDOW_ID": "1"}) == protocol
 
 
 def test_a_picture_is_sent_to_a_terminal_that_shows_it(

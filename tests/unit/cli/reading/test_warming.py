@@ -10,17 +10,19 @@ from pathlib import Path
 import pytest
 
 from course.catalog.load import Catalog
+from course.cli.frame.here import Here
+from course.cli.home.advice import after_report
 from course.grading.intake.downloads import class_list
 from course.grading.intake.students import read_student
-
-MINI = Path(__file__).resolve().parents[3] / "fixtures" / "mini_course"
+from course.progress.store import Store
+from tests.unit.cli.conftest import MINI_COURSE
 
 
 @pytest.fixture
 def warm(course, workspace, monkeypatch, tmp_path_factory):
     """The command line on a mini course with two warm-ups, in a workspace."""
     folder = tmp_path_factory.mktemp("content") / "mini"
-    shutil.copytree(MINI, folder)
+    shutil.copytree(MINI_COURSE, folder)
     for order, name in enumerate(("adding", "taking"), 1):
         add(folder / "exercises" / "warm-ups" / name, name, order)
     monkeypatch.setenv("COURSE_CONTENT", str(folder))
@@ -48,8 +50,6 @@ def write(workspace: Path, name: str, first: str, second: str) -> None:
 
 
 def test_what_is_next_calls_it_a_small_task(warm, tmp_path, monkeypatch):
-    from course.progress.store import Store
-
     warm("init", str(tmp_path / "fresh"))
     monkeypatch.chdir(tmp_path / "fresh")
     Store(tmp_path / "fresh" / ".course" / "progress.sqlite").append("lesson", "twice-as-much")
@@ -63,6 +63,8 @@ def test_all_are_listed_by_lesson_with_what_is_done(warm, workspace):
     body = warm("warmup", "--json").json
     assert [(one["id"], one["state"]) for one in body["warm_ups"]] == [("adding", "new"), ("taking", "new")]
     assert body["next"]["command"] == "course warmup adding"
+    for lesson, theirs in (("twice-as-much", body["warm_ups"]), ("half-as-much", [])):
+        assert warm("warmup", lesson, "--json").json["warm_ups"] == theirs
     warm("warmup", "adding")
     write(workspace, "adding", "RIGHT", "RIGHT")
     warm("check", "adding")
@@ -95,25 +97,13 @@ def test_it_is_checked_as_an_exercise_is_and_without_points(warm, workspace):
     assert "course warmup taking" in done.err + done.out
 
 
-def test_one_thing_at_a_time_is_told(warm, workspace):
+def test_one_thing_at_a_time_is_told_and_a_hint_is_due_after_an_attempt(warm, workspace):
     warm("start", "adding")
     write(workspace, "adding", "wrong", "also wrong")
-    assert warm("check", "adding").out.count("Write RIGHT.") == 1
-    assert "--verbose shows all" in warm("check", "adding").out + warm("check", "adding").err
-
-
-def test_hints_are_due_after_an_attempt(warm, workspace):
-    warm("start", "adding")
-    write(workspace, "adding", "wrong", "wrong")
-    warm("check", "adding")
+    said = warm("check", "adding")
+    assert said.out.count("Write RIGHT.") == 1
+    assert "--verbose shows all" in said.out + said.err
     assert warm("hint", "adding", "--json").json["hint"] == "Think."
-
-
-def test_the_folder_one_is_in_says_which(warm, workspace, monkeypatch):
-    warm("start", "taking")
-    warm("start", "adding")
-    monkeypatch.chdir(workspace / "warm-ups" / "taking")
-    assert warm("check", "--json").json["exercise"] == "taking"
 
 
 def test_progress_counts_them_and_check_all_leaves_them_alone(warm, workspace):
@@ -128,33 +118,25 @@ def test_progress_counts_them_and_check_all_leaves_them_alone(warm, workspace):
     assert [one["exercise"] for one in warm("check", "--all", "--json").json["results"]] == ["doubling"]
 
 
-def test_a_course_without_warm_ups_does_not_speak_of_them(course, workspace):
-    assert "arm-up" not in course("progress").out
-    assert "no warm-ups" in course("warmup").out
-
-
-def test_an_exercise_is_no_warm_up(warm):
+def test_an_exercise_is_no_warm_up_and_a_course_without_them_does_not_speak_of_them(warm, monkeypatch):
     assert warm("warmup", "doubling", "--json").json["error"]["code"] == "not_a_warm_up"
     assert "`course warmup` lists" in warm("warmup", "nowhere").err
+    monkeypatch.setenv("COURSE_CONTENT", str(MINI_COURSE))
+    assert "arm-up" not in warm("progress").out
+    assert "no warm-ups" in warm("warmup").out
 
 
-@pytest.mark.parametrize("number", [1, 2])
-def test_the_warm_ups_of_one_lesson_are_listed_by_its_id(warm, number):
-    lesson = warm("lessons", "--json").json["lessons"][number - 1]["id"]
-    every = warm("warmup", "--json").json["warm_ups"]
-    ours = [one["id"] for one in every if one["lesson"] == lesson]
-    assert [one["id"] for one in warm("warmup", lesson, "--json").json["warm_ups"]] == ours
-
-
-def test_reset_update_and_diff_know_where_it_lies(warm, workspace):
+def test_check_reset_update_and_diff_know_where_it_lies(warm, workspace, monkeypatch):
+    warm("start", "taking")
     warm("start", "adding")
     write(workspace, "adding", "mine", "mine")
     assert "def first" in warm("diff", "adding").out
     assert warm("reset", "adding", "--yes").code == 0
     assert "return x" in (workspace / "warm-ups/adding/adding.py").read_text()
-    assert str(workspace / "warm-ups/adding/adding.py") in {
-        c["path"] for c in warm("update", "--json").json["changes"]
-    }
+    changed = {change["path"] for change in warm("update", "--json").json["changes"]}
+    assert str(workspace / "warm-ups/adding/adding.py") in changed
+    monkeypatch.chdir(workspace / "warm-ups" / "taking")
+    assert warm("check", "--json").json["exercise"] == "taking", "the folder one is in says which"
 
 
 def test_they_are_handed_in_only_when_asked_for(warm, workspace, tmp_path_factory):
@@ -179,8 +161,9 @@ def test_they_are_handed_in_only_when_asked_for(warm, workspace, tmp_path_factor
 
 
 def test_what_follows_a_report_is_no_check_that_sends_back_to_it(warm, workspace):
-    from course.cli.frame.here import Here
-    from course.cli.home.advice import after_report
+    """And after a warm-up comes the next one, also of a lesson that is half read."""
+    store = Store(workspace / ".course" / "progress.sqlite")
+    store.append("bookmark", "twice-as-much", {"block": 1, "part": 0.0, "words": ""})
 
     def step() -> str:
         here = Here.load()
@@ -191,18 +174,7 @@ def test_what_follows_a_report_is_no_check_that_sends_back_to_it(warm, workspace
     warm("check", "adding")
     assert step() == "course check adding"
     write(workspace, "adding", "RIGHT", "RIGHT")
-    warm("check", "adding")
-    assert step() == "course warmup taking"
-
-
-def test_after_a_warm_up_comes_the_next_one_also_of_a_lesson_that_is_half_read(warm, workspace):
-    from course.progress.store import Store
-
-    store = Store(workspace / ".course" / "progress.sqlite")
-    store.append("bookmark", "twice-as-much", {"block": 1, "part": 0.0, "words": ""})
-    warm("start", "adding")
-    write(workspace, "adding", "RIGHT", "RIGHT")
-    assert warm("check", "adding", "--json").json["next"]["command"] == "course warmup taking"
+    assert warm("check", "adding", "--json").json["next"]["command"] == step() == "course warmup taking"
 
 
 def test_a_fault_of_a_program_that_was_given_is_nobody_s_mistake_and_another_is(warm, workspace):

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import re
+import shutil
+from types import SimpleNamespace
 
 import pytest
 import yaml
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
-from course.cli.work.verdict import github
+from course.cli.frame.console import Console
+from course.cli.work.verdict import _line_of, _shown, github
 from tests.command_line import in_process
 
 #: What the runner puts back, in its order: ActionCommand.cs of actions/runner.
@@ -47,33 +51,20 @@ def annotations(out):
     return [found for line in out.splitlines() if (found := parse(line))]
 
 
-@pytest.mark.parametrize(
-    ("file", "title", "message"),
-    [
-        ("a/b.py", "plain", "plain"),
-        ("a, b/c:d.py", "50 % off: a, b = c::d", "100 %\nof\r\nit :: ::error::x, y=z"),
-        ("C:\\a, b\\c.py", "a drive", "C:\\a"),
-        ("%2C.py", "%0A and %250A", "%25 %3A"),
-        ("é.py", "α = β", "½"),
-    ],
-)
-def test_what_is_escaped_comes_back(file, title, message):
-    line = github("error", file, 7, title, message)
-    assert line.endswith("\n")
-    assert len(line.splitlines()) == 1
-    assert parse(line.removesuffix("\n")) == ("error", {"file": file, "line": "7", "title": title}, message)
-
-
 #: Few letters, so that all of them come up.
 ANY = st.text("%:,=\r\n02ADC x½", max_size=20)
 
 
 @given(folder=ANY, title=ANY, message=ANY)
+@example("a, b/c:d.py", "50 % off: a, b = c::d", "100 %\nof\r\nit :: ::error::x, y=z")
+@example("C:\\a, b", "%0A and %250A", "%25 %3A C:\\a")
+@example("%2C é", "α = β", "½")
 def test_whatever_is_said_comes_back(folder, title, message):
     """Titles end with the id of their check, and paths with the name of a file."""
     file, title = f"x{folder}/a.py", f"Check {title} [id]"
     line = github("warning", file, 3, title, message)
-    assert "\n" not in line[:-1]
+    assert len(line.splitlines()) == 1
+    assert line.endswith("\n")
     assert "\r" not in line
     assert parse(line.removesuffix("\n")) == ("warning", {"file": file, "line": "3", "title": title}, message)
 
@@ -97,7 +88,9 @@ def test_what_a_file_says_when_it_fails_is_no_command(where, tmp_path):
     assert "::stop-commands::x" in found[0][2], "it is said, inside the message"
 
 
-def test_a_failed_check_is_an_annotation_at_its_function(course, write, workspace):
+def test_a_failed_check_is_an_annotation_at_its_function_from_the_top_of_the_repository(
+    course, write, workspace, monkeypatch
+):
     write("RIGHT", "wrong")
     ran = course("check", "--format", "github")
     assert ran.code == 1
@@ -106,20 +99,19 @@ def test_a_failed_check_is_an_annotation_at_its_function(course, write, workspac
     assert "doublings_works" in where["title"]
     assert message.startswith("It is not right.\nWrite RIGHT.\n")
     assert "\x1b" not in ran.out
-
-
-def test_paths_are_from_the_top_of_the_repository(course, write, workspace, monkeypatch):
-    write("wrong", "RIGHT")
     monkeypatch.setenv("GITHUB_WORKSPACE", str(workspace.parent))
-    ((_, where, _),) = annotations(course("check", "--format", "github").out)
+    ran = course("check", "--format", "github", "--json")
+    assert ran.json["schema"] == "course.check/1", "one object beside them"
+    ((_, where, _),) = annotations(ran.err)
     assert where["file"] == "my course é/doubling/doubling.py"
 
 
-def test_everything_right_is_no_annotation(course, write):
+def test_everything_right_is_no_annotation_and_an_unknown_format_is_refused(course, write):
     write("RIGHT", "RIGHT")
     ran = course("check", "--all", "--format", "github")
     assert ran.code == 0
     assert not annotations(ran.out)
+    assert course("check", "--format", "xml").code == 2
 
 
 def test_a_file_that_cannot_be_read_is_marked_where_it_cannot(course, write):
@@ -131,36 +123,11 @@ def test_a_file_that_cannot_be_read_is_marked_where_it_cannot(course, write):
         assert (level, where["line"], message) == ("error", "7", "Line 1 cannot be read.\nLook at line 1.")
 
 
-def test_json_stays_one_object_beside_annotations(course, write):
-    write("wrong", "wrong")
-    ran = course("check", "--format", "github", "--json")
-    assert ran.json["schema"] == "course.check/1"
-    assert len(annotations(ran.err)) == 2
-
-
-def test_an_unknown_format_is_refused(course, write):
-    assert course("check", "--format", "xml").code == 2
-
-
 def test_a_line_in_a_notebook_is_that_of_its_text():
-    from types import SimpleNamespace
-
-    from course.cli.work.verdict import _line_of
-
     text = '{"cells": [\n  {"source": [\n    "def double(x):\\n",\n    "    return x\\n"\n]}]}'
     work = SimpleNamespace(notebook=object(), data=text.encode())
     assert _line_of(work, SimpleNamespace(task="double", traceback="nb.py:9 in double")) == 3
     assert _line_of(work, SimpleNamespace(task="doublings", traceback=None)) == 1
-
-
-def test_a_line_that_raised_goes_before_the_one_that_defines():
-    from types import SimpleNamespace
-
-    from course.cli.work.verdict import _line_of
-
-    work = SimpleNamespace(notebook=None, data=b"def double(x):\n    return x / 0\n")
-    trace = "doubling.py:2 in double\n    return x / 0"
-    assert _line_of(work, SimpleNamespace(task="double", traceback=trace)) == 2
 
 
 # -- course init --with ------------------------------------------------------------------------------------
@@ -169,6 +136,7 @@ def test_a_line_that_raised_goes_before_the_one_that_defines():
 def test_init_writes_what_is_asked_for(course, tmp_path):
     ran = course("init", "mine", "--with", "github,devcontainer,vscode", "--json")
     assert ran.code == 0
+    assert ran.json["next"]["command"] == "course go"
     root = tmp_path / "mine"
     assert [file["path"] for file in ran.json["files"]] == [
         str(root / name)
@@ -191,9 +159,14 @@ def test_a_requirement_reaches_pip_as_it_is(course, tmp_path, wanted):
     assert container["postCreateCommand"] == ["python", "-m", "pip", "install", wanted]
 
 
-@pytest.mark.parametrize("wanted", ["--index-url=x", "a\nb", "${{ secrets.X }}"])
-def test_what_is_no_requirement_is_refused_before_anything_is_written(course, tmp_path, wanted):
-    assert course("init", "mine", "--with", "github", f"--requirement={wanted}").code == 2
+@pytest.mark.parametrize(
+    ("kinds", "wanted"),
+    [("github", "--index-url=x"), ("github", "a\nb"), ("github", "${{ secrets.X }}"), ("github,emacs", "a")],
+)
+def test_what_is_no_requirement_or_kind_is_refused_before_anything_is_written(
+    course, tmp_path, kinds, wanted
+):
+    assert course("init", "mine", "--with", kinds, f"--requirement={wanted}").code == 2
     assert not (tmp_path / "mine").exists()
 
 
@@ -207,11 +180,6 @@ def test_nothing_is_replaced_without_a_copy(course, workspace):
         assert kept.read() == "mine"
     again = course("init", "--with", "vscode", "--json").json["files"]
     assert again[0]["backup"] is None
-
-
-def test_an_unknown_kind_is_refused_before_anything_is_written(course, tmp_path):
-    assert course("init", "mine", "--with", "github,emacs").code == 2
-    assert not (tmp_path / "mine").exists()
 
 
 def test_the_editor_s_task_finds_what_the_check_prints(course, write, workspace):
@@ -232,8 +200,6 @@ def test_the_editor_s_task_finds_what_the_check_prints(course, write, workspace)
 
 def test_a_checkout_without_the_record_is_checked(course, write, workspace):
     """A repository need not hold .course."""
-    import shutil
-
     write("wrong", "RIGHT")
     shutil.rmtree(workspace / ".course")
     ran = course("check", "--all", "--format", "github")
@@ -252,11 +218,6 @@ def heeded(line):
 
 def test_a_workflow_obeys_nothing_that_strangers_say(monkeypatch):
     """A folder called as a command was one in every list of a run, and so was what an exception said."""
-    import io
-
-    from course.cli.frame.console import Console
-    from course.cli.work.verdict import _shown
-
     monkeypatch.setenv("GITHUB_ACTIONS", "true")
     out, err = io.StringIO(), io.StringIO()
     console = Console(stdout=out, stderr=err)

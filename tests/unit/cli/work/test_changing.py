@@ -4,18 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-
-def _all_files(root):
-    return {path: path.read_bytes() for path in root.rglob("*") if path.is_file()}
+from tests.unit.cli.conftest import files_in
 
 
-def test_diff_of_an_untouched_file_says_so(course, workspace):
+def test_diff_shows_lines_added_and_removed_or_says_that_there_are_none(course, write, workspace):
     ran = course("diff")
     assert ran.code == 0
     assert "as it was handed out" in ran.out
-
-
-def test_diff_shows_lines_added_and_removed(course, write):
     write("RIGHT", "wrong")
     body = course("diff", "--json").json
     assert body["changed"]
@@ -23,17 +18,12 @@ def test_diff_shows_lines_added_and_removed(course, write):
     assert body["added"] == sum(row.startswith("+") for row in body["diff"].splitlines()[2:])
 
 
-def test_reset_asks_nobody_and_needs_yes(course, write):
+def test_reset_asks_nobody_but_needs_yes_and_keeps_a_copy_whose_path_it_prints(course, workspace, write):
     path = write("mine")
     before = path.read_bytes()
     ran = course("reset", "doubling", "--json")
     assert (ran.code, ran.json["error"]["code"]) == (2, "needs_yes")
     assert path.read_bytes() == before
-
-
-def test_reset_keeps_a_copy_and_prints_its_path(course, workspace, write):
-    path = write("mine")
-    before = path.read_bytes()
     body = course("reset", "doubling", "--yes", "--json").json
     copy = workspace / body["backups"][0]["backup"]
     assert copy.read_bytes() == before
@@ -42,11 +32,11 @@ def test_reset_keeps_a_copy_and_prints_its_path(course, workspace, write):
 
 
 def test_reset_of_an_exercise_that_was_not_started_makes_nothing_of_it(course, workspace):
-    before = _all_files(workspace)
+    before = files_in(workspace)
     ran = course("reset", "halving", "--yes", "--json")
     assert (ran.code, ran.json["error"]["code"]) == (5, "not_started")
     assert "course start halving" in ran.json["error"]["help"]
-    assert _all_files(workspace) == before
+    assert files_in(workspace) == before
 
 
 def test_reset_writes_nothing_if_the_copy_cannot_be_made(course, workspace, write):
@@ -77,9 +67,9 @@ def test_update_replaces_what_was_not_edited_and_puts_the_rest_beside(
     mine = write("mine").read_bytes()
     folder = workspace / "doubling"
     old_readme = (folder / "README.md").read_bytes()
-    before = _all_files(workspace)
+    before = files_in(workspace)
     dry = course("update", "--dry-run", "--json").json
-    assert _all_files(workspace) == before
+    assert files_in(workspace) == before
     body = course("update", "--json").json
     assert (
         [c["action"] for c in body["changes"]]
@@ -92,15 +82,9 @@ def test_update_replaces_what_was_not_edited_and_puts_the_rest_beside(
     assert (folder / "doubling.py").read_bytes() == mine
     assert (folder / "doubling.py.new").read_text().endswith("# newer\n")
     assert 'version = "9.0.0"' in (workspace / "course.toml").read_text()
-
-
-def test_a_second_update_has_nothing_to_do(course, workspace, write, newer_content):
-    write("mine")
-    course("update")
-    before = {p: d for p, d in _all_files(workspace).items() if p.suffix != ".sqlite"}
-    ran = course("update")
-    assert "up to date with the installed course" in ran.out
-    assert {p: d for p, d in _all_files(workspace).items() if p.suffix != ".sqlite"} == before
+    done = files_in(folder)
+    assert "up to date with the installed course" in course("update").out
+    assert files_in(folder) == done
 
 
 def test_update_keeps_an_earlier_new_file(course, workspace, write, newer_content):

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import json
-import shutil
-from pathlib import Path
 
-MINI_COURSE = Path(__file__).resolve().parents[3] / "fixtures" / "mini_course"
+from course.catalog.pack import pack_bytes
 
 
 def test_hints_come_one_per_attempt_and_are_never_counted(course, write):
@@ -16,8 +14,11 @@ def test_hints_come_one_per_attempt_and_are_never_counted(course, write):
     first = course("hint", "--json").json
     assert first["given"]
     assert first["task"] == "double"
-    again = course("hint", "--json").json
-    assert (again["given"], again["reason"], again["hint"]) == (False, "unchanged", first["hint"])
+    for extra in ("", "# thinking\n"):  # a comment is no attempt
+        write("wrong", "wrong", extra)
+        course("check")
+        again = course("hint", "--json").json
+        assert (again["given"], again["reason"], again["hint"]) == (False, "unchanged", first["hint"])
     write("wrong # a comment does count inside a string", "wrong")
     course("check")
     second = course("hint", "--json").json
@@ -29,12 +30,9 @@ def test_hints_come_one_per_attempt_and_are_never_counted(course, write):
         assert " of 3" not in words
 
 
-def test_a_hint_fits_what_the_check_thinks_is_wrong(course, write, monkeypatch, tmp_path):
-    content = tmp_path / "content"
-    shutil.copytree(MINI_COURSE, content)
-    hints = content / "exercises" / "doubling" / "exercise.toml"
+def test_a_hint_fits_what_the_check_thinks_is_wrong(course, write, students_content):
+    hints = students_content / "exercises" / "doubling" / "exercise.toml"
     hints.write_text(hints.read_text().replace("SQUARES_INSTEAD", "NOT_RIGHT"))
-    monkeypatch.setenv("COURSE_CONTENT", str(content))
     write("wrong", "RIGHT")
     course("check")
     assert course("hint", "--json").json["hint"] == "Try your function on a negative number too."
@@ -45,17 +43,12 @@ def test_a_hint_fits_what_the_check_thinks_is_wrong(course, write, monkeypatch, 
     assert course("hint", "--json").json["hint"] == "What is a number added to itself?"
 
 
-def test_a_hint_goes_on_with_the_students_numbers_where_the_check_has_them(
-    course, write, monkeypatch, tmp_path
-):
-    content = tmp_path / "content"
-    shutil.copytree(MINI_COURSE, content)
-    hints = content / "exercises" / "doubling" / "exercise.toml"
+def test_a_hint_goes_on_with_the_students_numbers_where_the_check_has_them(course, write, students_content):
+    hints = students_content / "exercises" / "doubling" / "exercise.toml"
     sentences = (
         '1 = ["At {x} it is {got}."]\n2 = ["At {x} it is {got}.", "At h = {h} it is {got}, not {expected}."]'
     )
     hints.write_text(hints.read_text().replace("[task.fits]", f"[task.yours]\n{sentences}\n\n[task.fits]"))
-    monkeypatch.setenv("COURSE_CONTENT", str(content))
     write("wrong", "RIGHT")
     course("check")
     assert course("hint", "--json").json["hint"] == "What is a number added to itself?"
@@ -90,15 +83,6 @@ def test_a_function_that_is_not_begun_has_no_hint_and_another_one_that_fails_goe
     reply = course("hint", "--json").json
     assert (reply["given"], reply["reason"], reply["hint"]) == (False, "unchanged", reply["hint"])
     assert course("hint", "--task", "double", "--json").json["reason"] == "passing"
-
-
-def test_a_comment_is_no_attempt(course, write):
-    write("wrong", "wrong")
-    course("check")
-    course("hint")
-    write("wrong", "wrong", extra="# thinking\n")
-    course("check")
-    assert course("hint", "--json").json["reason"] == "unchanged"
 
 
 def test_hints_go_to_the_first_failing_task_or_the_one_asked_for(course, write):
@@ -138,14 +122,11 @@ def test_a_file_that_could_not_run_is_sent_back_to_its_check(course, write):
     assert course("hint", "--json").json["reason"] == "ungradable"
 
 
-def test_no_solution_before_a_pass(course, write):
+def test_a_checkout_shows_its_solution_after_a_pass_and_not_before(course, write):
     write("wrong", "RIGHT")
     course("check")
     ran = course("solution", "--json")
     assert (ran.code, ran.json["error"]["code"]) == (5, "not_passed")
-
-
-def test_a_checkout_shows_its_solution_after_a_pass(course, write):
     write("RIGHT", "RIGHT")
     course("check")
     ran = course("solution", "--json")
@@ -153,29 +134,18 @@ def test_a_checkout_shows_its_solution_after_a_pass(course, write):
     assert "def double" in ran.json["files"]["doubling.py"]
 
 
-def test_a_student_without_a_pack_is_told_where_one_comes_from(course, write, students_content):
+def test_a_pack_in_the_workspace_is_opened_and_without_one_it_is_told_where_one_comes_from(
+    course, workspace, write, students_content
+):
     write("RIGHT", "RIGHT")
     course("check")
     ran = course("solution")
     assert ran.code == 5
     assert ".coursepack" in ran.err
-
-
-def test_a_pack_in_the_workspace_is_opened(course, workspace, write, students_content):
-    from course.catalog.pack import pack_bytes
-
-    write("RIGHT", "RIGHT")
-    course("check")
-    (workspace / "week 1.coursepack").write_bytes(
-        pack_bytes("mini", "1.0.0", {"doubling": {"doubling.py": b"def double(x):\n    return x + x\n"}})
-    )
+    pack, model = workspace / "week 1.coursepack", "def double(x):\n    return x + x\n"
+    pack.write_bytes(pack_bytes("mini", "1.0.0", {"doubling": {"doubling.py": model.encode()}}))
     body = course("solution", "--json").json
-    assert body["files"] == {"doubling.py": "def double(x):\n    return x + x\n"}
+    assert body["files"] == {"doubling.py": model}
     assert body["source"].endswith("week 1.coursepack")
-
-
-def test_a_damaged_pack_is_an_integrity_error(course, workspace, write, students_content):
-    write("RIGHT", "RIGHT")
-    course("check")
-    (workspace / "a.coursepack").write_bytes(b"no zip")
-    assert course("solution").code == 7
+    pack.write_bytes(b"no zip")
+    assert course("solution").code == 7, "it is damaged"

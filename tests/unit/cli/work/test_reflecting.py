@@ -30,17 +30,15 @@ def check(course, write):
     assert course("check", "doubling").code == 0
 
 
-def test_the_question_comes_once_the_checks_pass(course, passed, write):
+def test_the_question_comes_once_the_checks_pass_and_its_answer_once_something_was_written(
+    course, passed, write, workspace
+):
     ran = course("reflect", "doubling", "--json")
     assert (ran.code, ran.json["error"]["code"]) == (5, "not_passed_yet")
     check(course, write)
-    assert course("reflect", "doubling").code == 0
-
-
-def test_nothing_is_shown_before_something_was_written(course, passed, write, workspace):
-    check(course, write)
-    body = course("reflect", "doubling", "--json").json
-    assert (body["answer"], body["good_answer"], body["points"]) == (None, None, [])
+    ran = course("reflect", "doubling", "--json")
+    assert ran.code == 0
+    assert (ran.json["answer"], ran.json["good_answer"], ran.json["points"]) == (None, None, [])
     (workspace / "short.txt").write_text("Dunno.")
     ran = course("reflect", "doubling", "--answer", "short.txt", "--json")
     assert (ran.code, ran.json["error"]["code"]) == (2, "too_short")

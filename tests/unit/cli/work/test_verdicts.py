@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 
 import msgspec
 import pytest
@@ -159,49 +160,50 @@ def test_functions_not_written_yet_are_listed_once():
     assert "verbose" not in words
 
 
-def test_one_cause_for_all_checks_of_a_task_is_said_once():
-    checks = [
-        _check(
-            name,
-            "rk4",
-            Status.ERROR,
-            message="No such function.",
-            help="Define it.",
-            diagnosis="MISSING_FUNCTION",
-        )
-        for name in "ab"
-    ]
-    words = _shown(*checks)
-    assert words.count("No such function.") == 1
-    assert "a works" not in words
+FAILS = _check("a", "euler", Status.FAIL, message="No.")
+RAISED = "Your code raised NameError on line 3 of your file: name 'a' is not defined."
+ABSENT = {"message": "No such function.", "help": "Define it.", "diagnosis": "MISSING_FUNCTION"}
 
 
-def test_two_failures_with_the_same_words_keep_their_titles():
-    checks = [_check(name, "rk4", Status.FAIL, message="Wrong.", help="Try.") for name in "ab"]
-    words = _shown(*checks)
-    assert "a works" in words
-    assert "b works" in words
-    assert words.count("Try.") == 1
-
-
-def test_a_skipped_check_names_what_it_waits_for():
-    words = _shown(
-        _check("a", "euler", Status.FAIL, message="No."), _check("b", "euler", Status.SKIP, blocked_by="a")
-    )
-    assert "skip: b works" in words
-    assert "Runs once a passes." in words
-
-
-def test_a_task_that_is_all_skipped_is_not_called_unwritten():
-    words = _shown(
-        _check("a", "euler", Status.FAIL, message="No."), _check("b", "rk4", Status.SKIP, blocked_by="a")
-    )
-    assert "Not written" not in words
-    assert "RK4: 0/2 points" in words
-
-
-def test_a_check_of_an_unlisted_task_does_not_vanish():
-    assert "stray works" in _shown(_check("stray", "elsewhere"))
+@pytest.mark.parametrize(
+    ("checks", "counts"),
+    [
+        (
+            [_check(name, "rk4", Status.ERROR, **ABSENT) for name in "ab"],
+            {"No such function.": 1, "a works": 0},
+        ),
+        (
+            [_check(name, "rk4", Status.FAIL, message="Wrong.", help="Try.") for name in "ab"],
+            {"a works": 1, "b works": 1, "Wrong.": 1, "Try.": 1},
+        ),
+        (
+            [FAILS, _check("b", "euler", Status.SKIP, blocked_by="a")],
+            {"skip: b works": 1, "Runs once a passes.": 1},
+        ),
+        (
+            [FAILS, _check("b", "rk4", Status.SKIP, blocked_by="a")],
+            {"Not written": 0, "RK4: 0/2 points": 1},
+        ),
+        ([_check("stray", "elsewhere")], {"stray works": 1}),
+        (
+            [_check("a", "euler", Status.ERROR, message=RAISED, actual="NameError: name 'a' is not defined")],
+            {"name 'a' is not defined": 1},
+        ),
+        (
+            [_check("a", "euler", Status.ERROR, message="It raised.", actual="NameError: name 'a'")],
+            {"raised: NameError: name 'a'": 1},
+        ),
+    ],
+    ids=[
+        "one cause for all checks of a task", "two failures with the same words", "a check that waits",
+        "a task that waits", "a task that is not listed", "an exception that the message repeats",
+        "an exception that it does not",
+    ],
+)  # fmt: skip
+def test_each_fact_is_said_once_and_none_vanishes(checks, counts):
+    words = _shown(*checks, warnings=("careful",))
+    assert {text: words.count(text) for text in counts} == counts
+    assert "Note: careful" in words
 
 
 def test_tracebacks_are_shown_on_request_and_offered_otherwise():
@@ -213,14 +215,6 @@ def test_tracebacks_are_shown_on_request_and_offered_otherwise():
     shown = _shown(check, verbose=True)
     assert "line 3 in euler" in shown
     assert "hello" in shown
-
-
-def test_an_exception_that_the_message_repeats_is_not_shown_again():
-    message = "Your code raised NameError on line 3 of your file: name 'a' is not defined."
-    check = _check("a", "euler", Status.ERROR, message=message, actual="NameError: name 'a' is not defined")
-    assert _shown(check).count("name 'a' is not defined") == 1
-    other = _check("a", "euler", Status.ERROR, message="It raised.", actual="NameError: name 'a'")
-    assert "raised: NameError: name 'a'" in _shown(other)
 
 
 def test_every_status_is_a_word_of_its_own():
@@ -245,8 +239,6 @@ def test_lines_fit_the_terminal(monkeypatch, columns):
         _unwritten("b", "rk4"),
         plain=False,
     )
-    import re
-
     assert max(len(re.sub(r"\x1b\[[0-9;]*m", "", row)) for row in words.splitlines()) <= columns
 
 
@@ -260,7 +252,3 @@ def test_a_brief_verdict_has_the_details_of_one_function_and_says_so():
     assert "course check" in words
     assert "Help two." in _shown(first, second)
     assert "course check" not in _shown(first, _check("b", "verlet"), brief=True)
-
-
-def test_warnings_are_shown():
-    assert "Note: careful" in _shown(_check("a", "euler"), warnings=("careful",))

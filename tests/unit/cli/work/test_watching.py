@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import os
+import re
 import threading
 import time
 import tty
@@ -15,6 +16,7 @@ from course.cli import loop
 from course.cli.frame.console import Console, Settings
 from course.cli.frame.here import Here
 from course.cli.loop import Watcher, saves
+from course.errors import CourseError, NotFoundError
 from course.handed_in import attempts
 
 
@@ -33,14 +35,18 @@ def _said(watcher):
     return watcher.console._out.getvalue()
 
 
-def test_each_save_is_graded_once(watching, write):
+def test_each_save_is_graded_once_and_a_file_that_cannot_run_is_reported(watching, write):
     watcher, session = watching
     write("wrong", "RIGHT")
     assert watcher.look(session)
     assert not watcher.look(session)
+    write(extra="UNREADABLE")
+    assert watcher.look(session)
+    assert "Line 1 cannot be read." in _said(watcher)
+    assert watcher.last.exit_code == 3
     write("RIGHT", "RIGHT")
     assert watcher.look(session)
-    assert [run.score for run in watcher.runs] == [2.0, 4.0]
+    assert [run.score for run in watcher.runs] == [2.0, 0.0, 4.0]
     assert watcher.last.ok
 
 
@@ -57,9 +63,10 @@ def test_a_file_put_in_the_place_of_the_old_one_is_a_save(watching, write, works
     assert watcher.last.ok
 
 
-def test_a_file_that_goes_is_waited_for(watching, write):
+def test_a_file_that_goes_is_waited_for_but_there_must_be_one_to_begin_with(watching, write, course):
     watcher, session = watching
     write("RIGHT", "RIGHT").unlink()
+    assert course("watch", "doubling").code == 3
     assert not watcher.look(session)
     assert not watcher.look(session)
     assert _said(watcher).count("is gone") == 1
@@ -80,27 +87,7 @@ def test_a_file_that_is_written_in_two_goes_is_graded_whole(watching, write, wor
     assert len(watcher.runs) == 1
 
 
-def test_a_file_that_cannot_run_is_reported_and_the_watch_goes_on(watching, write):
-    watcher, session = watching
-    write(extra="UNREADABLE")
-    assert watcher.look(session)
-    assert "Line 1 cannot be read." in _said(watcher)
-    assert watcher.last.exit_code == 3
-    write("RIGHT", "RIGHT")
-    assert watcher.look(session)
-    assert watcher.last.ok
-
-
-def test_every_verdict_is_recorded(watching, write, course):
-    watcher, session = watching
-    write("wrong", "RIGHT")
-    watcher.look(session)
-    assert course("hint", "--json").json["given"]
-
-
 def test_a_fault_of_the_grader_ends_the_watch(watching, write):
-    from course.errors import CourseError
-
     watcher, session = watching
     write(extra="FAULT")
     with pytest.raises(CourseError):
@@ -232,11 +219,17 @@ def test_what_is_in_the_files_already_counts(course, workspace, write, pressed):
     assert "Write RIGHT" not in said, "a file as it was handed out waits for its first save"
 
 
-def test_a_task_as_it_was_handed_out_is_checked_at_the_first_save_or_on_r(course, workspace, pressed):
-    pressed("r", "q")
+def test_a_task_as_it_was_handed_out_is_checked_on_r_and_skipped_it_is_where_the_next_go_is_not(
+    course, workspace, pressed
+):
+    pressed("r", "s", "q")
     said = course("go").out
     assert said.count("Keys: r check, l lesson, t text, s skip, q leave") == 1
     assert said.count("Keys: v more, l lesson, t text, s skip, q leave") == 1
+    assert "Exercise 2 of 2" in said
+    pressed("q")
+    assert "Exercise 1 of 2" not in course("go").out
+    assert "Exercise 1 of 2" in course("watch", "-C", "doubling").out, "a folder keeps to its task first"
 
 
 def test_keys_lead_to_other_tasks_and_back_and_a_task_that_is_done_stays(course, workspace, write, pressed):
@@ -252,29 +245,22 @@ def test_keys_lead_to_other_tasks_and_back_and_a_task_that_is_done_stays(course,
     assert "b back, s skip" in said
 
 
-def test_what_was_skipped_is_where_the_next_go_is_not(course, workspace, pressed):
-    pressed("s", "q")
-    assert "Exercise 2 of 2" in course("go").out
-    pressed("q")
-    assert "Exercise 1 of 2" not in course("go").out
-    assert "Exercise 1 of 2" in course("watch", "-C", "doubling").out, "a folder keeps to its task first"
-
-
 def test_the_lesson_the_text_and_the_way_back_are_keys(course, workspace, pressed, monkeypatch):
     ran = []
-    monkeypatch.setattr(loop, "again", lambda words: ran.append(words) or 0)
-    pressed("l", "t", "q")
-    said = course("go").out
-    assert ran == [["lesson", "twice-as-much", "--page"]]
-    assert said.count("Waiting for a save of doubling/doubling.py.") == 3
-    assert "# Doubling" in said, "the whole text"
 
+    def opened(words):
+        ran.append(words)
+        if len(ran) == 2:
+            raise NotFoundError("There is no such lesson.", code="lesson_not_found")
+        return 0
 
-def test_a_named_watch_stays_with_its_exercise(course, workspace, pressed):
-    pressed(_solve("doubling"), "s", "b", "q")
-    said = course("watch", "doubling").out
-    assert "All 2 public checks pass" in said
-    assert "halving" not in said
+    monkeypatch.setattr(loop, "again", opened)
+    pressed("l", "t", "l", "q")
+    said = course("go")
+    assert ran == [["lesson", "twice-as-much", "--page"]] * 2
+    assert said.out.count("Waiting for a save of doubling/doubling.py.") == 4
+    assert "# Doubling" in said.out, "the whole text"
+    assert (said.code, said.err) == (0, "There is no such lesson.\n"), "and the loop goes on"
 
 
 def test_with_no_task_left_nothing_is_handed_in_unasked(course, workspace, pressed, write):
@@ -302,23 +288,20 @@ def test_after_the_last_task_each_further_step_is_asked_about(course, workspace,
     assert len(asked) == said.count("Next: ") == 2
 
 
-def test_a_named_watch_works_where_the_record_cannot_be_read(course, workspace, pressed):
-    (workspace / ".course" / "progress.sqlite").write_bytes(b"not a database, not at all, no" * 10)
+def test_a_named_watch_stays_with_its_exercise_and_works_where_the_record_cannot_be_read(
+    course, workspace, pressed
+):
+    record = workspace / ".course" / "progress.sqlite"
+    kept = record.read_bytes()
+    record.write_bytes(b"not a database, not at all, no" * 10)
     pressed("q")
     assert course("watch", "doubling").code == 0
     assert course("go").code != 0
-
-
-def test_a_lesson_that_cannot_be_opened_is_said_and_the_loop_goes_on(course, workspace, pressed, monkeypatch):
-    from course.errors import NotFoundError
-
-    def fails(words):
-        raise NotFoundError("There is no such lesson.", code="lesson_not_found")
-
-    monkeypatch.setattr(loop, "again", fails)
-    pressed("l", "q")
-    ran = course("go")
-    assert (ran.code, ran.err) == (0, "There is no such lesson.\n")
+    record.write_bytes(kept)
+    pressed(_solve("doubling"), "s", "b", "q")
+    said = course("watch", "doubling").out
+    assert "All 2 public checks pass" in said
+    assert "halving" not in said
 
 
 def test_q_while_checks_run_drops_them_and_records_nothing(watching, write):
@@ -354,20 +337,18 @@ def test_keys_are_taken_one_by_one_and_what_follows_q_stays_for_the_shell():
         os.close(terminal)
 
 
-def test_there_must_be_a_file_to_begin_with(course, workspace):
-    (workspace / "doubling" / "doubling.py").unlink()
-    assert course("watch", "doubling").code == 3
-
-
-def test_what_broke_and_what_was_fixed_comes_first(watching, write):
+def test_what_broke_and_what_was_fixed_comes_first_but_not_what_was_not_written_before(watching, write):
     watcher, session = watching
-    write("wrong", "RIGHT")
-    watcher.look(session)
-    assert "broke" not in _said(watcher)
-    before = len(_said(watcher))
-    write("RIGHT", "wrong")
-    watcher.look(session)
-    lines = _said(watcher)[before:].splitlines()
+
+    def shown(*bodies):
+        before = len(_said(watcher))
+        write(*bodies)
+        watcher.look(session)
+        return _said(watcher)[before:]
+
+    first = shown("wrong", "raise NotImplementedError")
+    assert not {"broke", "fixed"} & {*re.split(r"\W+", first + shown("wrong", "RIGHT"))}
+    lines = shown("RIGHT", "wrong").splitlines()
     assert "broke" in lines[1]
     assert "fixed" in lines[2]
 
@@ -410,18 +391,6 @@ def test_keys_give_a_hint_the_next_function_details_and_another_run(watching, wr
     assert not watcher.press("x", session)
     assert not watcher.press("\n", session)
     assert len(_said(watcher)) == said
-
-
-def test_a_function_that_was_not_written_before_was_not_fixed(watching, write):
-    watcher, session = watching
-    write("wrong", "raise NotImplementedError")
-    watcher.look(session)
-    write("wrong", "RIGHT")
-    watcher.look(session)
-    assert "fixed" not in _said(watcher)
-    write("RIGHT", "RIGHT")
-    watcher.look(session)
-    assert _said(watcher).count("fixed") == 1
 
 
 def test_beside_keys_no_command_is_named_for_what_is_kept_back(watching, write):

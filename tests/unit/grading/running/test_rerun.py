@@ -12,6 +12,7 @@ import pytest
 
 from course.catalog.load import Catalog
 from course.errors import IntegrityError, MissingCapabilityError
+from course.grading.container import write_autograder
 from course.grading.exports.grades import grade_line
 from course.grading.gradebook.records import Key, Result
 from course.grading.intake.students import Entry
@@ -129,7 +130,9 @@ def test_an_interrupted_regrading_goes_on_where_it_was(tmp_path: Path, catalog: 
         assert [len(book.history(name, "doubling")) for name in ("ada", "bob", "cy")] == [2, 2, 2]
 
 
-def test_a_students_installation_cannot_regrade(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_students_installation_can_neither_regrade_nor_pack_an_autograder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     shutil.copytree(MINI, tmp_path / "course")
     shutil.rmtree(tmp_path / "course" / "graders")
     monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
@@ -138,6 +141,9 @@ def test_a_students_installation_cannot_regrade(tmp_path: Path, monkeypatch: pyt
         pytest.raises(MissingCapabilityError, match="hidden graders"),
     ):
         rerun(Results(book), Catalog(), RerunOptions())
+    with pytest.raises(MissingCapabilityError, match="hidden graders"):
+        write_autograder(tmp_path / "a.zip", Catalog(), (), seed=1, timeout=1.0, asked=False)
+    assert not (tmp_path / "a.zip").exists()
 
 
 def test_nothing_decides_a_score_but_what_the_version_of_the_graders_covers() -> None:

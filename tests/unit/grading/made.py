@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import io
+import json
 import subprocess
-from collections.abc import Callable, Iterator, Sequence
+import zipfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +30,21 @@ HOSTILE = [
     "\u00a0", "\uff1d1", "O'Neil", "a\x00b", "\ufffe\uffff", "x" * 300,
     'a\\"b', "a\\", "\U0001f680 Ada", "\U0001f469\u200d\U0001f680", "\u05d0\u05d3\u05d4",
 ]  # fmt: skip
+
+
+def zipped(members: Mapping[str, bytes | str]) -> bytes:
+    """An archive, with the very names."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        for name, content in members.items():
+            archive.writestr(zipfile.ZipInfo(name), content)
+    return buffer.getvalue()
+
+
+def notebook(*cells: str) -> bytes:
+    """One of code cells."""
+    made = [{"cell_type": "code", "source": cell, "metadata": {}, "outputs": []} for cell in cells]
+    return json.dumps({"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": made}).encode()
 
 
 def read_class(folder: Path, exercises: Sequence[Exercise], *, required: bool) -> Iterator[Entry]:

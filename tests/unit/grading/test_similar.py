@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
-import pathlib
 import shutil
 import signal
 import subprocess
@@ -26,8 +25,8 @@ from course.grading.similar import (
     Document,
     Group,
     Pair,
-    Parser,
     Prints,
+    Similar,
     _blocks,
     _groups,
     _pairs,
@@ -35,7 +34,9 @@ from course.grading.similar import (
     fingerprints,
     page,
 )
+from course.physics import integrators
 from course.scoring.judging.submission import Submission
+from course.simulations.experiments import dynamics
 from tests.growth import LIMIT, growth
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.made import RIGHT, key, make_book
@@ -111,98 +112,107 @@ def class_of(tmp_path: Path, sources: dict[str, str | bytes]):
     return book
 
 
-def test_a_copy_with_other_names_layout_and_order_is_found(tmp_path: Path, catalog: Catalog) -> None:
+BLOCK = "".join(f"    a{n} = b{n}[{n}] + c(d, {n})\n" for n in range(12))
+BOB = "<b>bob&co</b>"
+#: What hurts the parser.
+BAD = {
+    "syntax": b"def (",
+    "nul": b"\x00",
+    "bytes": b"\xff\xfe",
+    "parentheses": b"(" * 5000,
+    "minus": b"x = " + b"-" * 200_000 + b"1",
+    "plus": b"x = " + b"1+" * 100_000 + b"1",
+    "long": ORIGINAL.encode() + b"#" * LONGEST,
+}
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What a source would leave, were it run."""
+    return tmp_path_factory.mktemp("ran") / "ran"
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory: pytest.TempPathFactory, catalog: Catalog, ran: Path) -> Similar:
+    """A copy under hostile names, the stub, modules that a student has of the course, and what is no code."""
     stub = catalog.exercise("doubling").stub_path.read_text("utf-8")
-    sources = {"ada": ORIGINAL, "bob": RENAMED, "cy": OTHER, "dan": stub, "eve": stub + "\n\nx = 1\n"}
-    with class_of(tmp_path, sources) as book:
-        found = compare(Results(book), catalog, (), at_least=0.6)
-    pairs = {frozenset((pair.first.label, pair.second.label)): pair for pair in found.pairs}
-    assert frozenset(("ada", "bob")) in pairs
-    assert pairs[frozenset(("ada", "bob"))].share > 0.95
-    assert not [both for both in pairs if "cy" in both]
-    assert not [both for both in pairs if both & {"dan", "eve"}], "what the stub gave is nobody's"
-    assert found.compared == 5
-
-
-def test_what_the_stub_gave_is_nobodys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from course.catalog.load import Catalog
-
-    shutil.copytree(MINI, tmp_path / "course")
-    (tmp_path / "course" / "exercises" / "doubling" / "doubling.py").write_text(ORIGINAL, "utf-8")
-    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
-    sources = {"ada": ORIGINAL + "def own():\n" + BLOCK, "bob": ORIGINAL + OTHER, "cy": ORIGINAL}
-    with class_of(tmp_path / "out", sources) as book:
-        assert compare(Results(book), Catalog(), (), at_least=0.3).pairs == []
-
-
-def test_what_the_course_itself_has_is_recognised(tmp_path: Path, catalog: Catalog) -> None:
-    import course.physics.integrators as textbook
-
-    assert textbook.__file__ is not None
-    with class_of(
-        tmp_path, {"ada": pathlib.Path(textbook.__file__).read_bytes() + b"\nx = 1\n", "cy": OTHER}
-    ) as book:
-        found = compare(Results(book), catalog, (), at_least=0.6)
-    assert [(pair.first.label, pair.second.label) for pair in found.pairs] == [
-        ("ada", "course.physics.integrators")
-    ]
-
-
-def test_every_module_that_a_student_has_is_the_courses_own(tmp_path: Path, catalog: Catalog) -> None:
-    """Another exercise's checks and what the lessons run, not only this exercise's files and the textbook."""
-    import course.simulations.experiments.dynamics as shown
-
-    assert shown.__file__ is not None
-    other = MINI / "exercises" / "halving" / "checks.py"
-    copied = {"ada": pathlib.Path(shown.__file__), "bob": other}
-    sources = {name: path.read_bytes() for name, path in copied.items()}
-    with class_of(tmp_path, {**sources, "cy": OTHER}) as book:
-        found = compare(Results(book), catalog, (), at_least=0.6)
-    pairs = {(pair.first.label, pair.second.label) for pair in found.pairs}
-    assert pairs == {
-        ("ada", "course.simulations.experiments.dynamics"),
-        ("bob", "exercises/halving/checks.py"),
+    sources = {
+        "ada": ORIGINAL,
+        BOB: "# <script>alert(1)</script> \u202e\n" + RENAMED,
+        "cy": f"open({str(ran)!r}, 'w').close()\n{OTHER}",
+        "dan": stub,
+        "eve": stub + "\n\nx = 1\n",
+        "tom": Path(integrators.__file__).read_bytes() + b"\nx = 1\n",
+        "uli": Path(dynamics.__file__).read_bytes(),
+        "vic": (MINI / "exercises" / "halving" / "checks.py").read_bytes(),
     }
+    with class_of(tmp_path_factory.mktemp("class"), sources | BAD) as book:
+        return compare(Results(book), catalog, (), at_least=0.6)
 
 
-def test_many_copies_of_one_file_are_all_found_without_all_pairs(tmp_path: Path, catalog: Catalog) -> None:
-    sources = {f"student {number:03}": ORIGINAL + f"# {number}\n" for number in range(60)}
-    with class_of(tmp_path, sources) as book:
-        found = compare(Results(book), catalog, ("doubling",), at_least=0.6)
-    assert {pair.share for pair in found.pairs} == {1.0}
-    named = {label for pair in found.pairs for label in (pair.first.label, pair.second.label)}
-    assert named == sources.keys()
-    assert len(found.pairs) == 59
+def test_copies_of_a_student_or_of_what_the_course_itself_has_are_found_and_nothing_else(
+    found: Similar, ran: Path
+) -> None:
+    """Whatever the names, the layout and the order; of the course not only this exercise and the textbook."""
+    pairs = {(pair.first.label, pair.second.label): pair for pair in found.pairs}
+    assert pairs.keys() == {
+        (BOB, "ada"),
+        ("tom", "course.physics.integrators"),
+        ("uli", "course.simulations.experiments.dynamics"),
+        ("vic", "exercises/halving/checks.py"),
+    }, "what the stub gave is nobody's"
+    assert pairs[BOB, "ada"].share > 0.95
+    assert not ran.exists(), "a source is never run"
 
 
-def test_what_an_exercise_ships_beside_its_stub_is_recognised(
+def test_sources_that_hurt_the_parser_or_are_too_long_are_named_and_the_rest_compared(found: Similar) -> None:
+    assert {f"{name} doubling" for name in ("syntax", "nul", "parentheses", "long")} <= set(found.unreadable)
+    assert set(found.unreadable) <= {f"{name} doubling" for name in BAD}
+    assert found.compared + len(found.unreadable) == 8 + len(BAD)
+
+
+def test_the_page_shows_text_as_text(found: Similar) -> None:
+    text = page(found)
+    assert "<script" not in text
+    assert "\u202e" not in text
+    assert "<b>bob" not in text
+    assert "&lt;b&gt;bob&amp;co&lt;/b&gt;" in text
+    assert '<span class="alike">' in text
+    assert "http" not in text.replace("http-equiv", "")
+    assert faults(Page(text), scripted=False) == [], "every passage leads to the same one opposite"
+    assert 'href="#p1-b-1"' in text
+
+
+def test_what_the_stub_gave_is_nobodys_and_what_lies_beside_it_is_the_courses(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from course.catalog.load import Catalog
-
     shutil.copytree(MINI, tmp_path / "course")
-    (tmp_path / "course" / "exercises" / "doubling" / "helper.py").write_text(ORIGINAL, "utf-8")
+    exercise = tmp_path / "course" / "exercises" / "doubling"
+    (exercise / "doubling.py").write_text(ORIGINAL, "utf-8")
+    (exercise / "helper.py").write_text(OTHER, "utf-8")
     monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
-    with class_of(tmp_path / "out", {"ada": ORIGINAL + "x = 1\n", "cy": OTHER}) as book:
-        found = compare(Results(book), Catalog(), (), at_least=0.6)
-    assert [(pair.first.label, pair.second.label) for pair in found.pairs] == [
-        ("ada", "the exercise's helper.py")
-    ]
+    sources = {"ada": ORIGINAL + OTHER, "bob": ORIGINAL + "def own():\n" + BLOCK, "cy": ORIGINAL}
+    with class_of(tmp_path / "out", sources) as book:
+        pairs = compare(Results(book), Catalog(), (), at_least=0.3).pairs
+    assert [(pair.first.label, pair.second.label) for pair in pairs] == [("ada", "the exercise's helper.py")]
 
 
 def test_copies_do_not_keep_others_off_the_list(tmp_path: Path, catalog: Catalog) -> None:
-    """Of a few copies, too, each is listed with the first; and that one with whoever is nearly the same."""
+    """Each copy is listed with the first alone, and that one with whoever is nearly the same.
+
+    Of more copies than may propose a pair, too, and where the first is the course's own.
+    """
     sources = {f"a {number}": ORIGINAL + f"# {number}\n" for number in range(8)}
     sources |= {"near": ORIGINAL.replace("return", "print('done')\n    return", 1)}
     model = (MINI / "solutions" / "doubling" / "doubling.py").read_text("utf-8")
-    sources |= {f"model {number}": model + f"# {number}\n" for number in range(3)}
+    sources |= {f"model {number}": model + f"# {number}\n" for number in range(45)}
     with class_of(tmp_path, sources) as book:
         found = compare(Results(book), catalog, ("doubling",), at_least=0.6)
     pairs = {(pair.first.label, pair.second.label) for pair in found.pairs}
     assert pairs == {
         *(("a 0", f"a {number}") for number in range(1, 8)),
         ("a 0", "near"),
-        *((f"model {number}", "the model solution") for number in range(3)),
+        *((f"model {number}", "the model solution") for number in range(45)),
     }
     (group,) = found.groups
     assert group.members == (*(f"a {number}" for number in range(8)), "near")
@@ -212,27 +222,28 @@ def test_copies_do_not_keep_others_off_the_list(tmp_path: Path, catalog: Catalog
     assert table[1][1:] == ["doubling", "9", f"{100 * group.share:.0f}\u00a0%"]
 
 
-def test_right_solutions_of_the_course_share_little_with_the_model_solution(
+def test_right_solutions_share_little_with_the_model_solution_and_with_each_other(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The default of ``--share`` rests on it, and docs/instructor.md says it."""
-    from course.catalog.load import Catalog
-
+    """The default of ``--share`` lies between them and a copy, and docs/instructor.md says it."""
     monkeypatch.delenv("COURSE_CONTENT", raising=False)
-    catalog, most = Catalog(), 0.0
+    catalog, with_model, with_others = Catalog(), [], []
     assert catalog.content.solutions is not None
-    with Parser() as parse:
-        for name in catalog.exercise_ids():
-            exercise, folder = catalog.exercise(name), catalog.content.solutions / name
-            files = [folder / exercise.module, *sorted((folder / "accepted").glob("*.py"))]
-            documents = [Document(file.name, "", parse(file.read_bytes())) for file in files]
-            ignored = set(parse(exercise.stub_path.read_bytes()).marks)
-            shares = {
-                (pair.first.label, pair.second.label): pair.share
-                for pair in _pairs(name, documents, ignored, 0.0)
-            }
-            most = max([most, *(share for both, share in shares.items() if exercise.module in both)])
-    assert 0.38 < most < 0.395
+    for name in catalog.exercise_ids():
+        exercise, folder = catalog.exercise(name), catalog.content.solutions / name
+        files = [folder / exercise.module, *sorted((folder / "accepted").glob("*.py"))]
+        documents = [Document(file.name, "", fingerprints(file.read_bytes())) for file in files]
+        ignored = set(fingerprints(exercise.stub_path.read_bytes()).marks)
+        with_model += [
+            pair.share
+            for pair in _pairs(name, documents, ignored, 0.0)
+            if exercise.module in {pair.first.label, pair.second.label}
+        ]
+        prints = [one.prints.marks.keys() for one in documents[1:] if len(one.prints.marks) >= 10]
+        with_others += [len(a & b) / min(len(a), len(b)) for a, b in itertools.combinations(prints, 2)]
+    assert 0.38 < max(with_model) < 0.395
+    assert len(with_others) > 20
+    assert max(with_others) < 0.5
 
 
 def test_pairs_make_groups_by_exercise_and_the_courses_own_code_connects_nobody() -> None:
@@ -248,32 +259,6 @@ def test_pairs_make_groups_by_exercise_and_the_courses_own_code_connects_nobody(
             Group("doubling", ("a", "b", "c", "d"), 0.7),
             Group("halving", ("a", "e", "f"), 0.8),
         ]
-
-
-def test_sources_that_hurt_the_parser_are_named_and_the_rest_compared(
-    tmp_path: Path, catalog: Catalog
-) -> None:
-    bad = {
-        "syntax": b"def (",
-        "nul": b"\x00",
-        "bytes": b"\xff\xfe",
-        "parentheses": b"(" * 5000,
-        "minus": b"x = " + b"-" * 200_000 + b"1",
-        "plus": b"x = " + b"1+" * 100_000 + b"1",
-    }
-    with class_of(tmp_path, {"ada": ORIGINAL, "bob": RENAMED, **bad}) as book:
-        found = compare(Results(book), catalog, (), at_least=0.6)
-    assert [{pair.first.label, pair.second.label} for pair in found.pairs] == [{"ada", "bob"}]
-    assert {"syntax doubling", "nul doubling", "parentheses doubling"} <= set(found.unreadable)
-    assert found.compared + len(found.unreadable) == 2 + len(bad)
-
-
-def test_a_source_that_is_too_long_is_named_and_never_parsed(tmp_path: Path, catalog: Catalog) -> None:
-    long = ORIGINAL + "#" * LONGEST
-    with class_of(tmp_path, {"ada": ORIGINAL, "bob": RENAMED, "long": long}) as book:
-        found = compare(Results(book), catalog, (), at_least=0.6)
-    assert found.unreadable == ["long doubling"]
-    assert [{pair.first.label, pair.second.label} for pair in found.pairs] == [{"ada", "bob"}]
 
 
 def _backwards(size: int) -> Callable[[], int]:
@@ -298,54 +283,14 @@ def test_a_process_that_parses_ends_when_its_time_is_used_up() -> None:
     assert done.returncode == -signal.SIGXCPU
 
 
-def test_a_source_is_never_run(tmp_path: Path) -> None:
-    trap = f"open({str(tmp_path / 'ran')!r}, 'w').close()\n"
-    with Parser() as parse:
-        assert parse(trap.encode()) is not None
-    assert not (tmp_path / "ran").exists()
-
-
-def test_the_page_shows_text_as_text(tmp_path: Path, catalog: Catalog) -> None:
-    evil = "# <script>alert(1)</script> \u202e\n" + ORIGINAL
-    with class_of(tmp_path, {"<b>ada</b>": evil, "bob&co": RENAMED}) as book:
-        text = page(compare(Results(book), catalog, (), at_least=0.5))
-    assert "<script" not in text
-    assert "\u202e" not in text
-    assert "<b>ada" not in text
-    assert "&lt;b&gt;ada&lt;/b&gt;" in text
-    assert "bob&amp;co" in text
-    assert '<span class="alike">' in text
-    assert "http" not in text.replace("http-equiv", "")
-    assert faults(Page(text), scripted=False) == [], "every passage leads to the same one opposite"
-    assert 'href="#p1-b-1"' in text
-
-
-def test_right_solutions_that_were_written_differently_are_not_alike(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The course's own unusual solutions; the default of ``--share`` lies between them and a copy."""
-    from course.catalog.load import Catalog
-
-    monkeypatch.delenv("COURSE_CONTENT", raising=False)
-    catalog = Catalog()
-    assert catalog.content.solutions is not None
-    shares: list[float] = []
-    for exercise in catalog.exercises():
-        paths = sorted((catalog.content.solutions / exercise.id / "accepted").glob("*.py"))
-        found = [fingerprints(path.read_bytes()) for path in paths]
-        prints = [item.marks.keys() for item in found if item is not None and len(item.marks) >= 10]
-        for one, other in itertools.combinations(prints, 2):
-            shares.append(len(one & other) / min(len(one), len(other)))
-    assert len(shares) > 20
-    assert max(shares) < 0.5
-
-
-BLOCK = "".join(f"    a{n} = b{n}[{n}] + c(d, {n})\n" for n in range(12))
+PASSAGE = fingerprints(("def f():\n" + BLOCK).encode())
 
 
 @settings(max_examples=30)
 @given(st.lists(st.sampled_from(["x = 1", "y += f(x)", "if x: pass", "z = [q for q in x]"]), max_size=12))
 def test_a_long_shared_passage_is_never_missed(before: list[str]) -> None:
     """Winnowing's promise: any passage of RUN + WINDOW - 1 nodes leaves a common mark."""
-    one = fingerprints(("def f():\n" + BLOCK).encode())
+    one = PASSAGE
     other = fingerprints(("\n".join(before) + "\ndef g():\n" + BLOCK).encode())
     assert one is not None
     assert other is not None

@@ -9,7 +9,7 @@ import contextlib
 import socket
 import struct
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from time import monotonic
 from typing import Any
 
@@ -80,24 +80,44 @@ def _value(kind: int, value: Any) -> bytes:
     return Codec().encode(kind, value)
 
 
+_opened: list[Connection] = []
+
+
+@pytest.fixture(autouse=True)
+def _closed() -> Iterator[None]:
+    yield
+    while _opened:
+        _opened.pop().close()
+
+
 def _connect(*frames: bytes, script: Any = None, seconds: float = 2.0, loaded: bool = True) -> Connection:
     begin = (READY, LOADED) if loaded else ()
     liar = Liar(*begin, *frames, script=script)
-    return Connection(liar, {"a.py": _SOURCE}, "a.py", Deadline(seconds))  # type: ignore[arg-type]
+    _opened.append(Connection(liar, {"a.py": _SOURCE}, "a.py", Deadline(seconds)))  # type: ignore[arg-type]
+    return _opened[-1]
+
+
+def _failure(connection: Connection, *arguments: Any, name: str = "f") -> StudentFailure:
+    with pytest.raises(StudentFailure) as caught:
+        connection.call(name, *arguments)
+    return caught.value
+
+
+def _refusal(*frames: bytes, seconds: float = 2.0) -> str:
+    """The stage at which loading is refused."""
+    with pytest.raises(LoadRefusedError) as caught:
+        _connect(*frames, loaded=False, seconds=seconds)
+    return caught.value.stage
 
 
 def test_an_answer_is_taken_as_a_plain_value() -> None:
     connection = _connect(_value(Kind.RESULT, [1.0, None]))
     assert connection.call("f", 1) == [1.0, None]
-    connection.close()
 
 
 def test_a_name_that_was_not_loaded_is_missing_without_asking() -> None:
     connection = _connect()
-    with pytest.raises(StudentFailure) as caught:
-        connection.call("h")
-    assert caught.value.kind == "missing"
-    connection.close()
+    assert _failure(connection, name="h").kind == "missing"
 
 
 # -- starting -------------------------------------------------------------------------------------------
@@ -115,9 +135,7 @@ def test_a_worker_that_ends_before_it_is_ready_is_our_fault() -> None:
 
 def test_a_submission_cannot_claim_that_the_lockdown_failed() -> None:
     claim = {"stage": "lockdown", "message": "no Landlock", "type": "LockdownError"}
-    with pytest.raises(LoadRefusedError) as caught:
-        _connect(READY, _value(Kind.REFUSED, claim), loaded=False)
-    assert caught.value.stage == "import"
+    assert _refusal(READY, _value(Kind.REFUSED, claim)) == "import"
 
 
 def test_time_to_start_is_not_taken_from_the_submission() -> None:
@@ -127,13 +145,10 @@ def test_time_to_start_is_not_taken_from_the_submission() -> None:
 
     connection = _connect(script=late, seconds=0.2, loaded=False)
     assert connection.functions == {"f", "g"}
-    connection.close()
 
 
 def test_loading_that_takes_too_long_is_the_submissions_timeout() -> None:
-    with pytest.raises(LoadRefusedError) as caught:
-        _connect(READY, loaded=False, seconds=0.2)
-    assert caught.value.stage == "timeout"
+    assert _refusal(READY, seconds=0.2) == "timeout"
 
 
 # -- answers --------------------------------------------------------------------------------------------
@@ -165,9 +180,8 @@ _BREACHES = {
 @pytest.mark.parametrize("frame", _BREACHES.values(), ids=_BREACHES.keys())
 def test_speaking_out_of_turn_ends_the_worker_and_nothing_else(frame: bytes) -> None:
     connection = _connect(frame)
-    with pytest.raises(StudentFailure) as caught:
-        connection.call("f", lambda: 1)
-    assert caught.value.kind == "protocol"
+    failure = _failure(connection, lambda: 1)
+    assert failure.kind == "protocol"
     assert not connection.alive
 
 
@@ -186,11 +200,9 @@ _REPORTS = {
 @pytest.mark.parametrize("report", _REPORTS.values(), ids=_REPORTS.keys())
 def test_a_report_of_an_exception_in_any_form_is_an_error_of_the_submission(report: Any) -> None:
     connection = _connect(_value(Kind.RAISED, report))
-    with pytest.raises(StudentFailure) as caught:
-        connection.call("f")
-    assert caught.value.kind == "error"
-    assert caught.value.line is None
-    connection.close()
+    failure = _failure(connection)
+    assert failure.kind == "error"
+    assert failure.line is None
 
 
 @pytest.mark.parametrize(
@@ -199,21 +211,16 @@ def test_a_report_of_an_exception_in_any_form_is_an_error_of_the_submission(repo
 def test_only_lines_that_the_file_has_are_believed(line: Any, taken: int | None) -> None:
     for report in ({"line": line}, {"frames": [["a.py", line, "f"]]}):
         connection = _connect(_value(Kind.RAISED, report))
-        with pytest.raises(StudentFailure) as caught:
-            connection.call("f")
-        assert caught.value.line == taken
-        connection.close()
+        assert _failure(connection).line == taken
 
 
 def test_a_traceback_shows_the_last_frames_of_the_students_file_only() -> None:
     frames = [["/usr/lib/numpy.py", 1, "n"], *[["a.py", 1, "f"]] * 30_000, ["a.py", 2, "g\x1b[2J"]]
     connection = _connect(_value(Kind.RAISED, {"type": "E", "frames": frames}))
-    with pytest.raises(StudentFailure) as caught:
-        connection.call("f")
-    lines = caught.value.traceback.splitlines()
+    failure = _failure(connection)
+    lines = failure.traceback.splitlines()
     assert len(lines) <= 24
     assert lines[-2:] == ["a.py:2 in g\\x1b[2J", "    return x"]
-    connection.close()
 
 
 def test_what_a_submission_says_cannot_steer_a_terminal() -> None:
@@ -221,9 +228,8 @@ def test_what_a_submission_says_cannot_steer_a_terminal() -> None:
         _value(Kind.RAISED, {"type": "\x1b[2J", "message": "\x9b\u202e\r\n", "bases": ["\x07"]})
     )
     connection._handle.printed = "\x1b[1A100/100"  # type: ignore[attr-defined]
-    with pytest.raises(StudentFailure) as caught:
-        connection.call("f")
-    assert (caught.value.type, caught.value.message) == ("\\x1b[2J", "\\x9b\\u202e\\r\\n")
+    failure = _failure(connection)
+    assert (failure.type, failure.message) == ("\\x1b[2J", "\\x9b\\u202e\\r\\n")
     assert connection.output() == "\\x1b[1A100/100"
     connection.close()
     assert connection.output() == "\\x1b[1A100/100"
@@ -237,15 +243,13 @@ def test_functions_are_evaluated_here_and_counted_here() -> None:
     connection = _connect(_value(Kind.CALLBACK, [0, None, 2.0]), _value(Kind.RESULT, 1))
     assert connection.call("f", seen.append) == 1
     assert seen == [2.0]
-    connection.close()
 
 
 def test_more_data_than_any_solution_needs_ends_a_call() -> None:
     kept: list[Any] = []
     connection = _connect(*[_value(Kind.CALLBACK, [0, None, np.zeros(1 << 18)])] * 20, _value(Kind.RESULT, 1))
-    with pytest.raises(StudentFailure) as caught:
-        connection.call("f", kept.append)
-    assert caught.value.kind == "protocol"
+    failure = _failure(connection, kept.append)
+    assert failure.kind == "protocol"
     assert sum(array.nbytes for array in kept) <= 18 << 20
 
 
@@ -253,7 +257,6 @@ def test_each_call_may_use_the_allowance_anew() -> None:
     frames = [_value(Kind.CALLBACK, [0, None, np.zeros(1 << 20)]), _value(Kind.RESULT, 1)] * 3
     connection = _connect(*frames)
     assert [connection.call("f", lambda array: None) for _ in range(3)] == [1] * 3
-    connection.close()
 
 
 def test_all_that_comes_in_one_check_has_a_limit_and_the_next_check_begins_anew() -> None:
@@ -262,7 +265,6 @@ def test_all_that_comes_in_one_check_has_a_limit_and_the_next_check_begins_anew(
         connection.deadline = Deadline(2.0)
         for _ in range(3):
             connection.call("f")
-    connection.close()
     connection = _connect(*[_value(Kind.RESULT, np.zeros(1 << 20))] * 4)
     for _ in range(3):
         connection.call("f")
@@ -278,7 +280,6 @@ def test_a_refusal_of_ours_outweighs_what_came_of_it() -> None:
     connection = _connect(_value(Kind.CALLBACK, [0, None, 1]), _value(Kind.RESULT, 5))
     with pytest.raises(AssertionError, match="not a vector"):
         connection.call("f", refuses)
-    connection.close()
 
 
 def test_calling_each_other_across_the_wire_has_an_end() -> None:
@@ -290,9 +291,7 @@ def test_calling_each_other_across_the_wire_has_an_end() -> None:
     def again(function: RemoteFunction) -> Any:
         return function(1.0)
 
-    with pytest.raises(StudentFailure) as caught:
-        connection.call("f", again)
-    assert caught.value.kind == "protocol"
+    assert _failure(connection, again).kind == "protocol"
 
 
 def test_systems_and_functions_of_the_student_arrive_as_what_they_are() -> None:
@@ -302,7 +301,6 @@ def test_systems_and_functions_of_the_student_arrive_as_what_they_are() -> None:
     assert isinstance(function, RemoteFunction)
     assert function.number == 7
     assert system == systems.Oscillator(2.0)
-    connection.close()
 
 
 @pytest.mark.parametrize("answer", [None, [1], [1, [2], 1], [1, [], True], np.zeros((3, 1)), {"a": 1}])
@@ -350,7 +348,6 @@ def test_nothing_holds_the_grader_beyond_the_deadline(script: Any) -> None:
     connection.deadline = Deadline(0.3)
     large = np.zeros(8 << 20)
     start = monotonic()
-    with pytest.raises(StudentFailure) as caught:
-        connection.call("f", lambda: large)
-    assert caught.value.kind == "timeout"
+    failure = _failure(connection, lambda: large)
+    assert failure.kind == "timeout"
     assert monotonic() - start < 30  # wall: a busy machine may take its time, a hang would last for ever

@@ -74,14 +74,6 @@ def test_a_session_goes_to_the_processor_on_which_the_sandbox_was_opened(opened:
         third.close()
 
 
-def test_two_at_once_have_one_each(opened: list[Sandbox]) -> None:
-    with kept_sandboxes():
-        first, second = sandbox_for(("numpy",)), sandbox_for(("numpy",))
-        first.close()
-        second.close()
-        assert len(opened) == 2
-
-
 def test_what_no_longer_proves_itself_is_closed_and_replaced(opened: list[Sandbox]) -> None:
     with kept_sandboxes():
         sandbox_for(("numpy",)).close()

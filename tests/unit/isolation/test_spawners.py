@@ -9,7 +9,7 @@ import shutil
 import signal
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from time import monotonic, sleep
 from typing import Any
@@ -18,8 +18,8 @@ import pytest
 
 from course.isolation import launch, probe, spawn
 from course.isolation.failures import IsolationError, StudentFailure
-from course.isolation.launch import View, view_for
-from course.isolation.levels import LIMITS, Deadline, Level
+from course.isolation.launch import View
+from course.isolation.levels import Deadline, Level
 from course.isolation.probe import open_spawner
 from course.isolation.session import Connection
 from course.isolation.spawn import ProcessSpawner, spawner
@@ -41,36 +41,42 @@ def _connect(found: Any, source: str) -> Connection:
     return Connection(found, {"a.py": source.encode()}, "a.py", Deadline(20))
 
 
-# -- cleaning up ----------------------------------------------------------------------------------------
+def _connect_once(found: Any) -> int:
+    connection = _connect(found, "f = lambda: 1\n")
+    try:
+        return int(connection.call("f"))
+    finally:
+        connection.close()
 
 
-def test_a_tree_of_any_depth_is_removed(tmp_path: Path) -> None:
-    top = tmp_path / "top"
+@pytest.fixture
+def opened() -> Iterator[Callable[[str], Any]]:
+    """Opens a level, or skips the test where the machine lacks it."""
+    with contextlib.ExitStack() as stack:
+        yield lambda level: stack.enter_context(contextlib.closing(spawner(require_level(level), ("numpy",))))
+
+
+def deep(top: Path, name: str, *files: str) -> None:
+    """A tree deeper than recursion goes, and than a path may be, with empty files on each floor."""
     top.mkdir()
     here = os.open(top, os.O_RDONLY)
-    for _ in range(1500):  # deeper than recursion goes, and longer than a path may be
-        os.mkdir("d" * 20, dir_fd=here)
-        below = os.open("d" * 20, os.O_RDONLY, dir_fd=here)
+    for _ in range(1500):
+        for file in files:
+            os.close(os.open(file, os.O_CREAT | os.O_WRONLY, dir_fd=here))
+        os.mkdir(name, dir_fd=here)
+        below = os.open(name, os.O_RDONLY, dir_fd=here)
         os.close(here)
         here = below
     os.close(here)
-    launch.remove_tree(top)
-    assert not top.exists()
+
+
+# -- cleaning up ----------------------------------------------------------------------------------------
 
 
 def test_what_cannot_be_deleted_keeps_nothing_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """However deep the rest is: what a killed session left behind must not end the next one."""
     top, stays = tmp_path / "top", "stays"
-    here = os.open(tmp_path, os.O_RDONLY)
-    os.mkdir("top", dir_fd=here)
-    for name in ("top", *["d"] * 1500):  # deeper than recursion, and than a path may be
-        below = os.open(name, os.O_RDONLY, dir_fd=here)
-        os.close(here)
-        here = below
-        for file in ("file", stays):
-            os.close(os.open(file, os.O_CREAT | os.O_WRONLY, dir_fd=here))
-        os.mkdir("d", dir_fd=here)
-    os.close(here)
+    deep(top, "d", "file", stays)
     unlink = os.unlink
 
     def refusing(path: str, **named: Any) -> None:
@@ -82,8 +88,10 @@ def test_what_cannot_be_deleted_keeps_nothing_else(tmp_path: Path, monkeypatch: 
     launch.remove_tree(top)
     assert {path.name for path in top.rglob("*") if path.is_file()} == {stays}
     monkeypatch.undo()
-    launch.remove_tree(top)
-    assert not top.exists()
+    deep(tmp_path / "longer than a path may be", "d" * 20)
+    for path in list(tmp_path.iterdir()):
+        launch.remove_tree(path)
+        assert not path.exists()
 
 
 def test_deleting_what_somebody_left_stops_in_time_and_goes_on_later(
@@ -121,9 +129,8 @@ def test_closed_folders_and_links_are_removed_but_not_followed(tmp_path: Path) -
 
 
 @pytest.mark.parametrize("level", ["L1", "L2", "L3"])
-def test_a_session_leaves_no_file(level: str, temporary: Path) -> None:
-    require_level(level)
-    found = spawner(Level(level), ("numpy",))
+def test_a_session_leaves_no_file(level: str, temporary: Path, opened: Any) -> None:
+    found = opened(level)
     connection = _connect(
         found, "import os\nos.mkdir('closed', 0o300)\nopen('closed/f', 'w').close()\nf = lambda: 1\n"
     )
@@ -138,10 +145,8 @@ def test_a_session_leaves_no_file(level: str, temporary: Path) -> None:
 
 
 @pytest.fixture
-def plain() -> Iterator[ProcessSpawner]:
-    found = ProcessSpawner(view_for(("numpy",)), ("numpy",), LIMITS)
-    yield found
-    found.close()
+def plain(opened: Any) -> ProcessSpawner:
+    return opened("L1")
 
 
 def test_a_plain_process_answers_prints_and_ends(plain: ProcessSpawner) -> None:
@@ -155,14 +160,11 @@ def test_a_plain_process_answers_prints_and_ends(plain: ProcessSpawner) -> None:
 
 
 def test_a_plain_process_that_dies_is_a_crash_with_its_signal(plain: ProcessSpawner) -> None:
-    connection = _connect(plain, "import os\ndef f():\n    os.abort()\ndef g():\n    os._exit(7)\n")
-    with pytest.raises(StudentFailure) as caught:
-        connection.call("f")
-    assert (caught.value.kind, caught.value.type) == ("crash", f"signal {int(signal.SIGABRT)}")
-    connection = _connect(plain, "import os\ndef g():\n    os._exit(7)\n")
-    with pytest.raises(StudentFailure) as caught:
-        connection.call("g")
-    assert caught.value.type == "exit code 7"
+    for ends, told in (("abort()", f"signal {int(signal.SIGABRT)}"), ("_exit(7)", "exit code 7")):
+        connection = _connect(plain, f"import os\ndef f():\n    os.{ends}\n")
+        with pytest.raises(StudentFailure) as caught:
+            connection.call("f")
+        assert (caught.value.kind, caught.value.type) == ("crash", told)
 
 
 @linux_only
@@ -215,121 +217,75 @@ def test_the_next_plain_process_is_ready_before_it_is_needed(plain: ProcessSpawn
 
 
 @pytest.mark.parametrize("level", ["L2", "L3"])
-def test_a_zygote_that_died_is_replaced(level: str) -> None:
-    require_level(level)
-    found: Any = spawner(Level(level), ("numpy",))
-    try:
-        assert _connect_once(found) == 1
-        found._process.kill()
-        select.select([found._control], [], [], 10)  # what is inside bubblewrap ends a little later
-        assert _connect_once(found) == 1
-    finally:
-        found.close()
+def test_a_zygote_that_died_under_a_worker_is_our_error_and_is_replaced(level: str, opened: Any) -> None:
+    found = opened(level)
+    connection = _connect(found, "import time\ndef f():\n    time.sleep(20)\n")
+    found._process.kill()
+    found._process.wait()
+    with pytest.raises(IsolationError):
+        connection.call("f")
+    select.select([found._control], [], [], 10)  # what is inside bubblewrap ends a little later
+    assert _connect_once(found) == 1
 
 
-def _connect_once(found: Any) -> int:
-    connection = _connect(found, "f = lambda: 1\n")
-    try:
-        return int(connection.call("f"))
-    finally:
-        connection.close()
-
-
-@pytest.mark.parametrize("level", ["L2", "L3"])
-def test_a_worker_whose_zygote_died_is_our_error_and_not_the_students(level: str) -> None:
-    require_level(level)
-    found: Any = spawner(Level(level), ("numpy",))
-    try:
-        connection = _connect(found, "import time\ndef f():\n    time.sleep(20)\n")
-        found._process.kill()
-        found._process.wait()
-        with pytest.raises(IsolationError):
-            connection.call("f")
-    finally:
-        found.close()
-
-
-@pytest.mark.parametrize("level", ["L2", "L3"])
-def test_a_layer_that_fails_stops_the_worker_before_any_stranger_runs(
-    level: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    require_level(level)
-    copy = launch.copy_worker_files
-
-    def sabotaged(target: Path) -> None:
-        copy(target)
-        with (target / _LOCKDOWN).open("a", encoding="utf-8") as handle:
-            handle.write("\n\ndef apply_seccomp(program):\n    raise LockdownError(0, 'sabotaged')\n")
-
-    monkeypatch.setattr(launch, "copy_worker_files", sabotaged)
-    found = spawner(Level(level), ("numpy",))
-    try:
-        with pytest.raises(IsolationError, match="sabotaged"):
-            _connect(found, "f = lambda: 1\n")
-    finally:
-        found.close()
-
-
-#: Each layer taken away, and what the canary then reports. That a test can tell proves that it tests.
+#: A layer that fails, or does nothing, and what is said. That a test can tell proves that it tests.
 _LAYERS = [
-    ("L2", "landlock_apply", "read a file"),
-    ("L2", "apply_seccomp", "start a process"),
-    ("L3", "apply_seccomp", "start a process|open a"),
+    ("L2", "apply_seccomp", "raise LockdownError(0, 'sabotaged')", "sabotaged"),
+    ("L3", "apply_seccomp", "raise LockdownError(0, 'sabotaged')", "sabotaged"),
+    ("L2", "landlock_apply", "pass", "read a file"),
+    ("L2", "apply_seccomp", "pass", "start a process"),
+    ("L3", "apply_seccomp", "pass", "start a process|open a"),
 ]
 
 
-@pytest.mark.parametrize(("level", "layer", "escape"), _LAYERS)
-def test_the_canary_notices_a_layer_that_does_nothing(
-    level: str, layer: str, escape: str, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("level", "layer", "does", "said"), _LAYERS)
+def test_a_layer_that_fails_or_does_nothing_is_noticed_before_any_stranger_runs(
+    level: str, layer: str, does: str, said: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     require_level(level)
     copy = launch.copy_worker_files
 
-    def without(target: Path) -> None:
+    def changed(target: Path) -> None:
         copy(target)
         with (target / _LOCKDOWN).open("a", encoding="utf-8") as handle:
-            handle.write(f"\n\ndef {layer}(*_):\n    pass\n")
-            handle.write("\n\ndef apply_limits(**_):\n    pass\n")  # or they would stop the fork as well
+            handle.write(f"\n\ndef {layer}(*_):\n    {does}\n")
+            if does == "pass":
+                handle.write("\n\ndef apply_limits(**_):\n    pass\n")  # or they would stop the fork as well
 
-    monkeypatch.setattr(launch, "copy_worker_files", without)
-    with pytest.raises(IsolationError, match=escape):
+    monkeypatch.setattr(launch, "copy_worker_files", changed)
+    with pytest.raises(IsolationError, match=said):
         open_spawner(("numpy",), at_least=Level(level), at_most=Level(level))
 
 
-def test_without_bubblewrap_the_cause_and_the_advice_say_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    require_level("L2")
-    which = shutil.which
-    monkeypatch.setattr(shutil, "which", lambda name, *rest, **more: None if name == "bwrap" else which(name))
-    found = probe.probe()
-    assert found.level is Level.L2
-    assert "bubblewrap is not installed" in found.causes[0]
-    assert "bubblewrap" in found.advice[0]
-
-
-def test_a_bubblewrap_that_fails_is_a_cause_in_its_own_words(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("words", [None, "setting up uid map: Permission denied"], ids=["absent", "fails"])
+def test_a_bubblewrap_that_is_absent_or_fails_is_a_cause_in_its_own_words(
+    words: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     require_level("L2")
-    broken = tmp_path / "bwrap"
-    broken.write_text("#!/bin/sh\necho 'bwrap: setting up uid map: Permission denied' >&2\nexit 1\n", "utf-8")
-    broken.chmod(0o755)
-    monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
+    if words is None:
+        which = shutil.which
+        monkeypatch.setattr(
+            shutil, "which", lambda name, *more: None if name == "bwrap" else which(name, *more)
+        )
+    else:
+        broken = tmp_path / "bwrap"
+        broken.write_text(f"#!/bin/sh\necho 'bwrap: {words}' >&2\nexit 1\n", "utf-8")
+        broken.chmod(0o755)
+        monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
     found = probe.probe()
     assert found.level is Level.L2
-    assert "setting up uid map: Permission denied" in found.causes[0]
-    assert not any("disable" in advice or "sysctl" in advice for advice in found.advice)
+    assert (words or "bubblewrap is not installed") in found.causes[0]
+    assert words or "bubblewrap" in found.advice[0]
+    assert not words or not any("disable" in advice or "sysctl" in advice for advice in found.advice)
 
 
-def test_a_list_of_readable_paths_may_be_longer_than_an_argument(monkeypatch: pytest.MonkeyPatch) -> None:
-    require_level("L2")
+def test_a_list_of_readable_paths_may_be_longer_than_an_argument(
+    monkeypatch: pytest.MonkeyPatch, opened: Any
+) -> None:
     many = [Path(f"/usr/lib/no-such-library-of-a-large-installation-{k}") for k in range(4000)]
     expanded = View.expanded
     monkeypatch.setattr(View, "expanded", lambda self: [*expanded(self), *many])
-    found = spawner(Level.L2, ("numpy",))
-    try:
-        assert _connect_once(found) == 1
-    finally:
-        found.close()
+    assert _connect_once(opened("L2")) == 1
 
 
 def test_no_level_between_the_bounds_is_an_error_that_gives_every_cause(

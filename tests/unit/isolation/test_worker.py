@@ -48,19 +48,57 @@ def _failure(connection: Connection, *args: Any) -> StudentFailure:
 # -- loading --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "source",
-    [
-        b"\xef\xbb\xbfdef f():\n    return '\xc3\xa9'\n",
-        b"# -*- coding: latin-1 -*-\ndef f():\n    return '\xe9'\n",
-        b"def f():\r\n    return '\xc3\xa9'\r\n",
-        b"def f():\r    return '\xc3\xa9'\r",
-        b"# vim: set fileencoding=cp1252 :\ndef f():\n\treturn '\xe9'",
-    ],
-    ids=["byte-order mark", "latin-1", "CRLF", "CR", "no last newline"],
-)
-def test_source_is_read_as_python_reads_it(load: Any, source: bytes) -> None:
-    assert load(source).call("f") == "é"
+OURS = "def g():\n    return 5\n"
+
+
+def refuses(_: Any) -> None:
+    raise KeyError("no")
+
+
+#: What works -> the source, arguments of its ``f``, and what that returns.
+_WORKS: dict[str, tuple[str | bytes, tuple[Any, ...], Any]] = {
+    "byte-order mark": (b"\xef\xbb\xbfdef f():\n    return '\xc3\xa9'\n", (), "é"),
+    "latin-1": (b"# -*- coding: latin-1 -*-\ndef f():\n    return '\xe9'\n", (), "é"),
+    "CRLF": (b"def f():\r\n    return '\xc3\xa9'\r\n", (), "é"),
+    "CR": (b"def f():\r    return '\xc3\xa9'\r", (), "é"),
+    "no last newline": (b"# vim: set fileencoding=cp1252 :\ndef f():\n\treturn '\xe9'", (), "é"),
+    "an import with something to fall back on": (
+        "try:\n    from numba import njit\nexcept ImportError:\n    njit = lambda f: f\n"
+        "@njit\ndef f():\n    return 3\n", (), 3,
+    ),
+    "another file of the submission": ("from helper import g\n\ndef f():\n    return g()\n", (), 5),
+    "one with a name of ours": ("import wire\n\ndef f():\n    return wire.g()\n", (), 5),
+    "another with a name of ours": ("import systems\n\ndef f():\n    return systems.g()\n", (), 5),
+    "a third with a name of ours": ("import declared\n\ndef f():\n    return declared.g()\n", (), 5),
+    "all of the standard library, not just what is warm": (
+        "import asyncio, csv, ctypes, fractions, sqlite3, tempfile, unittest, xml.dom.minidom\n"
+        "import numpy.ma, numpy.testing\n"
+        "def f():\n    return float(fractions.Fraction(1, 4))\n", (), 0.25,
+    ),
+    "functions of both sides that call each other": (
+        "def f(call, n):\n    return call(lambda x: x + n, n)\n",
+        (lambda function, n: function(10.0) * n, 3), 39.0,
+    ),
+    "what a callback raises, as a ValueError": (
+        "def f(call):\n    try:\n        call(1)\n"
+        "    except ValueError as error:\n        return str(error)\n",
+        (refuses,), "KeyError: 'no'",
+    ),
+    "right-hand sides beside the student's code": (
+        "def f(accel):\n    return [type(accel).__name__, accel(0.0, [2.0], [0.0]).tolist()]\n",
+        (systems.Oscillator(3.0),), ["Oscillator", [-18.0]],
+    ),
+    "the student's own function as an argument": (
+        "def g(x):\n    return x + 1\n\ndef f(fn, x):\n    return fn(x)\n", ({"$function": "g"}, 1.0), 2.0
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", _WORKS)
+def test_what_works_at_home_works_here(load: Any, what: str) -> None:
+    source, arguments, due = _WORKS[what]
+    files = dict.fromkeys(("helper", "wire", "systems", "declared"), OURS)
+    assert load(source, **files).call("f", *arguments) == due
 
 
 @pytest.mark.parametrize(
@@ -78,18 +116,10 @@ def test_source_is_read_as_python_reads_it(load: Any, source: bytes) -> None:
         ("\ufeff\ufeffx = 1".encode(), None),
     ],
     ids=[
-        "colon",
-        "indent",
-        "not UTF-8",
-        "unknown coding",
-        "rot13",
-        "hex",
-        "zlib",
-        "NUL",
-        "parentheses",
+        "colon", "indent", "not UTF-8", "unknown coding", "rot13", "hex", "zlib", "NUL", "parentheses",
         "two marks",
     ],
-)
+)  # fmt: skip
 def test_source_that_python_cannot_read_is_refused_as_syntax(
     load: Any, source: bytes, line: int | None
 ) -> None:
@@ -154,11 +184,6 @@ def test_a_file_that_plots_is_loaded_and_only_what_needs_the_package_fails(load:
     assert connection.call("f") == 1
 
 
-def test_an_import_with_something_to_fall_back_on_falls_back(load: Any) -> None:
-    source = "try:\n    from numba import njit\nexcept ImportError:\n    njit = lambda f: f\n"
-    assert load(f"{source}@njit\ndef f():\n    return 3\n").call("f") == 3
-
-
 CONSTANTS = """\
 import math
 import numpy as np
@@ -196,28 +221,6 @@ def test_a_package_that_the_top_level_cannot_do_without_is_refused_with_its_line
         load("x = 1\nimport scipy\ny = ''.join(scipy.constants.g)\ny[3]\n")
     assert (caught.value.stage, caught.value.failure.line) == ("import", 2)
     assert "scipy" in caught.value.failure.message
-
-
-@pytest.mark.parametrize("name", ["wire", "systems", "declared"])
-def test_a_file_of_the_submission_may_have_a_name_of_ours(load: Any, name: str) -> None:
-    connection = load(
-        f"import {name}\n\ndef f():\n    return {name}.g()\n", **{name: "def g():\n    return 5\n"}
-    )
-    assert connection.call("f") == 5
-
-
-def test_the_whole_standard_library_can_be_imported_not_just_what_is_warm(load: Any) -> None:
-    connection = load(
-        "import asyncio, csv, ctypes, fractions, sqlite3, tempfile, unittest, xml.dom.minidom\n"
-        "import numpy.ma, numpy.testing\n"
-        "def f():\n    return float(fractions.Fraction(1, 4))\n"
-    )
-    assert connection.call("f") == 0.25
-
-
-def test_other_files_of_the_submission_can_be_imported(load: Any) -> None:
-    connection = load("from helper import g\n\ndef f():\n    return g()\n", helper="def g():\n    return 5\n")
-    assert connection.call("f") == 5
 
 
 def test_a_folder_to_write_to_is_there_and_small(load: Any, workers: Spawner) -> None:
@@ -300,40 +303,11 @@ def test_inspection_shows_nothing_of_a_generator(load: Any) -> None:
     assert after[1] is None
 
 
-def test_functions_of_both_sides_can_call_each_other(load: Any) -> None:
-    connection = load("def f(call, n):\n    return call(lambda x: x + n, n)\n")
-    assert connection.call("f", lambda function, n: function(10.0) * n, 3) == 39.0
-
-
-def test_what_a_callback_raises_reaches_the_caller_as_a_value_error(load: Any) -> None:
-    connection = load(
-        "def f(call):\n    try:\n        call(1)\n"
-        "    except ValueError as error:\n        return str(error)\n"
-    )
-
-    def refuses(_: Any) -> None:
-        raise KeyError("no")
-
-    assert connection.call("f", refuses) == "KeyError: 'no'"
-
-
 def test_a_generator_crosses_as_a_seed_and_draws_the_same_again(load: Any) -> None:
     connection = load("def f(rng):\n    return rng.random(4)\n")
     first, second = (connection.call("f", np.random.default_rng(5)) for _ in range(2))
     assert first.tolist() == second.tolist()
     assert connection.call("f", np.random.default_rng(6)).tolist() != first.tolist()
-
-
-def test_right_hand_sides_run_beside_the_students_code(load: Any) -> None:
-    connection = load("def f(accel):\n    return [type(accel).__name__, accel(0.0, [2.0], [0.0])]\n")
-    name, value = connection.call("f", systems.Oscillator(3.0))
-    assert name == "Oscillator"
-    assert value.tolist() == [-18.0]
-
-
-def test_the_students_own_function_can_be_an_argument(load: Any) -> None:
-    connection = load("def g(x):\n    return x + 1\n\ndef f(fn, x):\n    return fn(x)\n")
-    assert connection.call("f", {"$function": "g"}, 1.0) == 2.0
 
 
 def test_a_march_records_every_step_and_hands_out_copies(load: Any) -> None:

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import stat
 import subprocess
-import sys
 import tomllib
 import zipfile
 from collections.abc import Iterator
@@ -19,7 +17,6 @@ from packaging.requirements import Requirement
 
 from course.catalog.load import Catalog
 from course.catalog.locate import content
-from course.errors import MissingCapabilityError
 from course.grading import container
 from course.grading.container import SNAPSHOT, main, write_autograder
 from course.grading.intake.students import Entry
@@ -29,9 +26,6 @@ from course.scoring.judging.submission import Terms
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.running.test_run import right
 
-WRONG = b"\ndef double(x):\n    print('I saw', x)\n    return x\n"
-#: A hidden input of the miniature course, and what is expected of it.
-HIDDEN = ("17.25", "34.5")
 #: What ``setup.sh`` installs.
 INSTALLED = ("msgspec", "numpy", "pymunk", "pytest")
 
@@ -87,29 +81,6 @@ def test_its_scripts_are_shell(unpacked: Path, script: str) -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_it_grades_from_the_unpacked_zip_alone(unpacked: Path, solution: bytes) -> None:
-    """As ``run_autograder`` does, with the paths of this machine in place of the container's."""
-    submission = unpacked / "submission"
-    submission.mkdir()
-    (submission / "doubling.py").write_bytes(solution + WRONG)
-    source, results = unpacked / "source", unpacked / "results" / "results.json"
-    environment = {name: value for name, value in os.environ.items() if name not in {"PYTHONPATH"}}
-    environment |= {"PYTHONPATH": str(source)}
-    command = [sys.executable, "-P", "-m", "course.grading.container"]
-    done = subprocess.run(
-        [*command, submission, results, source / "config.json"],
-        env=environment, cwd="/", capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    body: dict[str, Any] = json.loads(results.read_bytes())
-    assert body["score"] == 6
-    assert {test["name"]: test["score"] for test in body["tests"]}["Twice three is six"] == 0
-    (extra,) = body["extra_data"]["results"]
-    assert extra["isolation"] in {"L1", "L2", "L3"}
-    assert f"doubling: graded at {extra['isolation']}" in done.stdout
-    assert not [value for value in HIDDEN if value in results.read_text("utf-8")]
-
-
 def test_hidden_inputs_cannot_be_read_out_by_handing_in_again(
     tmp_path: Path, solution: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -161,14 +132,3 @@ def test_a_fault_of_ours_gives_no_score_and_always_a_results_file(
     assert "score" not in body
     assert "tests" not in body
     assert "not of yours" in body["output"]
-
-
-def test_a_students_installation_has_no_graders_to_pack(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    for name in ("exercises", "lessons"):
-        (tmp_path / "course" / name).mkdir(parents=True)
-    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
-    with pytest.raises(MissingCapabilityError):
-        write_autograder(tmp_path / "a.zip", Catalog(), (), seed=1, timeout=1.0, asked=False)
-    assert not (tmp_path / "a.zip").exists()

@@ -157,19 +157,6 @@ def test_what_is_handed_out_has_nothing_hidden(out: Path) -> None:
         assert not [secret for secret in SECRETS[:2] if secret in read_page(out / name).tables], name
 
 
-def test_hidden_values_stay_out_of_a_failing_hidden_check_next_to_a_public_one(tmp_path: Path) -> None:
-    hidden = msgspec.structs.replace(
-        check("kept_back", Status.ERROR, hidden=True),
-        input={"x": 77.125}, expected=154.25, traceback="line 3, called with 77.125", stdout="saw 77.125",
-    )  # fmt: skip
-    with make_book(tmp_path, {"ada": verdict(check("shown", Status.FAIL), hidden)}) as book:
-        export(Results(book), "html", tmp_path, None, ALL)
-    source = (tmp_path / "students" / "1.html").read_text("utf-8")
-    assert "1234.57 m" in source or "1234.5678" in source
-    assert "77.125" not in source
-    assert "154.25" not in source
-
-
 def test_every_number_of_the_class_page_is_the_gradebooks(out: Path, results: Results) -> None:
     page = read_page(out / "report.html")
     everything = list(results.all())

@@ -9,6 +9,7 @@ import stat
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import pytest
@@ -20,7 +21,7 @@ from course.grading.intake.downloads import Place, Student, class_list
 from course.grading.intake.students import Entry, read_student
 from course.handed_in.limits import MAX_FILE, MAX_FILES
 from course.scoring.verdict import Problem, not_graded
-from tests.unit.grading.made import read_class
+from tests.unit.grading.made import notebook, read_class
 
 SOURCE = b"def double(x):\n    return 2 * x\n"
 
@@ -39,41 +40,51 @@ def reason(folder: Path, exercise: Exercise) -> str:
     return found.problem.code
 
 
-def archive(path: Path, members: dict[str, bytes], *, manifest: bool = True, mode: int = 0o100644) -> Path:
+def archive(path: Path, members: dict[str, bytes], *, manifest: Any = (), mode: int = 0o100644) -> Path:
+    """As ``submit`` makes it; ``manifest``: what else its own file says, or all of it, or None for none."""
     sums = {name: hashlib.sha256(content).hexdigest() for name, content in members.items()}
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as target:
         for name, content in members.items():
             info = zipfile.ZipInfo(name)
             info.external_attr = mode << 16
             target.writestr(info, content, zipfile.ZIP_DEFLATED)
-        if manifest:
-            target.writestr("submission.json", json.dumps({"format_version": 1, "files": sums}))
+        if manifest is not None:
+            if not isinstance(manifest, str):
+                manifest = json.dumps({"format_version": 1, "files": sums, **dict(manifest)})
+            target.writestr("submission.json", manifest)
     return path
 
 
-@pytest.mark.parametrize("place", ["doubling.py", "doubling/doubling.py"])
-def test_a_module_is_found_in_both_places(tmp_path: Path, doubling: Exercise, place: str) -> None:
-    path = tmp_path / place
-    path.parent.mkdir(exist_ok=True)
-    path.write_bytes(SOURCE)
+FOUND = "doubling/doubling.py"
+LAID: dict[str, Callable[[Path], object]] = {
+    "a module": lambda folder: (folder / "doubling.py").write_bytes(SOURCE),
+    "a module in its folder": lambda folder: put(folder / FOUND, SOURCE),
+    "a zip made by submit": lambda folder: archive(folder / "mine.zip", {FOUND: SOURCE}),
+    "a zip made by hand, with what systems add": lambda folder: archive(
+        folder / "mine.zip",
+        {FOUND: SOURCE, "__MACOSX/doubling/._doubling.py": b"x", ".DS_Store": b"y"},
+        manifest=None,
+    ),
+    "a notebook": lambda folder: put(folder / "doubling.ipynb", notebook("print(1)", SOURCE.decode())),
+    "a notebook in a zip": lambda folder: archive(
+        folder / "mine.zip", {"doubling/doubling.ipynb": notebook(SOURCE.decode())}
+    ),
+}
+
+
+def put(path: Path, content: bytes) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(content)
+
+
+@pytest.mark.parametrize("what", LAID)
+def test_a_module_is_found_wherever_it_may_be(tmp_path: Path, doubling: Exercise, what: str) -> None:
+    LAID[what](tmp_path)
     found = entry(tmp_path, doubling)
     assert found.submission is not None
-    assert dict(found.submission.files) == {"doubling.py": SOURCE}
-
-
-def test_a_zip_made_by_submit_is_read(tmp_path: Path, doubling: Exercise) -> None:
-    archive(tmp_path / "mine.zip", {"doubling/doubling.py": SOURCE})
-    found = entry(tmp_path, doubling)
-    assert found.submission is not None
-    assert found.submission.files["doubling.py"] == SOURCE
-
-
-def test_a_zip_made_by_hand_is_read_and_what_systems_add_is_ignored(
-    tmp_path: Path, doubling: Exercise
-) -> None:
-    members = {"doubling/doubling.py": SOURCE, "__MACOSX/doubling/._doubling.py": b"x", ".DS_Store": b"y"}
-    archive(tmp_path / "mine.zip", members, manifest=False)
-    assert entry(tmp_path, doubling).submission is not None
+    files = {name: text.strip() for name, text in found.submission.files.items()}
+    assert files.pop("doubling.py") == SOURCE.strip()
+    assert list(files) == ["notebook.json"] * ("notebook" in what)
 
 
 def test_without_a_file_it_is_ungradable_if_asked_for_and_else_not_submitted(
@@ -89,26 +100,6 @@ def test_two_candidates_are_never_guessed_between(tmp_path: Path, doubling: Exer
     (tmp_path / "doubling.py").write_bytes(SOURCE)
     archive(tmp_path / "mine.zip", {"doubling/doubling.py": SOURCE + b"# another\n"})
     assert reason(tmp_path, doubling) == "ambiguous_files"
-
-
-def notebook(*sources: str) -> bytes:
-    """Of code cells."""
-    cells = [{"cell_type": "code", "source": source, "metadata": {}, "outputs": []} for source in sources]
-    return json.dumps({"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": cells}).encode()
-
-
-def test_a_notebook_is_the_module_that_it_stands_for(tmp_path: Path, doubling: Exercise) -> None:
-    (tmp_path / "doubling.ipynb").write_bytes(notebook("print(1)", SOURCE.decode()))
-    found = entry(tmp_path, doubling)
-    assert found.submission is not None
-    assert found.submission.files["doubling.py"].strip() == SOURCE.strip()
-
-
-def test_a_notebook_may_come_in_a_zip(tmp_path: Path, doubling: Exercise) -> None:
-    archive(tmp_path / "mine.zip", {"doubling/doubling.ipynb": notebook(SOURCE.decode())})
-    found = entry(tmp_path, doubling)
-    assert found.submission is not None
-    assert found.submission.files["doubling.py"].strip() == SOURCE.strip()
 
 
 def test_a_notebook_larger_than_a_module_may_be_is_read_past_its_outputs(
@@ -190,7 +181,7 @@ def _many(path: Path) -> None:
 
 
 def _lying_size(path: Path) -> None:
-    archive(path, {"doubling/doubling.py": b"#" * (MAX_FILE + 1)}, manifest=False)
+    archive(path, {"doubling/doubling.py": b"#" * (MAX_FILE + 1)}, manifest=None)
     raw = bytearray(path.read_bytes())
     size = (MAX_FILE + 1).to_bytes(4, "little")
     while (at := raw.find(size)) >= 0:
@@ -229,13 +220,8 @@ def test_hostile_archives_are_refused(
 def test_the_versions_at_home_are_told_where_they_mattered_and_nowhere_else(
     tmp_path: Path, doubling: Exercise
 ) -> None:
-    with zipfile.ZipFile(tmp_path / "mine.zip", "w") as target:
-        target.writestr("doubling/doubling.py", SOURCE)
-        files = {"doubling/doubling.py": hashlib.sha256(SOURCE).hexdigest()}
-        written = {"python": "3.13.1", "numpy": "2.9.0"}
-        target.writestr(
-            "submission.json", json.dumps({"format_version": 1, "files": files, "written_with": written})
-        )
+    written = {"python": "3.13.1", "numpy": "2.9.0"}
+    archive(tmp_path / "mine.zip", {FOUND: SOURCE}, manifest={"written_with": written})
     found = entry(tmp_path, doubling)
     assert found.written == "Python 3.13.1 and NumPy 2.9.0"
     fine = not_graded("doubling", 10, "ungradable", Problem("x", "x", "x"))
@@ -243,53 +229,32 @@ def test_the_versions_at_home_are_told_where_they_mattered_and_nowhere_else(
     note = "line 3: left out. Python 3.12 reads that, but it is checked with Python 3.11."
     told = found.told(msgspec.structs.replace(fine, warnings=(note,))).warnings
     assert told == (note, "It was written with Python 3.13.1 and NumPy 2.9.0.")
-
-
-@pytest.mark.parametrize(
-    "written", ["x", {"python": 3}, {"python": "3; \x1b[31m"}, {"python": "3" * 99}, None]
-)
-def test_versions_that_are_none_are_not_repeated(tmp_path: Path, doubling: Exercise, written: object) -> None:
-    with zipfile.ZipFile(tmp_path / "mine.zip", "w") as target:
-        target.writestr("doubling/doubling.py", SOURCE)
-        files = {"doubling/doubling.py": hashlib.sha256(SOURCE).hexdigest()}
-        target.writestr(
-            "submission.json", json.dumps({"format_version": 1, "files": files, "written_with": written})
-        )
-    assert entry(tmp_path, doubling).written == ""
-
-
-def test_a_notebook_says_which_python_it_ran_in(tmp_path: Path, doubling: Exercise) -> None:
+    for none in ("x", {"python": 3}, {"python": "3; \x1b[31m"}, {"python": "3" * 99}, None):
+        archive(tmp_path / "mine.zip", {FOUND: SOURCE}, manifest={"written_with": none})
+        assert entry(tmp_path, doubling).written == "", none
     made = json.loads(notebook(SOURCE.decode()))
     made["metadata"]["language_info"] = {"name": "python", "version": "3.13.1"}
+    (tmp_path / "mine.zip").unlink()
     (tmp_path / "doubling.ipynb").write_text(json.dumps(made))
     assert entry(tmp_path, doubling).written == "Python 3.13.1"
-
-
-def test_a_changed_archive_fails_its_checksum(tmp_path: Path, doubling: Exercise) -> None:
-    with zipfile.ZipFile(tmp_path / "mine.zip", "w") as target:
-        target.writestr("doubling/doubling.py", SOURCE)
-        target.writestr(
-            "submission.json", json.dumps({"format_version": 1, "files": {"doubling/doubling.py": "0" * 64}})
-        )
-    assert reason(tmp_path, doubling) == "checksum_mismatch"
 
 
 @pytest.mark.parametrize(
     ("manifest", "code"),
     [
+        ({"files": {FOUND: "0" * 64}}, "checksum_mismatch"),
         ('{"format_version": 2, "files": {}}', "newer_format"),
         ("[1, 2", "refused_archive"),
         ("[" * 100_000, "refused_archive"),
         ('{"format_version": 1, "files": [1]}', "refused_archive"),
         ("null", "refused_archive"),
     ],
+    ids=lambda value: str(value)[:40],
 )
 def test_a_manifest_that_cannot_be_trusted_is_refused(
-    tmp_path: Path, doubling: Exercise, manifest: str, code: str
+    tmp_path: Path, doubling: Exercise, manifest: Any, code: str
 ) -> None:
-    with zipfile.ZipFile(tmp_path / "mine.zip", "w") as target:
-        target.writestr("doubling/doubling.py", SOURCE)
-        target.writestr("submission.json", manifest)
+    archive(tmp_path / "mine.zip", {FOUND: SOURCE}, manifest=manifest)
     assert reason(tmp_path, doubling) == code
 
 

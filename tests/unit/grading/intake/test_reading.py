@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import subprocess
 import sys
@@ -24,23 +23,19 @@ from course.handed_in.notebook import MAX_NOTES, notebook_source
 from course.quizzing.bank import Bank
 from tests.benchmarks.fuzz.run import run
 from tests.growth import LIMIT, growth
+from tests.unit.grading.made import notebook, zipped
 
 _DOUBLE = "def double(x):\n    return 2 * x\n"
 
 
-def _notebook(*cells: str) -> bytes:
-    made = [{"cell_type": "code", "source": cell, "metadata": {}, "outputs": []} for cell in cells]
-    return json.dumps({"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": made}).encode()
-
-
 #: What once took minutes or hours, by size.
 _LARGE: dict[str, Any] = {
-    "statements beside a magic word": lambda n: _notebook(f"{_DOUBLE}# get_ipython\n" + "x\n" * (10 * n)),
-    "escaped quotes": lambda n: _notebook(f"%magic\n{_DOUBLE}'" + "\\'" * (20 * n)),
-    "magics": lambda n: _notebook(_DOUBLE, "%x\n" * (10 * n)),
-    "brackets": lambda n: _notebook(f"%magic\n{_DOUBLE}" + "(" * (20 * n)),
-    "bindings": lambda n: _notebook(_DOUBLE.replace("2", "y"), "y = 1\n" * (5 * n)),
-    "strings in lines": lambda n: _notebook(f"%magic\n{_DOUBLE}" + ("'" + "\\'" * 50 + "\n") * (n // 5)),
+    "statements beside a magic word": lambda n: notebook(f"{_DOUBLE}# get_ipython\n" + "x\n" * (10 * n)),
+    "escaped quotes": lambda n: notebook(f"%magic\n{_DOUBLE}'" + "\\'" * (20 * n)),
+    "magics": lambda n: notebook(_DOUBLE, "%x\n" * (10 * n)),
+    "brackets": lambda n: notebook(f"%magic\n{_DOUBLE}" + "(" * (20 * n)),
+    "bindings": lambda n: notebook(_DOUBLE.replace("2", "y"), "y = 1\n" * (5 * n)),
+    "strings in lines": lambda n: notebook(f"%magic\n{_DOUBLE}" + ("'" + "\\'" * 50 + "\n") * (n // 5)),
 }
 
 
@@ -55,14 +50,14 @@ def test_reading_a_notebook_takes_as_long_as_it_is_long(kind: str, doubling: Exe
 
 
 def test_what_is_left_out_is_told_within_bounds(doubling: Exercise) -> None:
-    found = notebook_source(_notebook(_DOUBLE, "%magic " + "x" * 500 + "\n" + "%y\n" * 5000), doubling)
+    found = notebook_source(notebook(_DOUBLE, "%magic " + "x" * 500 + "\n" + "%y\n" * 5000), doubling)
     assert len(found.notes) <= MAX_NOTES + 2
     assert any("more lines left out" in note for note in found.notes)
     assert len(found.record()) < 8 << 10
-    many = notebook_source(_notebook(*[f"# {n}\n{_DOUBLE}" for n in range(MAX_CELLS)]), doubling)
+    many = notebook_source(notebook(*[f"# {n}\n{_DOUBLE}" for n in range(MAX_CELLS)]), doubling)
     assert len(many.record()) < 64 << 10
     with pytest.raises(UngradableError) as caught:
-        notebook_source(_notebook(*[_DOUBLE] * (MAX_CELLS + 1)), doubling)
+        notebook_source(notebook(*[_DOUBLE] * (MAX_CELLS + 1)), doubling)
     assert caught.value.code == "too_large"
 
 
@@ -90,7 +85,7 @@ def impatient() -> Iterator[Reader]:
 
 
 _BOMBS = {
-    "time": lambda: _notebook(_DOUBLE, "y = 1\n" * 150_000).replace(b"2 * x", b"y"),
+    "time": lambda: notebook(_DOUBLE, "y = 1\n" * 150_000).replace(b"2 * x", b"y"),
     "memory": lambda: (
         b'{"nbformat": 4, "cells": [{"cell_type": "code", "metadata": {"k": ['
         + b"{}," * 8_000_000
@@ -105,16 +100,16 @@ def test_a_bomb_costs_itself_and_is_named(bomb: str, strict: Reader, doubling: E
         strict.notebook(_BOMBS[bomb](), doubling, "bomb.ipynb")
     assert caught.value.problem.code == "unreadable"
     assert "bomb.ipynb" in caught.value.problem.message
-    assert strict.notebook(_notebook(_DOUBLE), doubling, "honest.ipynb")[0].decode().startswith("def double")
+    assert strict.notebook(notebook(_DOUBLE), doubling, "honest.ipynb")[0].decode().startswith("def double")
 
 
 def test_the_wall_clock_ends_a_reader_that_uses_no_time(impatient: Reader, doubling: Exercise) -> None:
-    impatient.notebook(_notebook(_DOUBLE), doubling, "a.ipynb")
+    impatient.notebook(notebook(_DOUBLE), doubling, "a.ipynb")
     process = impatient._process
     assert process is not None
     os.kill(process.pid, 19)  # SIGSTOP
     with pytest.raises(RefusedError) as caught:
-        impatient.notebook(_notebook(_DOUBLE), doubling, "b.ipynb")
+        impatient.notebook(notebook(_DOUBLE), doubling, "b.ipynb")
     assert caught.value.problem.code == "unreadable"
     assert process.poll() is not None
 
@@ -129,31 +124,15 @@ def test_the_process_that_reads_loads_nothing_that_grades() -> None:
 def test_more_than_an_answer_may_be_is_not_taken(
     strict: Reader, doubling: Exercise, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    strict.notebook(_notebook(_DOUBLE), doubling, "a.ipynb")
+    strict.notebook(notebook(_DOUBLE), doubling, "a.ipynb")
     monkeypatch.setattr(archives, "MAX_ANSWER", 10)
     with pytest.raises(RefusedError, match=r"b\.ipynb"):
-        strict.notebook(_notebook(_DOUBLE), doubling, "b.ipynb")
-
-
-def test_a_class_with_a_bomb_in_it_is_read_to_the_end(
-    tmp_path: Path, doubling: Exercise, strict: Reader, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(students, "reader", strict)
-    found = {}
-    files = {"ada": _notebook(_DOUBLE), "bob": _BOMBS["memory"](), "eve": _notebook(_DOUBLE)}
-    for name, data in files.items():
-        (tmp_path / name).mkdir()
-        (tmp_path / name / "doubling.ipynb").write_bytes(data)
-        (entry,) = students.read_student(Student(name, Place(tmp_path / name)), [doubling], required=True)
-        found[name] = entry.problem.code if entry.problem else "read"
-    assert (found["ada"], found["eve"]) == ("read", "read")
-    assert found["bob"] != "read"
+        strict.notebook(notebook(_DOUBLE), doubling, "b.ipynb")
 
 
 def test_an_archive_is_read_over_there_too(tmp_path: Path, doubling: Exercise, strict: Reader) -> None:
     path = tmp_path / "m\udce9.zip"
-    with zipfile.ZipFile(path, "w") as target:
-        target.writestr("doubling/doubling.py", _DOUBLE)
+    path.write_bytes(zipped({"doubling/doubling.py": _DOUBLE}))
     held = strict.module_in(path, doubling)
     assert held is not None
     assert (held.name, held.content) == ("doubling/doubling.py", _DOUBLE.encode())
@@ -181,9 +160,7 @@ def test_what_unpacks_a_damaged_archive_raises_as_it_likes(
 
 def test_nesting_that_no_parser_follows_costs_one_file_of_an_archive(tmp_path: Path, strict: Reader) -> None:
     path = tmp_path / "m.zip"
-    with zipfile.ZipFile(path, "w") as target:
-        target.writestr("bomb.py", f"double = {'-' * 6000}1")
-        target.writestr("mine.py", _DOUBLE)
+    path.write_bytes(zipped({"bomb.py": f"double = {'-' * 6000}1", "mine.py": _DOUBLE}))
     found = {name: functions for name, _, functions, *_ in strict.outlines(path, (), ("double",))}
     assert found == {"bomb.py": (), "mine.py": ("double",)}
 
@@ -193,8 +170,7 @@ def test_what_is_said_of_an_archive_is_one_line_whatever_it_is_called(
 ) -> None:
     """A name that is no text ended the process; a line end in a folder's name was a line of a report."""
     path = tmp_path / "m\udce9.zip"
-    with zipfile.ZipFile(path, "w") as target:
-        target.writestr("a\n\x1b[2Jb\u202e/doubling.py", _DOUBLE)
+    path.write_bytes(zipped({"a\n\x1b[2Jb\u202e/doubling.py": _DOUBLE}))
     held = strict.module_in(path, doubling)
     assert held is not None
     (note,) = held.notes
@@ -216,9 +192,8 @@ def test_random_input_meets_words_and_no_fault(kind: str) -> None:
 )
 def test_no_record_of_a_quiz_hurts_whoever_asked(tmp_path: Path, quiz: str) -> None:
     """One list a thousand deep ended the run: whoever asks stands deeper than the process that reads."""
-    path = tmp_path / "ada.zip"
-    with zipfile.ZipFile(path, "w") as packed:
-        packed.writestr("submission.json", f'{{"format_version": 1, "files": {{}}, "quiz": {quiz}}}')
+    manifest = f'{{"format_version": 1, "files": {{}}, "quiz": {quiz}}}'
+    (tmp_path / "ada.zip").write_bytes(zipped({"submission.json": manifest}))
     student = Student("ada", Place(tmp_path))
 
     def asked(deeper: int) -> Any:

@@ -8,7 +8,6 @@ import json
 import os
 import sys
 import tarfile
-import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -27,26 +26,14 @@ from course.grading.running.assign import assign, named, proposals, unsettled
 from course.grading.running.folder import open_results, previewed
 from course.grading.running.run import RunOptions
 from course.scoring.judging.submission import Terms
-from tests.unit.grading.made import graded_class, read_class
+from tests.unit.grading.made import graded_class, notebook, read_class, zipped
 from tests.unit.grading.running.test_run import right
 
 pytestmark = pytest.mark.usefixtures("unpacked")
 
 SOURCE = b"def double(x):\n    return 2 * x\n\ndef doublings(x, n):\n    return x\n"
 OTHER = SOURCE + b"# the second try\n"
-NOTEBOOK = json.dumps(
-    {"nbformat": 4, "nbformat_minor": 5, "metadata": {}, "cells": [
-        {"cell_type": "code", "source": SOURCE.decode(), "metadata": {}, "outputs": []}
-    ]}
-).encode()  # fmt: skip
-
-
-def zipped(**members: bytes) -> bytes:
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w") as archive:
-        for name, content in members.items():
-            archive.writestr(zipfile.ZipInfo(name), content)
-    return buffer.getvalue()
+NOTEBOOK = notebook(SOURCE.decode())
 
 
 def lay(folder: Path, student: str = "ada", /, **files: bytes) -> None:
@@ -78,23 +65,23 @@ TAKEN: dict[str, tuple[dict[str, bytes], str]] = {
         "These are the same file: doubling.py, doubling/doubling.py.",
     ),
     "a copy in a zip": (
-        {"doubling.py": SOURCE, "all.zip": zipped(**{"doubling/doubling.py": SOURCE})},
+        {"doubling.py": SOURCE, "all.zip": zipped({"doubling/doubling.py": SOURCE})},
         "These are the same file: doubling.py, all.zip.",
     ),
     "one folder around all": (
-        {"all.zip": zipped(**{"homework/doubling.py": SOURCE, "homework/notes.txt": b""})},
+        {"all.zip": zipped({"homework/doubling.py": SOURCE, "homework/notes.txt": b""})},
         "Everything in all.zip lies in the folder homework, which was passed over.",
     ),
     "two folders around all": (
-        {"all.zip": zipped(**{"a/b/doubling/doubling.py": SOURCE})},
+        {"all.zip": zipped({"a/b/doubling/doubling.py": SOURCE})},
         "Everything in all.zip lies in the folder a/b, which was passed over.",
     ),
     "backslashes": (
-        {"all.zip": zipped(**{"doubling\\doubling.py": SOURCE, "x\\notes.txt": b""})},
+        {"all.zip": zipped({"doubling\\doubling.py": SOURCE, "x\\notes.txt": b""})},
         "all.zip has backslashes in its paths; they were taken for folders.",
     ),
     "another spelling in a zip": (
-        {"all.zip": zipped(**{"Doubling (1).py": SOURCE})}, "Doubling (1).py was taken for doubling.py."
+        {"all.zip": zipped({"Doubling (1).py": SOURCE})}, "Doubling (1).py was taken for doubling.py."
     ),
 }  # fmt: skip
 
@@ -114,7 +101,7 @@ ASKED: dict[str, tuple[dict[str, bytes], str, str | None]] = {
     "another name": ({"homework.py": SOURCE}, "no_file", "homework.py"),
     "another folder": ({"week 3/doubling.py": SOURCE}, "no_file", "week 3/doubling.py"),
     "in a zip, another name": (
-        {"all.zip": zipped(**{"src/hw.py": SOURCE, "readme.txt": b""})}, "no_file", "all.zip/src/hw.py"
+        {"all.zip": zipped({"src/hw.py": SOURCE, "readme.txt": b""})}, "no_file", "all.zip/src/hw.py"
     ),
     "a notebook": ({"Homework 3.ipynb": NOTEBOOK}, "no_file", "Homework 3.ipynb"),
     "the better of two": ({"a.py": SOURCE, "b.py": b"def double(x): return x\n"}, "no_file", "a.py"),
@@ -127,7 +114,7 @@ ASKED: dict[str, tuple[dict[str, bytes], str, str | None]] = {
         {"doubling.py": b"x = 1\n", "doubling (1).py": OTHER}, "ambiguous_files", "doubling (1).py"
     ),
     "in file and zip": (
-        {"doubling.py": SOURCE, "a.zip": zipped(**{"doubling.py": OTHER})}, "ambiguous_files", None
+        {"doubling.py": SOURCE, "a.zip": zipped({"doubling.py": OTHER})}, "ambiguous_files", None
     ),
 }  # fmt: skip
 
@@ -177,7 +164,7 @@ ODDLY: dict[str, tuple[dict[str, bytes], str, str]] = {
     "rar": ({"work.rar": b"Rar!\x1a\x07\x00"}, "", "a rar archive, which nothing here opens"),
     "damaged": ({"all.tar.gz": b"\x1f\x8b and no more"}, "", "it cannot be read (it is damaged)"),
     "PDF": ({"doubling.pdf": b"%PDF-1.7"}, "", "a PDF document"),
-    "Word": ({"doubling.docx": zipped(**{"word/document.xml": b""})}, "", "a document of an office program"),
+    "Word": ({"doubling.docx": zipped({"word/document.xml": b""})}, "", "a document of an office program"),
     "web page": ({"doubling.html": b"<!DOCTYPE html>"}, "", "a web page"),
     "empty": ({"doubling.txt": b""}, "", "an empty file"),
 }  # fmt: skip
@@ -214,7 +201,7 @@ def test_whatever_lies_there_is_named_with_what_it_is_and_assigned_by_its_name(
 def test_a_notebook_or_a_zip_that_is_called_py_is_read_as_what_it_is(
     tmp_path: Path, doubling: Exercise
 ) -> None:
-    for content, kind in ((NOTEBOOK, "a notebook"), (zipped(**{"doubling.py": SOURCE}), "a zip archive")):
+    for content, kind in ((NOTEBOOK, "a notebook"), (zipped({"doubling.py": SOURCE}), "a zip archive")):
         lay(tmp_path, **{"doubling.py": content})
         entry = read(tmp_path, doubling)
         assert entry.submission is not None
@@ -238,14 +225,14 @@ def test_a_notebook_or_a_zip_that_is_called_py_is_read_as_what_it_is(
 )
 def test_what_tools_leave_in_a_zip_does_not_count(tmp_path: Path, doubling: Exercise, unwanted: str) -> None:
     left = {f"hw/{unwanted.format(number)}": b"x = 1\n" for number in range(600)}
-    lay(tmp_path, **{"hw.zip": zipped(**{"hw/doubling.py": SOURCE, **left})})
+    lay(tmp_path, **{"hw.zip": zipped({"hw/doubling.py": SOURCE, **left})})
     entry = read(tmp_path, doubling)
     assert entry.submission is not None, entry.problem
 
 
 def test_an_environment_of_any_name_does_not_count(tmp_path: Path, doubling: Exercise) -> None:
     left = {"mine/pyvenv.cfg": b"home"} | {f"mine/Lib/m{n}.py": SOURCE + b"#%d" % n for n in range(600)}
-    lay(tmp_path, **{"hw.zip": zipped(**{"doubling.py": SOURCE, **left})})
+    lay(tmp_path, **{"hw.zip": zipped({"doubling.py": SOURCE, **left})})
     lay(tmp_path, "bob", **{"doubling.py": SOURCE, **left})
     ada, bob = read_class(tmp_path, [doubling], required=True)
     assert ada.submission is not None, ada.problem
@@ -255,9 +242,7 @@ def test_an_environment_of_any_name_does_not_count(tmp_path: Path, doubling: Exe
 def test_a_folder_that_was_renamed_is_taken_and_said(tmp_path: Path, doubling: Exercise) -> None:
     for folder in ("doubling-2", "Doubling (1)"):
         lay(tmp_path, folder, **{f"{folder}/doubling.py": SOURCE})
-        lay(
-            tmp_path, f"{folder}z", **{"all.zip": zipped(**{f"{folder}/doubling.py": SOURCE, "x/y.txt": b""})}
-        )
+        lay(tmp_path, f"{folder}z", **{"all.zip": zipped({f"{folder}/doubling.py": SOURCE, "x/y.txt": b""})})
     entries = list(read_class(tmp_path, [doubling], required=True))
     assert all(entry.submission is not None for entry in entries)
     notes = [note for entry in entries for note in entry.notes]
@@ -353,15 +338,9 @@ def counts(out: Path) -> dict[str, tuple[str, float | None]]:
 
 
 def test_what_is_assigned_is_graded_at_once_written_down_and_stays(tmp_path: Path, catalog: Catalog) -> None:
-    for student, files in (
-        ("ada", {"hw.py": SOURCE}),
-        ("bob", {"doubling.py": SOURCE, "doubling (1).py": OTHER}),
-        ("cy", {"doubling.py": SOURCE}),
-    ):
-        for name, content in files.items():
-            path = tmp_path / "class" / student / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(content)
+    lay(tmp_path / "class", **{"hw.py": SOURCE})
+    lay(tmp_path / "class", "bob", **{"doubling.py": SOURCE, "doubling (1).py": OTHER})
+    lay(tmp_path / "class", "cy", **{"doubling.py": SOURCE})
     out = tmp_path / "out"
     summary = graded(tmp_path, catalog)
     assert summary.unsettled == 2
@@ -457,7 +436,7 @@ def test_what_nobody_thought_of_costs_its_own_submission_only(
 
 def test_any_file_can_be_assigned_and_what_is_wrong_is_said(tmp_path: Path, catalog: Catalog) -> None:
     (tmp_path / "class" / "ada").mkdir(parents=True)
-    (tmp_path / "mail.zip").write_bytes(zipped(**{"all/my work.py": SOURCE, "all/other.py": OTHER}))
+    (tmp_path / "mail.zip").write_bytes(zipped({"all/my work.py": SOURCE, "all/other.py": OTHER}))
     graded(tmp_path, catalog)
     with open_results(tmp_path / "out", writing=True) as results:
         with pytest.raises(NotFoundError, match="no student"):
@@ -476,8 +455,7 @@ def test_any_file_can_be_assigned_and_what_is_wrong_is_said(tmp_path: Path, cata
 
 
 def test_a_score_by_hand_settles_it_too(tmp_path: Path, catalog: Catalog) -> None:
-    (tmp_path / "class" / "ada").mkdir(parents=True)
-    (tmp_path / "class" / "ada" / "hw.py").write_bytes(SOURCE)
+    lay(tmp_path / "class", **{"hw.py": SOURCE})
     graded(tmp_path, catalog)
     with open_results(tmp_path / "out", writing=True) as results:
         override(results, "ada", "doubling", 0.0, "not her work")

@@ -8,9 +8,6 @@ stood in for; the soak run grades with real ones.
 from __future__ import annotations
 
 import csv
-import io
-import json
-import zipfile
 from collections import Counter
 from functools import partial
 from pathlib import Path
@@ -28,6 +25,7 @@ from course.grading.running.batch import grade_all
 from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions, grade_class
 from course.scoring.judging.submission import Terms
+from tests.unit.grading.made import notebook, zipped
 from tests.unit.grading.running.test_run import right
 from tests.unit.grading.test_roster import rows
 
@@ -44,31 +42,20 @@ NOTHING, TEXT, ANONYMOUS = range(1, 10), (20, 21), (30, 31)
 NAMES = ("Ada Lovelace", "Bob O'Neil", "Zoë Müller", "Grace Hopper", "李 明")
 
 
-def zipped(*names: str) -> bytes:
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w") as archive:
-        for name in names:
-            archive.writestr(name, SOURCE if name.endswith(".py") else b"")
-    return buffer.getvalue()
-
-
 #: Student -> what is handed in instead of ``doubling.py``; the last five are taken without a question.
 ODD: dict[int, tuple[str, bytes]] = {
     40: ("homework3.py", SOURCE),
     41: ("my solution.py", SOURCE),
     42: ("dubling.py", SOURCE),
-    43: ("work.zip", zipped("src/hw.py", "docs/notes.txt")),
-    44: ("work.zip", zipped("week3/doubling.py", "week2/notes.txt")),
+    43: ("work.zip", zipped({"src/hw.py": SOURCE, "docs/notes.txt": b""})),
+    44: ("work.zip", zipped({"week3/doubling.py": SOURCE, "week2/notes.txt": b""})),
     45: ("final.PY", SOURCE),
-    46: ("solution.ipynb", json.dumps({
-        "nbformat": 4, "nbformat_minor": 5, "metadata": {},
-        "cells": [{"cell_type": "code", "source": SOURCE.decode(), "metadata": {}, "outputs": []}],
-    }).encode()),
+    46: ("solution.ipynb", notebook(SOURCE.decode())),
     47: ("doubling (2).py", SOURCE),
     48: ("doubling(1).py", SOURCE),
     49: ("Doubling.py", SOURCE),
-    50: ("work.zip", zipped("homework/doubling.py", "homework/notes.txt")),
-    51: ("work.zip", zipped("mine\\doubling\\doubling.py", "mine\\notes.txt")),
+    50: ("work.zip", zipped({"homework/doubling.py": SOURCE, "homework/notes.txt": b""})),
+    51: ("work.zip", zipped({"mine\\doubling\\doubling.py": SOURCE, "mine\\notes.txt": b""})),
 }  # fmt: skip
 TO_SETTLE = 7
 

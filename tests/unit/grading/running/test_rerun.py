@@ -12,6 +12,7 @@ import pytest
 
 from course.catalog.load import Catalog
 from course.errors import IntegrityError, MissingCapabilityError
+from course.grading.container import write_autograder
 from course.grading.exports.grades import grade_line
 from course.grading.gradebook.records import Key, Result
 from course.grading.intake.students import Entry
@@ -129,30 +130,9 @@ def test_an_interrupted_regrading_goes_on_where_it_was(tmp_path: Path, catalog: 
         assert [len(book.history(name, "doubling")) for name in ("ada", "bob", "cy")] == [2, 2, 2]
 
 
-def test_a_quiz_is_scored_again_from_its_record(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """On the real course, whose quiz is real; no worker is needed."""
-    import msgspec
-
-    from course.quizzing.bank import Bank
-
-    monkeypatch.delenv("COURSE_CONTENT", raising=False)
-    catalog = Catalog()
-    posed = Bank.of(catalog).pose(5)
-    right = {one.question: one.key.id for one in posed}
-    record = {
-        "seed": 5, "version": "1", "finished_at": "then", "questions": list(right), "answers": right,
-        "score": len(right),
-    }  # fmt: skip
-    with make_book(tmp_path, {}) as book:
-        where = Key("ada", "quiz", "f" * 64, "older", 7)
-        book.add(Result(where, WRONG), {"quiz.json": msgspec.json.encode([record])})
-        done = rerun(Results(book), catalog, RerunOptions(), grade=Graders())
-        assert done.regraded == 1
-        (found,) = Results(book).all("ada")
-        assert (found.score, found.passed) == (len(right), True)
-
-
-def test_a_students_installation_cannot_regrade(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_students_installation_can_neither_regrade_nor_pack_an_autograder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     shutil.copytree(MINI, tmp_path / "course")
     shutil.rmtree(tmp_path / "course" / "graders")
     monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
@@ -161,6 +141,9 @@ def test_a_students_installation_cannot_regrade(tmp_path: Path, monkeypatch: pyt
         pytest.raises(MissingCapabilityError, match="hidden graders"),
     ):
         rerun(Results(book), Catalog(), RerunOptions())
+    with pytest.raises(MissingCapabilityError, match="hidden graders"):
+        write_autograder(tmp_path / "a.zip", Catalog(), (), seed=1, timeout=1.0, asked=False)
+    assert not (tmp_path / "a.zip").exists()
 
 
 def test_nothing_decides_a_score_but_what_the_version_of_the_graders_covers() -> None:

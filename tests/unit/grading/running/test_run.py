@@ -5,11 +5,9 @@ from __future__ import annotations
 import json
 import os
 import shutil
-import signal
-import subprocess
 import zipfile
 from collections.abc import Iterable, Iterator
-from functools import partial
+from dataclasses import replace
 from pathlib import Path
 from typing import IO, Any
 
@@ -21,16 +19,19 @@ from course.catalog.locate import chosen
 from course.catalog.models import Exercise
 from course.errors import InternalError, MissingCapabilityError, UsageError
 from course.grading.gradebook.book import Gradebook
+from course.grading.gradebook.records import Result
 from course.grading.intake.students import Entry
 from course.grading.results.effective import override
 from course.grading.running import batch
 from course.grading.running.batch import MAX_TRIES, Graded, grade_all
 from course.grading.running.folder import open_results
 from course.grading.running.grader import Answer
+from course.grading.running.rerun import RerunOptions, rerun
 from course.grading.running.run import RunOptions, Summary, grade_class
+from course.quizzing.bank import Bank
 from course.scoring.judging.submission import Terms
 from course.scoring.verdict import Verdict
-from tests.command_line import as_process, in_process
+from tests.command_line import in_process
 from tests.unit.grading.made import graded_class, read_class, stillborn
 
 pytestmark = pytest.mark.usefixtures("unpacked")
@@ -55,91 +56,51 @@ def scores(out: Path) -> dict[str, float]:
         return {result.key.student: result.verdict.score for result in book.results()}
 
 
-def test_two_graders_give_what_one_gives(tmp_path: Path, catalog: Catalog, solution: bytes) -> None:
-    make_class(tmp_path / "class", solution, 12)
-    seen: list[tuple[str, float]] = []
-    for graders in (1, 2):
-        options = RunOptions(exercises=("doubling",), terms=Terms(), seed=3)
-        out = tmp_path / f"out{graders}"
-        grade = partial(grade_all, graders=graders)
-        summary = grade_class(tmp_path / "class", out, catalog, options, lambda *_: None, grade=grade)
-        assert (summary.exit_code, summary.states["graded"], summary.passed) == (0, 12, 8)
-        seen.append(tuple(sorted(scores(out).items())))  # type: ignore[arg-type]
-    assert seen[0] == seen[1]
-    assert {score for _, score in seen[0]} == {6.0, 10.0}  # type: ignore[misc]
-
-
-def test_an_existing_folder_is_not_touched_without_resume(
+def test_results_go_neither_into_a_folder_that_is_there_nor_among_the_submissions_or_the_courses_own(
     tmp_path: Path, catalog: Catalog, solution: bytes
 ) -> None:
-    make_class(tmp_path / "class", solution, 1)
-    out = tmp_path / "out"
-    out.mkdir()
-    (out / "mine.txt").write_text("keep", "utf-8")
-    with pytest.raises(UsageError, match="nothing was touched"):
-        graded_class(tmp_path, catalog, RunOptions())
-    assert [path.name for path in out.iterdir()] == ["mine.txt"]
-
-
-def test_results_do_not_go_among_the_submissions(tmp_path: Path, catalog: Catalog, solution: bytes) -> None:
-    make_class(tmp_path / "class", solution, 1)
-    with pytest.raises(UsageError, match="among the submissions"):
-        grade_class(tmp_path / "class", tmp_path / "class" / "out", catalog, RunOptions(), lambda *_: None)
-
-
-def test_submissions_are_no_part_of_the_graders(tmp_path: Path, catalog: Catalog, solution: bytes) -> None:
-    """A large file of a student's was: the run was refused, with its graders "damaged"."""
+    """A large file of a student's was among the graders: the run was refused, with its graders "damaged"."""
     content = tmp_path / "content"
     shutil.copytree(catalog.content.root, content)
-    for kind in ("exercises/doubling", "graders"):
-        make_class(content / kind / "class", solution, 1)
-        with pytest.raises(UsageError, match="among the course's own"):
-            grade_class(
-                content / kind / "class",
-                tmp_path / "out",
-                Catalog(chosen(content)),
-                RunOptions(),
-                lambda *_: None,
-            )
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "notes.txt").write_text("keep", "utf-8")
+    for folder, out, said in (
+        (tmp_path / "class", tmp_path / "mine", "nothing was touched"),
+        (tmp_path / "class", tmp_path / "class" / "out", "among the submissions"),
+        (content / "exercises" / "doubling" / "class", tmp_path / "out", "among the course's own"),
+        (content / "graders" / "class", tmp_path / "out", "among the course's own"),
+    ):
+        if not folder.exists():
+            make_class(folder, solution, 1)
+        with pytest.raises(UsageError, match=said):
+            grade_class(folder, out, Catalog(chosen(content)), RunOptions(), lambda *_: None)
+    assert [path.name for path in (tmp_path / "mine").iterdir()] == ["notes.txt"]
     assert not (tmp_path / "out").exists()
 
 
 def test_resume_grades_only_what_is_new_and_with_the_same_seed(
     tmp_path: Path, catalog: Catalog, solution: bytes
 ) -> None:
+    """And a file that is again what it was gets its earlier score."""
     make_class(tmp_path / "class", solution, 4)
     first = RunOptions(exercises=("doubling",), terms=Terms(), seed=5)
     graded_class(tmp_path, catalog, first)
-    (tmp_path / "class" / "student-001" / "doubling.py").write_bytes(solution + WRONG)
+    file = tmp_path / "class" / "student-001" / "doubling.py"
+    before = file.read_bytes()
+    file.write_bytes(solution + WRONG)
     again = RunOptions(exercises=("doubling",), terms=Terms(), resume=True)
     graded: list[str] = []
     summary = graded_class(tmp_path, catalog, again, lambda result, *_: graded.append(result.student))
-    assert graded == ["student-001"]
     assert (summary.already, summary.seed) == (3, 5)
     assert scores(tmp_path / "out")["student-001"] == 6
-    (tmp_path / "class" / "student-001" / "doubling.py").write_bytes(solution)
-    graded_class(tmp_path, catalog, again)
+    file.write_bytes(before)
+    graded_class(tmp_path, catalog, again, lambda result, *_: graded.append(result.student))
+    assert graded == ["student-001"]
     with open_results(tmp_path / "out") as results:
         noted = results.book.journal()
     assert [(it.kind, it.student) for it in noted] == [("resume", "student-001")] * 2
     told = [[json.loads(text)["score"] for text in (it.before, it.after)] for it in noted]
     assert told == [[10, 6], [6, 10]]
-
-
-def test_a_grader_that_dies_costs_no_other_submission(
-    tmp_path: Path, unpacked: str, doubling: Exercise, solution: bytes
-) -> None:
-    """The grader is killed from outside as soon as the first result is out; its work is done again."""
-    make_class(tmp_path / "class", solution, 8)
-    entries = read_class(tmp_path / "class", [doubling], required=True)
-    found = {}
-    for number, graded in enumerate(grade_all(entries, Terms(at_least="L1", graders=unpacked))):
-        found[graded.entry.student] = graded.verdict
-        if number == 2:
-            for pid in _children(os.getpid()):
-                os.kill(pid, signal.SIGKILL)
-    assert len(found) == 8
-    assert {verdict.state for verdict in found.values()} == {"graded"}
 
 
 @pytest.mark.parametrize("deaths", [MAX_TRIES - 1, MAX_TRIES])
@@ -160,44 +121,42 @@ def test_a_grader_that_dies_while_it_starts_is_replaced_unless_none_can_start(
             list(graded)
 
 
-@pytest.mark.parametrize("forger", ["the verdict of another", "nonsense", "the number alone"])
 def test_a_verdict_is_taken_from_who_was_asked_for_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, unpacked: str, doubling: Exercise, solution: bytes,
-    forger: str,
-) -> None:  # fmt: skip
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, unpacked: str, doubling: Exercise, solution: bytes
+) -> None:
     """Whoever writes to the pipe of a grader, a frame too many must not move the next verdicts by one."""
     make_class(tmp_path / "class", solution, 3)
-    read, forged = batch.read_frame, []
+    read, forged = batch.read_frame, {}
+    forgeries = [
+        lambda answer, perfect: Answer(perfect, number=5, sha256=answer.sha256),
+        lambda *_: 7,
+        lambda answer, perfect: Answer(perfect, number=answer.number),
+    ]
 
     def first_a_forgery(source: IO[bytes]) -> bytes | None:
+        """Of the answers about each student."""
         frame = read(source)
         answer = msgspec.msgpack.decode(frame, type=Answer) if frame else None
-        if forged or answer is None or answer.verdict is None:
+        if answer is None or answer.verdict is None or answer.sha256 in forged:
             return frame
         perfect = msgspec.structs.replace(answer.verdict, score=99.0)
-        forged.append(
-            {
-                "the verdict of another": Answer(perfect, number=5, sha256=answer.sha256),
-                "nonsense": 7,
-                "the number alone": Answer(perfect, number=answer.number),
-            }[forger]
-        )
-        return msgspec.msgpack.encode(forged[0])
+        forged[answer.sha256] = forgeries[len(forged)](answer, perfect)
+        return msgspec.msgpack.encode(forged[answer.sha256])
 
     monkeypatch.setattr(batch, "read_frame", first_a_forgery)
     entries = read_class(tmp_path / "class", [doubling], required=True)
-    found = {
-        one.entry.student: one.verdict for one in grade_all(entries, Terms(at_least="L1", graders=unpacked))
-    }
-    assert forged
-    assert {verdict.state for verdict in found.values()} == {"graded"}
-    assert len(found) == 3
-    assert max(verdict.score for verdict in found.values()) <= 10
+    found = list(grade_all(entries, Terms(at_least="L1", graders=unpacked)))
+    assert len(forged) == len(forgeries)
+    scored = {one.entry.student: (one.verdict.state, one.verdict.score) for one in found}
+    assert scored == {
+        "student-000": ("graded", 6.0), "student-001": ("graded", 10.0), "student-002": ("graded", 10.0)
+    }  # fmt: skip
 
 
 def test_a_submission_that_stops_its_grader_holds_nobody_up(
-    tmp_path: Path, unpacked: str, doubling: Exercise, solution: bytes
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, unpacked: str, doubling: Exercise, solution: bytes
 ) -> None:
+    monkeypatch.setattr(batch, "_TICK_S", 0.05)
     make_class(tmp_path / "class", solution, 3)
     stop = b"\nimport os, signal\nos.kill(os.getppid(), signal.SIGSTOP)\n"
     (tmp_path / "class" / "student-001" / "doubling.py").write_bytes(solution + stop)
@@ -246,21 +205,11 @@ def test_a_run_that_is_refused_leaves_its_name_free(
     assert (tmp_path / "part" / "gradebook.sqlite").exists()
 
 
-def _children(parent: int) -> list[int]:
-    found = subprocess.run(
-        ["ps", "-o", "pid=,args=", "--ppid", str(parent)], capture_output=True, text=True, check=False
-    )
-    return [
-        int(line.split()[0]) for line in found.stdout.splitlines() if "course.grading.running.grader" in line
-    ]
-
-
 def test_the_command_reports_json_lines_and_exit_codes(tmp_path: Path, solution: bytes) -> None:
     make_class(tmp_path / "class", solution, 2)
     (tmp_path / "class" / "nobody").mkdir()
     line = ("grade", "run", tmp_path / "class", "--out", tmp_path / "out", "--exercise", "doubling", "--json")
-    environment = {**os.environ, "COURSE_CONTENT": str(MINI)}
-    done = as_process(*line, "--isolation", "process", env=environment)
+    done = in_process(*line, "--isolation", "process", env={**os.environ, "COURSE_CONTENT": str(MINI)})
     assert done.returncode == 6, done.stderr
     lines = [json.loads(line) for line in done.stdout.splitlines()]
     assert [line["schema"] for line in lines] == ["course.grade/1"] * 3 + ["course.grade-summary/1"]
@@ -268,30 +217,18 @@ def test_the_command_reports_json_lines_and_exit_codes(tmp_path: Path, solution:
     assert (summary["graded"], summary["ungradable"], summary["exit_code"]) == (2, 1, 6)
     assert summary["troubled"][0]["code"] == "no_file"
     assert summary["isolation"] == {"L1": 2}
-    again = in_process(*line, env=environment)
-    assert again.returncode == 2
-    assert json.loads(again.stdout)["error"]["code"] == "out_exists"
 
 
-def test_quiz_attempts_that_travel_in_a_submission_are_scored_again(
+def test_quiz_attempts_that_travel_in_a_submission_are_scored_again_and_again_by_a_regrading(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """On the real course: its quiz is real, and no worker is needed."""
-    from course.catalog.load import Catalog
-    from course.quizzing.bank import Bank
-
     monkeypatch.delenv("COURSE_CONTENT", raising=False)
     catalog = Catalog()
-    bank = Bank.of(catalog)
-    posed = bank.pose(5)
-    right = {one.question: one.key.id for one in posed}
+    right = {one.question: one.key.id for one in Bank.of(catalog).pose(5)}
     attempt = {
-        "seed": 5,
-        "version": "1",
-        "finished_at": "2026-11-21",
-        "questions": list(right),
-        "answers": right,
-    }
+        "seed": 5, "version": "1", "finished_at": "2026-11-21", "questions": list(right), "answers": right
+    }  # fmt: skip
     for student, claimed in (("ada", 5), ("eve", 4)):
         place = tmp_path / "class" / student
         place.mkdir(parents=True)
@@ -303,40 +240,45 @@ def test_quiz_attempts_that_travel_in_a_submission_are_scored_again(
     assert (summary.exit_code, summary.states["graded"], summary.passed) == (6, 1, 1)
     (trouble,) = summary.troubled
     assert (trouble.student, trouble.exercise, trouble.code) == ("eve", "quiz", "quiz_record_inconsistent")
+    with open_results(tmp_path / "out", writing=True) as results:
+        (first,) = results.all("ada")
+        wrong = msgspec.structs.replace(first.verdict, score=0.0, passed=False)
+        older = replace(first.result.key, grader_version="older")
+        results.book.add(Result(older, wrong))
+        assert rerun(results, catalog, RerunOptions()).regraded == 1
+        (found,) = results.all("ada")
+    assert (found.score, found.passed) == (len(right), True)
 
 
-def test_a_question_that_is_not_finished_stops_only_a_run_with_the_quiz(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, solution: bytes
+@pytest.mark.parametrize(
+    ("file", "unfinished", "said"),
+    [
+        ("quiz/unfinished.toml", '[[variant]]\nid = "one"\nprompt = "{name}"\n', "unfinished.toml"),
+        ("exercises/doubling/exercise.toml", "# <<FILL IN: more>>\n", "{at}: still to be filled in: more."),
+        ("graders/doubling/checks.py", "# <<FILL IN: more>>\n", "{at}: still to be filled in: more."),
+    ],
+)
+def test_what_is_not_finished_is_refused_before_anything_is_graded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, solution: bytes, file: str, unfinished: str, said: str
 ) -> None:
-    """It is the author's to finish: no fault of the grader's own (70), and no folder is left."""
-    shutil.copytree(MINI, tmp_path / "course")
-    question = '[[variant]]\nid = "one"\nprompt = "{name}"\n'
-    (tmp_path / "course" / "quiz" / "unfinished.toml").write_text(question, "utf-8")
-    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
-    make_class(tmp_path / "class", solution, 1)
-    with pytest.raises(UsageError, match=r"unfinished\.toml"):
-        graded_class(tmp_path, Catalog(), RunOptions())
-    assert not (tmp_path / "out").exists()
-    only = RunOptions(exercises=("doubling",))
-    graded_class(tmp_path, Catalog(), only, grade=right)
-    assert len(scores(tmp_path / "out")) == 1
-
-
-@pytest.mark.parametrize("file", ["exercises/doubling/exercise.toml", "graders/doubling/checks.py"])
-def test_an_exercise_that_is_not_finished_is_refused_before_anything_is_graded(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, solution: bytes, file: str
-) -> None:
+    """It is the author's to finish: no fault of the grader's own (70); a question stops only its quiz."""
     shutil.copytree(MINI, tmp_path / "course")
     path = tmp_path / "course" / file
-    path.write_text(path.read_text("utf-8") + "# <<FILL IN: more>>\n", "utf-8")
-    line = path.read_text("utf-8").count("\n")
+    path.parent.mkdir(exist_ok=True)
+    with path.open("a", encoding="utf-8") as there:
+        there.write(unfinished)
+    at = f"{file}:{path.read_text('utf-8').count(chr(10))}"
     monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
     make_class(tmp_path / "class", solution, 1)
-    for only in (RunOptions(), RunOptions(exercises=("doubling",))):
+    only = RunOptions(exercises=("doubling",))
+    for options in (RunOptions(), *([only] if "quiz" not in file else ())):
         with pytest.raises(UsageError) as caught:
-            graded_class(tmp_path, Catalog(), only)
-        assert f"{file}:{line}: still to be filled in: more." in caught.value.message
+            graded_class(tmp_path, Catalog(), options)
+        assert said.format(at=at) in caught.value.message
     assert not (tmp_path / "out").exists()
+    if "quiz" in file:
+        graded_class(tmp_path, Catalog(), only, grade=right)
+        assert len(scores(tmp_path / "out")) == 1
 
 
 def test_a_student_counts_as_done_when_graded_and_not_when_read(
@@ -370,21 +312,6 @@ def test_what_an_instructor_settled_is_no_trouble_any_more(
     summary = run()
     assert (summary.exit_code, summary.states["graded"], summary.passed) == (0, 3, 3)
     assert (summary.states["ungradable"], summary.troubled) == (0, [])
-
-
-def test_a_second_run_on_one_folder_is_told_and_the_first_goes_on(
-    tmp_path: Path, catalog: Catalog, solution: bytes
-) -> None:
-    make_class(tmp_path / "class", solution, 1)
-    options = RunOptions(exercises=("doubling",), terms=Terms(), resume=True)
-    (tmp_path / "out").mkdir()
-    with Gradebook(tmp_path / "out" / "gradebook.sqlite", create=True, writing=True) as first:
-        with pytest.raises(UsageError, match="Another run is writing"):
-            graded_class(tmp_path, catalog, options)
-        first.set_meta(seed="77")
-    assert (tmp_path / "out" / "gradebook.sqlite").exists()
-    summary = graded_class(tmp_path, catalog, options)
-    assert (summary.seed, summary.states["graded"]) == (77, 1)
 
 
 def test_a_run_killed_before_it_had_a_gradebook_is_begun_again(
@@ -447,30 +374,3 @@ def test_a_download_with_several_exercises_is_graded_and_its_times_are_kept(
         assert [item.title for item in results.exercises()] == ["Doubling", "Halving"]
         sha256 = found["ada_1", "halving"].result.key.submission_sha256
         assert results.book.submission(sha256) == {"halving.py": b"ada_1_11_halving.py"}
-
-
-def test_a_file_that_is_again_what_it_was_gets_its_earlier_score_without_grading(
-    tmp_path: Path, catalog: Catalog, solution: bytes
-) -> None:
-    make_class(tmp_path / "class", solution, 1)
-    path = tmp_path / "class" / "student-000" / "doubling.py"
-    first = path.read_bytes()
-    graded: list[str] = []
-
-    def run(*, resume: bool) -> str:
-        options = RunOptions(exercises=("doubling",), resume=resume)
-
-        def report(item: Any, *_: object) -> None:
-            graded.append(item.result.key.submission_sha256)
-
-        graded_class(tmp_path, catalog, options, report, grade=right)
-        with open_results(tmp_path / "out") as results:
-            (found,) = results.all()
-        return found.result.key.submission_sha256
-
-    one = run(resume=False)
-    path.write_bytes(first + b"# more")
-    other = run(resume=True)
-    path.write_bytes(first)
-    assert run(resume=True) == one
-    assert graded == [one, other]

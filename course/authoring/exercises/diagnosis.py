@@ -10,6 +10,7 @@ import ast
 import contextlib
 import hashlib
 import math
+import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, is_dataclass
@@ -434,7 +435,9 @@ def _tried(
         for task, codes, function in chosen:
             session.program = task, function
             session._checks.in_order = lambda task=task: [c for c in every if c.task == task]  # type: ignore[method-assign, misc]
-            verdict = session.grade(Submission({exercise.module: source.encode()}))
+            with warnings.catch_warnings():  # a program only warns, whatever this process makes of warnings
+                warnings.simplefilter("ignore")
+                verdict = session.grade(Submission({exercise.module: source.encode()}))
             said = [check.diagnosis or "" for check in verdict.checks if check.status is not Status.PASS]
             yield task, codes, _main(said, codes, own.kind) if said else "survives"
 

@@ -191,7 +191,7 @@ def test_choose_by_report(submission, draw):
 
 
 def _priced(**costs):
-    """The right reports of three engines, in the order given, with what each costs."""
+    """The right reports of anvil, balsa and cork, in the order given, with what each costs."""
     return {name: {**boxes.TRUTH[name], "cost": cost} for name, cost in costs.items()}
 
 

@@ -23,7 +23,7 @@ from typing import TypeVar
 
 import msgspec
 
-from course.errors import CourseError, InternalError
+from course.errors import CourseError
 from course.grading.running.batch import WarmGrader, start_grader
 from course.grading.running.grader import Answer, Config, Job
 from course.grading.running.snapshot import Snapshot, frozen, in_use
@@ -188,11 +188,6 @@ class _WarmGrader(WarmGrader):
     def _start(self) -> subprocess.Popen[bytes]:
         number, self._seat = _take_seat()
         return start_grader(msgspec.structs.replace(self.config, processor=number))
-
-    def _cannot_start(self) -> InternalError:
-        return InternalError(
-            "A grader process cannot start there.", help="The worker's log has what it printed."
-        )
 
     def close(self, patience_s: float = 0.0) -> None:
         super().close(patience_s)

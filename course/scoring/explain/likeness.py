@@ -143,10 +143,8 @@ def _inputs(given: Mapping[str, Any]) -> list[tuple[str, float]]:
             found += [(f"the first of `{name}`", value[0]), (f"the last of `{name}`", value[-1])]
         else:
             found.append((f"`{name}`", value))
-    numbers = ((n, v) for n, v in found if isinstance(v, int | float) and not isinstance(v, bool))
-    return [
-        (n, float(v)) for n, v in numbers if math.isfinite(v)
-    ]  # whatever it is, infinity times it is infinite
+    numbers = [(n, float(v)) for n, v in found if isinstance(v, int | float) and not isinstance(v, bool)]
+    return [(n, v) for n, v in numbers if math.isfinite(v)]  # infinity is no factor
 
 
 def _of_ratio(a: float, e: float, inputs: Sequence[tuple[str, float]]) -> str:

@@ -32,13 +32,21 @@ def _goes_on(loop: ast.For) -> bool:
     return any(isinstance(part, ast.Continue) for part in ast.walk(loop))
 
 
-def why_none(source: bytes, task: str, places: Places) -> str:
-    """The advice where a function gives None instead of a value; "" if its text does not tell more."""
+def why_none(source: bytes, task: str, places: Places, name: str = "") -> str:
+    """The advice where a function gives None instead of a value; "" if its text does not tell more.
+
+    Args:
+        name: what is None, as the finding calls it: the result, or an entry of the dict that is returned.
+    """
     function = next(iter(functions_of(source, task)), None)
     if function is None:
         return ""
     own = list(_own(function))
     given = [part for part in own if isinstance(part, ast.Return) and _is_value(part.value)]
+    returned = [part.value for part in given if isinstance(part.value, ast.Dict)]
+    keys = {key.value for value in returned for key in value.keys if isinstance(key, ast.Constant)}
+    if name in keys:
+        return f"A dict is returned, and `{name}` is None in it. Which line should have set it?"
     if given:
         tests = [
             part for part in own if isinstance(part, ast.If) and any(one in ast.walk(part) for one in given)

@@ -83,8 +83,10 @@ def told_more(
     if args and judged.input is None and public:
         named = dict(zip(names_of(source, judged.task), args, strict=False))
         judged = msgspec.structs.replace(judged, input=plain(named, 4) or None)
-    if judged.diagnosis == "RETURNS_NOTHING" and (advice := why_none(source, judged.task, places)):
-        return msgspec.structs.replace(judged, help=advice)
+    if judged.diagnosis == "RETURNS_NOTHING":
+        name = judged.message.partition("` is ")[0].removeprefix("`")
+        if advice := why_none(source, judged.task, places, name):
+            return msgspec.structs.replace(judged, help=advice)
     unnamed = judged.diagnosis is None
     if unnamed and (found := return_in_a_loop(source, judged.task, places)):
         message, advice = said_once(judged.message, found.looks_like), found.advice

@@ -374,20 +374,22 @@ def expect_command_closes_loop(submission, rng):
         "correction must push towards that speed, forwards and backwards.",
         diagnose=ask,
     )
+    asked = [(gain, given) for gain in (max(gains), min(gains))]
     # Beyond what a twin learns here: a correction by the friction itself may push away from the target there.
-    slow = [(b, target) for b in (0.3, 2.0) for target in targets.tolist()]
-    calls = [(scenes.new_twin(b, 0.0, speed=0.5 * target), target) for b, target in slow]
-    for (b, target), drive in zip(slow, submission.call_each("command", calls), strict=True):
-        gains.append((kit.as_number(drive, "the drive") - b * target) / (0.5 * target))
-    for gain, quantity in ((max(gains), "largest"), (min(gains), "least")):
+    slow = [(b, target, 0.5 * target) for b in (0.3, 2.0) for target in targets.tolist()]
+    calls = [(scenes.new_twin(b, 0.0, speed=speed), target) for b, target, speed in slow]
+    for (b, target, speed), drive in zip(slow, submission.call_each("command", calls), strict=True):
+        gain = (kit.as_number(drive, "the drive") - b * target) / (target - speed)
+        asked.append((gain, {"friction": b, "speed": speed, "target speed": target, "drive": drive}))
+    for gain, case in asked:
         kit.expect_bounded(
-            gain,
-            low=-1e-6,
+            0.0 if abs(gain) < 1e-6 else gain,  # the rounding of a balance without a correction
+            low=0.0,
             high=twins.LARGEST_GAIN,
             source="the README's, with room for rounding",
-            quantity=f"{quantity} of what is added, over the difference of the speeds",
+            quantity="what is added, over the difference of the speeds",
             units="1/s",
-            input=given,
+            input=case,
             message="What `command` adds to friction times target speed is none of the corrections allowed.",
             help="Add nothing, or the difference of the speeds times 0.2 to 3 per second.",
             diagnose=ask,

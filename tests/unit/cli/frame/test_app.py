@@ -93,6 +93,12 @@ def test_version_wins_wherever_it_stands(course, words):
 
 # -- one object ----------------------------------------------------------------------------------------
 
+#: The codes of names that there are not, and the near ones that are offered.
+NOT_FOUND = {
+    "lesson twice": ("lesson_not_found", "twice-as-much"),
+    "start doublin": ("exercise_not_found", "doubling"),
+}
+
 
 @pytest.mark.parametrize(
     ("line", "schema", "code"),
@@ -145,6 +151,10 @@ def test_every_command_prints_exactly_one_object(course, workspace, line, schema
     if "error" in body:
         assert set(body["error"]) == {"code", "message", "help"}
         assert body["error"]["message"] in ran.err
+    if line in NOT_FOUND:
+        code, near = NOT_FOUND[line]
+        assert body["error"]["code"] == code
+        assert near in body["error"]["message"] + body["error"]["help"]
 
 
 def test_a_typo_is_answered_with_the_nearest_command(course):

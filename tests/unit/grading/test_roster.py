@@ -279,6 +279,9 @@ def test_an_empty_folder_is_missing_without_a_roster_too(tmp_path: Path, catalog
     again = RunOptions(terms=Terms(), resume=True)
     summary = graded_class(tmp_path, catalog, again, grade=right)
     assert (summary.missing, rows(tmp_path / "out" / "grades.csv")["eva"]["state"]) == ([], "graded")
+    with open_results(tmp_path / "out") as results:
+        (noted,) = results.book.journal()
+    assert (noted.student, noted.kind, "missing" in noted.before) == ("eva", "resume", True)
 
 
 # -- a file of an instructor's own ------------------------------------------------------------------------

@@ -21,7 +21,6 @@ from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.book import Gradebook
 from course.grading.intake import students
 from course.grading.intake.students import Candidate, Entry, found_for
-from course.grading.results.effective import override
 from course.grading.running.assign import assign, named, proposals, unsettled
 from course.grading.running.folder import open_results, previewed
 from course.grading.running.run import RunOptions
@@ -79,6 +78,10 @@ TAKEN: dict[str, tuple[dict[str, bytes], str]] = {
     "backslashes": (
         {"all.zip": zipped({"doubling\\doubling.py": SOURCE, "x\\notes.txt": b""})},
         "all.zip has backslashes in its paths; they were taken for folders.",
+    ),
+    "a second version elsewhere": (
+        {"doubling.py": SOURCE, "old/doubling_v2.py": OTHER, "plots.py": b"import math\n"},
+        "Also there, and not graded: old/doubling_v2.py (defines double, doublings).",
     ),
     "another spelling in a zip": (
         {"all.zip": zipped({"Doubling (1).py": SOURCE})}, "Doubling (1).py was taken for doubling.py."
@@ -249,23 +252,6 @@ def test_a_folder_that_was_renamed_is_taken_and_said(tmp_path: Path, doubling: E
     assert "The folder doubling-2 was taken for doubling." in notes
 
 
-def test_a_student_whose_only_file_is_an_archive_that_nobody_opens_has_not_handed_in_nothing(
-    tmp_path: Path, doubling: Exercise
-) -> None:
-    lay(tmp_path, **{"homework.rar": b"Rar!\x1a\x07\x00"})
-    problem = read(tmp_path, doubling, required=False).problem
-    assert problem is not None
-    assert "homework.rar (a rar archive, which nothing here opens)" in problem.message
-
-
-def test_a_second_version_is_never_passed_over_in_silence(tmp_path: Path, doubling: Exercise) -> None:
-    lay(tmp_path, **{"doubling.py": SOURCE, "old/doubling_v2.py": OTHER, "plots.py": b"import math\n"})
-    entry = read(tmp_path, doubling)
-    assert entry.submission is not None
-    (note,) = entry.notes
-    assert note == "Also there, and not graded: old/doubling_v2.py (defines double, doublings)."
-
-
 def test_work_under_a_wrong_name_is_no_silence_even_where_nothing_was_asked_for(
     tmp_path: Path, doubling: Exercise
 ) -> None:
@@ -275,6 +261,11 @@ def test_work_under_a_wrong_name_is_no_silence_even_where_nothing_was_asked_for(
     assert "There is hw.py (defines double, doublings)." in entry.problem.message
     (tmp_path / "ada" / "hw.py").write_bytes(b"def something(): pass\n")
     assert read(tmp_path, doubling, required=False).problem is None
+    lay(tmp_path, **{"homework.rar": b"Rar!\x1a\x07\x00"})
+    (tmp_path / "ada" / "hw.py").unlink()
+    problem = read(tmp_path, doubling, required=False).problem
+    assert problem is not None
+    assert "homework.rar (a rar archive, which nothing here opens)" in problem.message
 
 
 def test_hostile_files_are_named_and_cost_nobody_else(tmp_path: Path, doubling: Exercise) -> None:
@@ -452,15 +443,3 @@ def test_any_file_can_be_assigned_and_what_is_wrong_is_said(tmp_path: Path, cata
         assert one.member == "all/my work.py"
         assign(results, catalog, [one], "by mail", grade=right)
     assert counts(tmp_path / "out") == {"ada": ("graded", 10.0)}
-
-
-def test_a_score_by_hand_settles_it_too(tmp_path: Path, catalog: Catalog) -> None:
-    lay(tmp_path / "class", **{"hw.py": SOURCE})
-    graded(tmp_path, catalog)
-    with open_results(tmp_path / "out", writing=True) as results:
-        override(results, "ada", "doubling", 0.0, "not her work")
-    with open_results(tmp_path / "out") as results:
-        assert unsettled(results) == []
-        export(results, "gradescope", tmp_path / "out", tmp_path / "x", ExportOptions())
-        (told,) = results.book.journal("ada")
-        assert (told.kind, told.before, told.reason) == ("override", "0, ungradable", "not her work")

@@ -78,24 +78,15 @@ def test_a_score_can_be_set_where_nothing_was_handed_in(tmp_path: Path) -> None:
         assert [item.exercise for item in Results(book).all("ada")] == ["doubling"]
 
 
-@pytest.mark.parametrize(
-    ("student", "exercise", "score", "reason", "error", "code"),
-    [
-        ("ada", "doubling", 10.5, "x", UsageError, "impossible_score"),
-        ("ada", "doubling", -1.0, "x", UsageError, "impossible_score"),
-        ("ada", "doubling", float("nan"), "x", UsageError, "impossible_score"),
-        ("ada", "doubling", 1.0, " ", UsageError, "no_reason"),
-        ("bob", "doubling", 1.0, "x", NotFoundError, "student_not_found"),
-        ("ada", "nothing", 1.0, "x", NotFoundError, "exercise_not_found"),
-    ],
-)
-def test_an_impossible_override_changes_nothing(
-    tmp_path: Path, student: str, exercise: str, score: float, reason: str, error: type, code: str
-) -> None:
+def test_an_impossible_override_changes_nothing(tmp_path: Path) -> None:
     with make_book(tmp_path, {"ada": RIGHT}) as book:
-        with pytest.raises(error) as caught:
-            override(Results(book), student, exercise, score, reason)
-        assert caught.value.code == code
+        for score in (10.5, -1.0, float("nan")):
+            with pytest.raises(UsageError) as caught:
+                override(Results(book), "ada", "doubling", score, "x")
+            assert caught.value.code == "impossible_score"
+        with pytest.raises(NotFoundError) as missing:
+            override(Results(book), "ada", "nothing", 1.0, "x")
+        assert missing.value.code == "exercise_not_found"
         assert book.overrides() == []
         with pytest.raises(NotFoundError, match="no override"):
             lift(Results(book), "ada", "doubling", "")

@@ -15,14 +15,11 @@ import pytest
 
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
-from course.errors import MissingCapabilityError, NotFoundError, UngradableError, UsageError
-from course.grading.exports.formats import export
-from course.grading.exports.selection import ExportOptions
-from course.grading.gradebook.book import Gradebook
+from course.errors import NotFoundError, UngradableError
 from course.grading.intake import students
 from course.grading.intake.students import Candidate, Entry, found_for
 from course.grading.running.assign import assign, named, proposals, unsettled
-from course.grading.running.folder import open_results, previewed
+from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions
 from course.scoring.judging.submission import Terms
 from tests.unit.grading.made import graded_class, notebook, read_class, zipped
@@ -328,55 +325,32 @@ def counts(out: Path) -> dict[str, tuple[str, float | None]]:
         return {item.student: (item.verdict.state, item.score) for item in results.all()}
 
 
-def test_what_is_assigned_is_graded_at_once_written_down_and_stays(tmp_path: Path, catalog: Catalog) -> None:
-    lay(tmp_path / "class", **{"hw.py": SOURCE})
+def test_what_is_assigned_is_written_down_with_its_file_and_stays(tmp_path: Path, catalog: Catalog) -> None:
     lay(tmp_path / "class", "bob", **{"doubling.py": SOURCE, "doubling (1).py": OTHER})
-    lay(tmp_path / "class", "cy", **{"doubling.py": SOURCE})
     out = tmp_path / "out"
-    summary = graded(tmp_path, catalog)
-    assert summary.unsettled == 2
-    before = sorted(path.name for path in (tmp_path / "class").rglob("*"))
-    with open_results(out) as results:
-        assert [(item.student, item.found.reason) for item in unsettled(results)] == [
-            ("ada", "no_file"), ("bob", "ambiguous_files"),
-        ]  # fmt: skip
-        with pytest.raises(
-            MissingCapabilityError, match=r"'ada' doubling .no_file., 'bob' doubling"
-        ) as caught:
-            export(results, "gradescope", out, tmp_path / "x", ExportOptions())
-        assert caught.value.code == "unseen_zeros"
-        export(results, "gradescope", out, tmp_path / "x", ExportOptions(zeros=True))
-    with previewed(out) as results:
-        (done,) = assign(results, catalog, proposals(results), "her file", grade=right)
-        assert (done.before and done.before.score, done.after.score) == (0.0, 10.0)
-    assert counts(out)["ada"] == ("ungradable", 0.0), "a preview keeps nothing"
+    assert graded(tmp_path, catalog).unsettled == 1
     with open_results(out, writing=True) as results:
-        with pytest.raises(UsageError, match="reason"):
-            assign(results, catalog, proposals(results), " ", grade=right)
-        assign(results, catalog, proposals(results), "her file", grade=right)
+        assert [(item.student, item.found.reason) for item in unsettled(results)] == [
+            ("bob", "ambiguous_files")
+        ]
         chosen = named(results, "bob", "doubling (1).py", None)
-        assign(results, catalog, [chosen], "by mail", grade=right)
+        (done,) = assign(results, catalog, [chosen], "by mail", grade=right)
+        assert (done.before and done.before.score, done.after.score) == (0.0, 10.0)
         assert unsettled(results) == []
-    assert counts(out) == {"ada": ("graded", 10.0), "bob": ("graded", 10.0), "cy": ("graded", 10.0)}
-    assert sorted(path.name for path in (tmp_path / "class").rglob("*")) == before, "nothing was renamed"
-    with Gradebook(out / "gradebook.sqlite") as book:
-        ada, bob = book.journal("ada", "doubling")[0], book.journal("bob")[0]
-        assert (ada.kind, ada.reason, bob.reason) == ("assign", "her file", "by mail")
-        assert ada.who
-        assert ada.at
-        assert json.loads(ada.before)["reason"] == "no_file"
-        assert json.loads(bob.after)["file"] == "doubling (1).py"
-        assert book.history("bob", "doubling")[-1].verdict.warnings == (
+        (noted,) = results.book.journal("bob")
+        assert (noted.kind, noted.reason, json.loads(noted.after)["file"]) == (
+            "assign",
+            "by mail",
+            chosen.name,
+        )
+        assert noted.who
+        assert noted.at
+        assert results.book.history("bob", "doubling")[-1].verdict.warnings == (
             "Graded from doubling (1).py, assigned by the instructor: by mail",
         )
     again = graded(tmp_path, catalog, resume=True)
-    assert (again.already, again.exit_code, again.unsettled) == (3, 0, 0)
-    # A file under its right name is a new submission, and counts.
-    (tmp_path / "class" / "ada" / "doubling.py").write_bytes(OTHER)
-    (tmp_path / "class" / "ada" / "hw.py").unlink()
-    assert graded(tmp_path, catalog, resume=True).already == 2
-    with open_results(out) as results:
-        assert len(results.book.history("ada", "doubling")) == 3
+    assert (again.already, again.exit_code, again.unsettled) == (1, 0, 0)
+    assert counts(out) == {"bob": ("graded", 10.0)}
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="names of files are text there")

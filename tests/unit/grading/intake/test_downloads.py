@@ -226,14 +226,11 @@ def test_a_folder_that_is_two_things_is_refused_and_the_odd_names_listed(
 
 
 def test_what_could_be_handed_in_beside_the_folders_is_listed(tmp_path: Path) -> None:
-    stray = ("x_1_2_notes.txt", "readme.txt", "class.csv", ".git/doubling.py")
-    put(
-        tmp_path, "..evil/doubling.py", "; rm -rf ~/doubling.py", "bob.zip", "Cy.IPYNB", "doubling.py", *stray
-    )
+    students = ["..evil", "; rm -rf ~"]
+    put(tmp_path, *(f"{name}/doubling.py" for name in students), "bob.zip", "Cy.IPYNB", "doubling.py")
+    put(tmp_path, "x_1_2_notes.txt", "readme.txt", "class.csv", ".git/doubling.py")
     found = class_list(tmp_path)
-    assert (found.layout, [student.name for student in found.students]) == (
-        "folders", ["..evil", "; rm -rf ~"],
-    )  # fmt: skip
+    assert (found.layout, [student.name for student in found.students]) == ("folders", students)
     listed = [sentence.split(":")[0] for sentence in found.unrecognised]
     assert listed == ["Cy.IPYNB", "bob.zip", "doubling.py"]
 

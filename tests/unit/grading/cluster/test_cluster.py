@@ -33,9 +33,8 @@ from course.scoring.graders import grader_version
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import Problem, Verdict
+from tests.unit.grading.conftest import MINI
 
-ROOT = Path(__file__).resolve().parents[4]
-MINI = ROOT / "tests" / "fixtures" / "mini_course"
 POISON = b"poison"
 
 

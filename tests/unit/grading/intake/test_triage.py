@@ -18,6 +18,7 @@ from course.catalog.models import Exercise
 from course.errors import NotFoundError, UngradableError
 from course.grading.intake import students
 from course.grading.intake.students import Candidate, Entry, found_for
+from course.grading.results.effective import override
 from course.grading.running.assign import assign, named, proposals, unsettled
 from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions
@@ -325,16 +326,20 @@ def counts(out: Path) -> dict[str, tuple[str, float | None]]:
         return {item.student: (item.verdict.state, item.score) for item in results.all()}
 
 
-def test_what_is_assigned_is_written_down_with_its_file_and_stays(tmp_path: Path, catalog: Catalog) -> None:
+def test_what_an_instructor_settled_is_written_down_and_no_trouble_any_more(
+    tmp_path: Path, catalog: Catalog
+) -> None:
     lay(tmp_path / "class", "bob", **{"doubling.py": SOURCE, "doubling (1).py": OTHER})
+    (tmp_path / "class" / "cy").mkdir()
     out = tmp_path / "out"
-    assert graded(tmp_path, catalog).unsettled == 1
+    first = graded(tmp_path, catalog)
+    assert (first.exit_code, first.unsettled, first.passed) == (6, 2, 0)
     with open_results(out, writing=True) as results:
-        assert [item.found.reason for item in unsettled(results)] == ["ambiguous_files"]
+        assert [item.found.reason for item in unsettled(results)] == ["ambiguous_files", "no_file"]
+        override(results, "cy", "doubling", 8.0, "oral exam")
         chosen = named(results, "bob", "doubling (1).py", None)
         (done,) = assign(results, catalog, [chosen], "by mail", grade=right)
         assert (done.before and done.before.score, done.after.score) == (0.0, 10.0)
-        assert unsettled(results) == []
         (noted,) = results.book.journal("bob")
         assert (noted.kind, noted.reason) == ("assign", "by mail")
         assert json.loads(noted.after)["file"] == chosen.name
@@ -344,8 +349,9 @@ def test_what_is_assigned_is_written_down_with_its_file_and_stays(tmp_path: Path
             "Graded from doubling (1).py, assigned by the instructor: by mail",
         )
     again = graded(tmp_path, catalog, resume=True)
-    assert (again.already, again.exit_code, again.unsettled) == (1, 0, 0)
-    assert counts(out) == {"bob": ("graded", 10.0)}
+    assert (again.already, again.exit_code, again.unsettled, again.passed) == (2, 0, 0, 2)
+    assert (again.states, again.troubled) == ({"graded": 2}, [])
+    assert counts(out) == {"bob": ("graded", 10.0), "cy": ("ungradable", 8.0)}
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="names of files are text there")

@@ -97,7 +97,8 @@ def test_a_moodle_download_with_folders_is_a_class(tmp_path: Path, doubling) -> 
         "Group A-漢 字_13": "no_file",
         "Bob_14": "no_file",
     }
-    assert [student.place.files for student in found.students if student.name == "Bob_14"] == [()]
+    (bob,) = [student for student in found.students if student.name == "Bob_14"]
+    assert (bob.place.files, bob.typed) == ((), ("Bob_14_assignsubmission_onlinetext",))
     assert found.students[0].identity == PlatformIdentity("moodle", "11", "Ada Lovelace")
 
 

@@ -60,11 +60,6 @@ def test_a_cell_that_lost_its_mark_is_known_by_what_it_defines() -> None:
     assert source.notes == ("Taken for part of the solution by what they define: cell 2.",)
 
 
-def test_the_last_definition_wins() -> None:
-    source = source_of(code("def force(k, x):\n    return 0", SOLUTION), code(FORCE, SOLUTION))
-    assert run(source)["force"](2.0, 3.0) == -6.0
-
-
 def test_helpers_in_other_cells_count_and_experiments_do_not() -> None:
     source = source_of(
         code(
@@ -99,11 +94,6 @@ def test_generated_check_cells_never_count() -> None:
         code(check, CHECK),
     )  # fmt: skip
     assert "course" not in source.source.decode()
-
-
-def test_a_function_merged_into_a_check_cell_still_counts() -> None:
-    source = source_of(code(f"%course_check springs\n{FORCE}", CHECK))
-    assert run(source)["force"](1, 1) == -1
 
 
 @pytest.mark.parametrize(
@@ -210,17 +200,6 @@ def test_a_solution_cell_that_is_not_python_spoils_the_module_as_it_would_a_file
     source = source_of(code("def force(k, x:\n    return 1"), code("def energy(k, x):\n    return 1"))
     with pytest.raises(SyntaxError):
         run(source)
-
-
-def test_an_experiment_that_is_not_python_is_no_matter() -> None:
-    assert run(source_of(code("for for"), code(FORCE)))["force"](1, 1) == -1
-
-
-def test_lines_may_be_a_list_and_outputs_may_be_enormous() -> None:
-    lines = [line + "\n" for line in FORCE.split("\n")]
-    outputs = [{"output_type": "stream", "name": "stdout", "text": "x" * (4 << 20)}]
-    data = notebook(code("", SOLUTION, outputs=outputs) | {"source": lines})
-    assert run(notebook_source(data, EXERCISE))["force"](1, 1) == -1
 
 
 def test_a_notebook_of_format_3_is_read() -> None:

@@ -180,8 +180,7 @@ _BREACHES = {
 @pytest.mark.parametrize("frame", _BREACHES.values(), ids=_BREACHES.keys())
 def test_speaking_out_of_turn_ends_the_worker_and_nothing_else(frame: bytes) -> None:
     connection = _connect(frame)
-    failure = _failure(connection, lambda: 1)
-    assert failure.kind == "protocol"
+    assert _failure(connection, lambda: 1).kind == "protocol"
     assert not connection.alive
 
 
@@ -217,8 +216,7 @@ def test_only_lines_that_the_file_has_are_believed(line: Any, taken: int | None)
 def test_a_traceback_shows_the_last_frames_of_the_students_file_only() -> None:
     frames = [["/usr/lib/numpy.py", 1, "n"], *[["a.py", 1, "f"]] * 30_000, ["a.py", 2, "g\x1b[2J"]]
     connection = _connect(_value(Kind.RAISED, {"type": "E", "frames": frames}))
-    failure = _failure(connection)
-    lines = failure.traceback.splitlines()
+    lines = _failure(connection).traceback.splitlines()
     assert len(lines) <= 24
     assert lines[-2:] == ["a.py:2 in g\\x1b[2J", "    return x"]
 
@@ -248,8 +246,7 @@ def test_functions_are_evaluated_here_and_counted_here() -> None:
 def test_more_data_than_any_solution_needs_ends_a_call() -> None:
     kept: list[Any] = []
     connection = _connect(*[_value(Kind.CALLBACK, [0, None, np.zeros(1 << 18)])] * 20, _value(Kind.RESULT, 1))
-    failure = _failure(connection, kept.append)
-    assert failure.kind == "protocol"
+    assert _failure(connection, kept.append).kind == "protocol"
     assert sum(array.nbytes for array in kept) <= 18 << 20
 
 
@@ -348,6 +345,5 @@ def test_nothing_holds_the_grader_beyond_the_deadline(script: Any) -> None:
     connection.deadline = Deadline(0.3)
     large = np.zeros(8 << 20)
     start = monotonic()
-    failure = _failure(connection, lambda: large)
-    assert failure.kind == "timeout"
+    assert _failure(connection, lambda: large).kind == "timeout"
     assert monotonic() - start < 30  # wall: a busy machine may take its time, a hang would last for ever

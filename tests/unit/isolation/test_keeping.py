@@ -60,6 +60,9 @@ def test_one_session_takes_over_from_another_of_its_kind(opened: list[Sandbox]) 
         sandbox_for(("numpy", "scipy")).close()
         sandbox_for(("numpy",), at_most=Level.L1).close()
         assert len(opened) == 3
+    for _ in range(2):
+        sandbox_for(("numpy",)).close()
+    assert len(opened) == 5, "none is kept unless that was asked for"
 
 
 def test_a_session_goes_to_the_processor_on_which_the_sandbox_was_opened(opened: list[Sandbox]) -> None:
@@ -87,12 +90,6 @@ def test_what_is_still_in_use_at_the_end_is_closed_by_its_session(opened: list[S
         sandbox = sandbox_for(("numpy",))
     assert opened[0].told == []
     sandbox.close()
-
-
-def test_none_is_kept_unless_that_was_asked_for(opened: list[Sandbox]) -> None:
-    sandbox_for(("numpy",)).close()
-    sandbox_for(("numpy",)).close()
-    assert len(opened) == 2
 
 
 def test_one_whose_zygote_was_killed_serves_the_next_all_the_same() -> None:

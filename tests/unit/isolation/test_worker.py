@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from time import monotonic
 from typing import Any
 
 import numpy as np
@@ -272,16 +271,6 @@ def test_endless_recursion_is_an_error_and_the_next_call_works(load: Any) -> Non
     assert connection.call("g") == 1
 
 
-@pytest.mark.parametrize("what", ["object()", "{1, 2}", "2**70", "[[...]]", "print"])
-def test_a_result_that_cannot_cross_is_named(load: Any, what: str) -> None:
-    connection = load(f"def f():\n    return {what}\n")
-    if what == "print":
-        assert callable(connection.call("f"))
-    else:
-        failure = _failure(connection, "f")
-        assert (failure.kind, failure.type) == ("protocol", "UnsupportedValue")
-
-
 def test_inspection_shows_changed_arguments_and_shared_memory(load: Any) -> None:
     connection = load(
         "import numpy as np\n"
@@ -407,36 +396,6 @@ def test_prints_are_kept_up_to_a_limit_and_never_fail(load: Any) -> None:
     assert 60_000 < len(printed) <= MAX_OUTPUT
     connection.close()
     assert connection.output() == printed
-
-
-def test_memory_is_limited_and_running_out_is_named(load: Any, workers: Spawner) -> None:
-    if workers.level == Level.L1:
-        pytest.skip("L1 has no limit on memory")
-    connection = load(
-        "import numpy as np\ndef f():\n    return [np.empty(1 << 27) for _ in range(8)]\n"
-        "def g():\n    return 1\n"
-    )
-    assert _failure(connection, "f").kind == "memory"
-    assert connection.call("g") == 1
-
-
-@pytest.mark.parametrize(
-    "code", ["import os; os._exit(3)", "import os; os.abort()", "import ctypes; ctypes.string_at(0)"]
-)
-def test_a_crash_ends_one_worker_and_the_next_one_works(load: Any, code: str) -> None:
-    connection = load(f"def f():\n    {code}\n")
-    failure = _failure(connection, "f")
-    assert failure.kind == "crash"
-    assert not connection.alive
-    assert load("def f():\n    return 1\n").call("f") == 1
-
-
-def test_a_hang_ends_at_the_deadline(load: Any) -> None:
-    connection = load("import time\ndef f():\n    time.sleep(90)\n")
-    connection.deadline = Deadline(0.3)
-    start = monotonic()
-    assert _failure(connection, "f").kind == "timeout"
-    assert monotonic() - start < 30  # of the 90 it would sleep; the machine may be busy
 
 
 def test_one_worker_sees_nothing_of_another(load: Any) -> None:

@@ -97,6 +97,8 @@ def test_a_moodle_download_with_folders_is_a_class(tmp_path: Path, doubling) -> 
         "Group A-漢 字_13": "no_file",
         "Bob_14": "no_file",
     }
+    (bob,) = [student for student in found.students if student.name == "Bob_14"]
+    assert (bob.place.files, bob.typed) == ((), ("Bob_14_assignsubmission_onlinetext",))
     assert found.students[0].identity == PlatformIdentity("moodle", "11", "Ada Lovelace")
 
 
@@ -225,21 +227,14 @@ def test_a_folder_that_is_two_things_is_refused_and_the_odd_names_listed(
     assert found.unrecognised[0].startswith(odd)
 
 
-def test_folders_with_a_stray_file_among_them_are_folders(tmp_path: Path) -> None:
-    put(tmp_path, "ada/doubling.py", "x_1_2_notes.txt", "readme.txt")
-    found = class_list(tmp_path)
-    assert (found.layout, [student.name for student in found.students]) == ("folders", ["ada"])
-
-
 def test_what_could_be_handed_in_beside_the_folders_is_listed(tmp_path: Path) -> None:
-    put(tmp_path, "ada/doubling.py", "bob.zip", "Cy.IPYNB", "doubling.py", "class.csv", "readme.txt")
+    students = ["..evil", "; rm -rf ~"]
+    put(tmp_path, *(f"{name}/doubling.py" for name in students), "bob.zip", "Cy.IPYNB", "doubling.py")
+    put(tmp_path, "x_1_2_notes.txt", "readme.txt", "class.csv", ".git/doubling.py")
     found = class_list(tmp_path)
-    assert [student.name for student in found.students] == ["ada"]
-    assert [sentence.split(":")[0] for sentence in found.unrecognised] == [
-        "Cy.IPYNB",
-        "bob.zip",
-        "doubling.py",
-    ]
+    assert (found.layout, [student.name for student in found.students]) == ("folders", students)
+    listed = [sentence.split(":")[0] for sentence in found.unrecognised]
+    assert listed == ["Cy.IPYNB", "bob.zip", "doubling.py"]
 
 
 def test_an_empty_class_and_an_unknown_layout_are_said_plainly(tmp_path: Path) -> None:

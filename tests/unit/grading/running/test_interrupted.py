@@ -57,32 +57,38 @@ def states(out: Path) -> dict[tuple[str, str], str]:
         return {(item.student, item.exercise): item.verdict.state for item in results.all()}
 
 
-def test_who_was_not_reached_is_not_graded_yet(stopped: Path) -> None:
+def test_who_was_not_reached_is_not_graded_yet_and_no_platform_is_told_anything(
+    stopped: Path, tmp_path: Path
+) -> None:
     found = states(stopped)
     assert [found[f"student-00{number}", "doubling"] for number in range(2)] == ["graded"] * 2
     waiting = {student for (student, _), state in found.items() if state == "not_graded_yet"}
     assert waiting >= {"student-002", "student-003", "student-004"}
     # Enrolled, and without a folder: that is known.
     assert found["absent", "doubling"] == "missing"
+    sheet = tmp_path / "sheet.csv"
+    sheet.write_text("Identifier,Grade,Last modified (grade)\nParticipant 3,,-\n", "utf-8")
+    options = ExportOptions(("doubling",), {"doubling": "4711"}, zeros=True, missing="zero", worksheet=sheet)
     with open_results(stopped) as results:
         for item in results.all():
             assert item.waiting == (item.verdict.state == "not_graded_yet")
             assert not (item.waiting and item.score is not None)
-
-
-@pytest.mark.parametrize("form", ["canvas", "moodle", "moodle-worksheet", "gradescope"])
-def test_no_platform_is_told_anything(stopped: Path, form: str, tmp_path: Path) -> None:
-    sheet = tmp_path / "sheet.csv"
-    sheet.write_text("Identifier,Grade,Last modified (grade)\nParticipant 3,,-\n", "utf-8")
-    options = ExportOptions(("doubling",), {"doubling": "4711"}, zeros=True, missing="zero", worksheet=sheet)
-    with open_results(stopped) as results, pytest.raises(MissingCapabilityError) as refused:
-        export(results, form, stopped, None, options)
-    assert refused.value.code == "not_graded_yet"
-    assert "student-002" in refused.value.message
+        for form in ("canvas", "moodle", "moodle-worksheet", "gradescope"):
+            with pytest.raises(MissingCapabilityError) as refused:
+                export(results, form, stopped, None, options)
+            assert refused.value.code == "not_graded_yet"
+            assert "student-002" in refused.value.message
     assert sorted(path.name for path in stopped.iterdir()) == ["gradebook.sqlite"]
 
 
-def test_every_page_and_table_says_so(stopped: Path) -> None:
+def test_every_page_table_and_command_says_so(stopped: Path) -> None:
+    shown = in_process("grade", "explain", stopped, "student-003", "doubling").stdout
+    assert "not_graded_yet" in shown
+    assert "--resume" in shown
+    listed = in_process("grade", "assign", stopped).stdout
+    assert "Not graded yet: 3 students. The run goes on with --resume." in listed, "0 to settle is not all"
+    said = shown + in_process("grade", "log", stopped).stdout
+    assert not [words for words in UNTRUE if words in said]
     with open_results(stopped) as results:
         export_all(stopped, results)
         for form in ("csv", "jsonl", "junit"):
@@ -100,17 +106,6 @@ def test_every_page_and_table_says_so(stopped: Path) -> None:
         assert not [words for words in UNTRUE if words in page]
     assert "not graded yet: the run was interrupted" in pages["report.html"]
     assert "student-003 / " not in (stopped / "junit.xml").read_text("utf-8")
-
-
-def test_explain_the_log_and_the_list_of_what_is_to_settle_say_so(stopped: Path) -> None:
-    shown = in_process("grade", "explain", stopped, "student-003", "doubling")
-    assert shown.returncode == 0
-    assert "not_graded_yet" in shown.stdout
-    assert "--resume" in shown.stdout
-    assert not [words for words in UNTRUE if words in shown.stdout]
-    assert not [words for words in UNTRUE if words in in_process("grade", "log", stopped).stdout]
-    listed = in_process("grade", "assign", stopped).stdout
-    assert "Not graded yet: 3 students. The run goes on with --resume." in listed, "0 to settle is not all"
 
 
 def test_resuming_grades_them_and_the_log_holds_nothing_of_it(
@@ -143,18 +138,3 @@ def test_a_resumed_run_that_is_interrupted_takes_back_what_the_files_said(
     assert all("not_graded_yet" in row for row in rows)
     graded_class(tmp_path, catalog, RunOptions(resume=True), grade=right)
     assert states(out)["zoe", "doubling"] == "graded"
-
-
-def test_what_came_after_a_run_had_ended_is_in_the_log(
-    tmp_path: Path, catalog: Catalog, solution: bytes
-) -> None:
-    make_class(tmp_path / "class", solution, 1)
-    (tmp_path / "class" / "zoe").mkdir()
-    out = tmp_path / "out"
-    graded_class(tmp_path, catalog, RunOptions(seed=3), grade=right)
-    (tmp_path / "class" / "zoe" / "doubling.py").write_bytes(solution)
-    graded_class(tmp_path, catalog, RunOptions(resume=True), grade=right)
-    with open_results(out) as results:
-        (noted,) = results.book.journal()
-    assert (noted.student, noted.kind) == ("zoe", "resume")
-    assert "missing" in noted.before

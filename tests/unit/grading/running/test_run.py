@@ -21,22 +21,20 @@ from course.errors import InternalError, MissingCapabilityError, UsageError
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import Result
 from course.grading.intake.students import Entry
-from course.grading.results.effective import override
 from course.grading.running import batch
 from course.grading.running.batch import MAX_TRIES, Graded, grade_all
 from course.grading.running.folder import open_results
 from course.grading.running.grader import Answer
 from course.grading.running.rerun import RerunOptions, rerun
-from course.grading.running.run import RunOptions, Summary, grade_class
+from course.grading.running.run import RunOptions, grade_class
 from course.quizzing.bank import Bank
 from course.scoring.judging.submission import Terms
 from course.scoring.verdict import Verdict
 from tests.command_line import in_process
+from tests.unit.grading.conftest import MINI
 from tests.unit.grading.made import graded_class, read_class, stillborn
 
 pytestmark = pytest.mark.usefixtures("unpacked")
-
-MINI = Path(__file__).resolve().parents[3] / "fixtures" / "mini_course"
 
 WRONG = b"\ndef double(x):\n    return x\n"
 
@@ -128,9 +126,9 @@ def test_a_verdict_is_taken_from_who_was_asked_for_it(
     make_class(tmp_path / "class", solution, 3)
     read, forged = batch.read_frame, {}
     forgeries = [
-        lambda answer, perfect: Answer(perfect, number=5, sha256=answer.sha256),
-        lambda *_: 7,
-        lambda answer, perfect: Answer(perfect, number=answer.number),
+        lambda perfect: msgspec.structs.replace(perfect, number=perfect.number + 1),
+        lambda _: 7,
+        lambda perfect: msgspec.structs.replace(perfect, sha256="f" * 64),
     ]
 
     def first_a_forgery(source: IO[bytes]) -> bytes | None:
@@ -139,8 +137,8 @@ def test_a_verdict_is_taken_from_who_was_asked_for_it(
         answer = msgspec.msgpack.decode(frame, type=Answer) if frame else None
         if answer is None or answer.verdict is None or answer.sha256 in forged:
             return frame
-        perfect = msgspec.structs.replace(answer.verdict, score=99.0)
-        forged[answer.sha256] = forgeries[len(forged)](answer, perfect)
+        verdict = msgspec.structs.replace(answer.verdict, score=99.0)
+        forged[answer.sha256] = forgeries[len(forged)](msgspec.structs.replace(answer, verdict=verdict))
         return msgspec.msgpack.encode(forged[answer.sha256])
 
     monkeypatch.setattr(batch, "read_frame", first_a_forgery)
@@ -293,25 +291,6 @@ def test_a_student_counts_as_done_when_graded_and_not_when_read(
 
     graded_class(tmp_path, catalog, options, lambda _, done, __: seen.append(done), grade=all_at_once)
     assert seen == [1, 2, 3, 4]
-
-
-def test_what_an_instructor_settled_is_no_trouble_any_more(
-    tmp_path: Path, catalog: Catalog, solution: bytes
-) -> None:
-    make_class(tmp_path / "class", solution, 2)
-    (tmp_path / "class" / "nobody").mkdir()
-    options = RunOptions(exercises=("doubling",), resume=True)
-
-    def run() -> Summary:
-        return graded_class(tmp_path, catalog, options, grade=right)
-
-    summary = run()
-    assert (summary.exit_code, summary.states["graded"], summary.passed) == (6, 2, 2)
-    with open_results(tmp_path / "out", writing=True) as results:
-        override(results, "nobody", "doubling", 8.0, "oral exam")
-    summary = run()
-    assert (summary.exit_code, summary.states["graded"], summary.passed) == (0, 3, 3)
-    assert (summary.states["ungradable"], summary.troubled) == (0, [])
 
 
 def test_a_run_killed_before_it_had_a_gradebook_is_begun_again(

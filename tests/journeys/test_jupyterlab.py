@@ -8,7 +8,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 import time
@@ -22,25 +21,20 @@ import pytest
 from course.notebooks.server import RUN_MODULE
 from course.sandbox.scene.loading import choose
 from course.sandbox.world.world import World
+from tests import browsers
 
 ROOT = Path(__file__).resolve().parents[2]
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 MISSING = [name for name in ("jupyterlab", "nbclient", "ipykernel", "playwright") if find_spec(name) is None]
+# Names that are not this machine's lead nowhere, so that whatever asks for the network fails here.
+FLAGS = [*browsers.FLAGS, "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1"]
 #: In ms; a machine that runs other tests beside this one is slow to start a kernel.
 PATIENCE = 180_000
-FLAGS = [
-    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-    "--disable-background-networking", "--disable-component-update", "--disable-sync",
-    # Names that are not this machine's lead nowhere, so that whatever asks for the network fails here.
-    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
-]  # fmt: skip
-
 #: What stands beside a cell that has run.
 _RUN = re.compile(r"\[[0-9]+\]")
 
 pytestmark = [
     pytest.mark.skipif(bool(MISSING), reason=f"the extra notebook is not installed: {', '.join(MISSING)}"),
-    pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium"),
+    pytest.mark.skipif(browsers.CHROMIUM is None, reason="there is no Chromium"),
 ]
 
 WRONG = """def explicit_euler_step(accel, t, q, v, h):
@@ -123,7 +117,7 @@ def browser() -> Iterator[Any]:
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        opened = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        opened = playwright.chromium.launch(executable_path=browsers.CHROMIUM, args=FLAGS)
         yield opened
         opened.close()
 

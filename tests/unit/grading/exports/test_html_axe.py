@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import shutil
 import subprocess
 from collections.abc import Iterator
@@ -17,18 +16,13 @@ from course.grading.gradebook.records import GradedExercise, Override, Result, S
 from course.grading.results.effective import Results
 from course.grading.similar import Document, Group, Pair, Parser, Similar
 from course.grading.similar import page as similar_page
+from tests.browsers import CHROMIUM, FLAGS, axe_core
 from tests.unit.grading.exports.test_html import quiz_verdict
 from tests.unit.grading.made import BROKEN, HALF, HOSTILE, REFUSED, RIGHT, WRONG, digest, key, make_book
 from tests.unit.grading.test_results import DUE, POLICY
 
 pytestmark = pytest.mark.soak
 
-#: Its rules change with its version: a newer one is tried on purpose, not by accident.
-_AXE = "axe-core@4.14.1"
-_FLAGS = [
-    "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-    "--disable-background-networking", "--disable-component-update", "--disable-sync",
-]  # fmt: skip
 _RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
 _SCREENS = [(1280, "light"), (1280, "dark"), (390, "light")]
 _STUDENTS = ["students/1.html", "students/2.html", "students/3.html"]
@@ -41,29 +35,17 @@ _COPY = _ORIGINAL.replace("x", "number").replace("y", "value")
 
 @pytest.fixture(scope="module")
 def axe(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """The source of axe-core, fetched by npm."""
-    npm = shutil.which("npm")
-    if npm is None:
-        pytest.skip("npm is missing: axe-core cannot be fetched")
-    folder = tmp_path_factory.mktemp("axe")
-    command = [npm, "install", "--no-audit", "--no-fund", "--ignore-scripts", "--prefix", str(folder), _AXE]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        pytest.skip(f"npm could not fetch axe-core: {done.stderr.strip()[-200:]}")
-    return (folder / "node_modules" / "axe-core" / "axe.min.js").read_text("utf-8")
+    return axe_core(tmp_path_factory.mktemp("axe"))
 
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    if chromium is None:
+    if CHROMIUM is None:
         pytest.skip("Chromium is missing")
-    if importlib.util.find_spec("playwright") is None:
-        pytest.skip("playwright is missing: pip install 'physics-sim-course[dev]'")
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as started:
-        opened = started.chromium.launch(executable_path=chromium, args=_FLAGS)
+    reason = "playwright is missing: pip install 'physics-sim-course[dev]'"
+    playwright = pytest.importorskip("playwright.sync_api", reason=reason)
+    with playwright.sync_playwright() as started:
+        opened = started.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         yield opened
         opened.close()
 

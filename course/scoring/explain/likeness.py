@@ -241,9 +241,14 @@ def _of_order(a: Array, e: Array) -> str:
 def _of_parts(a: Array, e: Array, given: Mapping[str, Any]) -> str:
     """Which of the values are wrong, where some are right."""
     if _same(np.abs(a), np.abs(e)):
-        off = np.argwhere(np.sign(a) != np.sign(e))
-        every = len(off) == np.count_nonzero(e)
-        return "Only the signs are wrong." if every else f"Only the sign of {_named(off, a)} is wrong."
+        signed = np.abs(e) > _SAME * np.max(np.abs(e))  # what rounding left of a zero has none
+        off = np.argwhere(signed & (np.sign(a) != np.sign(e)))
+        if len(off) == np.count_nonzero(signed):
+            return "Only the signs are wrong."
+        if len(off) > 2:
+            return f"Only signs are wrong: {len(off)} of these {a.size} numbers have the other one."
+        some = "sign" if len(off) == 1 else "signs"
+        return f"Only the {some} of {_named(off, a)} {'is' if len(off) == 1 else 'are'} wrong."
     off = np.argwhere(np.abs(a - e) > _SAME * np.max(np.abs(e)))
     if not 0 < len(off) < a.size or a.ndim > 1 or len(off) > 2:
         return ""

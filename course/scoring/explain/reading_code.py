@@ -47,6 +47,8 @@ def why_none(source: bytes, task: str, places: Places, name: str = "") -> str:
     keys = {key.value for value in returned for key in value.keys if isinstance(key, ast.Constant)}
     if name in keys:
         return f"A dict is returned, and `{name}` is None in it. Which line should have set it?"
+    if name.isidentifier() and any(isinstance(part.value, ast.Tuple) for part in given):
+        return f"Several values are returned, and `{name}` is None. Which line should have set it?"
     if given:
         tests = [
             part for part in own if isinstance(part, ast.If) and any(one in ast.walk(part) for one in given)

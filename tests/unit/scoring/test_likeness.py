@@ -81,6 +81,17 @@ def test_a_number_is_compared_with_the_right_one_and_with_what_went_in(
         ([1.0, 2.0, 9.0], [1.0, 2.0], "one too many, at the end"),
         ([-1.0, -2.0], [1.0, 2.0], "Only the signs are wrong."),
         ([1.0, -2.0], [1.0, 2.0], "Only the sign of the second of these numbers is wrong."),
+        ([1.0, -2.0, 1e-17], [1.0, 2.0, -1e-17], "Only the sign of the second of these numbers is wrong."),
+        (
+            [[1.0, -2.0], [-3.0, 4.0]],
+            [[1.0, 2.0], [3.0, 4.0]],
+            "Only the signs of [0, 1] and [1, 0] are wrong.",
+        ),
+        (
+            [-1.0, -2.0, -3.0, 4.0],
+            [1.0, 2.0, 3.0, 4.0],
+            "Only signs are wrong: 3 of these 4 numbers have the other one.",
+        ),
         ([1.0, 4.0], [1.0, 2.0], "Only the second of these numbers is wrong: it is twice the right one."),
         ([1.5, 2.0, 4.0], [1.0, 2.0, 4.0], "Only the first of these numbers is wrong."),
         ([3 / 7, -4 / 7], [0.6, -0.8], "Every value is 0.714286 times the right one."),
@@ -167,6 +178,9 @@ def test_a_function_that_gives_none_is_told_the_condition_or_the_print_and_not_a
     part = b"def after(v):\n    if v:\n        return {'rmse': None}\n"
     assert "`rmse` is None in it" in why_none(part, "after", PLACES, "rmse")
     assert "condition on line 2" in why_none(part, "after", PLACES, "The result")
+    pair = b"def after(v):\n    if v:\n        return v, None\n"
+    assert "`w` is None" in why_none(pair, "after", PLACES, "w")
+    assert "condition on line 2" in why_none(pair, "after", PLACES, "The result")
     nothing = judged(diagnosis="RETURNS_NOTHING", task="after", help="Is a `return` missing?")
     assert "condition" in told_more(nothing, bounce, PLACES).help
 

@@ -5,6 +5,7 @@ Everything a command needs to know before it starts; heavier imports wait until 
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -79,13 +80,19 @@ class Here:
         return self.catalog.exercise(name) if (name := self._folder_name() or "") in known else None
 
     def _say_renumbered(self, chosen: Exercise, number: str) -> None:
-        """Of a number that meant another exercise before 2.0, one that was begun here: name both."""
+        """Of a number that meant another exercise before 2.0, one that was begun here then: name both."""
         before = next((one for one in self.catalog.exercises() if str(one.number) == number), chosen)
-        if before is not chosen and before in self.started():
+        if before is not chosen and self._begun_before_2_0(before):
             current().warn(
                 f"{number} is {chosen.id}, by the order of the lessons; before 2.0 it was {before.id}, "
                 f"which is {self.catalog.place_of(before)} now."
             )
+
+    def _begun_before_2_0(self, exercise: Exercise) -> bool:
+        with suppress(CourseError):  # a damaged record is another command's to tell
+            begun = self.workspace.store.events("start", exercise.id)
+            return any(str(event.data.get("version")).startswith("1.") for event in begun)
+        return False
 
     def nothing_started(self) -> NotFoundError:
         """The error that no exercise has been started; its advice names the first one."""

@@ -43,12 +43,8 @@ def why_none(source: bytes, task: str, places: Places, name: str = "") -> str:
         return ""
     own = list(_own(function))
     given = [part for part in own if isinstance(part, ast.Return) and _is_value(part.value)]
-    returned = [part.value for part in given if isinstance(part.value, ast.Dict)]
-    keys = {key.value for value in returned for key in value.keys if isinstance(key, ast.Constant)}
-    if name in keys:
-        return f"A dict is returned, and `{name}` is None in it. Which line should have set it?"
-    if name.isidentifier() and any(isinstance(part.value, ast.Tuple) for part in given):
-        return f"Several values are returned, and `{name}` is None. Which line should have set it?"
+    if several := _several([part.value for part in given], name):
+        return f"{several}, and `{name}` is None. Which line should have set it?"
     if given:
         tests = [
             part for part in own if isinstance(part, ast.If) and any(one in ast.walk(part) for one in given)
@@ -60,6 +56,19 @@ def why_none(source: bytes, task: str, places: Places, name: str = "") -> str:
     if any(isinstance(part, ast.Call) and getattr(part.func, "id", "") == "print" for part in own):
         return "It prints its result. Give it back: write `return` where `print` stands."
     return ""
+
+
+def _several(returned: list[ast.expr | None], name: str) -> str:
+    """That there are other values beside the one called ``name``; "" if a ``return`` shows none."""
+    if any(
+        isinstance(key, ast.Constant) and key.value == name
+        for value in returned
+        if isinstance(value, ast.Dict)
+        for key in value.keys
+    ):
+        return "A dict is returned"
+    beside = name.isidentifier() and any(isinstance(value, ast.Tuple) for value in returned)
+    return "Several values are returned" if beside else ""
 
 
 def _own(function: ast.FunctionDef) -> Iterator[ast.AST]:

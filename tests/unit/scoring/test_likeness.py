@@ -176,7 +176,7 @@ def test_a_function_that_gives_none_is_told_the_condition_or_the_print_and_not_a
     assert "is None here" in why_none(b"def after(v):\n    x = None\n    return x\n", "after", PLACES)
     assert why_none(b"def after(v):\n    2 * v\n", "after", PLACES) == ""
     part = b"def after(v):\n    if v:\n        return {'rmse': None}\n"
-    assert "`rmse` is None in it" in why_none(part, "after", PLACES, "rmse")
+    assert "A dict is returned, and `rmse` is None." in why_none(part, "after", PLACES, "rmse")
     assert "condition on line 2" in why_none(part, "after", PLACES, "The result")
     pair = b"def after(v):\n    if v:\n        return v, None\n"
     assert "`w` is None" in why_none(pair, "after", PLACES, "w")

@@ -48,6 +48,8 @@ def test_exercises_and_lessons_are_called_by_number_too(course, workspace):
 def test_a_number_that_meant_another_exercise_names_both(course, workspace):
     assert "before 2.0" not in course("start", "1").err, "nothing was begun when numbers meant others"
     course("start", "halving")
+    assert "before 2.0" not in course("check", "1").err, "whoever begins now knows no other number"
+    record(workspace).append("start", "halving", {"version": "1.2.0"})
     said = course("check", "1").err
     assert "1 is doubling, by the order of the lessons; before 2.0 it was halving, which is 2 now." in said
     assert "before 2.0" not in course("start", "2").err, "the chapter has no 2"

@@ -267,7 +267,16 @@ def _load(name: str, entry: Entry, mode: Any) -> Any:
     if entry.is_group:
         target.info.name = name
         target.rich_markup_mode = mode
-        return typer.main.get_group(target)
+        return _with_global_options(typer.main.get_group(target))
     app = typer.Typer(add_completion=False, rich_markup_mode=mode, **OPTIONS)
-    app.command(name, epilog=f"Example: {entry.example}\n\n{GLOBAL_OPTIONS}")(target)
-    return typer.main.get_command(app)
+    app.command(name, epilog=f"Example: {entry.example}")(target)
+    return _with_global_options(typer.main.get_command(app))
+
+
+def _with_global_options(command: Any) -> Any:
+    """The command, or every command of a group, whose help names them at its end."""
+    for one in getattr(command, "commands", {}).values():
+        _with_global_options(one)
+    if not hasattr(command, "commands"):
+        command.epilog = "\n\n".join(filter(None, (command.epilog, GLOBAL_OPTIONS)))
+    return command

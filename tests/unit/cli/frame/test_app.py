@@ -64,6 +64,8 @@ def test_every_promised_command_has_its_own_summary_and_help_with_an_example(cou
 
 def test_the_list_of_commands_names_them_all(course):
     words = course("--help").out
+    for one in ("check", "grade run", "author new exercise"):
+        assert "also takes --json, --plain" in course(*one.split(), "--help").out
     for name, entry in registry.COMMANDS.items():
         assert re.search(rf"^\s+{name}\s+{re.escape(entry.summary)}", words, re.MULTILINE)
 

@@ -131,8 +131,9 @@ def _of_two_numbers(a: float, e: float, given: Mapping[str, Any]) -> str:
 
 
 def _taken(a: float, inputs: Sequence[tuple[str, float]]) -> str:
-    """The input that a number is; "" if it is none."""
-    return next((name for name, value in inputs if _same(a, value) and value != 0.0), "")
+    """The input that a number is; "" if it is none. A one among several values is so by chance."""
+    chosen = ((n, v) for n, v in inputs if v != 0.0 and (n[0] == "`" or abs(v) != 1.0))
+    return next((name for name, value in chosen if _same(a, value)), "")
 
 
 def _inputs(given: Mapping[str, Any]) -> list[tuple[str, float]]:

@@ -49,8 +49,9 @@ def why_none(source: bytes, task: str, places: Places, name: str = "") -> str:
         tests = [
             part for part in own if isinstance(part, ast.If) and any(one in ast.walk(part) for one in given)
         ]
-        if not tests:
-            return "There is a `return`, and what it gives is None here. Which line should have set it?"
+        if not tests or function.body[-1] in given:  # it does not end without a `return`
+            what = f"`{name}`" if name.isidentifier() else "what it gives"
+            return f"There is a `return`, and {what} is None here. Which line should have set it?"
         where = places.phrase(tests[-1].lineno)
         return f"There is a `return`. Was the condition {where} never met for this input?"
     if any(isinstance(part, ast.Call) and getattr(part.func, "id", "") == "print" for part in own):

@@ -36,6 +36,7 @@ PLACES = Places(module="work.py")
         (2.4 / 0.07**2, 2.4, {"h": 0.07}, "the right one over `h` squared"),
         (3.7, 2.4, {"v": 3.7}, "the same as `v`"),
         (3.0, 5.0, {"errors": [3.0, 4.0]}, "the same as the first of `errors`"),
+        (1.0, 5.3, {"errors": [1.0, 4.0]}, ""),
         (2.7, 2.0, {"left": 0.7}, "too large by `left`"),
         (6, 7, {}, "too small by 1"),
         (1 / 2.4, 2.4, {}, "one over the right one"),
@@ -175,6 +176,8 @@ def test_a_function_that_gives_none_is_told_the_condition_or_the_print_and_not_a
     assert "`print`" in why_none(b"def after(v):\n    print(2 * v)\n", "after", PLACES)
     assert "is None here" in why_none(b"def after(v):\n    x = None\n    return x\n", "after", PLACES)
     assert why_none(b"def after(v):\n    2 * v\n", "after", PLACES) == ""
+    merged = b"def after(v):\n    if v < 0:\n        return {}\n    return {**part(v)}\n"
+    assert "`rmse` is None here" in why_none(merged, "after", PLACES, "rmse")
     part = b"def after(v):\n    if v:\n        return {'rmse': None}\n"
     assert "A dict is returned, and `rmse` is None." in why_none(part, "after", PLACES, "rmse")
     assert "condition on line 2" in why_none(part, "after", PLACES, "The result")

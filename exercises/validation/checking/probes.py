@@ -78,6 +78,8 @@ def of_force(key, value, f_sim, f_real, dt):
     """What a wrong relative error of the peak or the impulse is; the other may be wrong in another way."""
     of = np.max if key == "peak" else np.sum
     sim, real = of(f_sim), of(f_real)
+    if value == -1:  # nothing is left of the simulated force, by whatever rule
+        return None
     ratios = {
         "peak": [
             ("PEAK_OF_ERROR", np.max(f_sim - f_real) / real),
@@ -182,7 +184,7 @@ class Resampled:
 
 def resample(submission, seed, count=_BOOT):
     """Have the submission make a few resamples, and look at them."""
-    e = np.arange(_N, dtype=float)
+    e = 1.0 + np.arange(_N)  # no zero, which an array that was not filled has
     answers = []
 
     def statistic(samples):
@@ -212,7 +214,7 @@ def of_resamples(found):
         ("RESAMPLE_SIZE", not whole),
         ("NOT_OF_THE_SERIES", not all(np.isin(samples, found.e).all() for samples in drawn)),
         # Of errors drawn with replacement a third is missing in a resample.
-        ("REPEATS_AN_END", _repeated_ends(drawn, n) >= _MOST_REPEATED),
+        ("REPEATS_AN_END", _repeated_ends(drawn, found.e) >= _MOST_REPEATED),
         ("DRAWN_WITHOUT_REPLACEMENT", all(len(np.unique(samples)) > 0.9 * n for samples in drawn)),
         ("DRAWN_ONCE", len(drawn) > 1 and all(np.array_equal(samples, drawn[0]) for samples in drawn)),
         # Five hundred blocks, drawn anywhere, leave out no more than an error at an end of the series.
@@ -231,10 +233,10 @@ def of_resamples(found):
 _MOST_REPEATED = 5
 
 
-def _repeated_ends(drawn, n):
+def _repeated_ends(drawn, e):
     """How much oftener the first or last sample of the series follows itself than all others do together."""
     twice = np.concatenate([np.empty(0), *(samples[1:][np.diff(samples) == 0] for samples in drawn)])
-    ends = int(np.sum(np.isin(twice, (0, n - 1))))
+    ends = int(np.sum(np.isin(twice, (e[0], e[-1]))))
     return 2 * ends - len(twice)
 
 
@@ -261,6 +263,8 @@ def of_ends(found):
     levels = [
         (None, a / 2, 1 - a / 2),
         ("ONE_SIDED", a, 1 - a),
+        ("ALPHA_AT_ONE_END", a / 2, 1 - a),
+        ("ALPHA_AT_ONE_END", a, 1 - a / 2),
         ("LEVEL_FOR_ALPHA", (1 - a) / 2, (1 + a) / 2),
         ("ENDS_ON_ONE_SIDE", a / 200, (1 - a / 2) / 100),
     ]
@@ -324,6 +328,7 @@ def of_interval(submission, seed, found=None, *, ends_first=False):
     if code in {
         None,
         "ONE_SIDED",
+        "ALPHA_AT_ONE_END",
         "LEVEL_FOR_ALPHA",
         "WIDTH_SCALED",
     }:  # few values are near each other: ask for more

@@ -131,6 +131,8 @@ def of_number(key, value, right, e, sigma):
             ("IN_PER_CENT", 100 * np.mean(np.abs(e) <= 1.96 * sigma)),
         ),
     }
+    if key == "coverage" and value in {0.0, 1.0}:  # all or none, by whatever rule
+        return None
     return _only(numbers[key], lambda wrong: wrong is not None and math.isclose(value, wrong, rel_tol=1e-6))
 
 
@@ -222,6 +224,8 @@ def of_lag_interval(value, half, right):
 
     half: half the width that was given.
     """
+    if abs(half) < 1e-9:
+        return named("ZERO_WIDTH")
     if _whole(value, right):
         return named("LAG_WHOLE_SAMPLES")
     if right.alone and abs(half / right.alone - 1) < 0.03:
@@ -229,8 +233,8 @@ def of_lag_interval(value, half, right):
     return named("LAG_OF_PARTS")
 
 
-def of_reasons(judged):
-    """What reasons show by themselves: (those given, the right ones) of each report."""
+def of_reasons(judged, shown=None):
+    """What reasons show by themselves: (those given, the right ones) of each report, and of the shown one."""
     if all(sorted(reasons) == right for reasons, right in judged):
         return named("NOT_SORTED")
     words = {key.removesuffix("_s") for key in MEASURES}
@@ -238,7 +242,8 @@ def of_reasons(judged):
         return named("REASON_UNKNOWN")
     if all(sorted(set(reasons)) == right for reasons, right in judged):
         return named("REASON_TWICE")
-    missing = any(set(right) - set(reasons) for reasons, right in judged)
+    reasons, right = shown or judged[0]
+    missing = set(right) - set(reasons)
     return named("REASON_MISSING" if missing else "REASON_TOO_MANY")
 
 

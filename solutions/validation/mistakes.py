@@ -90,7 +90,7 @@ mistakes(
 )
 mistakes(
     "MUTATES_INPUT",
-    "An argument was changed.",
+    "Your code works in the caller's own array, list or dict, not in a copy.",
     "Write e = e - ..., which makes a new array. e -= ... and e[...] = ... change the caller's array; sort(), pop() and run[...] = ... the caller's list or dict.",
     kind="fact",
 ).body(
@@ -446,7 +446,7 @@ mistakes(
 )
 mistakes(
     "RESAMPLE_SIZE",
-    "Where N is no multiple of block, not every resample has N errors.",
+    "In a short trial, not every resample has as many errors as the series.",
     "Join blocks until there are at least N samples, and cut off the rest; N need not be a multiple of block.",
     kind="fact",
 ).body(
@@ -497,7 +497,7 @@ mistakes(
 mistakes(
     "ONE_STANDARD_ERROR",
     "Which part of your code uses alpha? Quantiles at fixed levels, or a fixed number of standard deviations, suit one alpha alone.",
-    "Take the quantiles of the resampled values at alpha/2 and 1 - alpha/2.",
+    "Take the quantiles of the resampled values at alpha/2 and 1 - alpha/2, as they are.",
     kind="consequence",
 ).body(
     "block_bootstrap_ci",
@@ -509,7 +509,7 @@ mistakes(
         half = 2 * np.std(values)
         return np.mean(values) - half, np.mean(values) + half
     """,
-    also=("WIDTH_SCALED",),
+    also=("WIDTH_SCALED", "FIXED_LEVELS"),
 )
 mistakes(
     "STATISTIC_IGNORED",
@@ -827,6 +827,24 @@ mistakes(
             e = [np.subtract(predict(model, runs[i]), runs[i]["y"]) for i in fold]
             scores.append(np.sqrt(np.mean(np.concatenate(e) ** 2)))
         return scores
+    """,
+)
+mistakes(
+    "ONE_RUN_LEFT_OUT",
+    "Each model leaves out a single run, not a whole fold.",
+    "For each fold, fit one model to all the runs outside it, and predict every run of the fold with that.",
+    kind="fact",
+).body(
+    "cross_validate",
+    """
+        scores = []
+        for fold in np.array_split(np.arange(len(runs)), k):
+            e = []
+            for i in fold:
+                model = fit(runs[:i] + runs[i + 1 :])
+                e.append(np.subtract(predict(model, runs[i]), runs[i]["y"]))
+            scores.append(np.sqrt(np.mean(np.concatenate(e) ** 2)))
+        return np.array(scores)
     """,
 )
 mistakes(
@@ -1244,7 +1262,7 @@ mistakes(
 mistakes(
     "JACKKNIFE_FACTOR",
     "The interval is as wide as with another factor than (n - 1)/n.",
-    "The standard error is sqrt((n - 1)/n * sum). The values with one run left out differ little from each other, so their squares are not divided by n or n - 1 again.",
+    "The standard error is sqrt((n - 1)/n * sum), and the interval reaches t of them to either side. The values with one run left out differ little from each other, so their squares are not divided by n or n - 1 again.",
     kind="consequence",
 ).body(
     "validate",
@@ -1417,6 +1435,38 @@ mistakes(
         rows = (starts[:, :, None] + np.arange(block)).reshape(len(starts), -1)[:, :n]
         values = [statistic(e[row]) for row in rows]
         return tuple(np.percentile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
+    "FIXED_LEVELS",
+    "The ends are about the quantiles at 0.025 and 0.975, although alpha is not 0.05.",
+    "Take the quantiles at alpha/2 and 1 - alpha/2, for the alpha that is passed in.",
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        count = -(-n // block)
+        starts = rng.integers(0, n - block + 1, size=(n_boot, count))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(len(starts), -1)[:, :n]
+        values = [statistic(e[row]) for row in rows]
+        return tuple(np.percentile(values, [2.5, 97.5]))
+    """,
+)
+mistakes(
+    "ENDS_UNSORTED",
+    "The ends are resampled values at the right places of the list, but the list is not sorted.",
+    "Sort the values before you pick two of them, or take np.quantile.",
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        count = -(-n // block)
+        starts = rng.integers(0, n - block + 1, size=(n_boot, count))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(len(starts), -1)[:, :n]
+        values = [statistic(e[row]) for row in rows]
+        return values[int(alpha / 2 * n_boot)], values[int((1 - alpha / 2) * n_boot)]
     """,
 )
 mistakes(

@@ -145,7 +145,8 @@ def _only(looks, fits):
 def of_pairs(key, value, sim, real):
     """Whether a wrong rmse or bias is that of runs paired by their place in the two lists.
 
-    By the place in the lists as they are, or in what is left of each without the runs that do not count.
+    By the place in the lists as they are, or in what is left of each, or of the simulated ones, without the
+    runs that do not count.
     """
     if key == "coverage":
         return None
@@ -153,7 +154,8 @@ def of_pairs(key, value, sim, real):
     count = ids & {run["id"] for run in sim["runs"]}
     whole = [(s, r) for s, r in zip(sim["runs"], real["runs"], strict=False) if s["id"] in ids]
     left = zip(*([run for run in side["runs"] if run["id"] in count] for side in (sim, real)), strict=True)
-    for pairs in (whole, list(left)):
+    fresh = [run for run in sim["runs"] if run["id"] not in sim["calibrated_on"]]
+    for pairs in (whole, list(left), list(zip(fresh, real["runs"], strict=False))):
         alike = all(s["id"] == r["id"] for s, r in pairs)
         if alike or any(len(s["y"]) != len(r["y"]) for s, r in pairs):
             continue

@@ -1395,7 +1395,7 @@ mistakes(
 )
 mistakes(
     "OTHER_NUMBER_OF_RESAMPLES",
-    "Your code does not call the statistic once for each of n_boot resamples.",
+    "Your code calls the statistic more often, or less often, than once for each of n_boot resamples.",
     "Draw n_boot resamples and call statistic once for each; besides, at most twice for the series itself.",
     kind="fact",
 ).body(
@@ -1890,7 +1890,7 @@ mistakes(
 mistakes(
     "WIDTH_SCALED",
     "Both ends are much nearer to the middle, or much farther from it, than the right quantiles.",
-    "Take the quantiles at alpha/2 and 1 - alpha/2 as they are. Do not divide by a root of N or n_boot.",
+    "Take the quantiles at alpha/2 and 1 - alpha/2 as they are, without any factor.",
 )
 mistakes(
     "SHRINKS_WITH_RESAMPLES",

@@ -90,7 +90,7 @@ mistakes(
 )
 mistakes(
     "MUTATES_INPUT",
-    "An argument was changed.",
+    "Your code works in the caller's own array, list or dict, not in a copy.",
     "Write e = e - ..., which makes a new array. e -= ... and e[...] = ... change the caller's array; sort(), pop() and run[...] = ... the caller's list or dict.",
     kind="fact",
 ).body(
@@ -203,7 +203,7 @@ mistakes(
 ).edit("wrap_angle", {"(np.asarray(e, dtype=float) + np.pi) % (2 * np.pi) - np.pi": "np.array(e)"})
 mistakes(
     "WRAPPED_ONCE",
-    "Your code subtracts one turn at most, but an error may be many turns away.",
+    "Your code adds or subtracts one turn at most, but an error may be many turns away.",
     "Use the remainder of a division by one turn, which removes any number of turns.",
 ).edit(
     "wrap_angle",
@@ -221,8 +221,8 @@ mistakes(
 )
 mistakes(
     "REMAINDER_SIGN",
-    "Some angles come out below the range: a remainder such as that of math.fmod has the sign of what is divided.",
-    "math.fmod and np.fmod do that. Use % or np.mod: (e + pi) % (2 pi) - pi.",
+    "Some angles come out outside the range: what is left of them has the sign of what is divided.",
+    "math.fmod, np.fmod, np.trunc and int() round towards zero. Use % or np.mod: (e + pi) % (2 pi) - pi.",
 ).edit(
     "wrap_angle",
     {"return (np.asarray(e, dtype=float) + np.pi) % (2 *": "return np.fmod(np.asarray(e) + np.pi, 2 *"},
@@ -297,6 +297,38 @@ mistakes(
         rows = (starts[:, :, None] + np.arange(block)).reshape(n_boot, -1)[:, :n]
         values = [statistic(e[row]) for row in rows]
         return tuple(np.quantile(values, [alpha, 1 - alpha]))
+    """,
+)
+mistakes(
+    "ALPHA_AT_ONE_END",
+    "One end leaves alpha/2 outside, and the other one alpha.",
+    "Split alpha: half of it below lo and half above hi.",
+).body(
+    "consistency_band",
+    """
+        def quantile(p, n):
+            s = 2 / (9 * n)
+            return n * (1 - s + NormalDist().inv_cdf(p) * math.sqrt(s)) ** 3
+
+        return quantile(alpha / 2, dof * runs) / runs, quantile(1 - alpha, dof * runs) / runs
+    """,
+).body(
+    "consistency_band",
+    """
+        def quantile(p, n):
+            s = 2 / (9 * n)
+            return n * (1 - s + NormalDist().inv_cdf(p) * math.sqrt(s)) ** 3
+
+        return quantile(alpha, dof * runs) / runs, quantile(1 - alpha / 2, dof * runs) / runs
+    """,
+).body(
+    "block_bootstrap_ci",
+    """
+        n = len(e)
+        starts = rng.integers(0, n - block + 1, size=(n_boot, -(-n // block)))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(n_boot, -1)[:, :n]
+        values = [statistic(e[row]) for row in rows]
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha]))
     """,
 )
 mistakes(
@@ -402,7 +434,7 @@ mistakes(
 )
 mistakes(
     "IID_BOOTSTRAP",
-    "In the resamples, most errors are not followed by their neighbour. Perhaps single errors are drawn, or blocks are shuffled.",
+    "In the resamples, most errors are not followed by the next one of the series. Are single errors drawn, or blocks taken apart?",
     "Choose random starts, take block consecutive samples from each, and keep their order.",
 ).body(
     "block_bootstrap_ci",
@@ -414,7 +446,7 @@ mistakes(
 )
 mistakes(
     "RESAMPLE_SIZE",
-    "Where N is no multiple of block, not every resample has N errors.",
+    "In a short trial, not every resample has as many errors as the series.",
     "Join blocks until there are at least N samples, and cut off the rest; N need not be a multiple of block.",
     kind="fact",
 ).body(
@@ -464,8 +496,8 @@ mistakes(
 )
 mistakes(
     "ONE_STANDARD_ERROR",
-    "Perhaps the ends are a fixed number of standard deviations away.",
-    "Take the quantiles of the resampled values at alpha/2 and 1 - alpha/2.",
+    "Which part of your code uses alpha? Quantiles at fixed levels, or a fixed number of standard deviations, suit one alpha alone.",
+    "Take the quantiles of the resampled values at alpha/2 and 1 - alpha/2, as they are.",
     kind="consequence",
 ).body(
     "block_bootstrap_ci",
@@ -477,7 +509,7 @@ mistakes(
         half = 2 * np.std(values)
         return np.mean(values) - half, np.mean(values) + half
     """,
-    also=("WIDTH_SCALED",),
+    also=("WIDTH_SCALED", "FIXED_LEVELS"),
 )
 mistakes(
     "STATISTIC_IGNORED",
@@ -798,6 +830,24 @@ mistakes(
     """,
 )
 mistakes(
+    "ONE_RUN_LEFT_OUT",
+    "Each model leaves out a single run, not a whole fold.",
+    "For each fold, fit one model to all the runs outside it, and predict every run of the fold with that.",
+    kind="fact",
+).body(
+    "cross_validate",
+    """
+        scores = []
+        for fold in np.array_split(np.arange(len(runs)), k):
+            e = []
+            for i in fold:
+                model = fit(runs[:i] + runs[i + 1 :])
+                e.append(np.subtract(predict(model, runs[i]), runs[i]["y"]))
+            scores.append(np.sqrt(np.mean(np.concatenate(e) ** 2)))
+        return np.array(scores)
+    """,
+)
+mistakes(
     "MEAN_OF_RUNS",
     "Your code averages results of single runs. So a short run counts as much as a long one.",
     "Pool all samples first, then compute the number once.",
@@ -1052,8 +1102,8 @@ mistakes(
 )
 mistakes(
     "SIGN_OF_LIMIT_IGNORED",
-    "A negative bias or lag is accepted, however large.",
-    "Margins of bias and lag extend to both sides of zero: compare both ends of the interval.",
+    "A negative bias or lag is accepted, although its interval reaches beyond the margin.",
+    "Margins of bias and lag extend to both sides of zero. Refuse where lo < -limit or hi > limit.",
 ).program(
     "validate",
     """
@@ -1085,7 +1135,7 @@ mistakes(
 )
 mistakes(
     "SIGMA_NOT_SCALED",
-    "The coverage is that of an interval of one sigma to each side.",
+    "The coverage is as large as with one sigma to each side.",
     "The interval is y plus and minus 1.96 sigma, which should cover 95 % of the values.",
     kind="consequence",
 ).edit(
@@ -1098,7 +1148,7 @@ mistakes(
 mistakes(
     "WRONG_SIGN",
     "The result has the wrong sign.",
-    "An error is simulated minus real; a change is the present value minus the first.",
+    "An error is simulated minus real. A change is the present value minus the first. A wrapped angle keeps its direction.",
     kind="consequence",
 ).program(
     "validate",
@@ -1129,8 +1179,8 @@ mistakes(
 )
 mistakes(
     "RMSE_ALONE_JUDGED",
-    "Only the rmse is compared with its margin.",
-    "bias, coverage, lag and rmse each have their own margin and reason. Compare the whole interval.",
+    "Only the rmse leads to a reason. Bias, coverage and lag pass with their intervals outside their margins.",
+    "bias, coverage, lag and rmse each have their own margin and reason. Refuse where lo < least or hi > most.",
 ).program(
     "validate",
     """
@@ -1212,7 +1262,7 @@ mistakes(
 mistakes(
     "JACKKNIFE_FACTOR",
     "The interval is as wide as with another factor than (n - 1)/n.",
-    "The standard error is sqrt((n - 1)/n * sum). The values with one run left out differ little from each other, so their squares are not divided by n or n - 1 again.",
+    "The standard error is sqrt((n - 1)/n * sum), and the interval reaches t of them to either side. The values with one run left out differ little from each other, so their squares are not divided by n or n - 1 again.",
     kind="consequence",
 ).body(
     "validate",
@@ -1345,7 +1395,7 @@ mistakes(
 )
 mistakes(
     "OTHER_NUMBER_OF_RESAMPLES",
-    "Your code does not call the statistic once for each of n_boot resamples.",
+    "Your code calls the statistic more often, or less often, than once for each of n_boot resamples.",
     "Draw n_boot resamples and call statistic once for each; besides, at most twice for the series itself.",
     kind="fact",
 ).body(
@@ -1374,7 +1424,7 @@ mistakes(
 mistakes(
     "ENDS_ON_ONE_SIDE",
     "Both ends are made from the smallest of the resampled values.",
-    "np.quantile counts from 0 to 1, np.percentile from 0 to 100.",
+    "np.quantile counts from 0 to 1, np.percentile from 0 to 100, and an index of the sorted values from 0 to n_boot - 1.",
 ).body(
     "block_bootstrap_ci",
     """
@@ -1388,9 +1438,41 @@ mistakes(
     """,
 )
 mistakes(
+    "FIXED_LEVELS",
+    "The ends are about the quantiles at 0.025 and 0.975, although alpha is not 0.05.",
+    "Take the quantiles at alpha/2 and 1 - alpha/2, for the alpha that is passed in.",
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        count = -(-n // block)
+        starts = rng.integers(0, n - block + 1, size=(n_boot, count))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(len(starts), -1)[:, :n]
+        values = [statistic(e[row]) for row in rows]
+        return tuple(np.percentile(values, [2.5, 97.5]))
+    """,
+)
+mistakes(
+    "ENDS_UNSORTED",
+    "The ends are resampled values at the right places of the list, but the list is not sorted.",
+    "Sort the values before you pick two of them, or take np.quantile.",
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        count = -(-n // block)
+        starts = rng.integers(0, n - block + 1, size=(n_boot, count))
+        rows = (starts[:, :, None] + np.arange(block)).reshape(len(starts), -1)[:, :n]
+        values = [statistic(e[row]) for row in rows]
+        return values[int(alpha / 2 * n_boot)], values[int((1 - alpha / 2) * n_boot)]
+    """,
+)
+mistakes(
     "NOT_CENTRED",
-    "The interval does not lie around the statistic of the series.",
-    "A percentile interval uses the resampled values as they are. A basic interval mirrors them: 2 * statistic(e) minus each end, in reverse order.",
+    "The statistic of the series is not near the middle of the interval.",
+    "Take the quantiles of the resampled values at alpha/2 and 1 - alpha/2, as they are. A basic interval mirrors them: 2 * statistic(e) minus each end, in reverse order.",
     kind="consequence",
 ).body(
     "block_bootstrap_ci",
@@ -1424,7 +1506,7 @@ mistakes(
 mistakes(
     "ROUGH_QUANTILES",
     "The band is roughly right, but off by more than 1 %.",
-    "Check the levels alpha/2 and 1 - alpha/2 first. Then use a better approximation: `course hint validation --task consistency_band` shows some.",
+    "Check the levels, alpha/2 and 1 - alpha/2, and the degrees of freedom, dof * runs. If they are right, find the quantiles more exactly: `course hint validation --task consistency_band` shows ways.",
     kind="consequence",
 ).body(
     "consistency_band",
@@ -1436,7 +1518,7 @@ mistakes(
 )
 mistakes(
     "OTHER_RUNS_LISTED",
-    "The numbers are those of the right runs, but runs_used lists other ids.",
+    "The numbers are those of the right runs, but runs_used does not list the ids of these.",
     "List the ids of the runs that you pooled.",
     kind="fact",
 ).program(
@@ -1452,7 +1534,7 @@ mistakes(
 )
 mistakes(
     "PART_OF_SERIES",
-    "In a short trial with two dozen resamples, more than a fifth of the series occurs in none of them.",
+    "In a short trial, more than a fifth of the series occurs in none of the resamples.",
     "Draw a new start for every block of every resample, from 0 to N - block, both included.",
     kind="fact",
 ).body(
@@ -1599,8 +1681,8 @@ mistakes("RAISED").body(
 )
 mistakes(
     "FEW_DEGREES_ONLY",
-    "The band is right for dof * runs = 40, and wrong for more.",
-    "A search must reach far enough, a table must be long enough, and a gamma function of a large argument overflows.",
+    "The band is right for dof * runs = 40, and wrong here, where it is more.",
+    "A search must reach far enough, a table must be long enough, random draws must be many, and a gamma function of a large argument overflows.",
 ).program(
     "consistency_band",
     """
@@ -1644,7 +1726,7 @@ mistakes(
 )
 mistakes(
     "SINGLE_PRECISION",
-    "The result has only five to ten correct digits. Perhaps it is in single precision, or rounded.",
+    "The result has only five to ten correct digits, as in single precision.",
     "Use float64, numpy's default, and do not round.",
 )
 mistakes(
@@ -1735,7 +1817,7 @@ mistakes(
 mistakes(
     "FIRST_ROW_ALONE",
     "Only the first row is computed; the rest of the result is as your code made it.",
-    "A return inside the loop ends it after the first row: move it out of the loop.",
+    "Compute every row. A return or a break inside the loop ends it after the first one.",
     kind="fact",
 )
 mistakes(
@@ -1746,7 +1828,7 @@ mistakes(
 mistakes(
     "DEGREES_OFF",
     "The band is that of another number of degrees of freedom.",
-    "The sum over the runs has exactly dof * runs degrees of freedom. Subtract none.",
+    "The sum over the runs has exactly dof * runs degrees of freedom. Subtract none, and add none.",
 )
 mistakes(
     "DIVIDED_BY_ROOT",
@@ -1760,7 +1842,7 @@ mistakes(
 )
 mistakes(
     "ALPHA_IGNORED",
-    "The band does not change with alpha.",
+    "The band is the same for alpha = 0.01, 0.08 and 0.2.",
     "Take the quantiles at alpha/2 and 1 - alpha/2 for the alpha that is passed in: 1.96 belongs to 0.05 alone.",
 )
 mistakes(
@@ -1808,11 +1890,11 @@ mistakes(
 mistakes(
     "WIDTH_SCALED",
     "Both ends are much nearer to the middle, or much farther from it, than the right quantiles.",
-    "Take the quantiles at alpha/2 and 1 - alpha/2 as they are. Do not divide by a root of N or n_boot.",
+    "Take the quantiles at alpha/2 and 1 - alpha/2 as they are, without any factor.",
 )
 mistakes(
     "SHRINKS_WITH_RESAMPLES",
-    "More resamples make the interval narrower. Perhaps the spread of the resampled values is divided by n_boot or its root.",
+    "More resamples make the interval narrower. Is something divided by n_boot, or by its root?",
     "The spread of the resampled values already is that of the statistic: take their quantiles, and do not divide.",
 )
 mistakes(
@@ -1822,7 +1904,7 @@ mistakes(
 )
 mistakes(
     "TO_ANOTHER",
-    "Your code refers to another energy than the first.",
+    "Your code subtracts, or divides by, something other than the first energy.",
     "Subtract E[0] and divide by abs(E[0]).",
 )
 mistakes(
@@ -1900,7 +1982,7 @@ mistakes(
 mistakes(
     "LAG_AT_THE_END",
     "The lag is larger than any lag here can be.",
-    "Search up to 0.2 s either way, with each run's own time step. Compare mean squares, not sums: fewer samples overlap at a larger shift.",
+    "Return seconds, not an index. Search up to 0.2 s either way, with each run's own time step. Compare mean squares, not sums: fewer samples overlap at a larger shift.",
     kind="fact",
 )
 mistakes(
@@ -1911,8 +1993,8 @@ mistakes(
 )
 mistakes(
     "LAG_OF_PARTS",
-    "The lag is right, but not its interval.",
-    "Leave out one run at a time, pool the others, and search for their best shift, as finely as for all runs.",
+    "The lag is close enough, but its interval is not.",
+    "Leave out one run at a time, and search for the best shift of all the others together, early or late. It has the smallest mean square of the samples that overlap, not the smallest sum. Then fit the parabola.",
     kind="consequence",
 )
 mistakes(
@@ -1934,24 +2016,24 @@ mistakes(
 )
 mistakes(
     "MEASURE_NOT_JUDGED",
-    "One of the four measures is never compared with its margin.",
-    "bias, coverage, lag and rmse each have their own margin and their own reason.",
+    "One of the four measures passes, even with its whole interval outside its margin.",
+    "bias, coverage, lag and rmse each have their own margin and reason. Refuse where lo < least or hi > most.",
 )
 mistakes(
     "SIGMA_MULTIPLE",
-    "The coverage is that of an interval with another multiple of sigma than 1.96.",
+    "The coverage is as large as with another multiple of sigma than 1.96.",
     "Use 1.96 sigma to each side: that is 95 %.",
     kind="consequence",
 )
 mistakes(
     "SIGMA_MISREAD",
-    "The coverage is that of the root, the square or the mean of sigma.",
+    "The coverage is as large as with the root, the square or the mean of sigma.",
     "sigma is the standard deviation of each sample: use 1.96 * sigma, sample by sample.",
     kind="consequence",
 )
 mistakes(
     "OWN_SPREAD_FOR_SIGMA",
-    "The coverage is that of the spread of the errors, in the place of sigma.",
+    "The coverage is as large as with the spread of the errors in the place of sigma.",
     'The simulation claims a sigma of its own: use run["sigma"].',
     kind="consequence",
 )
@@ -1963,7 +2045,7 @@ mistakes(
 mistakes(
     "REASON_MISSING",
     "A reason is missing: the right interval reaches beyond its margin.",
-    "Compare both ends of every interval with its margin, and collect every reason that applies.",
+    "Refuse where lo < least or hi > most, for each of the four, and collect every reason that applies.",
     kind="consequence",
 )
 mistakes(

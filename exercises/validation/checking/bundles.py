@@ -162,6 +162,16 @@ def expect_measures(report, case, right, shown):
     _expect_intervals(report, right, shown)
 
 
+#: What each number is.
+_POOLED = {
+    "rmse": "Pool the errors, simulated minus real at the same times, of all runs that count. Then take the "
+    "root of their mean square.",
+    "bias": "Pool the errors, simulated minus real at the same times, of all runs that count. Then take "
+    "their mean.",
+    "coverage": "Pool the samples of all runs that count. Which share has y_real within y_sim ± 1.96 sigma?",
+}
+
+
 def expect_numbers(report, case, right, shown):
     """The right runs, with the right rmse, bias and coverage."""
     used = [str(item) for item in kit.as_list(report["runs_used"], "runs_used")]
@@ -183,7 +193,7 @@ def expect_numbers(report, case, right, shown):
             source="a closed formula: only rounding is allowed",
             quantity=key,
             message=f"`{key}` is wrong.",
-            help="Pool the samples of all runs that count, with errors simulated minus real.",
+            help=_POOLED[key],
             input=shown,
             diagnose=lambda key=key, value=value: (
                 probes.of_pairs(key, value, case.sim, case.real)
@@ -299,8 +309,8 @@ def expect_margins(submission, case, right):
             message="The reasons are not the ones that apply.",
             help="Give one reason for each interval that reaches beyond its margin: no more, and no fewer.",
             input=shown,
-            diagnose=lambda: probes.of_reasons(
-                [(r, right.reasons(s)) for r, s in zip(found, specs, strict=True)]
+            diagnose=lambda reasons=reasons, expected=expected: probes.of_reasons(
+                [(r, right.reasons(s)) for r, s in zip(found, specs, strict=True)], (reasons, expected)
             ),
         )
         expect_accepted(report, not expected, shown)
@@ -331,7 +341,7 @@ def expect_edges(submission, rng):
             [],
             message="An interval that ends exactly on its margin is refused."
             if excluded
-            else "A reason is given although no interval reaches beyond its margin, if rightly computed.",
+            else "A reason is given, although no right interval reaches beyond its margin.",
             help="An end on the margin is inside: refuse where lo < least or hi > most.",
             input=shown,
             diagnose=lambda reasons=reasons, excluded=excluded: (

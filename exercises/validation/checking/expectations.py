@@ -87,7 +87,7 @@ def expect_large_mean(submission, e):
         units="m²",
         input={"e": e},
         message="Where the errors are large but scatter little, the variance is wrong.",
-        help="Subtract the mean before you square.",
+        help="The variance is the mean square of what is left after subtracting the mean.",
         diagnose=lambda: probes.of_offset(submission, e),
     )
 

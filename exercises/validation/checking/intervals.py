@@ -53,7 +53,11 @@ def expect_resamples(submission, seed):
                 "they begin": [samples[:8] for samples in found.asked[:3]],
             },
         )
-    if probes.of_ends(found) is not None:
+    code = probes.of_ends(found)
+    # Of few values, an interval by another rule may look like it.
+    if code == "ALPHA_AT_ONE_END" and probes.of_interval(submission, seed, found) is None:
+        code = None
+    if code is not None:
         kit.fail(
             "The ends of the interval are not the quantiles that they should be.",
             help="The alpha/2 and the 1 - alpha/2 quantile of the statistic over the resamples.",

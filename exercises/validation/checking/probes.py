@@ -78,6 +78,8 @@ def of_force(key, value, f_sim, f_real, dt):
     """What a wrong relative error of the peak or the impulse is; the other may be wrong in another way."""
     of = np.max if key == "peak" else np.sum
     sim, real = of(f_sim), of(f_real)
+    if value == -1:  # nothing is left of the simulated force, by whatever rule
+        return None
     ratios = {
         "peak": [
             ("PEAK_OF_ERROR", np.max(f_sim - f_real) / real),
@@ -182,7 +184,7 @@ class Resampled:
 
 def resample(submission, seed, count=_BOOT):
     """Have the submission make a few resamples, and look at them."""
-    e = np.arange(_N, dtype=float)
+    e = 1.0 + np.arange(_N)  # no zero, which an array that was not filled has
     answers = []
 
     def statistic(samples):
@@ -212,11 +214,11 @@ def of_resamples(found):
         ("RESAMPLE_SIZE", not whole),
         ("NOT_OF_THE_SERIES", not all(np.isin(samples, found.e).all() for samples in drawn)),
         # Of errors drawn with replacement a third is missing in a resample.
-        ("REPEATS_AN_END", _repeated_ends(drawn, n) >= _MOST_REPEATED),
+        ("REPEATS_AN_END", _repeated_ends(drawn, found.e) >= _MOST_REPEATED),
         ("DRAWN_WITHOUT_REPLACEMENT", all(len(np.unique(samples)) > 0.9 * n for samples in drawn)),
         ("DRAWN_ONCE", len(drawn) > 1 and all(np.array_equal(samples, drawn[0]) for samples in drawn)),
         # Five hundred blocks, drawn anywhere, leave out no more than an error at an end of the series.
-        ("PART_OF_SERIES", len(drawn) > _BOOT / 2 and len(np.unique(drawn)) < 0.8 * n),
+        ("PART_OF_SERIES", len(drawn) > _BOOT / 2 and len(np.unique(np.concatenate(drawn))) < 0.8 * n),
         ("IID_BOOTSTRAP", length < 1.5),
         ("BLOCK_IGNORED", not _BLOCK / BLOCK_FACTOR <= length <= _BLOCK * BLOCK_FACTOR),
         # A basic interval asks about the series itself, once or where it is needed.
@@ -231,10 +233,10 @@ def of_resamples(found):
 _MOST_REPEATED = 5
 
 
-def _repeated_ends(drawn, n):
+def _repeated_ends(drawn, e):
     """How much oftener the first or last sample of the series follows itself than all others do together."""
     twice = np.concatenate([np.empty(0), *(samples[1:][np.diff(samples) == 0] for samples in drawn)])
-    ends = int(np.sum(np.isin(twice, (0, n - 1))))
+    ends = int(np.sum(np.isin(twice, (e[0], e[-1]))))
     return 2 * ends - len(twice)
 
 
@@ -261,6 +263,8 @@ def of_ends(found):
     levels = [
         (None, a / 2, 1 - a / 2),
         ("ONE_SIDED", a, 1 - a),
+        ("ALPHA_AT_ONE_END", a / 2, 1 - a),
+        ("ALPHA_AT_ONE_END", a, 1 - a / 2),
         ("LEVEL_FOR_ALPHA", (1 - a) / 2, (1 + a) / 2),
         ("ENDS_ON_ONE_SIDE", a / 200, (1 - a / 2) / 100),
     ]
@@ -324,16 +328,34 @@ def of_interval(submission, seed, found=None, *, ends_first=False):
     if code in {
         None,
         "ONE_SIDED",
+        "ALPHA_AT_ONE_END",
         "LEVEL_FOR_ALPHA",
         "WIDTH_SCALED",
     }:  # few values are near each other: ask for more
         many = resample(submission, seed, 10 * _BOOT)
         width, narrow = (kit.attempt(lambda some=some: _width(some)) for some in (found, many))
-        if width and narrow and 0 < narrow < 0.5 * width:
+        picked = kit.attempt(lambda: _of_picked(many)) if code in {None, "WIDTH_SCALED"} else None
+        if picked:
+            code = picked
+        elif width and narrow and 0 < narrow < 0.5 * width:
             code = "SHRINKS_WITH_RESAMPLES"
         elif code != of_ends(many):
             code = None
     return named(code) if code else None
+
+
+def _of_picked(found):
+    """Which of many resampled values the ends are, if they are picked as they came or for one alpha."""
+    ends = kit.as_vector(kit.as_tuple(found.inspected.value, ("lo", "hi")), 2, "(lo, hi)")
+    asked = zip(found.asked, found.answers, strict=True)
+    values = np.array([answer for samples, answer in asked if not np.array_equal(samples, found.e)])
+    places = len(values) * np.array([_ALPHA / 2, 1 - _ALPHA / 2])
+    if all(
+        np.any(np.abs(np.flatnonzero(values == end) - place) < 1.5)
+        for end, place in zip(ends, places, strict=True)
+    ):
+        return "ENDS_UNSORTED"
+    return "FIXED_LEVELS" if _quantiles(ends, values, 0.025, 0.975) else None
 
 
 def _width(found):
@@ -422,7 +444,7 @@ class Folds:
         sizes = [len(asked) for _, asked in used]
         covered = sorted(i for _, asked in used for i in asked) == sorted(everything)
         if len(used) != k or not covered or max(sizes) - min(sizes) > 1:
-            return "FOLDS_UNEVEN"
+            return "ONE_RUN_LEFT_OUT" if _leaves_one_out(used, everything) else "FOLDS_UNEVEN"
         return None if all(fit == everything - set(asked) for fit, asked in used) else "TRAINS_ON_TOO_LITTLE"
 
     def of_order(self, scores):
@@ -457,3 +479,10 @@ def _fits_the_fold(used, everything):
     once = sorted(i for fit, _ in used for i in fit) == sorted(everything)
     roles = all(set(asked) in (fit, everything - fit) for fit, asked in used)
     return len(used) > 2 and pieces and once and roles
+
+
+def _leaves_one_out(used, everything):
+    """Whether each run was predicted alone, by a model that had seen all the others."""
+    return len(used) == len(everything) and all(
+        len(asked) == 1 and fit == everything - set(asked) for fit, asked in used
+    )

@@ -131,6 +131,8 @@ def of_number(key, value, right, e, sigma):
             ("IN_PER_CENT", 100 * np.mean(np.abs(e) <= 1.96 * sigma)),
         ),
     }
+    if key == "coverage" and value in {0.0, 1.0}:  # all or none, by whatever rule
+        return None
     return _only(numbers[key], lambda wrong: wrong is not None and math.isclose(value, wrong, rel_tol=1e-6))
 
 
@@ -143,7 +145,8 @@ def _only(looks, fits):
 def of_pairs(key, value, sim, real):
     """Whether a wrong rmse or bias is that of runs paired by their place in the two lists.
 
-    By the place in the lists as they are, or in what is left of each without the runs that do not count.
+    By the place in the lists as they are, or in what is left of each, or of the simulated ones, without the
+    runs that do not count.
     """
     if key == "coverage":
         return None
@@ -151,7 +154,8 @@ def of_pairs(key, value, sim, real):
     count = ids & {run["id"] for run in sim["runs"]}
     whole = [(s, r) for s, r in zip(sim["runs"], real["runs"], strict=False) if s["id"] in ids]
     left = zip(*([run for run in side["runs"] if run["id"] in count] for side in (sim, real)), strict=True)
-    for pairs in (whole, list(left)):
+    fresh = [run for run in sim["runs"] if run["id"] not in sim["calibrated_on"]]
+    for pairs in (whole, list(left), list(zip(fresh, real["runs"], strict=False))):
         alike = all(s["id"] == r["id"] for s, r in pairs)
         if alike or any(len(s["y"]) != len(r["y"]) for s, r in pairs):
             continue
@@ -222,6 +226,8 @@ def of_lag_interval(value, half, right):
 
     half: half the width that was given.
     """
+    if abs(half) < 1e-9:
+        return named("ZERO_WIDTH")
     if _whole(value, right):
         return named("LAG_WHOLE_SAMPLES")
     if right.alone and abs(half / right.alone - 1) < 0.03:
@@ -229,8 +235,8 @@ def of_lag_interval(value, half, right):
     return named("LAG_OF_PARTS")
 
 
-def of_reasons(judged):
-    """What reasons show by themselves: (those given, the right ones) of each report."""
+def of_reasons(judged, shown=None):
+    """What reasons show by themselves: (those given, the right ones) of each report, and of the shown one."""
     if all(sorted(reasons) == right for reasons, right in judged):
         return named("NOT_SORTED")
     words = {key.removesuffix("_s") for key in MEASURES}
@@ -238,7 +244,8 @@ def of_reasons(judged):
         return named("REASON_UNKNOWN")
     if all(sorted(set(reasons)) == right for reasons, right in judged):
         return named("REASON_TWICE")
-    missing = any(set(right) - set(reasons) for reasons, right in judged)
+    reasons, right = shown or judged[0]
+    missing = set(right) - set(reasons)
     return named("REASON_MISSING" if missing else "REASON_TOO_MANY")
 
 

@@ -327,7 +327,7 @@ mistakes(
 ).edit("lidar", {"cos(beam), np.sin": "sin(beam), np.cos"})
 mistakes(
     "WALL_VECTOR_REVERSED",
-    "The vector from the robot to a wall points in the opposite direction, or the cross product to divide by has the wrong sign.",
+    "The distance along the beam and the position along the wall both have the wrong sign.",
     "Check the order of each difference: the vector from the robot to a wall is the wall minus the robot. Then check the signs in the cross products.",
 ).edit("lidar", {"segments[:, 0] - (x, y)": "(x, y) - segments[:, 0]"})
 mistakes(
@@ -716,7 +716,7 @@ mistakes(
 mistakes(
     "FRICTION_NOT_LEARNED",
     "The friction keeps its first value through a whole run in which it is wrong.",
-    "A cart that falls behind has more friction than the twin assumes: subtract a small share of the surprise from the friction. When it rolls backwards, add it.",
+    "A cart that falls behind has more friction than the twin assumes: subtract a small share of the surprise from the friction. When it rolls backwards, add it. In a Kalman filter that share comes from the covariance: keep it in the memory, and let its prediction contain what the friction does to the speed.",
 ).body(
     "sync",
     """
@@ -859,7 +859,7 @@ mistakes(
 mistakes(
     "FORGETS_TO_DOUBT",
     "The twin learns the friction well at first but far less of a change later.",
-    "Keep the shares from fading. In a Kalman filter, let the variance of the friction grow a little in every prediction (process noise).",
+    "Keep the shares from fading. In a Kalman filter, let the variance of the friction grow a little in every prediction (process noise), and correct the covariance after every measurement.",
 ).program(
     "sync",
     """
@@ -943,7 +943,7 @@ mistakes(
 )
 mistakes(
     "DRIVE_CHANGED",
-    "sync must leave the drive and sigma as they are.",
+    "Your code returns another drive or another sigma than it was given.",
     'Return drive and sigma as they are: {**twin, "t": ..., "position": ...}.',
     kind="fact",
 ).program(
@@ -1000,7 +1000,7 @@ mistakes(
 )
 mistakes(
     "PUSHES_AWAY",
-    "Where the twin is slower than the target speed, the drive is smaller than at that speed.",
+    "For one friction at least, a twin slower than its target speed gets a smaller drive than at that speed.",
     'Add a share of target_speed - twin["speed"], not of twin["speed"] - target_speed. In friction * target_speed, the target speed counts, not that of the twin.',
 ).edit("command", {"* target_speed": '* target_speed + 1.5 * (twin["speed"] - target_speed)'})
 mistakes("STATE_KEPT").program(
@@ -1056,7 +1056,7 @@ mistakes(
 mistakes(
     "BIAS_HELD",
     "Some steps of the bias are exactly zero: there it keeps its value from one sample to the next.",
-    "Every step is bias_random_walk * sqrt(dt) times a standard normal number of its own: N samples take N - 1 of them. Hold and round nothing.",
+    "Every step is bias_random_walk * sqrt(dt) times a standard normal number of its own: N samples take N - 1 of them. Hold, limit and round nothing.",
 ).body(
     "imu",
     """
@@ -1218,12 +1218,12 @@ mistakes(
 )
 mistakes(
     "GAIN_TOO_LARGE",
-    "The correction is stronger than the README's 0.2 to 3 per second. With a command only every 0.1 s, it can overshoot.",
+    "The correction is stronger than the README's 0.2 to 3 per second.",
     "Multiply the difference of the speeds by 0.2 to 3 per second.",
 ).edit("command", {"* target_speed": '* target_speed + 30.0 * (target_speed - twin["speed"])'})
 mistakes(
     "MEMORY_NOT_READ",
-    "Emptying the memory changed neither of two calls, one with a new measurement and one with a late one. Perhaps what a call stores is not read by the next.",
+    "Emptying the memory changed neither of two calls, one with a new measurement and one with a late one.",
     'Read in each call what the call before returned in "memory", such as the covariance of a Kalman filter; it is {} only at first. If nothing in it should matter here, look at the signs and sizes of the shares.',
 ).program(
     "sync",
@@ -1286,7 +1286,7 @@ mistakes(
 )
 mistakes(
     "FRICTION_LIMITED",
-    "The friction moves in the right direction but it is stopped at one value before it reaches the true one.",
+    "The friction moves in the right direction, but it stops at one value before it reaches the true one.",
     "Look for what stops it: a limit (plausible values are 0.05 to 5 per second), or a condition under which it is no longer corrected.",
 ).program(
     "sync",
@@ -1350,7 +1350,7 @@ mistakes(
 )
 mistakes(
     "SLOT_OFF_CENTRE",
-    "Pushed forwards, the output is behind the input by another distance than when it is pushed backwards.",
+    "Pushed forwards and pushed backwards, the output does not end equally far from the input, on opposite sides of it.",
     "Half of the gap lies on either side: pushed forwards y is x - gap/2, pushed backwards x + gap/2.",
 ).edit("backlash", {"gap / 2), x + gap / 2)": "gap), x)"})
 mistakes(
@@ -1360,8 +1360,8 @@ mistakes(
 ).edit("motor_step", {"<= deadband else": "<= 1.2 * deadband else"})
 mistakes(
     "STRENGTHS_MIXED",
-    "The white noise or the bias changes with the strength that belongs to the other. Perhaps noise_density and bias_random_walk are mixed up.",
-    "The std of the white noise is noise_density / sqrt(dt), and that of a step of the bias is bias_random_walk * sqrt(dt).",
+    "The white noise or the bias changes with the strength that belongs to the other.",
+    "noise_density belongs to the white noise alone, with std noise_density / sqrt(dt), and bias_random_walk to the steps of the bias alone, with std bias_random_walk * sqrt(dt).",
 ).edit("imu", {"= bias_random_walk *": "= (bias_random_walk + noise_density) *"})
 mistakes(
     "PARALLEL_TEST_WRONG",
@@ -1371,7 +1371,7 @@ mistakes(
 mistakes(
     "WALLS_ONE_SIDED",
     "A wall is seen if its ends are given in one order, and not if they are given in the other.",
-    "The cross product of beam and wall may have either sign: only zero means that they are parallel.",
+    "The order of the ends means nothing. The cross product of beam and wall may have either sign, and neither end need have the smaller x or y.",
 ).edit("lidar", {"wx  # zero where beam and wall are parallel": "wx", "(cross != 0) &": "(cross > 1e-12) &"})
 mistakes(
     "NOT_QUANTISED",
@@ -1401,7 +1401,7 @@ mistakes(
 mistakes(
     "COUNTS_OFF_BY_FACTOR",
     "The larger counts are all too large, or all too small, by nearly the same factor.",
-    "theta * counts_per_rev / (2 * math.pi), without any other factor and without a rounded pi.",
+    "theta * counts_per_rev / (2 * math.pi), without any other factor. Round nothing before the result, not even pi.",
 )
 mistakes(
     "COUNTS_SINGLE_PRECISION",
@@ -1410,7 +1410,7 @@ mistakes(
 )
 mistakes(
     "ROUNDED_TWO_WAYS",
-    "Some of these counts are rounded down, and others to the nearest.",
+    "Some of these counts are right only if all are rounded down, and others only if all are rounded to the nearest.",
     "Round all of them the same way, whatever their sign: np.floor throughout, or np.rint throughout. If you do, look for what changes the angle first, such as a rounded pi.",
 )
 mistakes(
@@ -1449,7 +1449,7 @@ mistakes(
 
 mistakes(
     "WHITE_NOISE_MISSING",
-    "In a recording without a walk, the measured rate minus the true rate and the bias does not vary: it contains no white noise.",
+    "At rest and without a walk, the measured rate minus the bias does not vary: it contains no white noise.",
     "Add noise_density / sqrt(dt) times a standard normal number to each sample.",
 )
 mistakes(
@@ -1565,13 +1565,13 @@ mistakes(
 mistakes(
     "WALK_TOO_SMALL",
     "For most recordings the random walk is too small.",
-    "The Allan variance of block means (half the mean square of their differences) is N²/T from the noise plus K² T/3 from the walk: fit both terms. The walk shows in long blocks.",
+    "Half the mean square of the differences of neighbouring block means is N²/T + K² T/3, with T in seconds. Compare your formula with it: is each term there, and each factor? The walk shows in long blocks.",
     kind="consequence",
 )
 mistakes(
     "WALK_TOO_LARGE",
     "For most recordings the random walk is too large.",
-    "The Allan variance of block means (half the mean square of their differences) is N²/T from the noise plus K² T/3 from the walk: fit both terms, or noise is taken for walk.",
+    "Half the mean square of the differences of neighbouring block means is N²/T + K² T/3, with T in seconds. Compare your formula with it: is each term there, and each factor? Without N²/T, noise is taken for walk.",
     kind="consequence",
 )
 mistakes(
@@ -1592,17 +1592,17 @@ mistakes(
 mistakes(
     "ROOT_FORGOTTEN",
     "A number that your code returns is about the square of the one that is asked for.",
-    "The Allan variance is N²/T + K² T/3, so the fit gives N² and K²: take their square roots. If you take them, look at the columns of the fit: 1/T and T/3.",
+    "The Allan variance is N²/T + K² T/3: what comes out of it is N² and K², so take the square root. If you take it, look at the columns of the fit: 1/T and T/3.",
 )
 mistakes(
     "DENSITY_TOO_LARGE",
     "For more than half of the recordings here, the noise density is too large.",
-    "Over longer blocks the walk counts too: fit both terms, and divide each equation by its own size. To compare: N² is half the mean square of the differences of neighbouring samples, times dt.",
+    "To compare: N² is half the mean square of the differences of neighbouring samples, times dt. A variance of the samples or block means themselves contains the drift as well.",
 )
 mistakes(
     "DENSITY_TOO_SMALL",
     "For more than half of the recordings here, the noise density is too small.",
-    "In N²/T, T is in seconds, not in samples. To compare: N² is half the mean square of the differences of neighbouring samples, times dt.",
+    "To compare: N² is half the mean square of the differences of neighbouring samples, times dt. Does your code halve it twice, or take dt twice?",
 )
 mistakes(
     "DENSITY_SCATTERS",
@@ -1611,7 +1611,7 @@ mistakes(
 )
 mistakes(
     "BEAM_REVERSED",
-    "The beams point in the opposite direction.",
+    "Each beam reads what lies in the opposite direction.",
     "A beam points along (cos, sin) of heading + angle, without a minus. If yours does, check the sign of the distance along the beam.",
 )
 mistakes(
@@ -1653,7 +1653,7 @@ mistakes(
 mistakes(
     "LIDAR_SIGMA_WRONG",
     "Within one scan, the noise of the hits does not have the std sigma.",
-    "Add sigma * rng.standard_normal(...), with a number of its own for each hit. Do not square sigma, take its root, or multiply it by the distance.",
+    "Add sigma * rng.standard_normal(...), with a number of its own for each hit and no other factor.",
     kind="consequence",
 )
 mistakes(
@@ -1773,12 +1773,12 @@ mistakes(
 )
 mistakes(
     "BACKWARDS_SWALLOWED",
-    "Negative commands are ignored.",
+    "Negative commands count as 0.",
     "The dead band and the limit both depend on the absolute value of a command: abs(u) <= deadband, and min(max(u, -u_max), u_max).",
 )
 mistakes(
     "SATURATION_AS_SWITCH",
-    "A command beyond u_max is ignored.",
+    "A command beyond u_max counts as 0.",
     "Saturation means that such a command counts as u_max, with its sign: min(max(u, -u_max), u_max).",
 )
 mistakes(
@@ -2081,13 +2081,13 @@ mistakes(
 )
 mistakes(
     "NO_PREDICTION",
-    "Between two measurements the twin does not move, apart from what the measurement corrects.",
-    "First predict the state at t_measured from the speed, the drive and the friction, then correct it.",
+    "Between two measurements the twin hardly moves, apart from what the measurement corrects.",
+    'First predict the state at t_measured from the speed, the drive and the friction, over t_measured - twin["t"] seconds. Then correct it.',
 )
 mistakes(
     "PREDICTS_TOO_LITTLE",
     "Where a measurement brings no surprise, the twin has moved less far than its speed would take it in that time.",
-    'Predict over all of t_measured - twin["t"], in SI units: x + v * dt to begin with, with the speed, the drive and the friction of the twin.',
+    'Predict over all of t_measured - twin["t"], in SI units, x + v * dt to begin with. The new position is this prediction plus a share of the surprise.',
 )
 mistakes(
     "SHARE_OVER_ONE",
@@ -2102,7 +2102,7 @@ mistakes(
 )
 mistakes(
     "DRIVE_REMEMBERED",
-    "A drive that was changed between two calls makes no difference to the prediction, although it does for a new twin. Perhaps an earlier drive is used.",
+    "A drive that was changed between two calls makes no difference to the prediction, although it does for a new twin.",
     'Take twin["drive"] from the twin that is passed in. It acts from the twin\'s time on, and the caller may change it.',
 )
 mistakes(
@@ -2126,6 +2126,39 @@ mistakes(
     "Multiply it by the speed: dv/dt = drive - friction * speed.",
 )
 mistakes(
+    "FRICTION_ONE_WAY",
+    "The friction moves in one direction only, whichever sign the surprise has.",
+    "Take the surprise with its sign: a cart that falls behind has more friction, and one that gets ahead has less.",
+).body(
+    "sync",
+    """
+        dt = t_measured - twin["t"]
+        if dt < 0:
+            return dict(twin)
+        x, v, b = twin["position"], twin["speed"], twin["friction"]
+        a = twin["drive"] - b * v
+        x, v = x + dt * v + dt * dt / 2 * a, v + dt * a
+        surprise = z - x
+        x, v = x + 0.3 * surprise, v + 0.3 * surprise
+        b = min(max(b - 0.15 * abs(surprise), 0.05), 5.0)
+        return {**twin, "t": t_measured, "position": x, "speed": v, "friction": b, "memory": {}}
+    """,
+)
+mistakes(
+    "LAST_BIAS_LEFT_OUT",
+    "The last step of the bias is far larger than the others.",
+    "N samples take N - 1 steps, so the last bias is the one before plus a step. Does your loop end one sample too early?",
+).body(
+    "imu",
+    """
+        n = len(true)
+        bias = np.full(n, float(bias0))
+        for k in range(n - 2):
+            bias[k + 1] = bias[k] + bias_random_walk * math.sqrt(dt) * rng.standard_normal()
+        return true + bias + noise_density / math.sqrt(dt) * rng.standard_normal(n), bias
+    """,
+)
+mistakes(
     "FRICTION_SHARE_TOO_LARGE",
     "The friction is corrected by more than all of a surprise, in SI units. It swings with the noise of the measurements.",
     "Correct it by a smaller share: about -0.15 is enough at ten measurements a second.",
@@ -2133,7 +2166,7 @@ mistakes(
 mistakes(
     "FRICTION_LEARNS_SLOWLY",
     "The friction moves in the right direction, but does not reach its true value in time.",
-    "Look for what holds it back: for example a small share of the surprise (about -0.15 is enough at ten measurements a second), little process noise in a Kalman filter, or a limit.",
+    "Look for what holds it back: for example a small share (about -0.15 is enough at ten measurements a second, beside 0.3 for the speed), a speed that takes nearly all of each surprise, little process noise in a Kalman filter, or a limit.",
     kind="consequence",
 )
 

@@ -170,8 +170,8 @@ def expect_pose(submission, value, pose, wheels, expected=None):
             message="After one step, the robot is not where the arc of its two wheels ends."
             if units == "m"
             else "After one step, the heading is not the old one plus the turn of the two wheels.",
-            help="The middle of the axle moves at the mean speed; the turn rate is the difference over "
-            "the track.",
+            help="Compute turn = dt (v_right - v_left)/track by hand, then the chord, x, y and the heading, "
+            "as in the README. Which is the first that differs?",
             diagnose=lambda refuted=fast if units == "m" else _OF_POSITION: bundles.unless(
                 refuted, lambda: actuators.of_drive(submission)
             ),

@@ -29,7 +29,7 @@ def of_motor(submission):
     if not all(map(math.isfinite, values)):
         return None
     up, far_up, down, far_down = values[-4:]
-    if up == far_up != 1.0 and down == far_down != 1.0:
+    if up == far_up != 1.0 and down == far_down != 1.0 and up != down:
         return named("LAG_WITHOUT_DT")
     shares = [(value - w) / (u - w) for value, (w, u) in zip(values, _WAYS, strict=False)]
     if max(shares) - min(shares) > 1e-9:
@@ -133,7 +133,8 @@ def of_delay(submission):
     if not np.all(np.isfinite(rows)):
         return None
     shifts = [_shift(row, x) for row in rows]
-    if None not in shifts and shifts[2] > shifts[0]:
+    near = None not in shifts and np.all(np.abs(np.subtract(shifts, np.array(lates) / dt)) <= 1.0)
+    if near and shifts[2] > shifts[0]:
         return named("DELAY_WHOLE_SAMPLES")
     t = dt * np.arange(len(x))
     circles = [np.interp(t - late, t, x, period=dt * len(x)) for late in lates]
@@ -147,7 +148,8 @@ def of_delay(submission):
     if all(np.allclose(pair, (part, 1 - part)) for pair, part in zip(seen, parts, strict=True)):
         return named("DELAY_SHARES_SWAPPED")
     first = [row[: round(late / dt + 0.4999)] for row, late in zip(rows, lates, strict=True)]
-    return named("DELAY_HOLDS_FIRST") if all(np.all(part == x[0]) for part in first) else None
+    held = all(np.all(part == x[0]) for part in first) and not np.all(rows[0] == x[0])
+    return named("DELAY_HOLDS_FIRST") if held else None
 
 
 def _shift(row, x):

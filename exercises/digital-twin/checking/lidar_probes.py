@@ -94,11 +94,25 @@ def of_lidar(submission, noisy=True, straight=False):
 
 def of_straight_lidar(submission, noisy=True):
     """The same for a robot whose heading is 0: beams that do not turn with it are no reason."""
+    # The heading minus the angle is wrong at a heading of 0 as well, but where noise is on, left is as right.
+    mirrored = not noisy and kit.attempt(lambda: _mirrored(submission))
+    refuted = {"HEADING_IGNORED"} if mirrored else _OF_HEADING
     return bundles.unless(
-        {"HEADING_IGNORED", "HEADING_SUBTRACTED"},
+        refuted,
         lambda: of_lidar(submission, noisy),
         lambda: of_lidar(submission, noisy, straight=True),
     )
+
+
+_OF_HEADING = {"HEADING_IGNORED", "HEADING_SUBTRACTED"}
+
+
+def _mirrored(submission):
+    """Whether a beam to the left sees what lies to the right, at a heading of 0."""
+    aside = np.array([[[-20.0, 1.0], [20.0, 1.0]]])
+    call = _ORIGIN, aside, np.array([0.5, -0.5]), _REACH, 0.0, np.random.default_rng(1)
+    left, right = kit.as_vector(submission.call("lidar", *call), 2, "ranges")
+    return left == _REACH and abs(right - 1.0 / math.sin(0.5)) < 1e-9
 
 
 def _turning(turned, ahead, less, more):
@@ -129,7 +143,8 @@ def _of_scenes(readings, right, turning, fixed, room):
         return named("PARALLEL_WALLS")
     seen = zip(_SCENES, readings, strict=False)
     codes = (code for (code, *_, slips), r in seen if np.min(np.abs(np.subtract(slips, r))) < 1e-9)
-    only = {"POSITION_IGNORED": fixed, "WALLS_ENDLESS": room}
+    # From within a convex room a beam meets one wall: there it is the nearest.
+    only = {"POSITION_IGNORED": fixed, "WALLS_ENDLESS": room, "NOT_THE_NEAREST": room}
     return next((named(code) for code in codes if only.get(code, True)), None)
 
 

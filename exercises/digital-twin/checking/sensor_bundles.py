@@ -220,7 +220,9 @@ def expect_gyroscope_draws(submission, seed, dt):
         help="Draw both from rng itself and from nothing else, and keep nothing between two calls.",
         diagnose=lambda: sensors.of_randomness(submission),
     )
-    for a, c, name in zip(first, other, ("of the noise (measured - bias)", "of the bias steps"), strict=True):
+    for a, c, name in zip(
+        first, other, ("samples of the noise (measured - bias)", "of the bias steps"), strict=True
+    ):
         kit.expect_true(
             not bool(np.mean(np.abs(a - c) < 1e-9) > 0.01),  # of right ones, one in a million at most
             f"With two generators in different states, some {name} are the same.",
@@ -288,8 +290,17 @@ def expect_fits(submission, cases):
     units = ("log of a ratio", "log of a ratio", "sqrt(N K)")
     for column, key in enumerate(_KEYS):
         i = int(np.argmax(np.abs(off[:, column])))
+        median = float(np.median(np.abs(off[:, column])))
+        if not math.isfinite(median) and np.all(np.isfinite(found[:, column])):  # no logarithm, but a number
+            kit.fail(
+                f"From at least half of the recordings, fit_noise finds a `{key}` that is not positive.",
+                help="Noise density and random walk are square roots of variances: positive numbers.",
+                diagnose=lambda column=column: _of_fit(submission, column, found, cases),
+                expected={key: [case[2 + column] for case in cases]},
+                actual={key: found[:, column]},
+            )
         kit.expect_close(
-            float(np.median(np.abs(off[:, column]))),
+            median,
             0.0,
             abs=FITS_WITHIN[column],
             source="the README's",
@@ -303,7 +314,8 @@ def expect_fits(submission, cases):
             message=f"From recordings at rest, fit_noise does not find `{key}`.",
             help="bias0 is the mean of the first sqrt(3) N/K seconds or so."
             if key == "bias0"
-            else "Average over blocks of growing length and see how the spread of the means changes.",
+            else "Half the mean square of the differences of neighbouring block means is N²/T + K² T/3. "
+            "Compare both sides, for a short T and for a long one.",
             diagnose=lambda column=column: _of_fit(submission, column, found, cases),
         )
 
@@ -439,8 +451,10 @@ def expect_scan_noise(submission, r_max, sigma, rng):
         "Very close to a wall, some readings are negative."
         if negative
         else "Very close to a wall, too few readings are 0.",
-        help="A wall counts however near it is. A distance cannot be negative: apply np.maximum(..., 0.0) "
-        "after the noise.",
+        help="A distance cannot be negative: apply np.maximum(..., 0.0) after the noise."
+        if negative
+        else "Read the same wall with sigma = 0 first: it counts however near it is. What the noise makes "
+        "negative reads 0.",
         input=given,
         diagnose=ask,
     )

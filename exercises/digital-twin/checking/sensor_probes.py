@@ -76,6 +76,7 @@ OF_THE_WALK = {
     "BIAS_OVER_SQRT_DT",
     "BIAS_FACTOR",
     "BIAS_STARTS_LATE",
+    "LAST_BIAS_LEFT_OUT",
 }
 OF_THE_NOISE = {
     "WHITE_NOISE_MISSING",
@@ -180,9 +181,10 @@ def _of_bias(pairs, true):
     steps, measured = np.diff(biases[0]), pairs[2][0]
     if np.std(steps) == 0:
         return "BIAS_OUT_OF_STEP" if _wanders(measured - true) > 8 else "BIAS_CONSTANT"
+    last = abs(steps[-1]) > 20 * np.median(np.abs(steps)) > 0  # of right ones, hardly any is beyond 6
     held = np.mean(steps == 0) > 0.01
-    if held or np.ptp(steps) < 1e-6 * abs(np.mean(steps)):
-        return "BIAS_HELD" if held else "BIAS_DRIFTS"
+    if last or held or np.ptp(steps) < 1e-6 * abs(np.mean(steps)):
+        return "LAST_BIAS_LEFT_OUT" if last else "BIAS_HELD" if held else "BIAS_DRIFTS"
     ten = _wanders(biases[0][_N // 2 :])  # what it does at first may have to do with where it starts
     if ten < 8:
         return "BIAS_NOT_RANDOM_WALK" if ten < 2 else "BIAS_PULLED_BACK"

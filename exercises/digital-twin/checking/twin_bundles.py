@@ -69,7 +69,8 @@ def expect_follows(submission, twin, run, *, settled, frictions, message):
             units="m",
             input={"measurements": len(calls), "rms error of the measurements": sensor, "twin": twin},
             message=message,
-            help="Predict first, then correct position, speed and friction by shares of the surprise.",
+            help="Print the surprises. Are some far beyond sigma: was the position predicted for that time? "
+            "Are they all about sigma: how much of each does the position take?",
             diagnose=ask,
         )
     with np.errstate(all="ignore"):
@@ -82,7 +83,8 @@ def expect_follows(submission, twin, run, *, settled, frictions, message):
         units="m/s",
         input={"measurements": len(calls), "twin": twin},
         message="The position is within its limit, but the speed is further off than the README allows.",
-        help="Predict the speed from the drive and the friction, then correct it by a share of the surprise.",
+        help="Print the speed before and after each correction. Does the prediction follow the drive and the "
+        "friction, and how much of each surprise does the speed take?",
         diagnose=ask,
     )
     for start, stop, friction in frictions:
@@ -127,8 +129,8 @@ def _expect_no_flight(rows, given, ask):
             f"{'is' if len(which) == 1 else 'are'} {size}.",
             help='Return "t": max(twin["t"], t_measured).'
             if "t" in which
-            else "A correction must move the twin towards the measurement, and each prediction must cover "
-            "the time since the last.",
+            else "Print the first twins, before and after each correction. A correction moves the twin "
+            "towards the measurement and not beyond it, and friction slows a cart down in both directions.",
             diagnose=ask,
             input={**given, "measurement": first},
             expected={"at most": _FLOWN},

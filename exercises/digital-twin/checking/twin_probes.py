@@ -196,7 +196,7 @@ def _in_one_step(submission):
         ("TIME_NOT_THE_LATEST", abs(t0 - t - 0.2) > 1e-6),
         ("SURPRISE_INVERTED", moved < -1e-6),
         ("NO_CORRECTION", far <= 1e-6 * _SURPRISE),
-        ("SMALL_SURPRISES_IGNORED", abs(moved) <= 1e-6),
+        ("SMALL_SURPRISES_IGNORED", abs(moved) <= 1e-6 < abs(rows[5, 1] - x0) / _SURPRISE),
         ("BELIEVES_MEASUREMENT", believed),
         ("STEP_FIXED", abs(went - 0.5) < 0.06 and abs(went_soon - 1.0) < 0.06),
         ("NO_PREDICTION", max(abs(went), abs(went_soon)) < 0.02),
@@ -207,7 +207,7 @@ def _in_one_step(submission):
         # As if it were new: by that share of the way back, or so, and not by twice as much.
         ("LATE_USED_AS_CURRENT", good and now and 0.02 < (x - x_late) / abs(v) < 0.64 * max(moved, 0.1)),
         ("FRICTION_LEARNS_BACKWARDS", v > 0.2 and b_ahead - b0 > 1e-9),
-        ("SPEED_NOT_CORRECTED", abs(v_ahead - v0) < 1e-9),
+        ("SPEED_NOT_CORRECTED", np.max(np.abs(rows[1:6, 2] - v0)) < 1e-9),
         ("SPEED_CORRECTED_BACKWARDS", v_ahead < v0),
     )
     return [code for code, seen in tests if seen]
@@ -237,10 +237,24 @@ def _predicted(twin, b, dt):
 
 def _backwards(submission):
     """Whether a twin of a cart that rolls backwards learns the wrong way from a surprise, or either way."""
+    if _one_way(submission):
+        return "FRICTION_ONE_WAY"
     forwards, backwards = _learned(submission)
     if backwards > -1e-9:
         return None
     return "FRICTION_LEARNS_BACKWARDS" if forwards > 1e-9 else "LEARNS_FORWARDS_ONLY"
+
+
+def _one_way(submission):
+    """Whether a new twin's friction moves, and never in both directions for surprises of either sign."""
+    calls = [
+        (scenes.new_twin(0.57, 0.57 * v, speed=v), 0.1 * v + z, 0.1)
+        for v in (1.0, -1.0)
+        for z in (0.0, _SURPRISE, -_SURPRISE)
+    ]
+    none, ahead, behind = states(submission.call_each("sync", calls))[:, 3].reshape(2, 3).T
+    moves = np.ravel((ahead - none, behind - none))
+    return bool(np.max(np.abs(moves)) > 1e-6 and (np.all(moves > -1e-9) or np.all(moves < 1e-9)))
 
 
 def _learned(submission):
@@ -330,6 +344,8 @@ def of_command(submission):
         base | {"friction": 2.0, "target": 3.0},
         base | {"friction": 2.0, "target": 2.0, "speed": 2.0},
         base | {"friction": 0.4, "target": 0.2, "speed": 0.5},
+        base | {"target": 6.0, "speed": 6.0},
+        base | {"target": -6.0, "speed": -6.0},
         base,
     ]
     calls = [
@@ -338,12 +354,12 @@ def of_command(submission):
     ]
     values = [kit.as_number(value, "the drive") for value in submission.call_each("command", calls)]
     first, slower, slick, back, driven, faster, behind, slowest, sticky, sticky_faster = values[:10]
-    stickiest, ahead, again = values[10:]
+    stickiest, ahead, far, far_back, again = values[10:]
     if abs(again - first) > 1e-9:
         return None  # what came before has an effect: nothing else can be told from one call beside another
     # A correction by the friction itself, at one friction, looks as if the target were not looked at.
     untargeted = max(abs(faster - first), abs(sticky_faster - sticky), abs(ahead - 0.4 * 0.5)) < 1e-9
-    at_target = np.array([first, slower, slick, back, slowest, sticky, stickiest])
+    at_target = np.array([first, slower, slick, back, slowest, sticky, stickiest, far, far_back])
     balance = _FRICTIONS * _TARGETS
     balanced = np.max(np.abs(at_target - balance)) < 1e-9
     limits = float(np.min(at_target)), float(np.max(at_target))
@@ -366,8 +382,8 @@ def of_command(submission):
 
 
 #: Of the questions whose twin has the target speed already, in the order of ``of_command``.
-_FRICTIONS = np.array([0.8, 0.8, 0.4, 0.8, 0.8, 2.0, 2.0])
-_TARGETS = np.array([1.5, 0.75, 1.5, -1.5, 0.1, 1.5, 2.0])
+_FRICTIONS = np.array([0.8, 0.8, 0.4, 0.8, 0.8, 2.0, 2.0, 0.8, 0.8])
+_TARGETS = np.array([1.5, 0.75, 1.5, -1.5, 0.1, 1.5, 2.0, 6.0, -6.0])
 
 
 def _laws(drives):

@@ -235,7 +235,7 @@ def _expect_sum(submission, task, args):
                 quantity=f"{part}, summed",
                 input={"accel": name, **system.params(), "t": t, "q": q, "v": v, "h": h},
                 message="The steps from (q, 0) and (0, v) do not add up to those from (q, v) and (0, 0).",
-                help="The same formulas hold for a body at rest and for one where nothing pulls it.",
+                help="The same formulas hold for every state: at rest, without a pull, and at any speed.",
                 diagnose=lambda: probes.of_step(submission, task) or probes.of_zeros(submission, task),
             )
 

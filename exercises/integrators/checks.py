@@ -42,7 +42,7 @@ def test_explicit_euler_growth(submission, draw):
         input={"omega": omega, "h": h, "steps": n, "q0": q0, "v0": v0},
         message="On a spring, explicit Euler multiplies the energy by 1 + (h*omega)**2 in every step; yours "
         "does not.",
-        help="Both new values come from the old state alone.",
+        help="The formula is q' = q + h v and v' = v + h a, with nothing new on the right.",
         diagnose=lambda: probes.of_energy(
             submission, task, factor - 1, (h * spring.omega) ** 2, (spring, q0, v0, h, n, 0.0)
         ),
@@ -69,7 +69,7 @@ def test_semi_implicit_energy(submission, draw):
         input={"omega": omega, "h": h, "steps": n, "q0": q0, "v0": [0.0]},
         message="From rest on a spring, semi-implicit Euler's energy varies by z/(2 - z) with z = h*omega; "
         "yours does not.",
-        help="One half of the state is updated with the other half's new value.",
+        help="One form is v' = v + h a, then q' = q + h v'. The other begins with the position.",
         diagnose=lambda: probes.of_swing(
             submission, task, swing, z / (2 - z), (spring, q0, [0.0], h, n, 0.0)
         ),
@@ -203,8 +203,8 @@ def test_integrate_counts(submission, draw):
                 n + 1,
                 name=name,
                 input=given,
-                message="The number of samples is not N + 1 with N = round(t_end / h).",
-                help="In floating point, t_end / h may come out just below or above a whole number."
+                message=f"The length of `{name}` is not N + 1 with N = round(t_end / h).",
+                help="Take N = round(t_end / h) steps. Row 0 is the initial state, and each step adds a row."
                 if n
                 else "Without a step there is one sample: the initial state.",
                 diagnose=lambda name=name, n=n, h=h: (
@@ -254,7 +254,8 @@ def test_observed_order_slope(submission, draw):
             quantity="order",
             input={"hs": hs, "errors": errors},
             message="For errors of the form C * h**p, observed_order does not return p.",
-            help="Take logarithms of both, then the slope of the line through them.",
+            help="With x = log h and y = log error, the slope is sum (x - mean x)(y - mean y) over "
+            "sum (x - mean x)**2.",
             diagnose=lambda value=value, errors=errors: probes.of_order(submission, value, hs, errors),
         )
 
@@ -281,7 +282,8 @@ def test_observed_order_scattered(submission, draw):
             quantity="order",
             input={"hs": hs, "errors": errors},
             message="Through points that scatter, observed_order does not return the least-squares slope.",
-            help="It is one line through all points as they are, each error over its own step.",
+            help="It is one line by least squares through all points as they are: equal weights, each error "
+            "over its own step, nothing added, rounded or left out.",
             diagnose=lambda value=value, hs=hs, errors=errors: probes.of_order(submission, value, hs, errors),
         )
 
@@ -441,6 +443,7 @@ def _expect_order(submission, task, counts, within, draw):
         source="slopes of correct methods at these steps, with a margin",
         input=problem.input,
         message="On a spring that is pushed in time, the error does not shrink with the step as it should.",
-        help="The acceleration depends on t here: which time does each evaluation belong to?",
+        help="Compare one step with the formula: its factors, and the time, position and velocity of each "
+        "evaluation. Here the acceleration depends on t.",
         diagnose=lambda: probes.of_order_measured(submission, task, hs, errors, problem.run(counts[0])),
     )

@@ -70,7 +70,7 @@ mistakes(
 )
 mistakes(
     "INTEGER_STATE",
-    "Fractions are lost, or the code fails on whole numbers: an array has no room for fractions.",
+    "Fractions are lost, or the code fails on whole numbers. An array made of whole numbers has no room for fractions.",
     "Start from np.array(q, dtype=float), and write a = a * h and not a *= h. Make float arrays before you store values in them: np.zeros(...) makes floats, but np.zeros_like(q0) takes the type of q0.",
 ).body(
     "explicit_euler_step",
@@ -109,7 +109,7 @@ mistakes(
 ).edit("semi_implicit_euler_step", {"h * v_next, v_next": "h * (v + v_next) / 2, v_next"})
 mistakes(
     "STAGE_TIMES_FROZEN",
-    "accel gets the time at the start of the step where a later one belongs. Only a force that depends on time shows this.",
+    "accel gets the time at the start of the step where a later one belongs. Only a force that depends on time shows this: if another fails, too, there is a second mistake.",
     "Give accel the time of its position: t + h/2 for a state half a step on, t + h for one a whole step on.",
 ).body(
     "semi_implicit_euler_step",
@@ -226,7 +226,7 @@ mistakes(
 )
 mistakes(
     "STAGE_VELOCITY_IGNORED",
-    "accel gets the velocity from the start of the step each time. Only a force that depends on velocity, such as damping, shows this.",
+    "accel gets the velocity from the start of the step each time. Only a force that depends on velocity, such as damping, shows this: if another fails, too, there is a second mistake.",
     "Give accel the velocity of the stage as well: each stage has its own position and its own velocity.",
 ).program(
     "rk4_step",
@@ -241,7 +241,7 @@ mistakes(
 mistakes(
     "EXTRA_EVALUATIONS",
     "accel is called more often than this method needs.",
-    "Evaluate once per stage and keep the value in a variable: real forces are expensive to compute.",
+    "The Euler methods call accel once a step, Verlet once or twice, RK4 four times. Keep a value that you need twice in a variable: real forces are expensive to compute.",
     kind="fact",
 ).program(
     "rk4_step",
@@ -297,7 +297,7 @@ mistakes(
 )
 mistakes(
     "TIME_ACCUMULATES",
-    "The steps are counted by a running sum of h, or by np.arange up to an end. Rounding errors then add a step or lose one.",
+    "The steps are counted by a running sum of h, or by np.arange up to an end. Rounding errors, or <= in the place of <, then add a step or lose one.",
     "Fix the number of steps first, n = round(t_end / h), loop over range(n), and compute the time as i*h.",
 ).body(
     "integrate",
@@ -329,7 +329,7 @@ mistakes(
 )
 mistakes(
     "DURATION_NOT_CHECKED",
-    "Your code goes on without a ValueError.",
+    "Your code raises no ValueError.",
     "With N = round(t_end / h), raise ValueError if abs(t_end / h - N) > 1e-6. A difference in seconds is another limit, and so is np.isclose, whose limit grows with N.",
     kind="fact",
 ).program(
@@ -344,8 +344,8 @@ mistakes(
 )
 mistakes(
     "REFUSES_DIVISIBLE",
-    "t_end / h may come out just below a whole number, as 28.999999999999996 for 0.29 s at 0.01 s. Then int() and // give 28, and t_end % h is almost h.",
-    "Take N = round(t_end / h), not int(...), and raise ValueError only if abs(t_end / h - N) > 1e-6.",
+    "t_end / h may come out just below a whole number, as 28.999999999999996 for 0.29 s at 0.01 s. Then int() and // give 28, and t_end % h is almost h. np.arange in steps of h may have one entry too many.",
+    "Take N = round(t_end / h) for the steps and np.arange(N + 1) * h for the times, and raise ValueError only if abs(t_end / h - N) > 1e-6.",
     kind="fact",
 ).program(
     "integrate",
@@ -456,7 +456,7 @@ mistakes(
 mistakes(
     "ASSUMES_ITS_LIMIT",
     "h * omega comes out the same for three methods with different limits.",
-    "Call the given step on (1, 0) and (0, omega) to get its matrix, and look at the eigenvalues of that matrix.",
+    "What in your result depends on the given step? Its calls on (1, 0) and (0, omega) give a matrix at each h, and the eigenvalues of that matrix have to decide where the search goes.",
 ).body(
     "max_stable_step",
     """
@@ -511,7 +511,7 @@ mistakes(
 )
 mistakes(
     "NO_INFINITY",
-    "A number is returned for a method that is stable at every step up to 10/omega.",
+    "The result is not math.inf for a method that is stable at every step up to 10/omega.",
     "Return math.inf when no step up to 10/omega is unstable, whatever comes beyond.",
     kind="consequence",
 ).program(
@@ -687,7 +687,7 @@ mistakes(
 mistakes(
     "ENERGY_FADES",
     "Your code takes more energy out of the spring than this method does.",
-    "Compute one step of the README's spring by hand and compare q and v separately: sign, factor, and whether old or new values are used.",
+    "Compute one step of a spring by hand, from a large q and a large v, and compare both results: sign, factor, and whether old or new values are used.",
     kind="consequence",
 ).body(
     "explicit_euler_step",
@@ -701,13 +701,13 @@ mistakes(
 mistakes(
     "ENERGY_GROWS_TOO_LITTLE",
     "Your code adds less energy to the spring than this method does.",
-    "Compute one step of the README's spring by hand and compare q and v separately: sign, factor, and whether old or new values are used.",
+    "Compute one step of a spring by hand, from a large q and a large v, and compare both results: sign, factor, and whether old or new values are used.",
     kind="consequence",
 ).edit("explicit_euler_step", {"accel(t, q, v": "accel(t + h / 2, q + h / 2 * v, v"})
 mistakes(
     "ENERGY_GROWS",
     "Your code adds more energy to the spring than this method does.",
-    "Compute one step of the README's spring by hand and compare q and v separately: sign, factor, and whether old or new values are used.",
+    "Compute one step of a spring by hand, from a large q and a large v, and compare both results: sign, factor, and whether old or new values are used.",
     kind="consequence",
 ).edit("explicit_euler_step", {"accel(t, q, v": "accel(t - h / 2, q - h / 2 * v, v"})
 mistakes(
@@ -723,13 +723,13 @@ mistakes(
 mistakes(
     "ENERGY_SWINGS_TOO_FAR",
     "The energy of the spring strays further from its initial value than with this method.",
-    "Compute one step of the README's spring by hand and compare q and v separately: each term once, with its factor, and with the old or new value that belongs there.",
+    "Compute one step of a spring by hand, from a large q and a large v, and compare both results: each term once, with its factor, and with the old or new value that belongs there.",
     kind="consequence",
 ).edit("semi_implicit_euler_step", {"h * v_next, v_next": "h * (1.25 * v_next - 0.25 * v), v_next"})
 mistakes(
     "ENERGY_FADES_TOO_LITTLE",
     "Your code takes less energy out of the spring than this method does.",
-    "Compute one step of the README's spring by hand and compare q and v separately: sign, factor, and whether old or new values are used.",
+    "Compute one step of a spring by hand, from a large q and a large v, and compare both results: sign, factor, and whether old or new values are used.",
     kind="consequence",
 ).program(
     "rk4_step",
@@ -845,7 +845,7 @@ mistakes("RESULT_OVERWRITTEN").program(
 mistakes(
     "SEARCH_TOO_COARSE",
     "The result is off by less than 0.25/omega, but by more than 1 %.",
-    "A step is stable up to a spectral radius of 1 + 1e-8: see first that this, and nothing else, decides. Then bisect between two neighbouring steps, one stable and one unstable, until they are less than 1 % apart: a share of the step, not a number of seconds.",
+    "A step is stable up to a spectral radius of 1 + 1e-8: see first that this, and nothing else, decides. Then bisect between two neighbouring steps: the lower stays stable and the upper unstable, until they are less than 1 % apart, a share of the step and not a number of seconds.",
     kind="consequence",
 ).body(
     "max_stable_step",
@@ -874,7 +874,7 @@ mistakes(
 )
 mistakes(
     "LIMIT_NEVER_SEEN",
-    "Infinity is returned for a method that becomes unstable before 10/omega.",
+    "Infinity is returned for a method that is unstable at some step before 10/omega.",
     "Check every h from 0.05/omega to 10/omega, in increments of less than 0.25/omega, by the largest modulus of the eigenvalues. Infinity is right only where none of them exceeds 1 + 1e-8.",
     kind="nan",
 ).body(
@@ -999,7 +999,7 @@ mistakes("STATE_KEPT").program(
 mistakes(
     "LIMIT_TOO_EARLY",
     "Steps beyond the result are still stable, without a break.",
-    "Compare the matrix column by column: both columns belong to the same h, from (1, 0) and from (0, omega), with velocities divided by omega. Stable means a spectral radius of at most 1 + 1e-8.",
+    "Is 0.05/omega the first step that you look at, and is a step stable up to a spectral radius of 1 + 1e-8? If so, compare the matrix column by column: from (1, 0) and from (0, omega) at the same h, with velocities divided by omega.",
     kind="consequence",
 ).body(
     "max_stable_step",
@@ -1167,8 +1167,8 @@ mistakes(
 )
 mistakes(
     "WEIGHTS_DO_NOT_ADD_UP",
-    "With a constant slope, the step is too long or too short by the same factor for every h. So the weights of the four slopes do not add up to one.",
-    "The weights 1, 2, 2 and 1 add up to 6: divide the sum by 6, once. Every slope is in the sum, and is multiplied by h once.",
+    "With a constant slope, the step is too long or too short by the same factor for every h, as if the weights of the four slopes did not add up to one.",
+    "The weights 1, 2, 2 and 1 add up to 6: divide the sum by 6, once. Every slope is in the sum, and is multiplied once, by the whole h.",
 )
 mistakes(
     "LAST_STAGE_AT_HALF",
@@ -1193,7 +1193,7 @@ mistakes(
 mistakes(
     "DOES_NOT_CONVERGE",
     "With smaller steps the error hardly falls, or not at all.",
-    "Compare q and v of one step with the formula, term by term: sign, factor, power of h, and what accel is given.",
+    "Compare q and v of one step with the formula, term by term: sign, factor, power of h, rounding, and what accel is given.",
     kind="consequence",
 )
 mistakes(
@@ -1205,18 +1205,18 @@ mistakes(
 mistakes(
     "ENERGY_SWINGS_TOO_LITTLE",
     "The energy of the spring stays closer to its initial value than with this method.",
-    "Compute one step of the README's spring by hand and compare q and v separately: each term once, with its factor, and with the old or new value that belongs there.",
+    "Compute one step of a spring by hand, from a large q and a large v, and compare both results: each term once, with its factor, and with the old or new value that belongs there.",
     kind="consequence",
 )
 mistakes(
     "MISSING_EVALUATIONS",
     "accel is called less often than this method needs.",
-    "Evaluate accel for each stage, with that stage's own time, position and velocity. Keep no value of another stage or of an earlier step.",
+    "Call accel once for each stage, with that stage's own time, position and velocity: RK4 has four, Verlet one or two, an Euler method one. Keep no value of another stage or of an earlier step.",
     kind="fact",
 )
 mistakes(
     "TIME_OUTSIDE_STEP",
-    "accel is called with times outside the step, such as 0 or h.",
+    "Every time that accel gets lies outside the step, as 0 and h do once t is larger.",
     "The step starts at t, the argument of your function, and ends at t + h: accel gets one of these, or a time in between.",
 )
 mistakes(
@@ -1261,19 +1261,19 @@ mistakes(
 )
 mistakes(
     "FEW_DIGITS",
-    "A step is right to about seven digits and no further, as in single precision.",
+    "A step is right to six digits or more, but not to all of them, as in single precision or after rounding.",
     "Compute in Python's own floats (float64): no np.float32, and no round().",
 )
 mistakes(
     "VELOCITY_ALONE_WRONG",
     "The position is right; the velocity is not.",
-    "Compare the line of the velocity with the formula: the factor of h, and the time, the position and the velocity that accel is given.",
+    "Compare the line of the velocity with the formula: the old velocity, the factor of h, the time, position and velocity that accel is given, and nothing besides.",
     kind="consequence",
 )
 mistakes(
     "POSITION_ALONE_WRONG",
     "The velocity is right; the position is not.",
-    "Compare the line of the position with the formula: the old place, the velocity, and the factor of h.",
+    "Compare the line of the position with the formula: the old place, the velocity, the factor of h, and nothing besides.",
     kind="consequence",
 )
 mistakes(
@@ -1469,7 +1469,7 @@ mistakes(
 )
 mistakes(
     "ORDER_SIGN_FLIPPED",
-    "The result is minus the slope, or the slope of other pairs of h and error.",
+    "The slope has the other sign, or belongs to other pairs of h and error.",
     "Use log h, not log(1/h), subtract in the same order on both axes, and pair each h with its own error.",
 )
 mistakes(
@@ -1548,7 +1548,7 @@ mistakes(
 mistakes(
     "NO_ZERO",
     "A step that is not zero is returned for a method that is unstable at 0.05/omega already.",
-    "Test h = 0.05/omega first and return 0.0 if it is unstable, by the eigenvalues of one step. A few dozen steps do not show slow growth.",
+    "Test h = 0.05/omega first, and return 0.0 if the largest modulus of its eigenvalues exceeds 1 + 1e-8. A few dozen steps of a run do not show slow growth.",
     kind="consequence",
 )
 mistakes(
@@ -1587,12 +1587,12 @@ mistakes(
 )
 mistakes(
     "TOLERANCE_TOO_LOOSE",
-    "Unstable steps count as stable: the limit on the spectral radius is too loose.",
-    "Stable means that the spectral radius is at most 1 + 1e-8.",
+    "Unstable steps count as stable, as with a limit on the spectral radius that is too loose.",
+    "Stable means that the spectral radius of one step is at most 1 + 1e-8. A run of many steps does not show growth that slow.",
 )
 mistakes(
     "SEARCH_IN_SECONDS",
-    "The search starts at h = 0.05 s, whatever omega is.",
+    "The search starts at a fixed h in seconds, such as 0.05 s, whatever omega is.",
     "Start at h = 0.05/omega, and end at 10/omega.",
 )
 mistakes(

@@ -107,8 +107,8 @@ def expect_limit(submission, value, case, *, input, message):
         units="s",
         input=input,
         message=message,
-        help="Walk up from 0.05/omega. At each step build the matrix on (q, v/omega) from two calls, and "
-        "look at its eigenvalues.",
+        help="Walk up from 0.05/omega. At each step build the matrix on (q, v/omega) from two calls: no "
+        "eigenvalue may have a modulus above 1 + 1e-8.",
         diagnose=lambda: probes.of_stability(submission, value, step, omega, limit),
     )
 
@@ -211,8 +211,8 @@ def _expect_plain_motion(submission, task, args, given):
             source="uniform motion: only rounding is allowed",
             quantity=name,
             input=told,
-            message="Without an acceleration a body far away does not move on with its velocity.",
-            help="Without an acceleration every method gives q + h v and v.",
+            message="Without an acceleration, the step of a body far away is not q + h v and v.",
+            help="Compare both lines with the formula: with an acceleration of zero it gives this.",
             diagnose=lambda: probes.of_step(submission, task),
         )
 
@@ -235,7 +235,7 @@ def _expect_sum(submission, task, args):
                 quantity=f"{part}, summed",
                 input={"accel": name, **system.params(), "t": t, "q": q, "v": v, "h": h},
                 message="The steps from (q, 0) and (0, v) do not add up to those from (q, v) and (0, 0).",
-                help="The same formulas hold for a body at rest and for one where nothing pulls it.",
+                help="The same formulas hold for every state: at rest, without a pull, and at any speed.",
                 diagnose=lambda: probes.of_step(submission, task) or probes.of_zeros(submission, task),
             )
 
@@ -290,7 +290,7 @@ def _expect_whole(submission, task, accel, call, wanted, given):
             input=given,
             message="From a state of whole numbers the step gives a different result than from the same "
             "state as floats.",
-            diagnose=lambda: probes.of_whole_numbers(submission, task, kit.as_pair(result, 2)),
+            diagnose=lambda: probes.of_whole_numbers(submission, task),
         )
 
 

@@ -59,19 +59,26 @@ def of_step(submission, task, run=None):
 
 
 def of_zeros(submission, task):
-    """Whether steps that do not add up where a state is zero do so, on a spring, from other states."""
+    """Whether steps that do not add up where a state is zero do so, on a spring, from other states.
+
+    From large ones, too: a speed that is limited adds up only below the limit.
+    """
     pairs = ((_Q, _V), (2 * _V, _Q), (_Q + 2 * _V, _V + _Q))
-    values = submission.call_each(task, [(Oscillator(1.7), _T, *pair, _H) for pair in pairs])
-    one, other, both = (np.array(kit.as_pair(value, 2)) for value in values)
-    return named("ZERO_IS_SPECIAL") if np.allclose(one + other, both, rtol=1e-9, atol=1e-12) else None
+    for size in (1.0, 20.0):
+        calls = [(Oscillator(1.7), _T, size * q, size * v, _H) for q, v in pairs]
+        one, other, both = (np.array(kit.as_pair(value, 2)) for value in submission.call_each(task, calls))
+        if not np.allclose(one + other, both, rtol=1e-9, atol=1e-12):
+            return None
+    return named("ZERO_IS_SPECIAL")
 
 
-def of_whole_numbers(submission, task, result=None):
-    """Why a step from integers differs from the same step from floats, or fails. result: of the step."""
-    if kit.attempt(lambda: _remembers(submission, task)):
-        return named("STALE_CACHE")
-    cut = result is None or any(np.array_equal(part, np.trunc(part)) for part in result)
-    return named("INTEGER_STATE") if cut else None
+def of_whole_numbers(submission, task):
+    """Why a step from integers differs from the same step from floats, or fails.
+
+    It need not end in whole numbers: the slopes on the way may have lost their fractions.
+    """
+    kept = kit.attempt(lambda: _remembers(submission, task))
+    return named("STALE_CACHE" if kept else "INTEGER_STATE")
 
 
 def _wraps(submission, task):
@@ -88,9 +95,9 @@ def _wraps(submission, task):
         ]
         return [after, *asked]
 
-    far = places(1000 * _Q)
+    near, far = abs(_Q), places(1000 * _Q)  # a range may begin at zero
     return (
-        all(_stays(place, _Q) for place in places(_Q))
+        all(_stays(place, near) for place in places(near))
         and not any(place is None or place.shape != _Q.shape for place in far)
         and not all(_stays(place, 1000 * _Q) for place in far)
     )
@@ -500,7 +507,9 @@ def _beside(z, limit):
     if limit == 0.0:
         return "NO_ZERO" if z > 0.0 else None
     if limit == math.inf:
-        return "NO_INFINITY" if z > 2.0 else "LIMIT_TOO_EARLY"
+        return "LIMIT_TOO_EARLY" if 0.0 <= z <= 2.0 else "NO_INFINITY"
+    if math.isnan(z):
+        return None
     # As far as a search in the increments of the README may be off.
     if abs(z - limit) < min(0.25, 0.5 * limit):
         return "SEARCH_TOO_COARSE"

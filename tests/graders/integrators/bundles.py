@@ -168,7 +168,8 @@ def expect_formula(submission, task, result, accel, t, q, v, h):
             input={"t": t, "q": q, "v": v, "h": h},
             message="On a system where time, position and velocity all matter, one step is not what the "
             "formula gives.",
-            help="Write the formula down with every argument of accel and compare it with your line of code.",
+            help="Compare one step with the formula, term by term: the factors, what accel is given, and "
+            "nothing besides.",
             diagnose=lambda: (
                 probes.of_step(submission, task) or probes.of_halves(q_next, v_next, (q_true, v_true))
             ),
@@ -202,7 +203,8 @@ def expect_symplectic(submission, task, rng):
         quantity="max |J^T Omega J - Omega|",
         input={**problem.input, "h": h},
         message="One step on an orbit does not conserve the symplectic form, as this method does.",
-        help="Each half of the state must change by a function of the other half alone.",
+        help="Compare one step with the formula: which values each line uses, old or new, and with which "
+        "factors.",
         diagnose=lambda: probes.of_step(submission, task),
     )
 

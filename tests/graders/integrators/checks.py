@@ -148,7 +148,7 @@ def test_verlet_frequency(submission, rng):
         units="rad/s",
         input={"omega": omega, "h": h},
         message="On a spring, three positions in a row are not those of velocity Verlet.",
-        help="Look at the factor of the acceleration in the position and at both kicks.",
+        help="Compare one step with the formula: the factors, and which acceleration each line gets.",
         diagnose=lambda: probes.of_step(submission, VERLET),
     )
 

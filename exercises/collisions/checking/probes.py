@@ -299,7 +299,7 @@ def _rubs(calls, values, truth):
             continue
         va, vb, n = call[2:5]
         along = ([float(part @ n) for part in parts] for parts in (right, value))
-        if not np.isfinite(call[1]) or not all(map(_same, *along)) or _momentum_lost(call, value):
+        if not np.isfinite(call[1]) or not all(map(_same, *along)):
             return None
         slip, wanted, found = (u - (u @ n) * n for u in (vb - va, right[1] - vb, value[1] - vb))
         size = float(np.sqrt(slip @ slip))
@@ -309,6 +309,8 @@ def _rubs(calls, values, truth):
         if not np.allclose(found, along * slip / size, rtol=0, atol=1e-8):
             seen.append("FRICTION_ASKEW")
             continue
+        if _momentum_lost(call, value):
+            return None
         left = ((value[1] - value[0]) @ slip) / size
         more = along < float(wanted @ slip) / size
         turns = "FRICTION_TURNS_THE_SLIP" if left < -1e-8 else ""

@@ -35,7 +35,8 @@ def test_plane_contact(submission, draw):
         "plane_contact",
         draw,
         "Touching, normal or depth of a sphere and a plane is wrong.",
-        "The centre is (x - point) . normal above the plane. The depth is r less that.",
+        "The centre is (x - point) . normal above the plane. The depth is r less that, and the normal is "
+        "the one you are given.",
     )
 
 
@@ -63,7 +64,7 @@ def test_impulse_separating(submission, draw):
         "impulse_separating",
         draw,
         "The impulse of this pair is wrong. a is left of b: they approach, and get one, only where va > vb.",
-        "Return 0.0 unless va > vb.",
+        "Return 0.0 unless va > vb, and there J = (1 + e)(va - vb)/(1/ma + 1/mb).",
     )
 
 
@@ -98,7 +99,8 @@ def test_resolve_separating(submission, draw):
         "resolve_separating",
         draw,
         "The velocities of this pair are wrong. They approach where (va - vb) . n > 0, and only then change.",
-        "Return the velocities as they came unless (va - vb) . n > 0.",
+        "Where (va - vb) . n > 0 the impulse is J n, with J = (1 + e) s/(1/ma + 1/mb). Elsewhere both "
+        "velocities stay as they came.",
     )
 
 
@@ -119,7 +121,8 @@ def test_friction_regimes(submission, draw):
         "friction_regimes",
         draw,
         "The velocities after an impact with friction are wrong.",
-        "Across the normal acts min(mu J, |vt|/(1/ma + 1/mb)), against the slip vt of b seen from a.",
+        "Along the normal acts J, as in `resolve`. Across it acts min(mu J, |vt|/(1/ma + 1/mb)): on b "
+        "against the slip vt of b seen from a, on a the other way.",
     )
 
 
@@ -133,8 +136,8 @@ def test_friction_absent(submission, draw):
         "friction_absent",
         draw,
         "The velocities of this pair are wrong.",
-        "Friction takes at most mu J from the slip, and no more than stops it; without mu, slip or approach "
-        "the result is that of `resolve`.",
+        "Without mu, slip or approach the result is that of `resolve`. Otherwise friction adds "
+        "min(mu J, |vt|/(1/ma + 1/mb)) across the normal, on b against the slip.",
     )
 
 
@@ -169,7 +172,8 @@ def test_moment_never(submission, draw):
         "moment_never",
         draw,
         "The answer for this pair is wrong.",
-        "None if they do not approach, if there is no real root, or if t > dt; otherwise a time.",
+        "None if they do not approach, if there is no real root, or if t > dt. 0.0 if they overlap and "
+        "approach. Otherwise the smaller root.",
     )
 
 

@@ -402,6 +402,11 @@ def _mixed(twice, four, over):
 
 def _without_root(share):
     """What stands under the square root is used as it is, times ``share``."""
+    return _solved(lambda a, b, room: (-b - share * room) / a)
+
+
+def _solved(root):
+    """``root(a, b, room)`` of a t² + 2 b t + c = 0, whatever its sign is."""
 
     def time_of_impact(xa, va, ra, xb, vb, rb, dt):
         x, v = _array(xb) - _array(xa), _array(vb) - _array(va)
@@ -409,8 +414,8 @@ def _without_root(share):
         if b >= 0 or c <= 0:
             return 0.0 if b < 0 else None
         room = b * b - a * c
-        t = (-b - share * room) / a
-        return t if room >= 0 and t <= dt else None
+        t = root(a, b, room) if room >= 0 else math.inf
+        return t if t <= dt else None
 
     return time_of_impact
 
@@ -745,6 +750,7 @@ OTHERS = {
         (("NORMAL_REVERSED",), _plane(gap=lambda x, p, n: -float((x - p) @ n), normal=lambda n: -n)),
     ],
     "impulse_1d": [
+        (("ONLY_THE_REBOUND",), _line(factor=lambda e: 2 * e)),
         (("IMPULSE_AS_VELOCITY",), lambda ma, mb, *rest: _line()(ma, mb, *rest) / ma),
         (("IMPULSE_AS_VELOCITY",), lambda ma, mb, *rest: _line()(ma, mb, *rest) / mb),
         (("IMPULSE_AS_VELOCITY",), lambda ma, mb, *rest: _line()(ma, mb, *rest) * _give(ma, mb)),
@@ -771,6 +777,7 @@ OTHERS = {
         (("PERFECTLY_STICKY",), _stick),
     ],
     "resolve_with_friction": [
+        (("ONLY_THE_REBOUND",), _impact(factor=lambda e: 2 * e, friction=_coulomb)),
         (("APPROACH_REVERSED",), _reversed(_impact(friction=_coulomb))),
         *((("MASSES_IGNORED",), _without_masses(share, friction=_coulomb)) for share in (1.0, 2.0)),
         (("ONLY_HEAD_ON",), _from_both_sides(_impact(friction=_coulomb))),
@@ -794,9 +801,11 @@ OTHERS = {
         (("TUNNELS",), _at_the_end_only(exact=True)),
         *(
             (("QUADRATIC_MIXED",), _mixed(*form))
-            for form in ((1, 4, 2), (1, 1, 2), (1, 4, 1), (2, 1, 1), (2, 1, 2))
+            for form in ((1, 4, 2), (1, 1, 2), (1, 4, 1), (2, 1, 1), (2, 1, 2), (2, 4, 1))
         ),
         *((("ROOT_TERM_WRONG",), _without_root(share)) for share in (1.0, 2.0)),
+        (("TIME_NEGATED",), _solved(lambda a, b, room: (b + math.sqrt(room)) / a)),
+        (("MIDDLE_TERM_WRONG",), _solved(lambda a, b, room: (b - math.sqrt(room)) / a)),
         (("MISSES_COUNT_AS_HITS",), _head_on_always),
         (("MISSES_COUNT_AS_HITS",), _gap_over_speed),
         (("IMPACT_IN_THE_PAST",), _moment(past=True, overlap="ignored")),

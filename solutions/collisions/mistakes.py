@@ -163,7 +163,7 @@ mistakes(
 )
 mistakes(
     "INFINITE_MASS_NAN",
-    "With an infinite mass the result is nan, as inf/inf, 0*inf and inf - inf are.",
+    "With an infinite mass the result is not finite: inf/inf, 0*inf and inf - inf are nan.",
     "Use inverse masses only: 1/inf is 0.0, so a wall needs no special case. A product such as ma*mb becomes infinite.",
     kind="nan",
 ).edit(
@@ -242,8 +242,8 @@ mistakes(
 )
 mistakes(
     "MUTATES_INPUT",
-    "An argument was changed that the caller still needs as it was.",
-    "Write a = a - b, which makes a new array: a -= b and a[0] = b change the caller's array. An array that you fill or change later should be a copy.",
+    "Your code works on the caller's own array, and not on a copy.",
+    "Write a = a - b, which makes a new array: a -= b and a[0] = b change the caller's array. An array that you fill, change later or return should be a copy.",
     kind="fact",
 ).body(
     "resolve",
@@ -284,7 +284,7 @@ mistakes(
 mistakes(
     "BLOW_TOO_STRONG",
     "The bodies separate faster than at e times the speed of approach.",
-    "Along the normal only J acts, J = (1 + e) s / (1/ma + 1/mb). Is something added to it, or does friction have a part along n?",
+    "Along the normal only J = (1 + e) s / (1/ma + 1/mb) acts, also at a wall: friction has no part along n. Compute it by hand for one pair, and compare.",
     kind="consequence",
 ).body(
     "resolve",
@@ -372,7 +372,7 @@ mistakes(
 )
 mistakes(
     "NO_SLIDING_NAN",
-    "Where nothing slides, your code returns nan. The slip has no direction there: perhaps it is divided by its length.",
+    "Where nothing slides, your code returns nan: the slip vt has no direction there.",
     "Divide by the length of vt only if it is not zero, and by nothing else that may be zero.",
     kind="nan",
 ).body(
@@ -545,8 +545,8 @@ mistakes(
 )
 mistakes(
     "PASSES_THROUGH",
-    "The bodies go through each other: their paths stay straight lines.",
-    "In each step ask whether the gap closes within it. If so, move to the contact, apply the impact, and use the rest of the step to move apart.",
+    "Here the bodies go through each other: their paths stay straight lines.",
+    "In each step ask whether the gap closes within it, however slow or fast they are. If so, move to the contact, apply the impact, and use the rest of the step to move apart.",
     kind="consequence",
 ).body(
     "simulate_head_on",
@@ -829,7 +829,7 @@ mistakes(
 mistakes(
     "MOMENT_TOO_COARSE",
     "The contacts are found, but not at their exact times.",
-    "Solve |dx + dv t|**2 = (ra + rb)**2, which gives the exact time. If you do, compare each term, and look whether a time is rounded.",
+    "Solve |dx + dv t|**2 = (ra + rb)**2, which gives the exact time: compare each term, and round nothing. Of spheres that overlap and approach it is 0.0.",
     kind="consequence",
 ).program(
     "time_of_impact",
@@ -1036,7 +1036,7 @@ mistakes(
 mistakes(
     "RESTS_ELSEWHERE",
     "The ball comes to rest, but not at z = radius.",
-    "Put it down on the floor: z is the height of its centre, so z = radius, and v = 0.",
+    "z is the height of its centre: at rest z = radius and v = 0, in every row up to the last.",
 ).body(
     "simulate_drop",
     """
@@ -1151,7 +1151,7 @@ mistakes(
 mistakes(
     "SHORT_HOP_MISSED",
     "A ball that rises and is back on the floor within one step goes into the floor.",
-    "Where the parabola ends decides whether the ball touches, and not the sign of v at its start.",
+    "Where the parabola ends decides whether the ball touches, whatever v is at its start.",
 ).edit(
     "simulate_drop",
     {"radius:  # a parabola that starts above the floor crosses it once": "radius and v[i] <= 0:"},
@@ -1204,7 +1204,7 @@ mistakes(
 mistakes(
     "FRICTION_TOO_STRONG",
     "Friction takes too much of the slip. Along the normal all is right.",
-    "Jt = min(mu J, |vt| / (1/ma + 1/mb)), for every mu. Which of the two limits is exceeded?",
+    "Jt = min(mu J, |vt| / (1/ma + 1/mb)), for every mu. Compute both by hand for one pair: which of them does your friction exceed?",
     kind="consequence",
 ).body(
     "resolve_with_friction",
@@ -1227,8 +1227,8 @@ mistakes(
 )
 mistakes(
     "VELOCITIES_APART",
-    "The positions are right; the velocities beside them are not those at the same times.",
-    "Row i of both belongs to the time i h. Store the velocity that the step computes; a difference of two positions is the mean of a whole step.",
+    "The positions are right, and the velocities beside them are wrong.",
+    "Row i of both belongs to the time i h. Store the velocity that the step computes, with its sign; a difference of two positions is the mean of a whole step.",
     kind="consequence",
 ).body(
     "simulate_head_on",
@@ -1252,7 +1252,7 @@ mistakes(
 )
 mistakes(
     "FLIGHT_WRONG",
-    "The heights are wrong before the first contact already.",
+    "The heights are wrong before the ball has bounced at all.",
     "In the air nothing happens but gravity: z + v h - g h**2 / 2 for the height and v - g h for the velocity, whatever the height is.",
     kind="consequence",
 ).body(
@@ -1443,7 +1443,7 @@ mistakes(
     "NORMAL_IS_ZERO",
     "A normal is the zero vector.",
     "A normal has length one. Where the centres coincide, return any unit vector, such as the first axis.",
-    kind="consequence",
+    kind="fact",
 )
 mistakes(
     "RESTITUTION_IGNORED",
@@ -1453,7 +1453,7 @@ mistakes(
 )
 mistakes(
     "ONLY_THE_REBOUND",
-    "The impulse has the factor e instead of 1 + e.",
+    "The impulse is proportional to e, where the factor 1 + e belongs.",
     "An impact first stops the approach (that is the 1) and then drives the bodies apart (that is the e): together 1 + e.",
 )
 mistakes(
@@ -1498,13 +1498,13 @@ mistakes(
 )
 mistakes(
     "NO_RESPONSE",
-    "Bodies that run into each other get no impulse.",
+    "Here bodies that run into each other get no impulse.",
     "Where (va - vb) . n > 0 (on a line: va > vb), the impulse is J = (1 + e) s / (1/ma + 1/mb), and each velocity changes by its share of it.",
     kind="consequence",
 )
 mistakes(
     "ENERGY_CREATED",
-    "After this impact the kinetic energy is larger than before it. No impact can do that.",
+    "Here an impact adds kinetic energy, which no impact can.",
     "Compute this impact by hand and compare: J from the velocities before the impact, then both velocities with this one J.",
     kind="consequence",
 )
@@ -1534,7 +1534,7 @@ mistakes(
 mistakes(
     "FRICTION_TOO_WEAK",
     "Friction takes too little of the slip. Along the normal all is right.",
-    "Jt = min(mu J, |vt| / (1/ma + 1/mb)). Is a slow slip taken for none, or a number added to its length?",
+    "Jt = min(mu J, |vt| / (1/ma + 1/mb)), however slow the slip is, with nothing added to its length. Compute both by hand for one pair, and compare your friction with the smaller.",
     kind="consequence",
 )
 mistakes(
@@ -1546,7 +1546,7 @@ mistakes(
 mistakes(
     "MOMENTUM_LOST",
     "The total momentum changes, although no outside force acts.",
-    "Both bodies get the same J, with opposite signs, each divided by its own mass. Compute both changes by hand and compare.",
+    "Both bodies get the same impulses, with opposite signs, each divided by its own mass. Compute both changes by hand and compare.",
     kind="consequence",
 )
 mistakes(
@@ -1656,7 +1656,7 @@ mistakes(
 mistakes(
     "SOME_PAIRS_SPARED",
     "Some bodies that approach keep their velocities; the other pairs are right.",
-    "Every pair with (va - vb) . n > 0 gets its impulse, however slow it is and whichever of the two moves.",
+    "Every pair with (va - vb) . n > 0 gets its impulse, however slow it is, whichever of the two moves, with friction or without.",
     kind="consequence",
 )
 mistakes(
@@ -1793,8 +1793,8 @@ mistakes(
 )
 mistakes(
     "ROOT_OF_A_NEGATIVE",
-    "Where the bodies pass beside each other the result is nan: the root of a negative number.",
-    "Test that number before you take its root: if it is negative, the bodies never touch, so return None.",
+    "Where the bodies pass beside each other the result is nan, and not None.",
+    "There the number under the square root is negative: test it before you take the root, and return None.",
     kind="nan",
 )
 mistakes(
@@ -1899,6 +1899,49 @@ mistakes(
     "Write into row i alone, or append a copy. x[:] = ... fills every row, and an array that is appended again and again and changed in between ends up in all rows.",
 )
 mistakes(
+    "HISTORIES_SWAPPED",
+    "The positions and the velocities are returned in each other's place.",
+    "Return the times first, then the positions, then the velocities: (t, x, v), or (t, z, v) for the drop.",
+).program(
+    "simulate_head_on",
+    """
+        _right = simulate_head_on
+
+
+        def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):
+            t, x, v = _right(m, x0, v0, radius, restitution, t_end, h)
+            return t, v, x
+    """,
+).program(
+    "simulate_drop",
+    """
+        _right_drop = simulate_drop
+
+
+        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
+            t, z, v = _right_drop(z0, v0, radius, restitution, g, t_end, h)
+            return t, v, z
+    """,
+)
+mistakes(
+    "ROWS_NOT_WRITTEN",
+    "The last rows, or the last one, hold nothing but zeros.",
+    "N steps fill the rows 1 to N: run the loop N times, and write the state into row i + 1 in each of them, also after a contact and at rest.",
+    kind="consequence",
+).edit(
+    "simulate_head_on",
+    {
+        "for i in range(n):": "for i in range(n - 1):",
+        "np.empty((n + 1, 2)), np.empty": "np.zeros((n + 1, 2)), np.zeros",
+    },
+).edit(
+    "simulate_drop",
+    {
+        "for i in range(n):": "for i in range(n - 1):",
+        "np.empty(n + 1), np.empty": "np.zeros(n + 1), np.zeros",
+    },
+)
+mistakes(
     "INITIAL_STATE_WRONG",
     "The first row is not the initial state.",
     "Row 0 holds the positions and velocities as they were given, before any step.",
@@ -1926,7 +1969,7 @@ mistakes(
 mistakes(
     "FLOOR_TOO_HIGH",
     "The ball turns round before its surface reaches the floor.",
-    "It touches where its centre is one radius above the floor: z = radius.",
+    "It touches where its centre is one radius above the floor, z = radius, at an instant inside the step: up to then it falls freely.",
 )
 mistakes(
     "REBOUND_COMPLEMENT",

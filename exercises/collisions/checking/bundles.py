@@ -30,6 +30,15 @@ _NAMES = {
     DROP: ("z0", "v0", "radius", "restitution", "g", "t_end", "h"),
 }
 
+#: What is right where one of the masses is infinite.
+WALLS = {
+    IMPULSE: "One over an infinite mass is zero. Where va > vb, J is (1 + e)(va - vb) times the other mass.",
+    RESOLVE: "One over an infinite mass is zero: the wall keeps its velocity, and that of the other body "
+    "changes by (1 + e) s along n.",
+    FRICTION: "One over an infinite mass is zero: the wall keeps its velocity, and the other body gets J "
+    "along n and Jt = min(mu J, |vt| times its mass) across it.",
+}
+
 ROUNDING = "rounding"
 INSTANT = "the README's 1e-9 s for the instant of each contact, times the speeds; and rounding"
 
@@ -122,6 +131,14 @@ def _parts(task, args, value):
     if task == IMPULSE:
         return (kit.as_number(value, "the impulse"),)
     if task == MOMENT:
+        if isinstance(value, bool | np.bool_):
+            kit.fail(
+                "The answer is True or False, and neither a time nor None.",
+                help="Return the time of contact in s, or None where there is none.",
+                input=shown(task, args),
+                expected="a time in s, or None",
+                actual=bool(value),
+            )
         return (None if value is None else kit.as_number(value, "the time of impact"),)
     if task in (RESOLVE, FRICTION):
         return kit.as_pair(value, len(args[4]), ("va_next", "vb_next"))
@@ -219,7 +236,7 @@ def expect_walls(submission, task, check, draw):
         check,
         draw,
         "With a body of infinite mass (a wall) the result is wrong.",
-        "The inverse of an infinite mass is zero: a formula with inverse masses needs no case for it.",
+        WALLS[task],
     )
 
 

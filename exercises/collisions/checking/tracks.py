@@ -35,7 +35,9 @@ def of_head_on(scene, truth, t, x, v, h):
     if _nearly(t, x, v, scene.at(t, truth.contact, truth.after), [truth.contact]):
         return named("PRECISION_LOST")
     if not np.allclose(x[0], scene.x0, atol=1e-9) or not np.allclose(v[0], scene.v0, atol=1e-9):
-        return named(_first_row((x, v), scene.x0, scene.at([h], truth.contact, truth.after)[0][0]))
+        return named(_first_row((x, v), scene.x0, scene.at([h], truth.contact, truth.after)[0][0], scene.v0))
+    if not x[-1].any() and not v[-1].any():  # balls with radii are not both at 0
+        return named("ROWS_NOT_WRITTEN")
     straight, _ = scene.at(t, math.inf, None)
     if np.allclose(x, straight, atol=1e-9) and truth.contact < t[-1]:
         # Scenes that meet later come before, and were right.
@@ -66,9 +68,11 @@ def _nearly(t, x, v, path, contacts):
     return all(np.allclose(found, true, rtol=1e-6, atol=1e-6) for found, true in pairs)
 
 
-def _first_row(states, start, later):
+def _first_row(states, start, later, speeds):
     """What a path holds in its first row, which is not the initial state. later: where it is one step on."""
-    x = states[0]
+    x, v = states
+    if np.array_equal(np.ravel(x[0]), np.ravel(speeds)) and np.array_equal(np.ravel(v[0]), np.ravel(start)):
+        return "HISTORIES_SWAPPED"
     same = all(np.array_equal(rows, np.broadcast_to(rows[-1], rows.shape)) for rows in states)
     if len(x) > 2 and same and not np.allclose(x[0], start):
         return "ROWS_ALL_THE_SAME"
@@ -81,7 +85,8 @@ def _of_reach(scene, truth, t, x):
     gap, speed = scene.x0[1] - scene.x0[0], scene.v0[0] - scene.v0[1]
     for code, radii in (("RADIUS_IGNORED", 0), ("ONE_RADIUS_ONLY", 1), ("RADIUS_ADDED_TWICE", 4)):
         moment = max(gap - radii * scene.radius, 0.0) / speed
-        if np.allclose(x, scene.at(t, moment, truth.after)[0], rtol=1e-9, atol=1e-8):
+        # An impact at once is that of any reach longer than the way.
+        if moment and np.allclose(x, scene.at(t, moment, truth.after)[0], rtol=1e-9, atol=1e-8):
             return code
     return None
 
@@ -166,13 +171,24 @@ def of_drop(scene, truth, t, z, v, h):
         return named("PRECISION_LOST")
     if not math.isclose(z[0], scene.z0, abs_tol=1e-9) or not math.isclose(v[0], scene.v0, abs_tol=1e-9):
         later = scene.at([h], truth.times, truth.speeds)[0][0]
-        return named(_first_row((z[:, None], v[:, None]), scene.z0, later))
+        return named(_first_row((z[:, None], v[:, None]), scene.z0, later, scene.v0))
     code = (
-        _drop_floor(scene, t, z, v)
+        _drop_empty(scene, truth, t, z, v)
+        or _drop_floor(scene, t, z, v)
         or _drop_start(scene, truth, t, z, v, h)
         or _drop_later(scene, truth, t, z, v)
     )
     return named(code) if code else None
+
+
+def _drop_empty(scene, truth, t, z, v):
+    """Whether the last rows hold zeros, which are no rest on a floor at another height."""
+    filled = np.flatnonzero((z != 0.0) | (v != 0.0))
+    if len(filled) == len(z) or not len(filled) or filled[-1] == len(z) - 1:
+        return None
+    last = filled[-1]
+    rests = v[last] == 0.0 and math.isclose(z[last], scene.radius, abs_tol=1e-9)
+    return "ROWS_NOT_WRITTEN" if rests or t[last + 1] < truth.may else None
 
 
 def _drop_floor(scene, t, z, v):
@@ -198,7 +214,7 @@ def _drop_start(scene, truth, t, z, v, h):
     fall = scene.z0 + scene.v0 * t - scene.g * t * t / 2
     off = z - fall
     if before.sum() > 2 and not np.allclose(off[before], 0.0, atol=1e-8):
-        return _drop_flight(scene, t, z, v, h, before, off) or "FLIGHT_WRONG"
+        return _drop_flight(scene, t, z, v, h, before, off) or _drop_early(v, off)
     path, _ = scene.at(t, truth.times, truth.speeds)
     if np.allclose(z, path, atol=1e-8) and not np.allclose(
         v[before], (scene.v0 - scene.g * t)[before], atol=1e-8
@@ -207,7 +223,8 @@ def _drop_start(scene, truth, t, z, v, h):
     if np.allclose(z, fall, rtol=1e-9, atol=1e-8):
         return "FALLS_THROUGH_FLOOR"
     soon = truth.times and truth.times[0] < h and scene.v0 > 0
-    return "SHORT_HOP_MISSED" if soon and z[1] < scene.radius - 1e-9 else None
+    flies = soon and z[1] < scene.radius - 1e-9 and math.isclose(z[1], fall[1], abs_tol=1e-9)
+    return "SHORT_HOP_MISSED" if flies else None
 
 
 def _drop_later(scene, truth, t, z, v):
@@ -216,6 +233,7 @@ def _drop_later(scene, truth, t, z, v):
         _drop_late(scene, truth, t, z, v)
         or _drop_again(scene, truth, t, z)
         or _drop_rebound(scene, truth, t, z, v)
+        or _drop_speeds(scene, truth, t, z, v)
         or _drop_end(scene, truth, t, z, v)
         or _drop_impact(scene, truth, t, z, v)
     )
@@ -236,6 +254,13 @@ def _drop_flight(scene, t, z, v, h, before, off):
     early = before & (t <= 4 * h)  # with its own g it may come to the floor before
     other = early.sum() > 2 and np.allclose(z[early], path[early], rtol=0, atol=1e-9)
     return "OTHER_GRAVITY" if other and not math.isclose(g, scene.g, rel_tol=1e-6) else None
+
+
+def _drop_early(v, off):
+    """Heights are wrong before the first contact: because the ball has bounced already, or in its flight."""
+    k = int(np.argmax(np.abs(off) > 1e-8))
+    turns = (v[:k] < -1e-9) & (v[1 : k + 1] >= 0.0)
+    return "FLOOR_TOO_HIGH" if turns.any() else "FLIGHT_WRONG"
 
 
 def _drop_late(scene, truth, t, z, v):
@@ -303,6 +328,18 @@ def _drop_rebound(scene, truth, t, z, v):
     return next(names, None)
 
 
+def _drop_speeds(scene, truth, t, z, v):
+    """Whether all is right but velocities: where the ball lies on the floor, or elsewhere."""
+    path, speed = scene.at(t, truth.times, truth.speeds)
+    lies = (np.abs(z - scene.radius) < 1e-9) & (speed == 0.0) & (t > truth.may + 1e-7)
+    near = np.any(np.abs(t[:, None] - np.array(truth.times)) < 1e-7, axis=1)
+    if not np.allclose(z, path, atol=1e-8):
+        return None
+    if not np.allclose(v[~lies & ~near], speed[~lies & ~near], atol=1e-8):
+        return "VELOCITIES_APART"
+    return "REST_KEEPS_SPEED" if np.any(v[lies] != 0.0) else None
+
+
 def _drop_end(scene, truth, t, z, v):
     """How it ends, if it goes right until it may rest."""
     path = scene.at(t, truth.times, truth.speeds)[0]
@@ -335,7 +372,7 @@ def _drop_impact(scene, truth, t, z, v):
         return "REST_OF_STEP_LOST"
     total = scene.g * z + v * v / 2
     start = scene.g * scene.z0 + scene.v0**2 / 2
-    if np.max(total) > start * (1 + 1e-6):
+    if np.max(total[k:]) > start * (1 + 1e-6):
         return "GAINS_ENERGY"
     # The ball left the floor at the speed it should: for how long has it flown?
     up = truth.speeds[0]

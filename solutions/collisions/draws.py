@@ -393,6 +393,13 @@ def ends(args):
     return [(*args[:at], e, *args[at + 1 :]) for e in (0.0, 1.0)]
 
 
+def at_rest(args, side):
+    """The same impact, seen by one of the bodies."""
+    ma, mb, va, vb, *rest = args
+    seen_by = (va, vb)[side]
+    return ma, mb, va - seen_by, vb - seen_by, *rest
+
+
 def parting(args):
     """The same two bodies, moving apart."""
     ma, mb, va, vb, *rest = args

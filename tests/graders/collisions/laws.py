@@ -33,7 +33,13 @@ def _expect_response(args, found, finding):
         source=bundles.ROUNDING,
         quantity="speed of approach afterwards",
         units="m/s",
-        **(finding | {"message": "Bodies that run into each other still approach after the impact."}),
+        **(
+            finding
+            | {
+                "message": "Bodies that run into each other still approach after the impact.",
+                "help": "After the impact, (va - vb) . n is -e times what it was before.",
+            }
+        ),
     )
 
 
@@ -134,7 +140,10 @@ def expect_braking(submission, calls):
     parts, diagnose = _impacts(submission, task, calls)
     for args, found in zip(calls, parts, strict=True):
         ma, mb, va, vb, n = args[:5]
-        help_ = "Friction acts on both bodies, against the slip, and no longer than there is slip."
+        help_ = (
+            "Along the normal acts J, as in `resolve`. Friction acts across it, on b against the slip and on "
+            "a the other way, and stops the slip at most."
+        )
         finding, adds, brakes = (
             _finding(task, args, message, help_, diagnose)
             for message in (
@@ -258,11 +267,14 @@ def expect_symmetries(submission, task, rng):
 
 @np.errstate(all="ignore")
 def expect_wall(submission, task, rng):
-    """An infinite mass on either side, moving: anyhow, and more slowly than the body that runs into it."""
+    """An infinite mass on either side, moving: anyhow, and more slowly than the body that runs into it.
+
+    With friction the body slides on where the wall is slow, and sticks to it otherwise.
+    """
     calls = []
     for side, slowly in ((0, True), (1, True), (0, False), (1, False)):
         args = (
-            draws.friction(rng, 3, rng.uniform(0.4, 0.8))
+            draws.friction(rng, 3, rng.uniform(0.4, 0.8) if slowly else rng.uniform(1.3, 3.0))
             if task == bundles.FRICTION
             else draws.impact(rng, 3)
         )
@@ -272,7 +284,7 @@ def expect_wall(submission, task, rng):
         task,
         calls,
         "With a body of infinite mass (a wall) the velocities are wrong.",
-        "The inverse of an infinite mass is zero: formulas with inverse masses need no case for it.",
+        bundles.WALLS[task],
     )
 
 

@@ -38,7 +38,8 @@ def expect_choices(submission: Any, questions: list[tuple[Any, Any, Any]]) -> No
                 else "None is returned, although an engine meets every requirement."
                 if answer is None
                 else "The chosen engine is not the cheapest that meets every requirement.",
-                help="Keep the engines that meet all requirements, then take the one with the lowest cost.",
+                help="Which engines meet every requirement here, and which of these costs least? Where "
+                "nothing is required, all do.",
                 diagnose=lambda: _of_choices(submission, questions, answers),
                 input=given,
                 expected=expected,
@@ -57,21 +58,35 @@ def _answers(submission: Any, questions: list[tuple[Any, Any, Any]]) -> list[Any
     except kit.StudentFailure as failure:
         for reports, needs, _ in questions:
             if not kit.attempt(lambda reports=reports, needs=needs: [submission.call(TASK, reports, needs)]):
-                _expect_measured(failure, reports, needs)
+                _expect_measured(submission, failure, reports, needs)
                 break
         raise
 
 
-def _expect_measured(failure: kit.StudentFailure, reports: Any, needs: Any) -> None:
+def _expect_measured(submission: Any, failure: kit.StudentFailure, reports: Any, needs: Any) -> None:
     """An exception is the fault of nothing that is missing in these reports."""
     missing = any(report.get(need["key"]) is None for report in reports.values() for need in needs)
-    if missing and failure.type in {"KeyError", "TypeError"}:
+    if (
+        missing
+        and failure.type in {"KeyError", "TypeError"}
+        and _answers_when_told(submission, reports, needs)
+    ):
         kit.fail(
             "Not every engine was measured in all that is required, and no answer comes.",
             diagnose=named("MISSING_RAISES"),
             input={"requirements": needs, "reports, cut to what decides": _what_decides(reports, needs)},
             actual=failure.type,
         )
+
+
+def _answers_when_told(submission: Any, reports: Any, needs: Any) -> bool:
+    """Whether an answer comes once every missing value is there."""
+    wanted = {need["key"]: need["value"] for need in needs}
+    known = {
+        name: wanted | {key: value for key, value in report.items() if value is not None}
+        for name, report in reports.items()
+    }
+    return bool(kit.attempt(lambda: [submission.call(TASK, known, needs)]))
 
 
 def _what_decides(reports: Any, needs: Any) -> Any:
@@ -87,7 +102,7 @@ def expect_untouched(submission: Any, reports: Any, needs: Any) -> None:
     try:
         inspected = submission.call_inspect(TASK, reports, needs)
     except kit.StudentFailure as failure:
-        _expect_measured(failure, reports, needs)
+        _expect_measured(submission, failure, reports, needs)
         raise
     # As text: what came back may hold anything, and not everything can be compared.
     if repr([*inspected.args_after]) != repr(given):

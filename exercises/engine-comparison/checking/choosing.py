@@ -58,19 +58,16 @@ def _answers(submission: Any, questions: list[tuple[Any, Any, Any]]) -> list[Any
     except kit.StudentFailure as failure:
         for reports, needs, _ in questions:
             if not kit.attempt(lambda reports=reports, needs=needs: [submission.call(TASK, reports, needs)]):
-                _expect_measured(submission, failure, reports, needs)
+                if _answers_when_told(submission, reports, needs):
+                    _expect_measured(failure, reports, needs)
                 break
         raise
 
 
-def _expect_measured(submission: Any, failure: kit.StudentFailure, reports: Any, needs: Any) -> None:
+def _expect_measured(failure: kit.StudentFailure, reports: Any, needs: Any) -> None:
     """An exception is the fault of nothing that is missing in these reports."""
     missing = any(report.get(need["key"]) is None for report in reports.values() for need in needs)
-    if (
-        missing
-        and failure.type in {"KeyError", "TypeError"}
-        and _answers_when_told(submission, reports, needs)
-    ):
+    if missing and failure.type in {"KeyError", "TypeError"}:
         kit.fail(
             "Not every engine was measured in all that is required, and no answer comes.",
             diagnose=named("MISSING_RAISES"),
@@ -102,7 +99,7 @@ def expect_untouched(submission: Any, reports: Any, needs: Any) -> None:
     try:
         inspected = submission.call_inspect(TASK, reports, needs)
     except kit.StudentFailure as failure:
-        _expect_measured(submission, failure, reports, needs)
+        _expect_measured(failure, reports, needs)
         raise
     # As text: what came back may hold anything, and not everything can be compared.
     if repr([*inspected.args_after]) != repr(given):

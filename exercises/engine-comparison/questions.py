@@ -95,6 +95,7 @@ APART = {
         "an engine that grows slowly",
         dataclasses.replace(boxes.BALSA, step=grows_slowly, damping=0.0),
     ),
+    "rest_penetration": ("an engine that is softer", dataclasses.replace(boxes.CORK, softness=0.007)),
     "deterministic": ("an engine that hardly repeats itself", dataclasses.replace(boxes.CORK, jitter=1e-3)),
 }
 
@@ -278,7 +279,7 @@ def _choices():
     for op, past in (("<=", 0.0), (">=", 2.0), ("==", 0.0), ("==", 2.0)):
         asked.append((close, [{"key": "limit", "op": op, "value": math.nextafter(1.5, past)}]))
     dear = [
-        ({name: {**report, "cost": 1e9 * report["cost"]} for name, report in reports.items()}, needs)
+        ({name: {**report, "cost": 1e14 * report["cost"]} for name, report in reports.items()}, needs)
         for reports, needs in asked[:10]
     ]
     return [*asked, *dear]

@@ -259,6 +259,9 @@ CHOICES = {
     "COST_OF_NOTHING": (
         _free_is_none,
         _priced(lambda cost: cost or math.inf),
+        lambda reports, needs, met=meets: choose(
+            {n: r for n, r in reports.items() if r["cost"]}, needs, met=met
+        ),
     ),
     "DEPENDS_ON_NAMES": (_alphabetical,),
     "ANY_INSTEAD_OF_ALL": (

@@ -14,8 +14,8 @@ mistakes = Mistakes()
 
 mistakes(
     "ORDER_AGAINST_UNDAMPED",
-    "The order is right for engines without damping and too low for the others. Perhaps the engine is compared with the exact spring.",
-    "Compare the engine with itself: the same time with n, 2n and 4n steps.",
+    "The order is right for engines without damping and too low for the others. Is the engine compared with the exact spring, or the slope cut?",
+    "Compare the engine with itself: the same time with n, 2n and 4n steps. Round the slope.",
     kind="consequence",
 ).body(
     "characterise",
@@ -66,7 +66,7 @@ mistakes(
 mistakes(
     "ORDER_IN_ROUNDING",
     "Only accurate engines get a wrong order. Their runs differ by little more than rounding.",
-    "Take larger steps, such as a sixteenth to a quarter of 1/omega.",
+    "Take larger steps, such as a sixteenth to a quarter of 1/omega, and round the slope.",
     kind="consequence",
 ).body(
     "characterise",
@@ -119,7 +119,7 @@ mistakes(
 mistakes(
     "STABLE_TAKEN_FOR_SYMPLECTIC",
     "Engines that lose area pass the test.",
-    "A determinant below one means that area is lost: test abs(det - 1) < 1e-6.",
+    "Take the states after one step of h = 0.5/omega as columns, and test abs(det - 1) < 1e-6: below one, too, area is lost.",
     kind="consequence",
 ).program(
     "characterise",
@@ -178,7 +178,7 @@ mistakes(
 mistakes(
     "DAMPING_OF_ENERGY",
     "The rate is twice as large as it should be.",
-    "Energy decays twice as fast as speed. Take the logarithm of the speed.",
+    "Energy decays twice as fast as speed. Take ln(v0/v), and divide it by all the time between these two speeds.",
 ).body(
     "characterise",
     """
@@ -203,8 +203,8 @@ mistakes(
 )
 mistakes(
     "LIMIT_FROM_ABOVE",
-    "An engine that becomes unstable, then stable again, gets a limit beyond the first one. Perhaps the search comes from above, or jumps over an unstable range.",
-    "Increase the step from 0.05/omega in increments of 0.5/omega, stop at the first that is unstable, and bisect between that one and the one before it.",
+    "An engine that becomes unstable, then stable again, gets a limit beyond the first one. Does the search come from above, jump over an unstable range, or look at one eigenvalue alone?",
+    "Increase the step from 0.05/omega in increments of 0.5/omega, stop where the largest modulus first exceeds 1 + 1e-8, and bisect between that step and the one before it.",
     kind="consequence",
 ).body(
     "characterise",
@@ -283,7 +283,7 @@ mistakes(
 mistakes(
     "NO_ZERO",
     "An engine that is unstable even at the smallest step gets a positive limit.",
-    "Return 0.0 if h = 0.05/omega is unstable. The eigenvalues of one step say so; in a few hundred steps slow growth does not show.",
+    "Return 0.0 if an eigenvalue of the step h = 0.05/omega has a modulus above 1 + 1e-8. In a few hundred steps slow growth does not show.",
     kind="consequence",
 ).body(
     "characterise",
@@ -345,7 +345,7 @@ mistakes(
 mistakes(
     "ANISOTROPY_ASSUMED",
     "Engines whose ratios differ all get the same one.",
-    "Let the body settle first. From where it lies, find by bisection the least force along x and along the diagonal.",
+    "Let the body settle first. From where it lies, bisect the least force that makes it faster than 0.01 m/s: along x, and along the diagonal.",
 ).body(
     "characterise",
     """
@@ -436,7 +436,7 @@ mistakes(
 mistakes(
     "RESTITUTION_SIGN",
     "For at least one engine the ratio is negative.",
-    "The velocity changes its sign at the wall; the report asks for the ratio of the speeds.",
+    "The velocity changes its sign at the wall, and the report asks for the ratio of the speeds. Does the body reach the wall?",
 ).program(
     "characterise",
     """
@@ -603,7 +603,7 @@ mistakes(
 mistakes(
     "DETERMINISM_TOLERANCE",
     "Engines whose runs differ slightly are called deterministic.",
-    "Bit for bit means np.array_equal, not np.allclose.",
+    "Compare the numbers as they are, with np.array_equal: bit for bit leaves no room for a tolerance or for rounding.",
 ).edit("characterise", {"array_equal": "allclose"}, of="_deterministic")
 mistakes(
     "DETERMINISM_OTHER_RUN",
@@ -1103,7 +1103,7 @@ mistakes(
 mistakes(
     "TUNNEL_NEVER_SEEN",
     "For an engine the result is infinite, although bodies get through.",
-    "Try many starts for each speed of the README's range, in runs of 2 m and more, and look at which side the body ends.",
+    "A speed is unsafe if a single start gets through. Try many for each speed up to 200 m/s, in runs of 2 m + v dt, and look at which side the body ends.",
     kind="nan",
 ).body(
     "characterise",
@@ -1217,7 +1217,7 @@ mistakes(
 mistakes(
     "COST_OF_NOTHING",
     "An engine that costs 0 is passed over.",
-    "0 counts as false: test with `is None` whether an engine was found yet.",
+    "0 is a cost like any other. As a condition it counts as false: test `is None`.",
 ).body(
     "choose_engine",
     """
@@ -1455,8 +1455,8 @@ mistakes(
 )
 mistakes(
     "SYMPLECTIC_TOLERANCE",
-    "Engines that lose a little area in every step pass the test. Perhaps the threshold is too wide.",
-    "Use the threshold of the README: abs(det - 1) < 1e-6.",
+    "Engines that lose a little area in every step pass the test. Is the threshold too wide, or the step too short?",
+    "Test abs(det - 1) < 1e-6 at h = 0.5/omega.",
 )
 mistakes(
     "SYMPLECTIC_BY_ENERGY",
@@ -1487,14 +1487,14 @@ mistakes(
 )
 mistakes(
     "PUSHED_TOO_SELDOM",
-    "Only a few different pushes were tried for each engine.",
+    "Only a few pushes were tried for each engine.",
     "Bisect each force: ten halvings from 5 mu m g leave half a per cent of mu m g.",
     kind="consequence",
 )
 mistakes(
     "DAMPING_SIGN",
     "For at least one engine the rate is negative.",
-    "The rate is -d ln|v|/dt: a body that slows down has a positive damping.",
+    "The rate is ln(v0/v) over the time between the two speeds, v0 at the start and v at the end.",
 )
 mistakes(
     "DAMPING_AS_FORCE",
@@ -1504,7 +1504,7 @@ mistakes(
 mistakes(
     "DAMPING_ASSUMED",
     "The result is zero, or nearly so, also for engines that slow a free body down.",
-    "Give a free body a velocity and no force, and see how fast it is some time later.",
+    "Give a free body a velocity v0 and no force, and see how fast it is some time later: the rate is ln(v0/v) over that time.",
 )
 mistakes(
     "DAMPING_OTHER_LOG",
@@ -1524,7 +1524,7 @@ mistakes(
 mistakes(
     "LIMIT_NEVER_SEEN",
     "An engine that does become unstable is called stable at every step.",
-    "Go up from 0.05/omega to 10/omega, in increments of less than 1/omega, and look at the largest modulus of the eigenvalues.",
+    "Go up from 0.05/omega to 10/omega, in increments of less than 1/omega. The states after one step are the columns of its matrix: look at the largest modulus of its eigenvalues.",
     kind="nan",
 )
 mistakes(
@@ -1535,13 +1535,13 @@ mistakes(
 mistakes(
     "TOLERANCE_TOO_TIGHT",
     "Engines that keep area are called unstable too early. Perhaps rounding counts, or the matrix is not that of (q, v/omega).",
-    "Unstable means a modulus above 1 + 1e-8.",
+    "Unstable means that an eigenvalue of one step's matrix on (q, v/omega) has a modulus above 1 + 1e-8.",
     kind="consequence",
 )
 mistakes(
     "LIMIT_COARSE",
     "No limit is far off, but at least one is off by more than 1 %.",
-    "Bisect between a stable step and the next unstable one. Check the matrix, on (q, v/omega), and the threshold 1 + 1e-8.",
+    "Bisect between a stable step and the next unstable one. Check the matrix, on (q, v/omega), its largest modulus, and the threshold 1 + 1e-8.",
     kind="consequence",
 )
 mistakes(
@@ -1617,7 +1617,7 @@ mistakes(
 mistakes(
     "PENETRATION_ASSUMED",
     "The result is zero, or nearly so, also for engines with soft contact.",
-    "Place the body on the floor, wait five seconds, and compare its height with its radius.",
+    "Place the body on the floor at z = radius, wait five seconds, and report max(0, radius - z) of the last sample.",
 )
 mistakes(
     "RESTITUTION_LOSS",
@@ -1637,11 +1637,11 @@ mistakes(
 mistakes(
     "RESTITUTION_ASSUMED",
     "Engines whose coefficients differ all get the same one.",
-    "Send a body against the wall at 2 m/s, and compare its speeds before and after the hit.",
+    "Send a body against the wall at 2 m/s, and compare its speeds before and after the hit. Does it reach the wall?",
 )
 mistakes(
     "TUNNEL_UNSAFE_REPORTED",
-    "In your own runs, a body gets through at a lower speed than you report.",
+    "In your own runs, a body gets through at the speed that you report or at a lower one.",
     "A speed is safe only if no start gets through. Report the largest safe one.",
     kind="fact",
 )
@@ -1676,7 +1676,7 @@ mistakes(
 mistakes(
     "DETERMINISM_NOT_COMPARED",
     "Every engine is called deterministic, also one whose runs differ.",
-    "Run one experiment twice with the same arguments, and compare every number of both with np.array_equal.",
+    "Make the same run of a moving body twice, and compare every number of both with np.array_equal.",
     kind="consequence",
 )
 mistakes(
@@ -1715,7 +1715,7 @@ mistakes(
 mistakes(
     "DEPENDS_ON_ORDER",
     "With the same reports in another order, your code picks another engine.",
-    "Compare the costs of all engines that fit, wherever they are in the dict.",
+    "Compare the costs of all engines that fit, as they are, wherever they stand in the dict.",
 )
 mistakes(
     "NOT_A_NAME",
@@ -2189,6 +2189,7 @@ _PENETRATION = (
     ("OTHER_STEP_THAN_DT", _depth(_sunk, steps=2)),
     ("OTHER_STEP_THAN_DT", _depth(_sunk, steps=10)),
     ("PENETRATION_ASSUMED", lambda engine, info: 0.0),
+    ("VALUE_ROUNDED", _of("rest_penetration", lambda depth, _: round(float(depth), 2))),
 )
 
 

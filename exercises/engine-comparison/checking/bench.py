@@ -149,7 +149,7 @@ class _Handed:
             kit.fail(
                 "Your code calls the engine with arguments that it does not accept.",
                 help="Call engine.run(scene, q0, v0, h, n, force): a scene's name, as many coordinates as it "
-                "has in q0, v0 and force, a positive step, a whole number of steps.",
+                "has in q0, v0 and force, a positive step, a whole number of steps up to 20000.",
                 diagnose="ENGINE_MISUSED",
                 expected=f"arguments that run accepts, but {str(error)[:200]}",
                 actual=[*args, *kwargs.values()],
@@ -177,11 +177,11 @@ def _is_shot(run: tuple[Any, ...], dt: float) -> bool:
     return -1 - 1.001 * v0[0] * dt <= q0[0] <= -1
 
 
-def unsafe(case: Case) -> bool:
-    """Whether a body was seen to get through at a speed well below the largest safe one of the report."""
+def unsafe(case: Case, share: float = 0.97) -> bool:
+    """Whether a body was seen to get through at that share of the speed that is reported, or below."""
     value = case.measured("tunnelling_speed")
     number = isinstance(value, int | float | np.number) and math.isfinite(value)
-    return number and any(speed < 0.97 * value for speed in case.through)
+    return number and any(speed <= share * value for speed in case.through)
 
 
 _NAMES = ("scene", "q0", "v0", "h", "n", "force")
@@ -194,6 +194,11 @@ def _in_order(args: tuple[Any, ...], kwargs: dict[str, Any]) -> list[Any]:
         raise TypeError("the arguments are scene, q0, v0, h, n and force")
     values |= kwargs
     return [values[name] for name in _NAMES]
+
+
+def all_noted(case: Case) -> bool:
+    """Whether every run is written down, so that one which is not there was not made."""
+    return len(case.runs) < MOST_NOTED
 
 
 def repeated(case: Case) -> int:

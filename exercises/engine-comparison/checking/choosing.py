@@ -38,7 +38,8 @@ def expect_choices(submission: Any, questions: list[tuple[Any, Any, Any]]) -> No
                 else "None is returned, although an engine meets every requirement."
                 if answer is None
                 else "The chosen engine is not the cheapest that meets every requirement.",
-                help="Keep the engines that meet all requirements, then take the one with the lowest cost.",
+                help="Which engines meet every requirement here, and which of these costs least? Where "
+                "nothing is required, all do.",
                 diagnose=lambda: _of_choices(submission, questions, answers),
                 input=given,
                 expected=expected,
@@ -57,7 +58,8 @@ def _answers(submission: Any, questions: list[tuple[Any, Any, Any]]) -> list[Any
     except kit.StudentFailure as failure:
         for reports, needs, _ in questions:
             if not kit.attempt(lambda reports=reports, needs=needs: [submission.call(TASK, reports, needs)]):
-                _expect_measured(failure, reports, needs)
+                if _answers_when_told(submission, reports, needs):
+                    _expect_measured(failure, reports, needs)
                 break
         raise
 
@@ -72,6 +74,16 @@ def _expect_measured(failure: kit.StudentFailure, reports: Any, needs: Any) -> N
             input={"requirements": needs, "reports, cut to what decides": _what_decides(reports, needs)},
             actual=failure.type,
         )
+
+
+def _answers_when_told(submission: Any, reports: Any, needs: Any) -> bool:
+    """Whether an answer comes once every missing value is there."""
+    wanted = {need["key"]: need["value"] for need in needs}
+    known = {
+        name: wanted | {key: value for key, value in report.items() if value is not None}
+        for name, report in reports.items()
+    }
+    return bool(kit.attempt(lambda: [submission.call(TASK, known, needs)]))
 
 
 def _what_decides(reports: Any, needs: Any) -> Any:

@@ -113,8 +113,11 @@ _STEP = "Give the step in seconds, or None where the engine has none of its own.
 
 def expect_sources(listed: list[dict[str, Any]]) -> None:
     """Every entry names an address and a day; all twenty pairs are there."""
-    if len(by_pair(listed)) < len(ENGINES) * len(FIELDS):
-        kit.fail("The list is not complete.", diagnose=named("PAIR_MISSING"), actual=len(listed))
+    found = by_pair(listed)
+    if len(found) < len(ENGINES) * len(FIELDS):
+        pairs = ((engine, field) for engine in ENGINES for field in FIELDS)
+        missing = next(pair for pair in pairs if pair not in found)
+        kit.fail("The list is not complete.", diagnose=named("PAIR_MISSING"), actual={"/".join(missing): 0})
     for entry in listed:
         about = {"engine": entry["engine"], "field": entry["field"]}
         source = kit.as_text(entry["source"], "a source")

@@ -116,6 +116,11 @@ def infinite(key: str, cases: list[Any]) -> bool:
     )
 
 
+def some_infinite(key: str, cases: list[Any]) -> bool:
+    """Some value is infinite where the right one is not, whatever the other wrong ones are."""
+    return any(case.measured(key) == math.inf != case.truth[key] for case in cases)
+
+
 def endless(key: str) -> Callable[[Any], bool]:
     return lambda case: math.isinf(case.truth[key])
 

@@ -18,9 +18,9 @@ named = words.named
 PASS = 0.94
 #: What to do about gains that do badly, whatever makes them so.
 LEAST_MEAN = (
-    "Draw a few hundred carts from the box, every parameter by itself and log-uniformly, around the estimate. "
-    "Take the mean settling time over all of them, 3 s for each that fails, and the gains for which this mean "
-    "is least."
+    "Draw a few hundred carts from the box, every parameter by itself and log-uniformly, around the "
+    "estimate. Take the mean settling time over all of them, 3 s for each that fails, and the gains for "
+    "which this mean is least."
 )
 #: Widest useful half of an interval, as a share of the value.
 USEFUL = {"m": 0.03, "b": 0.20, "Fc": 0.20, "lag": 0.20}

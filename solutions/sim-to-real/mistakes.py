@@ -53,7 +53,7 @@ mistakes(
 
         def plan():
             found = _plan()
-            return {**found, "randomization": {**found["randomization"], "m": [0.2, 5.0], "b": [0.99, 1.01]}}
+            return {**found, "randomization": {**found["randomization"], "m": [0.99, 1.01], "b": [0.2, 5.0]}}
     """,
 )
 mistakes(
@@ -1118,7 +1118,7 @@ mistakes(
 mistakes(
     "LAG_NOT_SUM",
     "The value of lag is not the sum of those of tau and latency.",
-    "lag = tau + latency. Compute its interval from the same refits: the errors of the two largely cancel in the sum.",
+    "lag = tau + latency, all three in seconds. Compute its interval from the same refits: the errors of the two largely cancel in the sum.",
 )
 mistakes(
     "TIMES_EXCHANGED",

@@ -73,7 +73,7 @@ def test_plan_box(submission):
             kit.expect_true(
                 fits,
                 "The randomisation box does not match the fleet.",
-                diagnose=lambda: words.of_box(box),
+                diagnose=lambda name=name: words.of_box(box, [name]),
                 input={"parameter": name},
                 expected=expected,
                 actual=list(box[name]),

@@ -15,7 +15,7 @@ mistakes = Mistakes()
 mistakes(
     "BOX_TOO_WIDE",
     "For at least one parameter the box is, in the logarithm, more than 1.5 times as wide as the fleet, so it contains carts that the fleet does not have.",
-    "Take the fleet's own spread, from e^-w to e^w for a half-width w.",
+    "Take the fleet's own spread for every parameter, from e^-w to e^w for a half-width w.",
     kind="fact",
 ).program(
     "plan",
@@ -32,7 +32,7 @@ mistakes(
 mistakes(
     "BOX_TOO_NARROW",
     "More than 5 % of the fleet lies outside the box for at least one parameter.",
-    "Take the fleet's own spread for every parameter, from e^-w to e^w for a half-width w. One measured cart does not tell you how the others are.",
+    "Give factors on the estimate that hold the fleet: for every parameter from e^-w to e^w, for a half-width w.",
     kind="fact",
 ).program(
     "plan",
@@ -53,7 +53,7 @@ mistakes(
 
         def plan():
             found = _plan()
-            return {**found, "randomization": {**found["randomization"], "m": [0.2, 5.0], "b": [0.99, 1.01]}}
+            return {**found, "randomization": {**found["randomization"], "m": [0.99, 1.01], "b": [0.2, 5.0]}}
     """,
 )
 mistakes(
@@ -209,7 +209,7 @@ mistakes(
 mistakes(
     "TOO_FEW_SOURCES",
     "All gaps of the plan have the same one or two sources.",
-    "The README's table of sources lists friction, actuator, delay, sensors and surroundings. Use at least three of them.",
+    "This cart has the sources friction, actuator_lag, delay, sensor_noise and environment. Use at least three of them.",
     kind="fact",
 ).program(
     "plan",
@@ -242,7 +242,7 @@ mistakes(
 )
 mistakes(
     "EXCITATION_CONSTANT",
-    "With the settings that were tried, the force changes at most twice after its first command, and a delay shows only where it changes.",
+    "In at least one recording the force changes at most twice after its first command, and a delay shows only where it changes.",
     "Reverse the force many times, at irregular intervals.",
 ).body(
     "design_excitation",
@@ -259,7 +259,7 @@ mistakes(
 mistakes(
     "EXCITATION_TOO_SLOW",
     "More than two thirds of the force's power lies below 0.3 Hz, in swings of seconds; the lag is about a tenth of a second.",
-    "Include changes as quick as the effects you want to see: several within a second, and some slower ones for the friction. Use the full force in both directions.",
+    "Add changes as quick as the effects that you want to see: several within a second. Full force, reversed after a random 0.1 to 0.6 s, has slow and quick ones.",
 ).body(
     "design_excitation",
     """
@@ -274,7 +274,7 @@ mistakes(
 mistakes(
     "EXCITATION_TOO_FAST",
     "More than two thirds of the power in the force's changes lies above 4 Hz, where the motor's lag and the mass average most of it out.",
-    "Hold each command long enough for the cart to pick up speed: a few tenths of a second. In a sum of sines, take lower frequencies.",
+    "Hold each command long enough for the cart to pick up speed: a few tenths of a second. If your signal is made of sines, take lower frequencies.",
 ).body(
     "design_excitation",
     """
@@ -322,8 +322,8 @@ mistakes(
 )
 mistakes(
     "EXCITATION_BLIND",
-    "From what this signal makes the carts do, at least one parameter comes out too uncertain.",
-    "Mix quick changes, which show mass and lag, with longer pushes at full force, which show the two kinds of friction at different speeds.",
+    "From what this signal makes a cart do, at least one parameter comes out too uncertain.",
+    "Mix quick changes, which show mass and lag, with longer pushes, which show the two kinds of friction at different speeds. Full force, reversed after a random 0.1 to 0.6 s, has both.",
     kind="consequence",
 ).body(
     "design_excitation",
@@ -334,7 +334,7 @@ mistakes(
 mistakes(
     "WRONG_LENGTH",
     "The number of commands is not the duration times the rate.",
-    "There are round(100 * budget_s) commands for any budget_s: int() cuts off, and np.arange may give one more.",
+    "Return round(100 * budget_s) commands for any budget_s, and cut what is longer: int() can lose one, and np.arange can give one more.",
     kind="fact",
 ).body(
     "design_excitation",
@@ -403,7 +403,7 @@ mistakes(
 mistakes(
     "INTERVAL_OVERCONFIDENT",
     "The intervals are too narrow, at least on one side, for how far the values are off.",
-    "Leave out one block at a time and refit everything, the times too. The standard error is sqrt((n-1)/n * sum((each - mean)**2)), and 2.1 of it on either side make a 95 % interval. If yours are made so, see how far the values are off on carts that you know: times that stay on a grid can be off by half a step.",
+    "Leave out one block at a time and refit everything, the times too. The standard error is sqrt((n-1)/n * sum((each - mean)**2)), and 2.1 of it on either side make a 95 % interval. If yours are made so, see how far the values are off on carts that you know: times that stay on a grid, or end at its edge, are off.",
     kind="fact",
 ).program(
     "identify",
@@ -441,7 +441,7 @@ mistakes(
 mistakes(
     "INTERVAL_USELESS",
     "An interval is wider than the recording requires.",
-    "A jackknife's standard error is that of the whole recording already: do not fit one block alone. If you do not, make the fit scatter less: integrate the equation, use every sample, and refine the times between the points of the grid.",
+    "Each refit of the jackknife uses all blocks but one, and sqrt((n-1)/n * sum((each - mean)**2)) is the standard error of the whole recording. If yours is made so, make the fit scatter less: integrate the equation, fit every sample of y as it was recorded, and refine the times between the points of the grid.",
     kind="consequence",
 ).program(
     "identify",
@@ -471,7 +471,7 @@ mistakes(
 mistakes(
     "PARAMETER_FIXED",
     "At least one of the parameters comes out the same for every cart that was tried.",
-    "m, b and Fc follow from the fit, tau and latency from the search. Does it cover tau from 0.02 to 0.15 s and latency from 0.02 to 0.20 s? If a time ends at the edge of that, compare the columns of the fit with the README's.",
+    "m, b and Fc follow from the fit, tau and latency from a search that every call makes anew. Does its grid cover tau from 0.02 to 0.15 s and latency from 0.02 to 0.20 s, and is it refined around the best pair? If a time ends at the edge of that, compare the columns of the fit with the README's.",
 ).body(
     "identify",
     """
@@ -499,8 +499,8 @@ mistakes(
 )
 mistakes(
     "COEFFICIENTS_NOT_PARAMETERS",
-    "The mass is right, and both friction values are about the right ones divided by the mass.",
-    "What you return is b/m and Fc/m: multiply both by m.",
+    "The mass is right, and b or Fc, or both, come out at about the right value divided by the mass.",
+    "The fit gives b/m and Fc/m: multiply both by m.",
 ).program(
     "identify",
     """
@@ -527,7 +527,7 @@ mistakes(
 mistakes(
     "GAINS_HARD_CODED",
     "Your code returns the same gains for very different carts.",
-    "Draw carts around the given estimate, roll them out, and take the gains with the least mean settling time. The slowest cart alone may need 3 s with any gains. Keep nothing from an earlier call, which was about another cart.",
+    "Draw carts around the given estimate, roll them out, and take the gains with the least mean settling time. Where every cart counts as 3 s, as the slowest alone does, no gains are better than others, and a descent does not move. Keep nothing from an earlier call, which was about another cart.",
 ).body(
     "tune",
     """
@@ -563,7 +563,7 @@ mistakes(
 mistakes(
     "RANDOMIZATION_IGNORED",
     "Three other boxes make no difference to the gains.",
-    "Draw each parameter between value * low and value * high of the box that is passed in, and take the mean over the draws. If you do, perhaps the search tries too few gains.",
+    "Draw each parameter between value * low and value * high of the box that is passed in, and take the mean over the draws. If you do, try more gains.",
 ).program(
     "tune",
     """
@@ -610,8 +610,8 @@ mistakes(
 )
 mistakes(
     "NO_CART_SETTLES",
-    "With these gains no cart drawn from the box settles: each passes the mark by more than 0.10 m, or is not at the mark when the run ends.",
-    "Draw the carts from the box, around the estimate, and take the gains with the least mean over the carts (argmin). If the search is a descent, start it from a grid: where every cart fails there is no slope.",
+    "With these gains hardly any cart drawn from the box settles: the others pass the mark by more than 0.10 m, or are not at the mark when the run ends.",
+    "Are the carts drawn from the box, around the estimate? Is it the least mean over the carts that is taken (argmin)? Does the search cover kd/kp from 0.2 to 0.8, and is kd returned as ratio * kp? If it is a descent, start it from a grid: where every cart fails there is no slope.",
     kind="fact",
 ).body(
     "tune",
@@ -673,8 +673,8 @@ mistakes(
 )
 mistakes(
     "EXCITATION_RESTS",
-    "The force is zero most of the time, and while the cart stands still, the recording shows hardly anything.",
-    "Drive the cart for the whole time, and reverse the force many times.",
+    "The force is zero for more than 40 % of the time. A cart that stands still shows hardly anything.",
+    "Drive the cart for the whole time, with full force, reversed after a random 0.1 to 0.6 s.",
 ).body(
     "design_excitation",
     """
@@ -685,7 +685,7 @@ mistakes(
 mistakes(
     "INTERVAL_WITHOUT_RECORDING",
     "On average, the intervals from short and weak recordings are less than 1.5 times as wide as those from full ones.",
-    "Compute each interval from this recording, by refits with one block left out, and not from a fixed width or share.",
+    "Compute each interval from this recording, by refits with one block left out, and not from a fixed width or share. If you do, refine the times in each refit, between the points of the grid.",
 ).program(
     "identify",
     """
@@ -754,7 +754,7 @@ mistakes(
 mistakes(
     "TIME_FROM_SHEET",
     "tau or the latency comes out as the data sheet's value for every cart that was tried.",
-    "Try a fine grid of both times, fit with each pair, keep the pair with the smallest residual, and refine around it.",
+    "Try a fine grid of both times, tau from 0.02 to 0.15 s and latency from 0.02 to 0.20 s, fit with each pair, keep the one with the smallest residual, and refine around it.",
 ).program(
     "identify",
     """
@@ -815,7 +815,7 @@ mistakes(
 mistakes(
     "NO_DAMPING",
     "kd is zero, or less than a twentieth of kp.",
-    "Search over the ratio kd/kp too, from 0.2 to 0.8.",
+    "Search over the ratio kd/kp too, from 0.2 to 0.8, and return kd itself: ratio * kp.",
 ).body(
     "tune",
     """
@@ -828,8 +828,8 @@ mistakes(
 )
 mistakes(
     "SEARCH_ENDED_EARLY",
-    "Other gains do clearly better on the carts that were asked for: what is minimised is not the mean over these carts, or the search ends at its edge, between coarse points or in a local minimum.",
-    "Look at the carts first: several hundred from the box, each parameter drawn by itself and log-uniformly, the same noise for all gains, and the mean of all settling times. Then at the search: a grid of kp in np.geomspace(2, 40, 20) and kd/kp in np.linspace(0.2, 0.8, 13), since a coarser one may miss the best gains, refined around its best point.",
+    "Other gains do clearly better on these carts.",
+    "Are there several hundred carts, each parameter the estimate's value times a factor drawn by itself and log-uniformly from the box? Is it the mean of all settling times that is least, 3 s for each that fails? Is the grid as wide and fine as kp in np.geomspace(2, 40, 20) and kd/kp in np.linspace(0.2, 0.8, 13)? Is its best point refined, and returned as kp and kd?",
     kind="consequence",
 ).body(
     "tune",
@@ -892,7 +892,7 @@ mistakes(
 )
 mistakes(
     "EXCITATION_NOT_FULL",
-    "The force stays below u_max. On one bench at least the same signal, scaled up to it, could show m, b, Fc and the lag well enough to the best possible estimator.",
+    "The force stays below u_max. In at least one of the checks the same signal, scaled up to it, would show enough.",
     "Scale the finished signal so that its largest absolute value is u_max: the noise stays the same.",
 ).program(
     "design_excitation",
@@ -906,7 +906,7 @@ mistakes(
 )
 mistakes(
     "EXCITATION_STANDS",
-    "A cart stands still for more than half of the recording, and a cart at rest shows hardly anything. Perhaps the force is below its friction for too much of the time.",
+    "A cart stands still for more than half of the recording: there the motor's force is below its friction. A cart at rest shows hardly anything.",
     "Use the full force in both directions most of the time. A sum of sines needs phases that keep its peak small; full force, reversed at irregular intervals, is better still.",
 ).body(
     "design_excitation",
@@ -946,7 +946,7 @@ mistakes(
 )
 mistakes(
     "KD_FOLLOWS_KP",
-    "kd is the same in all answers, or in a fixed relation to kp: perhaps it is not searched.",
+    "kd is the same in all answers, or follows from kp in the same way.",
     "Search over pairs: kp from 2 to 40 and kd/kp from 0.2 to 0.8. A formula of kp, mass and friction knows neither the lag nor the latency.",
 ).body(
     "tune",
@@ -1025,7 +1025,7 @@ mistakes(
 mistakes(
     "PARAMETER_OF_ANOTHER_SOURCE",
     "A parameter does not belong to the source given with it.",
-    "The README's table says which parameters belong to each source: friction to b and Fc, delay to latency and lag.",
+    "The README's table says which parameters go with each source: b and Fc with friction, latency and lag with delay.",
     kind="fact",
 )
 mistakes(
@@ -1036,7 +1036,7 @@ mistakes(
 )
 mistakes(
     "METRIC_DOES_NOT_JUDGE",
-    "The metric of the whole plan is not what the carts achieve.",
+    'The metric of the whole plan is not the word "success".',
     'The metric of the whole plan must be "success".',
     kind="fact",
 )
@@ -1054,14 +1054,14 @@ mistakes(
 )
 mistakes(
     "BOX_LACKS",
-    "The box is not a dict whose keys are exactly the five parameters: one is missing, or there is one too many.",
+    "A key is missing, or there is one too many.",
     "The box has exactly the keys m, b, Fc, tau and latency, each with [low, high].",
     kind="fact",
 )
 mistakes(
     "PROMISE_NOT_KEPT",
     "Even with good excitation, identification and tuning, the mean success over the fleets is below what the plan promises, or below 0.90.",
-    "Here only the box comes from your plan. Compare its ends with the fleet's, parameter by parameter, and promise only what it can achieve, but at least 0.90.",
+    "Here only the box and the promise come from your plan. Where the ends of the box are not the fleet's, e^-w and e^w, take these. Where they are, promise less, but at least 0.90.",
     kind="consequence",
 )
 mistakes(
@@ -1087,12 +1087,12 @@ mistakes(
 mistakes(
     "VISCOUS_MISSING",
     "b comes out near zero, or at a small part of its value.",
-    "Viscous friction needs its own column, the integral of the speed; in the README's form, b is minus its coefficient times m.",
+    "Viscous friction needs its own column, the integral of the speed over time, as `cumulative(y)` gives it. In the README's form, b is minus its coefficient times m.",
 )
 mistakes(
     "COULOMB_MISSING",
     "Fc comes out near zero, or at a small part of its value.",
-    "Coulomb friction needs its own column, the integral of the speed's sign; in the README's form, Fc is minus its coefficient times m.",
+    "Coulomb friction needs its own column, the integral of the speed's sign over time, as `cumulative(np.sign(y))` gives it. In the README's form, Fc is minus its coefficient times m.",
 )
 mistakes(
     "MASS_INVERTED",
@@ -1102,7 +1102,7 @@ mistakes(
 mistakes(
     "FRICTION_SIGN",
     "b or Fc comes out negative for most of the recordings.",
-    "Both slow the cart down: in the README's form b is minus the coefficient times m. A column that has the minus already needs no second one.",
+    "Both slow the cart down: in the README's form b is minus the coefficient times m. A column that has the minus already needs no second one. If the signs are right, compare the columns with the README's.",
 )
 mistakes(
     "ESTIMATE_NEGATIVE",
@@ -1117,18 +1117,18 @@ mistakes(
 )
 mistakes(
     "LAG_NOT_SUM",
-    "The first entry of lag is not the sum of those of tau and latency.",
-    "lag = tau + latency. Compute its interval from the same refits: the errors of the two largely cancel in the sum.",
+    "The value of lag is not the sum of those of tau and latency.",
+    "lag = tau + latency, all three in seconds. Compute its interval from the same refits: the errors of the two largely cancel in the sum.",
 )
 mistakes(
     "TIMES_EXCHANGED",
-    "tau and the latency are exchanged.",
+    "tau comes out at about the latency's value, and the latency at about tau's.",
     "tau is the time constant that motor_impulse(u, tau) takes, and the latency is what `delayed` shifts by.",
     kind="fact",
 )
 mistakes(
     "UNITS_NOT_SECONDS",
-    "The lag comes out about 1000 or 100 times too large, as it does in milliseconds or in samples of 0.01 s.",
+    "tau, the latency or the lag comes out about 1000 or 100 times too large, as it does in milliseconds or in samples of 0.01 s.",
     "tau, latency and lag are in seconds, not in milliseconds or in samples of 0.01 s.",
 )
 mistakes(
@@ -1180,7 +1180,7 @@ mistakes(
 mistakes(
     "RANGE_NOT_READ",
     "The gains stay exactly as they are when the box's range of one parameter (m or latency) is shifted by a factor of 1.8.",
-    "Draw every parameter from its own range of the box, around the estimate's value. If you do, perhaps the search tries too few gains.",
+    "Draw every parameter from its own range of the box, around the estimate's value. If you do, try more gains.",
 )
 mistakes(
     "GAINS_NEGATIVE",

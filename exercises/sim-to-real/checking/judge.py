@@ -18,8 +18,9 @@ named = words.named
 PASS = 0.94
 #: What to do about gains that do badly, whatever makes them so.
 LEAST_MEAN = (
-    "Draw a few hundred carts from the box, every parameter by itself, around the estimate. Take the mean "
-    "settling time over all of them, 3 s for each that fails, and the gains for which this mean is least."
+    "Draw a few hundred carts from the box, every parameter by itself and log-uniformly, around the "
+    "estimate. Take the mean settling time over all of them, 3 s for each that fails, and the gains for "
+    "which this mean is least."
 )
 #: Widest useful half of an interval, as a share of the value.
 USEFUL = {"m": 0.03, "b": 0.20, "Fc": 0.20, "lag": 0.20}
@@ -125,23 +126,27 @@ def expect_kept(i, gap, seconds, carts, seed):
     asked = gap["excitation"], gap["parameter"]
     reach = bench.reach(*asked, seconds, carts, seed)
     threshold, needed = words.threshold_of(gap), words.NEEDED[gap["parameter"]]
-    shows = words.SHOWN[gap["parameter"]]
+    shows, run = words.SHOWN[gap["parameter"]], dict(zip(("excitation", "parameter"), asked, strict=True))
     if reach > shows:
         enough = bench.reach(*asked, cart.BUDGET_S, carts, seed) <= shows
-        wrong = "BUDGET_TOO_SHORT" if enough else "EXCITATION_CANNOT_SHOW"
-    elif threshold > needed * _ROUNDING:
-        wrong = "PROMISES_TOO_LITTLE"
-    elif not threshold >= reach:
-        wrong = "PROMISES_TOO_MUCH"
-    else:
+        kit.fail(
+            "The run of a gap does not show its parameter well enough: measured is the narrowest interval.",
+            diagnose=named("BUDGET_TOO_SHORT" if enough else "EXCITATION_CANNOT_SHOW"),
+            input={"gap": i, **run, "seconds": seconds},
+            expected={"at most": shows},
+            actual=reach,
+            units="1",
+        )
+    if reach <= threshold <= needed * _ROUNDING:
         return
+    scale = 100 if gap["unit"] == "%" else 1
     kit.fail(
-        "A gap of the plan, carried out, is wrong in its time, its excitation or its threshold.",
-        diagnose=named(wrong),
-        input={"gap": i, "parameter": gap["parameter"], "excitation": gap["excitation"]},
-        expected=[reach, needed],
-        actual=threshold,
-        units="1",
+        "The threshold of a gap is not between the narrowest interval and the largest useful one.",
+        diagnose=named("PROMISES_TOO_LITTLE" if threshold > needed else "PROMISES_TOO_MUCH"),
+        input={"gap": i, **run},
+        expected=[scale * reach, scale * needed],
+        actual=scale * threshold,
+        units=gap["unit"],
     )
 
 

@@ -97,7 +97,7 @@ def box_of(plan):
     box = plan["randomization"]
     if not isinstance(box, dict) or set(box) != set(cart.NAMES):
         kit.fail(
-            "The randomisation box does not give an interval for each parameter.",
+            "The randomisation box is not a dict of the five parameters.",
             diagnose=named("BOX_LACKS"),
             expected=list(cart.NAMES),
             actual=list(box) if isinstance(box, dict) else box,
@@ -132,14 +132,17 @@ def width(name, low, high):
 _ROUNDING = 1e-9
 
 
-def of_box(box):
-    """What is wrong with a box of which some parameter is too narrow or too wide."""
+def of_box(box, shown=cart.NAMES):
+    """What is wrong with a box of which some parameter is too narrow or too wide.
+
+    shown: the parameters that the finding is about
+    """
     if all(_near(box[k], (1 - w, 1 + w)) for k, w in cart.FLEET.items()):
         return named("BOX_IS_LINEAR")
     middles = {k: math.sqrt(low * high) for k, (low, high) in box.items()}
     if all(abs(math.log(middles[k] / cart.SHEET[k])) < 0.2 for k in cart.NAMES):
         return named("BOX_NOT_FACTORS")
-    narrow = any(inside(k, *box[k]) < 0.95 for k in cart.NAMES)
+    narrow = any(inside(k, *box[k]) < 0.95 for k in shown)
     return named("BOX_TOO_NARROW" if narrow else "BOX_TOO_WIDE")
 
 

@@ -234,15 +234,16 @@ def _or_not_finite(number: float, diagnose: Diagnose) -> Diagnose:
 _NAN = Diagnosis(
     "NOT_A_NUMBER",
     'There is a nan in it, which means "not a number".',
-    "Where no line says nan, it comes from 0/0, inf - inf, 0 times inf, or the root or logarithm of a negative "
-    "number, and spoils whatever is computed from it. Print the intermediate results: where does it appear "
-    "first?",
+    "Where no line says nan, it comes from 0/0, inf - inf, 0 times inf, or the root or logarithm of a "
+    "negative number, and spoils whatever is computed from it. Print the intermediate results: where does it "
+    "appear first?",
 )
 _INFINITE = Diagnosis(
     "NOT_FINITE",
     "It is infinite, or was computed from something that is not finite.",
-    "Where no line says inf, it comes from a division by zero, from an infinite argument as a factor, or from "
-    "something that grows until it overflows. Print the intermediate results: where does it appear first?",
+    "Where no line says inf, it comes from a division by zero, from an infinite argument as a factor, or "
+    "from something that grows until it overflows. Print the intermediate results: where does it appear "
+    "first?",
 )
 
 

@@ -281,6 +281,8 @@ LARGEST_SEED = 2**63 - 1
 _DIGITS = 6
 #: A float64 has no more digits than this.
 _ALL_DIGITS = 17
+#: Longer texts, sign and point counted, are no round numbers; closer numbers differ by rounding alone.
+_ROUND, _AS_GOOD_AS = 4, 1e-12
 #: How many digits are tried, in this order, to tell numbers apart.
 _MORE_DIGITS = (_DIGITS, 9, 12, _ALL_DIGITS)
 
@@ -301,12 +303,20 @@ def format_value(value: Any, digits: int = _DIGITS) -> str:
     if isinstance(value, bool) or value is None:
         return str(value)
     if isinstance(value, float):
-        return f"{value:.{digits}g}"
+        return _spelled(value, digits)
     if isinstance(value, list | tuple):
         return "[" + ", ".join(format_value(item, digits) for item in value) + "]"
     if isinstance(value, dict):
         return "{" + ", ".join(f"{key}: {format_value(item, digits)}" for key, item in value.items()) + "}"
     return str(value)
+
+
+def _spelled(value: float, digits: int) -> str:
+    """A number with so many digits; more where these would make a round number of one that is not."""
+    text = f"{value:.{digits}g}"
+    if digits != _DIGITS or len(text) > _ROUND or not math.isfinite(value):
+        return text
+    return text if abs(value - float(text)) <= _AS_GOOD_AS * abs(value) else f"{value:.10g}"
 
 
 def format_pair(actual: Any, expected: Any) -> tuple[str, str]:

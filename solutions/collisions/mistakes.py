@@ -883,7 +883,7 @@ mistakes(
 mistakes(
     "TOUCHING_NEEDS_OVERLAP",
     "Bodies that touch exactly, with a depth of zero, do not count as touching.",
-    "`touching` is depth >= 0, not depth > 0. Add nothing small to the depth or to the distance.",
+    "`touching` is depth >= 0, not depth > 0, and the depth is ra + rb - d (for the plane r less the height), with nothing added.",
 ).program(
     "detect_sphere_sphere",
     """
@@ -1854,7 +1854,7 @@ mistakes(
 )
 mistakes(
     "TIME_LEFT_WRONG",
-    "The impact is right, but the bodies then move on for another time than the rest of the step.",
+    "After the impact the bodies move on for too long or too short a time: the instant of the impact, or what is left of the step, is wrong.",
     "A contact at time s into the step leaves h - s, where s comes from the velocities before the impact.",
 )
 mistakes(
@@ -1963,8 +1963,8 @@ mistakes(
 )
 mistakes(
     "INITIAL_STATE_MISSING",
-    "The first sample is not the initial state at time 0.",
-    "Store the initial state at time 0 before the loop, and one state after each of the n steps.",
+    "The first sample is not the initial state at time 0, in its time or in its state.",
+    "Row 0 is the initial state, at t = 0. Row i is the state after i steps, at t = i h.",
 )
 mistakes(
     "FLOOR_TOO_HIGH",

@@ -1370,7 +1370,7 @@ mistakes(
 ).edit("lidar", {"wx  # zero where beam and wall are parallel": "wx", "cross != 0": "abs(cross) != 1"})
 mistakes(
     "WALLS_ONE_SIDED",
-    "A wall is seen if its ends are given in one order, and not if they are given in the other.",
+    "Of some walls it matters which end is given first: a wall in a beam's way is not seen.",
     "The order of the ends means nothing. The cross product of beam and wall may have either sign, and neither end need have the smaller x or y.",
 ).edit("lidar", {"wx  # zero where beam and wall are parallel": "wx", "(cross != 0) &": "(cross > 1e-12) &"})
 mistakes(

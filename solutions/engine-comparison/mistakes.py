@@ -1427,8 +1427,8 @@ mistakes(
 )
 mistakes(
     "ORDER_AGAINST_FINEST",
-    "A method of first order gets 2. Perhaps both differences are taken from the finest run, as if that were exact.",
-    "Divide the difference of the first two runs by that of the last two: |y1 - y2| by |y2 - y3|.",
+    "A method of first order gets 2, as with both differences taken from the finest run, or with a finest run that is not four times as fine as the coarsest.",
+    "The runs have n, 2n and 4n steps. Divide the difference of the first two by that of the last two: |y1 - y2| by |y2 - y3|.",
 )
 mistakes(
     "ORDER_ROUNDED_DOWN",

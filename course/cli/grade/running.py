@@ -207,8 +207,9 @@ def explain(
     if found is None:
         raise NotFoundError(
             f"The gradebook has no result of {student!r} for {exercise!r}.",
-            help="It has none at all: the run was interrupted before it had read the class. The command that"
-            " began it, with --resume, goes on."
+            help="It has none at all. Either nothing in the folders was to be graded (a warm-up is, once"
+            " --exercise names it), or the run was interrupted: then the command that began it goes on with"
+            " --resume."
             if empty
             else f"grades.csv in {out} lists all.",
             code="result_not_found",

@@ -179,9 +179,8 @@ def _value(name: str, inputs: Sequence[tuple[str, float]]) -> str:
 
 def _of_difference(a: float, e: float, inputs: Sequence[tuple[str, float]]) -> str:
     """By how much a number is off, where that is one, or one of the inputs."""
-    by = next(
-        (n for n, v in inputs if n[0] == "`" and v > 0 and abs(abs(a - e) - v) <= _SAME * max(v, abs(e))), ""
-    )
+    some = [(n, v) for n, v in inputs if n[0] == "`" and v > 0 and not _is_small(v)]
+    by = next((n for n, v in some if abs(abs(a - e) - v) <= _SAME * max(v, abs(e))), "")
     if not by and abs(a - e) == 1.0:
         by = "1"
     return f"too {'large' if a > e else 'small'} by {by}" if by else ""

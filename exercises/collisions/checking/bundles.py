@@ -270,7 +270,7 @@ def samples(value, t_end, h, names, given, width=None):
             name=name,
             input=given,
             message="The number of samples is not N + 1, with N = round(t_end / h).",
-            help="N steps connect N + 1 states.",
+            help="Take N = round(t_end / h) steps: row 0 is the initial state, and each step adds a row.",
             diagnose=lambda rows=rows: tracks.of_count(len(kit.as_list(rows)), t_end, h, kit.as_vector(t)),
         )
     t = kit.as_array(t, (n + 1,), names[0])

@@ -129,8 +129,8 @@ def _expect_no_flight(rows, given, ask):
             f"{'is' if len(which) == 1 else 'are'} {size}.",
             help='Return "t": max(twin["t"], t_measured).'
             if "t" in which
-            else "Print the first twins, before and after each correction. A correction moves the twin "
-            "towards the measurement and not beyond it, and friction slows a cart down in both directions.",
+            else "Print the first twins, before and after each correction: with each surprise position, "
+            "speed and friction have to come closer to the cart's, forwards and backwards.",
             diagnose=ask,
             input={**given, "measurement": first},
             expected={"at most": _FLOWN},

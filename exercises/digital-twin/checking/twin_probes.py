@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from contextlib import suppress
 
 import numpy as np
 
@@ -40,8 +41,9 @@ def numbers_in(value):
 
 def same(a, b):
     """Whether two plain values are equal, arrays and lists alike, to rounding."""
-    if type(a) is type(b) is float:  # nearly always
-        return abs(a - b) <= 1e-9 * (1 + abs(b)) or (math.isnan(a) and math.isnan(b))
+    with suppress(ValueError, DeprecationWarning):  # an array has no one answer
+        if a == b:
+            return True
     if isinstance(a, dict) and isinstance(b, dict):
         return a.keys() == b.keys() and all(same(a[key], b[key]) for key in a)
     if isinstance(a, list | tuple | np.ndarray) and isinstance(b, list | tuple | np.ndarray):

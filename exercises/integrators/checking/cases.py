@@ -15,10 +15,12 @@ probes = kit.companion("integrators", "probes")
 def refused(rng):
     """(t_end, h), not a whole number of steps: off by much, by a thousandth of a short step, by 1e-5 steps.
 
+    On both sides of a whole number, each kind.
+
     A difference in seconds, or one relative to the number of steps, would let the last two pass.
     """
-    found = [((int(rng.integers(5, 30)) + rng.uniform(0.2, 0.8)) * 0.1, 0.1)]
-    for excess in (1e-3, 1e-5):
+    found = [((int(rng.integers(5, 30)) + side * rng.uniform(0.2, 0.45)) * 0.1, 0.1) for side in (1, -1)]
+    for excess in (1e-3, 1e-5, -1e-3, -1e-5):
         h = float(rng.uniform(1e-4, 3e-4))
         found.append(((int(rng.integers(300, 500)) + excess) * h, h))
     return [(float(t_end), h) for t_end, h in found]

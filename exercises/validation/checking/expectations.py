@@ -275,7 +275,8 @@ def expect_forces(submission, pairs):
                 quantity=key,
                 input={"peaks": [np.max(f_sim), np.max(f_real)], "dt": dt, "samples": len(f_sim)},
                 message=f"The relative error of the {key} is wrong.",
-                help="Reduce each force to one number, then divide their difference by the real one.",
+                help="Reduce each record by itself, and all of it, to one number. Then divide their "
+                "difference by the real one.",
                 diagnose=functools.partial(probes.of_force, key, number, f_sim, f_real, dt),
             )
         expect_left_alone(inspected, [f_sim, f_real], ["f_sim", "f_real"])

@@ -23,7 +23,8 @@ def test_frames(submission):
         source="closed form; absolute 1e-12 s for a rest near zero",
         quantity="steps and time left",
         message="The steps of a frame, or the time left over, are wrong.",
-        help="All time that goes into the account must come out as steps or stay in it.",
+        help="What was left and the frame go into the account. As many steps as fit come out: less than one "
+        "stays.",
     )
 
 

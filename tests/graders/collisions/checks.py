@@ -435,5 +435,6 @@ def test_drop_elastic(submission, rng):
         t_end,
         h,
         "A ball that loses nothing in its bounces does not move as it should.",
-        "The speed at the instant of contact decides the height of the rebound.",
+        "It leaves the floor with the speed that it has at the instant of contact, and flies for the rest of "
+        "the step.",
     )

@@ -38,6 +38,7 @@ PLACES = Places(module="work.py")
         (3.0, 5.0, {"errors": [3.0, 4.0]}, "the same as the first of `errors`"),
         (1.0, 5.3, {"errors": [1.0, 4.0]}, ""),
         (2.7, 2.0, {"left": 0.7}, "too large by `left`"),
+        (12.0, 9.0, {"va": 3.0}, ""),
         (6, 7, {}, "too small by 1"),
         (1 / 2.4, 2.4, {}, "one over the right one"),
         (2.4**2, 2.4, {}, "the square of the right one"),

@@ -160,6 +160,7 @@ def fail(
     input: dict[str, Any] | None = None,  # noqa: A002 - the field's name in every report
     expected: Any = _NOT_SAID,
     actual: Any = None,
+    quantity: str = "",
     units: str = "",
     tolerance: Tolerance | None = None,
     first_divergence: Divergence | None = None,
@@ -188,6 +189,7 @@ def fail(
             input=None if input is None else plain(input),
             expected=None if expected is _NOT_SAID else plain(expected),
             actual=plain(actual),
+            quantity="" if f"`{quantity}`" in message else quantity,
             units=units,
             tolerance=_of_plain(tolerance),
             first_divergence=_of_plain(first_divergence),
@@ -300,7 +302,8 @@ def expect_close(
     if not met:
         limits = Tolerance(rel=rel or None, abs=abs or None, source=source)
         finding["diagnose"] = _or_not_finite(number, finding.get("diagnose"))
-        fail(message, expected=expected, actual=number, units=units, tolerance=limits, **finding)
+        finding |= {"quantity": quantity, "units": units, "tolerance": limits}
+        fail(message, expected=expected, actual=number, **finding)
 
 
 def expect_cases(
@@ -452,7 +455,8 @@ def expect_bounded(
         expected: Any = [low, high]
         if math.isinf(low) or math.isinf(high):
             expected = {"at most": high} if math.isinf(low) else {"at least": low}
-        fail(message, expected=expected, actual=number, units=units, tolerance=limits, **finding)
+        finding |= {"quantity": quantity, "units": units, "tolerance": limits}
+        fail(message, expected=expected, actual=number, **finding)
 
 
 def expect_evaluations(count: int, allowed: Collection[int], *, message: str, **finding: Any) -> None:

@@ -60,6 +60,7 @@ class Finding(msgspec.Struct, frozen=True):
         help: what to do, in words without values.
         diagnosis: which mistake it looks like, as a stable code; None if none is recognised.
         input, expected, actual: plain values that show it.
+        quantity: what the actual value is, in words; "" where its message or its own keys say so.
         units: unit of expected and actual; "1" where there is none.
     """
 
@@ -69,6 +70,7 @@ class Finding(msgspec.Struct, frozen=True):
     input: dict[str, Any] | None = None
     expected: Any = None
     actual: Any = None
+    quantity: str = ""
     units: str = ""
     tolerance: Tolerance | None = None
     first_divergence: Divergence | None = None
@@ -87,6 +89,7 @@ class CheckResult(msgspec.Struct, frozen=True, kw_only=True):
     input: dict[str, Any] | None = None
     expected: Any = None
     actual: Any = None
+    quantity: str = ""
     units: str = ""
     tolerance: Tolerance | None = None
     first_divergence: Divergence | None = None
@@ -162,6 +165,7 @@ def for_student(result: CheckResult) -> CheckResult:
         input=None,
         expected=None,
         actual=None,
+        quantity="",
         units="",
         tolerance=None,
         first_divergence=None,
@@ -389,7 +393,8 @@ def numbers_of(check: CheckResult) -> list[tuple[str, str]]:
         # A function that gave no value was not measured; the reason takes its place.
         label = {"fail": "measured", "error": "raised"}.get(check.status, "outcome")
         if not _is_said(check):
-            rows.append((label, f"{actual}{_unit_of(check.actual, units)}"))
+            of_what = f" ({check.quantity})" if check.quantity else ""
+            rows.append((label, f"{actual}{_unit_of(check.actual, units)}{of_what}"))
     if check.expected is not None:
         allowed = format_tolerance(check.tolerance, units) if check.tolerance else ""
         limits = _limits(check)

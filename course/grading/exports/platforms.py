@@ -407,7 +407,8 @@ def _test(exercise: str, number_: int, check: CheckResult) -> dict[str, Any]:
     public = check.visibility is Visibility.PUBLIC
     if public and check.expected is not None:
         units = f" {check.units}" if check.units not in {"", "1"} else ""
-        said.append(f"Measured {check.actual}{units}, expected {check.expected}{units}.")
+        what = f" ({check.quantity})" if check.quantity else ""
+        said.append(f"Measured {check.actual}{units}{what}, expected {check.expected}{units}.")
     return {
         "name": _plain(check.title),
         "number": f"{exercise}.{number_}",

@@ -52,6 +52,7 @@ def found(check: Check, status: Status, finding: Finding, duration_ms: float, **
         input=plain(finding.input, 4),  # a dict of arrays, such as one of matrices
         expected=plain(finding.expected),
         actual=plain(finding.actual),
+        quantity=finding.quantity,
         units=finding.units,
         tolerance=finding.tolerance,
         first_divergence=finding.first_divergence,

@@ -183,6 +183,8 @@ def _show_people(console: Console, summary: Summary) -> None:
             console.line(one_line(entry), indent=2)
         if len(listed) > _MOST_TROUBLED:
             console.line(f"and {len(listed) - _MOST_TROUBLED} more.", indent=2)
+        if listed is summary.missing and listed and not (summary.states or summary.already):
+            console.note("A warm-up is graded where --exercise names it.")
         if listed is summary.strangers and listed:
             console.note(
                 f"{summary.compared} A CSV file with a column student can name the folders themselves."

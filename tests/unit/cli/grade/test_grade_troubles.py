@@ -147,3 +147,14 @@ def test_pages_that_cannot_be_written_cost_nothing_but_themselves(
     assert course("grade", "explain", "out", "ada", "doubling", "--json").json["score"] == 1
     assert course("grade", "late", "out", "--clear").code == 0
     assert "oral exam" in (out / "report.html").read_text("utf-8")
+
+
+def test_a_class_with_nothing_to_grade_is_told_of_warm_ups_and_of_resuming(course, tmp_path: Path) -> None:
+    (tmp_path / "class" / "ada" / "two-walls").mkdir(parents=True)
+    (tmp_path / "class" / "ada" / "two-walls" / "two_walls.py").write_text("x = 1\n", "utf-8")
+    ran = course("grade", "run", "class", "--out", "out")
+    assert "1 handed in nothing to grade" in ran.out
+    assert "A warm-up is graded where --exercise names it." in ran.out + ran.err
+    said = course("grade", "explain", "out", "ada", "doubling")
+    assert said.code == 5
+    assert "--exercise names it), or the run was interrupted" in said.err

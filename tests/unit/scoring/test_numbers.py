@@ -7,6 +7,8 @@ from typing import Any
 
 import pytest
 
+from course.scoring import kit
+from course.scoring.failures import CheckFailed
 from course.scoring.verdict import (
     CheckResult,
     Status,
@@ -117,6 +119,31 @@ def test_limits_are_said_in_words_and_where_none_can_be_met_the_one_that_is_brok
     assert compared(3.0, {"at most": 0.5}, limits, "s")["expected"] == "at most 0.5 s"
     assert compared([1.0, 2.0], [0.9, 1.1], Tolerance(abs=0.01))["expected"] == "[0.9, 1.1], within 0.01"
     assert compared(3, [1, 2], Tolerance(abs=0.0), "evaluations")["expected"] == "[1, 2] evaluations"
+
+
+def test_a_measured_number_is_named_unless_the_message_names_it():
+    def said(message):
+        with pytest.raises(CheckFailed) as failed:
+            kit.expect_bounded(2.0, high=1.0, source="x", quantity="slip", units="m", message=message)
+        return failed.value.finding
+
+    finding = said("It slides too far.")
+    check = CheckResult(
+        id="c", title="c", task="t", status=Status.FAIL, visibility=Visibility.PUBLIC, points=0.0,
+        max_points=1.0, actual=finding.actual, expected=finding.expected, quantity=finding.quantity, units="m",
+    )  # fmt: skip
+    assert numbers_of(check) == [("measured", "2 m (slip)"), ("expected", "at most 1 m")]
+    assert said("The `slip` is too large.").quantity == ""
+
+
+def test_a_number_that_only_looks_round_has_more_digits():
+    assert format_value(2.9999995764) == "2.9999995764"
+    assert [format_value(value) for value in (3.0, 0.1 + 0.2, 1e300, math.inf)] == [
+        "3",
+        "0.3",
+        "1e+300",
+        "inf",
+    ]
 
 
 def test_a_number_of_the_wrong_type_does_not_look_like_the_right_one():

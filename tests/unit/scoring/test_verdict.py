@@ -14,7 +14,7 @@ def _check(**fields: Any) -> CheckResult:
     given: dict[str, Any] = {
         "id": "a", "title": "It is so", "task": "integrate", "status": Status.FAIL, "points": 0.0,
         "max_points": 1.0, "visibility": Visibility.HIDDEN, "message": "It is not.", "help": "Do.",
-        "diagnosis": "NOT_SO", "duration_ms": 123.4, "actual": 5.0, "stdout": "printed",
+        "diagnosis": "NOT_SO", "duration_ms": 123.4, "actual": 5.0, "quantity": "slip", "stdout": "printed",
         "traceback": "a.py:1 in f",
     }  # fmt: skip
     return CheckResult(**{**given, **fields})
@@ -37,6 +37,7 @@ def test_a_hidden_check_that_looked_keeps_its_words_and_nothing_else() -> None:
     seen = for_student(_check())
     assert (seen.status, seen.message, seen.help, seen.diagnosis) == ("fail", "It is not.", "Do.", "NOT_SO")
     assert (seen.actual, seen.stdout, seen.traceback, seen.duration_ms) == (None, None, None, 0.0)
+    assert seen.quantity == ""
     public = _check(visibility=Visibility.PUBLIC)
     assert for_student(public) is public
 

@@ -130,14 +130,15 @@ def test_a_measured_number_is_named_unless_the_message_names_it():
     finding = said("It slides too far.")
     check = CheckResult(
         id="c", title="c", task="t", status=Status.FAIL, visibility=Visibility.PUBLIC, points=0.0,
-        max_points=1.0, actual=finding.actual, expected=finding.expected, quantity=finding.quantity, units="m",
+        max_points=1.0, actual=finding.actual, expected=finding.expected, quantity=finding.quantity,
+        units="m",
     )  # fmt: skip
     assert numbers_of(check) == [("measured", "2 m (slip)"), ("expected", "at most 1 m")]
     assert said("The `slip` is too large.").quantity == ""
 
 
 def test_a_number_that_only_looks_round_has_more_digits():
-    assert format_value(2.9999995764) == "2.9999995764"
+    assert format_value(2.9999995764) == "2.999999576"
     assert [format_value(value) for value in (3.0, 0.1 + 0.2, 1e300, math.inf)] == [
         "3",
         "0.3",

@@ -283,7 +283,7 @@ mistakes(
 mistakes(
     "NO_ZERO",
     "An engine that is unstable even at the smallest step gets a positive limit.",
-    "Return 0.0 if an eigenvalue of the step h = 0.05/omega has a modulus above 1 + 1e-8. In a few hundred steps slow growth does not show.",
+    "Return 0.0 if an eigenvalue of the step h = 0.05/omega has a modulus above 1 + 1e-8; a run of a few hundred steps does not tell.",
     kind="consequence",
 ).body(
     "characterise",
@@ -465,7 +465,7 @@ mistakes(
 )
 mistakes(
     "RESTITUTION_WITH_DRAG",
-    "The ratio is too low for engines with damping. The body loses speed on its way to the wall.",
+    "The ratio is too low for engines with damping: speed that is lost before the hit, or after it, counts as lost in the hit.",
     "Start at 2 m/s close to the wall, and compare the last sample before the hit with the first one after it.",
     kind="consequence",
 ).program(
@@ -654,7 +654,7 @@ mistakes("ENGINE_MISUSED").body(
 mistakes(
     "IGNORES_MISSING",
     "Your code accepts an engine whose report lacks a required key, or has None there.",
-    "What was not measured meets nothing: test whether the value is None first.",
+    "What was not measured meets nothing: neither a value of None nor a key that is not there.",
 ).body(
     "choose_engine",
     """

@@ -1726,7 +1726,7 @@ mistakes(
 )
 mistakes(
     "SINGLE_PRECISION",
-    "The result has only five to ten correct digits, as in single precision.",
+    "Digits are lost, as in single precision or by rounding: where large numbers nearly cancel, all of them may be.",
     "Use float64, numpy's default, and do not round.",
 )
 mistakes(

@@ -16,7 +16,7 @@ mistakes(
 ).edit("total_error", {"math.sqrt(sum(error * error for error in errors)": "max(errors"})
 mistakes(
     "MEAN_NOT_SUM",
-    "The squares are averaged, so more errors would not make it worse.",
+    "The squares are averaged, not added.",
     "Add the squares without dividing.",
 ).edit("total_error", {"in errors))": "in errors) / len(errors))"})
 mistakes(

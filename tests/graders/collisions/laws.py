@@ -258,8 +258,8 @@ def expect_symmetries(submission, task, rng):
             task,
             given,
             message,
-            "What an impact does depends on the relative velocity and the normal, as whole vectors, and on "
-            "both masses in the same way.",
+            "Along n each velocity changes by J over its mass, with J from s = (va - vb) . n alone. "
+            "Friction, if there is any, acts across n, and nothing else does.",
             look,
         )
         bundles.expect_velocities(found, true, finding, _speeds(given))

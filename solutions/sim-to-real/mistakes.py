@@ -141,7 +141,7 @@ mistakes(
 mistakes(
     "PROMISES_TOO_MUCH",
     "No estimator can reach this threshold with this excitation in this time.",
-    'Check the unit first: 0.1 with "%" is a tenth of a per cent. Else take a larger threshold, up to 3 % for m and 10 % for the others: what your own identify returns for such recordings is a guide.',
+    'Check the unit first: 0.1 with "%" is a tenth of a per cent. Else take a larger threshold, up to what the README asks of that parameter: what your own identify returns for such recordings is a guide.',
     kind="fact",
 ).program(
     "plan",

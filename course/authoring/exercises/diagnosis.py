@@ -327,9 +327,13 @@ def rows_of(
     for task in (task.id for task in exercise.task):
         left = each - sum(item[0] == task for item in chosen)
         pairs = [item for item in known if len(item[1]) > 1 and item[0] == task]
-        # Spread evenly over all there are.
-        some = [pairs[i * len(pairs) // left] for i in range(left)] if left < len(pairs) else pairs
-        chosen += [as_one(exercise, item) for item in some]
+        # As if by lot, by their names alone: another program moves few of those that are tried.
+        seen: Counter[tuple[str, ...]] = Counter()
+        lots = []
+        for item in pairs:
+            seen[item[1]] += 1
+            lots.append((hashlib.sha256(f"{task} {item[1]} {seen[item[1]]}".encode()).digest(), item))
+        chosen += [as_one(exercise, item) for _, item in sorted(lots, key=lambda lot: lot[0])[: max(left, 0)]]
     tried = {scope: single if scope == "alone" else chosen for scope in scopes}
     rows: dict[str, tuple[Reported, ...]] = {}
     done, total = 0, sum(map(len, tried.values()))

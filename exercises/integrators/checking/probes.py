@@ -7,6 +7,7 @@ probe speaks where none of them fits.
 
 from __future__ import annotations
 
+import functools
 import math
 
 import numpy as np
@@ -53,7 +54,12 @@ def of_step(submission, task, run=None):
         return None  # the check says that it is nan, or infinite; nothing else may be read off it
     if _remembers(submission, task):
         return named("STALE_CACHE")
-    code = _weights(submission, task) or _blind_spot(submission, task) or _digits(submission, task)
+    code = (
+        _weights(submission, task)
+        or _blind_spot(submission, task)
+        or kit.attempt(lambda: _stage(submission, task))
+        or _digits(submission, task)
+    )
     left = kit.attempt(lambda: _divergence(submission, task, *run)) if run else None
     return named(code, left) if code else None
 
@@ -214,6 +220,38 @@ def _blind_spot(submission, task):
     _, v = kit.as_pair(submission.call(task, drag, _T, _Q, _V, _H), 2)
     blind = task == "rk4_step" and np.allclose(v, _V + _H * drag(_T, _Q, _V), rtol=1e-9)
     return "STAGE_VELOCITY_IGNORED" if blind and all(np.allclose(call[2], _V) for call in calls) else None
+
+
+#: What ``accel`` returns at the first to the fourth call: nothing that the state would give.
+_SLOPES = np.array([[1.3, -0.6], [-0.8, 0.9], [0.5, 1.7], [-1.1, -0.4]])
+
+
+def _stage(submission, task):
+    """Which of RK4's calls is the first that gets something else than in the classical method.
+
+    Where all four are right, and the result is not, it is how they are put together.
+    """
+    if task != "rk4_step":
+        return None
+    accel = kit.counted(lambda *args, **names: _SLOPES[(len(accel.calls) - 1) % 4])
+    end = kit.as_pair(submission.call(task, accel, _T, _Q, _V, _H), 2)
+    if accel.count != 4:
+        return None
+    dv = np.zeros(2), _H / 2 * _SLOPES[0], _H / 2 * _SLOPES[1], _H * _SLOPES[2]
+    v = [_V + one for one in dv]
+    q = _Q, _Q + _H / 2 * v[0], _Q + _H / 2 * v[1], _Q + _H * v[2]
+    t = _T, _T + _H / 2, _T + _H / 2, _T + _H
+    for call, right, code in zip(accel.calls, zip(t, q, v, strict=True), _STAGES, strict=True):
+        # Single precision is told by its digits.
+        if len(call) != 3 or not all(map(functools.partial(np.allclose, rtol=1e-5), call, right)):
+            return code
+    weights = np.array([1, 2, 2, 1]) * _H / 6
+    states = np.stack([_Q + weights @ np.array(v), _V + weights @ _SLOPES])
+    return None if np.allclose(end, states, rtol=1e-5) else "STAGES_PUT_TOGETHER_WRONG"
+
+
+#: The first call has no stage before it: what it gets is told by other probes.
+_STAGES = None, "SECOND_STAGE_ELSEWHERE", "THIRD_STAGE_ELSEWHERE", "FOURTH_STAGE_ELSEWHERE"
 
 
 def _digits(submission, task):

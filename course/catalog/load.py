@@ -20,6 +20,7 @@ import msgspec
 from course.catalog.locate import Content
 from course.catalog.locate import content as current_content
 from course.catalog.models import (
+    LONGEST,
     CourseRef,
     Exercise,
     Hints,
@@ -116,6 +117,12 @@ def check_exercise(document: Document[Exercise]) -> None:
             ("pass_mark",),
             "`pass_mark` must be a share of the points, above 0 and at most 1.",
             fix="Write 0.70 for 70 %.",
+        )
+    if not 1 <= exercise.time <= LONGEST:
+        document.fail(
+            ("time",),
+            f"`time` must be from 1 to {LONGEST:g}.",
+            fix="It says how many times as long as elsewhere checks may take. Leave it out for 1.",
         )
     for index, name in enumerate(exercise.imports):
         if not name.isidentifier():

@@ -85,6 +85,10 @@ _PATIENCE, _LESS = 20.0, 5.0
 QUICK = 0.1
 
 
+#: How many times the usual time an exercise may ask for.
+LONGEST = 2.0
+
+
 class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """An exercise, as ``exercise.toml`` declares it.
 
@@ -97,6 +101,7 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         task: the tasks, in the order a student does them.
         pass_mark: share of the maximum that passes.
         imports: top-level packages a submission may import beside the standard library.
+        time: how many times as long as in other exercises its checks may take, 1 to 2.
         hidden_checks, hidden_points: how much is scored only in the grading run. Declared, so that a
             wheel, which has no hidden checks, can say so; the audit compares it with the graders.
         kind: "warm-up" for a small one that counts for nothing and has public checks only.
@@ -118,6 +123,7 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     number: int = 0
     pass_mark: float = 0.70
     imports: tuple[str, ...] = ("numpy",)
+    time: float = 1.0
     hidden_checks: int = 0
     hidden_points: float = 0.0
     kind: Literal["exercise", "warm-up"] = "exercise"

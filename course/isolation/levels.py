@@ -48,7 +48,7 @@ class Limits:
         file_size: bytes per file, the captured output included.
     """
 
-    cpu_s: int = 90
+    cpu_s: int = 210
     memory: int = 2 << 30
     file_size: int = 1 << 20
     descriptors: int = 32
@@ -160,6 +160,8 @@ WALL = 6.0
 #: Seconds of CPU time for all of one submission; checks after that end as timeouts. By the wall clock there
 #: are ``WALL`` times as many.
 BUDGET_S = 60.0
+#: What searches for the causes of mistakes may ask of a submission beside that.
+SEARCH_S = 20.0
 _TICK_S = 0.1  # how often a worker that does not answer is looked at
 
 

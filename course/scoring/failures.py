@@ -37,6 +37,7 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
         broke: where the probe raised, for the check's author; empty if it did not.
         comparison: along time, if there was one.
         looked: a search of the check's own for the mistake was made on these numbers.
+        search_s: seconds that the search took by the clock.
     """
 
     def __init__(
@@ -48,6 +49,7 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
         comparison: Comparison | None = None,
         *,
         looked: bool = False,
+        search_s: float = 0.0,
     ) -> None:
         super().__init__(finding.message)
         self.finding = finding
@@ -56,6 +58,7 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
         self.broke = broke
         self.comparison = comparison
         self.looked = looked
+        self.search_s = search_s
 
 
 #: The most of an exception's own message that a sentence repeats, in characters.

@@ -17,6 +17,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import math
+import time
 from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NoReturn, Protocol, TypeVar, cast
@@ -172,7 +173,9 @@ def fail(
     """
     if expected is None:
         expected = "None"
+    began = time.perf_counter()
     found, broke = _explained(diagnose)
+    search_s = time.perf_counter() - began
     help = help or _ADVICE  # noqa: A001
     bare = message, help
     code: str | None = found if isinstance(found, str) else None
@@ -199,6 +202,7 @@ def fail(
         found if isinstance(found, Diagnosis) else None,
         comparison,
         looked=callable(diagnose),
+        search_s=search_s,
     )
 
 

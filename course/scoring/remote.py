@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from course.isolation.failures import StudentFailure
-from course.isolation.levels import BUDGET_S, WALL, Deadline, Spawner
+from course.isolation.levels import BUDGET_S, SEARCH_S, WALL, Deadline, Spawner
 from course.isolation.session import Connection, LoadFault, LoadRefusedError
 from course.scoring.values import Inspected, as_march, overwritten
 from course.scoring.verdict import Places
@@ -44,6 +44,7 @@ class RemoteSubmission:
         files: file name to content.
         main: the file whose functions are checked.
         timeout: seconds of CPU time per check.
+        times: how many times the usual time all its checks together have.
         seed: seed of the grading run.
         places: how its lines are told; failures carry it.
         home: a worker that does not answer is asked where it is.
@@ -72,6 +73,7 @@ class RemoteSubmission:
         *,
         timeout: float,
         seed: int,
+        times: float = 1.0,
         places: Places | None = None,
         home: bool = False,
         patience: float | None = None,
@@ -90,7 +92,8 @@ class RemoteSubmission:
         self._files = files
         self._main = main
         self._timeout = timeout
-        self._cpu_left, self._wall_left = BUDGET_S, WALL * BUDGET_S
+        self._cpu_left, self._wall_left = times * BUDGET_S, WALL * times * BUDGET_S
+        self._search_left = times * SEARCH_S
         self._patience = min(timeout, timeout if patience is None else patience)
         self._deadline = Deadline(min(self._patience, self._cpu_left))
         self._printed_before = 0
@@ -259,6 +262,18 @@ class RemoteSubmission:
         self.heard = []
         self._connection.deadline = self._deadline
         self._printed_before = len(self._connection.output()) if self._connection.alive else 0
+
+    def not_charged(self, seconds: float) -> None:
+        """So much of the check's time went into the search for a cause: it is not taken from later checks.
+
+        All searches together have ``SEARCH_S``; what they take beyond that counts.
+        """
+        free = min(seconds, self.used, self._search_left)
+        self._search_left -= free
+        self._cpu_left += free
+        self._wall_left += WALL * free
+        if self._task:
+            self._left[self._task] += free
 
     @property
     def used(self) -> float:

@@ -1178,6 +1178,97 @@ mistakes(
     "Each entry is [value, low, high]: draw the carts around the value, entry[0]. How much they vary is in the box.",
 )
 mistakes(
+    "ONE_DRAW_FOR_ALL",
+    "Here and for four other questions, your gains do about as well as any on carts that are all large or all small at once: one random number sets all five parameters of a cart.",
+    "Draw a number of its own for each parameter: a generator that starts anew from the same seed gives the same numbers again.",
+).body(
+    "tune",
+    """
+        rng = np.random.default_rng(2)
+        box = {k: np.log(randomization[k]) for k in NAMES}
+        carts = {k: estimate[k][0] * np.exp(np.random.default_rng(0).uniform(*box[k], 300)) for k in NAMES}
+        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(2, 40, 20), np.linspace(0.2, 0.8, 13)))
+        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
+        kp, ratio = kp[mean.argmin()], ratio[mean.argmin()]
+        kp, ratio = (x.ravel() for x in np.meshgrid(kp * np.geomspace(0.85, 1.18, 5), ratio + np.linspace(-0.05, 0.05, 5)))
+        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
+        return {"kp": float(kp[mean.argmin()]), "kd": float((kp * ratio)[mean.argmin()])}
+    """,
+)
+mistakes(
+    "BOX_ENDS_ALONE",
+    "Here and for four other questions, your gains do about as well as any on carts whose parameters all lie at an end of their range, and none between.",
+    "Draw each factor anywhere between low and high: np.exp(rng.uniform(np.log(low), np.log(high), n)).",
+).body(
+    "tune",
+    """
+        rng = np.random.default_rng(2)
+        box = {k: np.log(randomization[k]) for k in NAMES}
+        carts = {k: estimate[k][0] * np.exp(rng.choice(box[k], 300)) for k in NAMES}
+        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(2, 40, 20), np.linspace(0.2, 0.8, 13)))
+        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
+        kp, ratio = kp[mean.argmin()], ratio[mean.argmin()]
+        kp, ratio = (x.ravel() for x in np.meshgrid(kp * np.geomspace(0.85, 1.18, 5), ratio + np.linspace(-0.05, 0.05, 5)))
+        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
+        return {"kp": float(kp[mean.argmin()]), "kd": float((kp * ratio)[mean.argmin()])}
+    """,
+)
+mistakes(
+    "FACTORS_DIVIDE",
+    "Here and for four other questions, your gains do about as well as any on carts whose parameters are the estimate's values divided by factors from the box.",
+    "Multiply: value * factor.",
+).body(
+    "tune",
+    """
+        rng = np.random.default_rng(2)
+        box = {k: np.log(randomization[k]) for k in NAMES}
+        carts = {k: estimate[k][0] / np.exp(rng.uniform(*box[k], 300)) for k in NAMES}
+        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(2, 40, 20), np.linspace(0.2, 0.8, 13)))
+        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
+        kp, ratio = kp[mean.argmin()], ratio[mean.argmin()]
+        kp, ratio = (x.ravel() for x in np.meshgrid(kp * np.geomspace(0.85, 1.18, 5), ratio + np.linspace(-0.05, 0.05, 5)))
+        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
+        return {"kp": float(kp[mean.argmin()]), "kd": float((kp * ratio)[mean.argmin()])}
+    """,
+)
+mistakes(
+    "FACTORS_ADDED",
+    "Here and for four other questions, your gains do about as well as any on carts whose parameters are the estimate's values times 1 + factor.",
+    "The box has factors, not changes: value * factor.",
+).body(
+    "tune",
+    """
+        rng = np.random.default_rng(2)
+        box = {k: np.log(randomization[k]) for k in NAMES}
+        carts = {k: estimate[k][0] * (1 + np.exp(rng.uniform(*box[k], 300))) for k in NAMES}
+        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(2, 40, 20), np.linspace(0.2, 0.8, 13)))
+        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
+        kp, ratio = kp[mean.argmin()], ratio[mean.argmin()]
+        kp, ratio = (x.ravel() for x in np.meshgrid(kp * np.geomspace(0.85, 1.18, 5), ratio + np.linspace(-0.05, 0.05, 5)))
+        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
+        return {"kp": float(kp[mean.argmin()]), "kd": float((kp * ratio)[mean.argmin()])}
+    """,
+)
+mistakes(
+    "LAG_FOR_LATENCY",
+    "Here and for four other questions, your gains do about as well as any on carts whose latency is tau + latency.",
+    "rollout takes tau and latency: give it each as it is, times its factor.",
+).body(
+    "tune",
+    """
+        rng = np.random.default_rng(2)
+        box = {k: np.log(randomization[k]) for k in NAMES}
+        carts = {k: estimate[k][0] * np.exp(rng.uniform(*box[k], 300)) for k in NAMES}
+        carts["latency"] *= 1 + estimate["tau"][0] / estimate["latency"][0]
+        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(2, 40, 20), np.linspace(0.2, 0.8, 13)))
+        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
+        kp, ratio = kp[mean.argmin()], ratio[mean.argmin()]
+        kp, ratio = (x.ravel() for x in np.meshgrid(kp * np.geomspace(0.85, 1.18, 5), ratio + np.linspace(-0.05, 0.05, 5)))
+        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
+        return {"kp": float(kp[mean.argmin()]), "kd": float((kp * ratio)[mean.argmin()])}
+    """,
+)
+mistakes(
     "RANGE_NOT_READ",
     "The gains stay exactly as they are when the box's range of one parameter (m or latency) is shifted by a factor of 1.8.",
     "Draw every parameter from its own range of the box, around the estimate's value. If you do, try more gains.",

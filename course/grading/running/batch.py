@@ -18,13 +18,14 @@ from typing import Self
 import msgspec
 
 from course.catalog.locate import ENVIRONMENT_VARIABLE
+from course.catalog.models import LONGEST
 from course.errors import CourseError, InternalError
 from course.grading.intake.students import Entry
 from course.grading.pipes import read_frame, write_frame
 from course.grading.running.grader import Answer, Config, Job
 from course.grading.running.snapshot import in_use
 from course.isolation.launch import keep_private, sweep_after_the_dead
-from course.isolation.levels import BUDGET_S, WALL
+from course.isolation.levels import BUDGET_S, SEARCH_S, WALL
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import Problem, Verdict, not_graded
 
@@ -122,7 +123,7 @@ class WarmGrader:
 
         One that hangs, longer than a submission may take by its own deadlines, or was stopped, is killed.
         """
-        until = time.monotonic() + WALL * (BUDGET_S + self.config.terms.timeout) + 30.0
+        until = time.monotonic() + WALL * LONGEST * (BUDGET_S + SEARCH_S + self.config.terms.timeout) + 30.0
         heard = threading.Event()
 
         def watch() -> None:

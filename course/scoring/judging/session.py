@@ -229,7 +229,8 @@ class GradingSession:
         """The submission in a worker; the benchmarks replace it with an unprotected one."""
         return RemoteSubmission(
             self._spawner, submission.files, self.exercise.module,
-            timeout=self._terms.timeout, seed=self._terms.seed, places=self._places(submission),
+            timeout=self.exercise.time * self._terms.timeout, times=self.exercise.time,
+            seed=self._terms.seed, places=self._places(submission),
             home=self._terms.home, patience=self.exercise.patience() if self._terms.home else None,
             tasks=[task.id for task in self.exercise.task],
             listened=self._explainer.listened(submission.files[self.exercise.module])
@@ -286,6 +287,7 @@ class GradingSession:
             case IsolationError():
                 raise outcome
             case CheckFailed():
+                remote.not_charged(outcome.search_s)
                 self._failed[check.id] = outcome
                 self._heard[check.id] = remote.used, remote.heard
                 self._keep_curve(check, outcome, remote)
@@ -315,7 +317,7 @@ class GradingSession:
         """
         if self._terms.home:
             return self.exercise.patience(check.id, hung)
-        return self._terms.timeout / _LESS_TIME if hung else None
+        return self.exercise.time * self._terms.timeout / _LESS_TIME if hung else None
 
     def _keep_curve(self, check: Check, failed: CheckFailed, remote: RemoteSubmission) -> None:
         if not self._terms.home:

@@ -14,6 +14,7 @@ import pytest
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.errors import MissingCapabilityError
+from course.isolation.levels import Deadline
 from course.scoring import kit
 from course.scoring.checks.collected import Check
 from course.scoring.judging.session import GradingSession
@@ -37,6 +38,39 @@ def test_a_function_that_never_answers_leaves_the_other_tasks_their_time(
     verdict = grade(session, solution + b"\ndef double(x):\n    while True:\n        pass\n")
     assert {str(check.status) for check in results(verdict, "double")} <= {"timeout", "skipped"}
     assert {str(check.status) for check in results(verdict, "doublings")} == {"pass"}
+
+
+def test_a_search_for_the_cause_takes_no_time_from_later_checks_up_to_its_own(
+    session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    allowed: list[float] = []
+
+    class Noted(Deadline):
+        def __init__(self, seconds: float, wall: float | None = None) -> None:
+            allowed.append(seconds)
+            super().__init__(seconds, wall)
+
+    monkeypatch.setattr("course.scoring.remote.Deadline", Noted)
+    monkeypatch.setattr("course.scoring.remote.BUDGET_S", 0.56)  # half of it is for one task
+    monkeypatch.setattr("course.scoring.remote.SEARCH_S", 0.15)
+
+    def three_checks(remote: RemoteSubmission) -> list[float]:
+        for _ in range(3):
+            remote.begin_check("double")
+            remote.call("double", 1.0)
+            remote.not_charged(10.0)
+        return allowed[-3:]
+
+    busy = b"""
+import time
+def double(x):
+    end = time.process_time() + 0.1
+    while time.process_time() < end:
+        pass
+"""
+    first, second, third = session.using(Submission({"doubling.py": solution + busy}), three_checks)
+    assert first - second < 0.02  # it came back whole
+    assert 0.02 < first - third < 0.1  # and of the next one half
 
 
 def test_once_a_function_ran_out_of_time_its_further_checks_have_a_quarter(

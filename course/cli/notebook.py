@@ -16,10 +16,7 @@ from course.browser import invite
 from course.catalog.load import Catalog
 from course.catalog.models import CourseRef, Exercise
 from course.cli.frame.completion import Verbose, choice_of, exercise_ids, notebook_ids
-from course.cli.frame.console import (
-    Console,
-    current,
-)
+from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, find_workspace, here_or_outside, load_catalog, write
 from course.cli.frame.options import argument, option
 from course.cli.frame.registry import COMMANDS, group
@@ -82,42 +79,6 @@ class NotebookCheck(Envelope, tag="course.notebook-check/1", frozen=True, kw_onl
     result: Check
 
 
-# ---
-# ``course notebook check``: the public checks on a notebook's functions, with cells for line numbers.
-
-
-def check_file(console: Console, file: Path, exercise_id: str | None, *, verbose: bool) -> int:
-    """Check one notebook, show what was found, and give the exit code.
-
-    Raises:
-        UngradableError: it is not a notebook, or has nothing to check.
-        NotFoundError: there is no such file or exercise, or the exercise is not clear.
-    """
-    from course.handed_in.notebook import notebook_source
-
-    path = cwd() / file.expanduser()
-    if not path.exists():
-        raise NotFoundError(
-            f"There is no file {file}.", help="`course notebook build` writes notebooks.", code="no_file"
-        )
-    data = read_notebook(path)
-    here, catalog = here_or_outside()
-    exercise = _exercise(catalog, path, data, exercise_id)
-    module = notebook_source(data, exercise, file.name)
-    with console.working(f"Checking {exercise.id}"):
-        made = attempts.attempt(exercise, catalog, module.submission(exercise))
-    if here is not None and path.is_relative_to(here.workspace.root):
-        here.record("check", exercise.id, made.data(catalog.version))
-    if made.problem is not None:
-        raise made.problem
-    show_verdict(console, exercise, made.verdict, verbose=verbose)
-    for warning in here.warnings if here else ():
-        console.warn(warning)
-    reply = reply_to(catalog.ref, made.verdict, f"course notebook check {file}")
-    console.emit(NotebookCheck(exit_code=reply.exit_code, file=str(path), result=reply))
-    return reply.exit_code
-
-
 def _exercise(catalog: Catalog, path: Path, data: bytes, wanted: str | None) -> Exercise:
     """A notebook's exercise: the given one, or the one that its cells, its name or its functions show."""
     from course.handed_in.notebook import notebook_source
@@ -168,7 +129,6 @@ def put(folder: Path, notebook: Generated, *, update: bool = True) -> NotebookFi
         UsageError: the existing file cannot be read, or no copy of it can be kept.
         MissingCapabilityError: the folder cannot be written.
     """
-
     path = folder / notebook.path
     said = partial(NotebookFile, kind=notebook.kind, id=notebook.id, path=str(path))
     if not path.exists():
@@ -239,7 +199,6 @@ def update(ids: Ids = None, out: Out = None) -> int:
     Your work stays: cells you edited and cells you added. Where newer text cannot be put around it, the
     newer notebook is put beside yours as NAME.new.ipynb. A copy of every replaced file is kept.
     """
-
     console, catalog = current(), load_catalog()
     folder, layout = place(out)
     there = list(generate(catalog, ids or [], layout, there=folder))
@@ -266,8 +225,29 @@ def check(
     Runs the functions of the notebook, as a grading run does, not the notebook itself. Exit code 0 if every
     check passes, 1 if one does not, 3 if nothing could be checked.
     """
+    from course.handed_in.notebook import notebook_source
 
-    return check_file(current(), file, exercise, verbose=verbose)
+    console, path = current(), cwd() / file.expanduser()
+    if not path.exists():
+        raise NotFoundError(
+            f"There is no file {file}.", help="`course notebook build` writes notebooks.", code="no_file"
+        )
+    data = read_notebook(path)
+    here, catalog = here_or_outside()
+    chosen = _exercise(catalog, path, data, exercise)
+    module = notebook_source(data, chosen, file.name)
+    with console.working(f"Checking {chosen.id}"):
+        made = attempts.attempt(chosen, catalog, module.submission(chosen))
+    if here is not None and path.is_relative_to(here.workspace.root):
+        here.record("check", chosen.id, made.data(catalog.version))
+    if made.problem is not None:
+        raise made.problem
+    show_verdict(console, chosen, made.verdict, verbose=verbose)
+    for warning in here.warnings if here else ():
+        console.warn(warning)
+    reply = reply_to(catalog.ref, made.verdict, f"course notebook check {file}")
+    console.emit(NotebookCheck(exit_code=reply.exit_code, file=str(path), result=reply))
+    return reply.exit_code
 
 
 # -- writing ---------------------------------------------------------------------------------------------

@@ -25,7 +25,7 @@ from typing import Any
 
 from course.errors import ContentError, CourseError, MissingCapabilityError, NotFoundError, UsageError
 from course.ids import WARM_UPS
-from course.progress.store import Store
+from course.progress.store import Store, numbered
 from course.strangers import read_bytes, toml
 
 MARKER = "course.toml"
@@ -203,20 +203,17 @@ class Workspace:
         return self.state / "given" / place / name
 
 
+@dataclass
 class Recorder:
     """Takes events into a record; where one cannot be kept, work goes on.
 
-    Args:
-        store: None where there is no workspace; events are dropped then.
-        trouble: why there is none.
-
     Attributes:
+        store: None where there is no workspace; events are dropped then.
         trouble: why something was not recorded, a sentence; empty while all is well.
     """
 
-    def __init__(self, store: Store | None, trouble: str = "") -> None:
-        self.store = store
-        self.trouble = trouble
+    store: Store | None
+    trouble: str = ""
 
     @classmethod
     def of_kernel(cls, course_id: str) -> Recorder | None:
@@ -288,15 +285,11 @@ def _normal(data: bytes) -> bytes:
 
 def _new_folder(parent: Path, name: str) -> Path:
     parent.mkdir(parents=True, exist_ok=True)
-    number = 1
-    while True:
-        folder = parent / (name if number == 1 else f"{name}-{number}")
-        try:
+    for folder in numbered(parent / name):
+        with contextlib.suppress(FileExistsError):
             folder.mkdir()
-        except FileExistsError:
-            number += 1
-        else:
-            return folder
+            break
+    return folder
 
 
 def _read_marker(marker: Path) -> tuple[str, str]:

@@ -242,7 +242,6 @@ def _choices(error: Any, context: Any) -> list[str]:
 
 def _crash(console: Console, line: Line, error: BaseException) -> int:
     """Our fault: the details go to a file, one line to the screen."""
-
     where = write_report(error)
     message = f"A fault in the course, not in your work ({type(error).__name__}); the details are in {where}."
     return _say(console, line, InternalError.exit_code, "internal", message)

@@ -29,12 +29,10 @@ def exercise_ids(incomplete: str) -> list[str]:
 
 
 def warm_up_ids(incomplete: str) -> list[str]:
-    """Warm-ups whose id begins with what was typed."""
     return _beginning(incomplete, (folder.name for folder in _in_content("exercises", f"{WARM_UPS}/*")))
 
 
 def lesson_ids(incomplete: str) -> list[str]:
-    """Lessons whose id begins with what was typed."""
     return _beginning(incomplete, (file.stem for file in _in_content("lessons", "*.md")))
 
 

@@ -35,7 +35,6 @@ class Line:
 
 
 def global_options(arguments: Sequence[str]) -> Line:
-    """Take the global options out of ``arguments``."""
     found: set[str] = set()
     directory: str | None = None
     rest: list[str] = []

@@ -93,7 +93,6 @@ def doctor(
     It also says what is missing, with the command that installs it. Exit code 4 if the course cannot work
     without a missing part.
     """
-
     console = current()
     catalog = load_catalog()
     found = tuple(packages())
@@ -288,10 +287,7 @@ def bug(
     target = here.target(out or Path("course-bug.txt"), "-o", ("txt", "md"))
     crash = _last_crash()
     text = redacted("\n".join(_report(crash)))
-    written = here.write(target, text.encode("utf-8", "backslashreplace"), why="bug")
-    if written.backup:
-        console.line(f"There was another {written.path}; it is kept at {written.backup.backup}.")
-    console.line(f"Wrote {written.path}")
+    written = here.write_told(target, text.encode("utf-8", "backslashreplace"), why="bug")
     console.line(
         "It contains a traceback." if crash else "No crash of the course was found: it has no traceback."
     )

@@ -35,7 +35,6 @@ def diff(exercise: ExerciseName = None) -> int:
     A unified diff: lines you removed begin with -, lines you added with +. Of a notebook it shows the code
     that is graded.
     """
-
     console, here = current(), Here.load()
     work = chosen_work(here, *asked_for(here, exercise))
     report_source_file(console, here, work)
@@ -69,7 +68,6 @@ def reset(
 
     Asks first on a terminal; anywhere else it needs --yes. The copy's path is printed.
     """
-
     console, here = current(), Here.load()
     chosen = here.exercise(exercise)
     path = here.workspace.path(chosen.place, chosen.module)
@@ -83,12 +81,13 @@ def reset(
             help=f"Start it: `course start {chosen.id}`.",
             code="not_started",
         )
+    why_not = ""
     if there and path.read_bytes() == stub:
-        console.line(f"{shown} is the stub already; nothing was changed.")
-        console.emit(Reset(exercise=chosen.id, changed=False, backups=(), next=NextStep(step)))
-        return 0
-    if there and not yes and not _agreed(console, shown):
-        console.line("Nothing was changed.")
+        why_not = f"{shown} is the stub already; nothing was changed."
+    elif there and not yes and not _agreed(console, shown):
+        why_not = "Nothing was changed."
+    if why_not:
+        console.line(why_not)
         console.emit(Reset(exercise=chosen.id, changed=False, backups=(), next=NextStep(step)))
         return 0
     backups = []
@@ -112,7 +111,6 @@ def update(
     edited stays, and the newer one is put beside it as NAME.new. In a notebook the newer text is put around
     your work.
     """
-
     console, here = current(), Here.load()
     old, new = here.workspace.version, here.catalog.version
     changes = tuple(_updates(here, dry_run=dry_run))
@@ -164,7 +162,6 @@ def _update_notebook(here: Here, notebook: Generated, *, dry_run: bool) -> Chang
 
 
 def _update_file(here: Here, exercise: Exercise, name: str, new: bytes, *, dry_run: bool) -> Change:
-    """Bring one file up to date, or say what would happen."""
     workspace = here.workspace
     path = workspace.path(exercise.place, name)
     given = workspace.given(exercise.place, name)
@@ -238,7 +235,6 @@ def start(
 
     You get the stub to fill in and its README. An existing file is not changed.
     """
-
     console, here = current(), Here.load()
     if exercise is None:
         raise UsageError(

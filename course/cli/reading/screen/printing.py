@@ -88,7 +88,7 @@ class ScreenPrinter(FancyPrinter):
         script = progress.script
         figures = [one.id for one in b.walk_blocks(script.blocks) if isinstance(one, b.Figure)]
         self._width = max(20, width - 2)
-        super().__init__(catalog, script.lesson, console, figures, None, min(self._width, COLUMN), {})
+        super().__init__(catalog, script.lesson, console, figures, None, min(self._width, COLUMN))
         self._progress = progress
         self._script = script
         self._practice = practice

@@ -8,6 +8,7 @@ twenty times a second: one question to the file system, which works on every dri
 from __future__ import annotations
 
 import contextlib
+import os
 import re
 import select
 import shlex
@@ -73,8 +74,6 @@ class Keys:
         return _LEAVE in self._held
 
     def _take(self, seconds: float) -> None:
-        import os
-
         ready, _, _ = select.select([self._descriptor], [], [], seconds)
         if ready:
             pressed = os.read(self._descriptor, 1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import shlex
 from collections.abc import Iterable
+from dataclasses import replace
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -28,9 +29,10 @@ from course.errors import CourseError, NotFoundError, UngradableError, UsageErro
 from course.extras import require
 from course.handed_in import attempts
 from course.handed_in.cells import code_cells, read_notebook
+from course.handed_in.notebook import notebook_source
+from course.notebooks import server
 from course.notebooks.build import FOLDERS, NBGRADER, WORKSPACE, Generated, Layout, generate
 from course.notebooks.merge import CannotMergeError, is_untouched, merged
-from course.notebooks.server import executed
 from course.progress.workspace import write_atomically
 
 # ---
@@ -81,8 +83,6 @@ class NotebookCheck(Envelope, tag="course.notebook-check/1", frozen=True, kw_onl
 
 def _exercise(catalog: Catalog, path: Path, data: bytes, wanted: str | None) -> Exercise:
     """A notebook's exercise: the given one, or the one that its cells, its name or its functions show."""
-    from course.handed_in.notebook import notebook_source
-
     if wanted is not None:
         return catalog.exercise(wanted)
     exercises = catalog.exercises()
@@ -181,7 +181,6 @@ def build(
         raise UsageError(f"--format {form}: there is {' and '.join(FORMATS)}.", code="unknown_format")
     if form == "nbgrader":
         return _build_nbgrader(console, ids or [], out, executed=executed)
-
     if executed:
         require("notebook", "nbclient", "ipykernel", what="--executed")
     catalog = load_catalog()
@@ -225,8 +224,6 @@ def check(
     Runs the functions of the notebook, as a grading run does, not the notebook itself. Exit code 0 if every
     check passes, 1 if one does not, 3 if nothing could be checked.
     """
-    from course.handed_in.notebook import notebook_source
-
     console, path = current(), cwd() / file.expanduser()
     if not path.exists():
         raise NotFoundError(
@@ -277,10 +274,8 @@ def _build_nbgrader(console: Console, ids: list[str], out: Path | None, *, execu
 
 
 def _executed(console: Console, notebook: Generated) -> Generated:
-    from dataclasses import replace
-
     with console.working(f"Running {notebook.path}"):
-        return replace(notebook, data=executed(notebook.data, str(notebook.path)))
+        return replace(notebook, data=server.executed(notebook.data, str(notebook.path)))
 
 
 def _write(console: Console, catalog: Catalog, folder: Path, notebooks: Iterable[Generated]) -> int:
@@ -338,8 +333,6 @@ def open_notebook(
     A missing notebook is written first, in the workspace, or outside of one in notebooks/. An existing one is
     not changed: `course notebook update` brings newer text. Ctrl+C ends it.
     """
-    from course.notebooks.server import started
-
     console = current()
     require("notebook", "jupyterlab", "ipykernel", what="Opening a notebook")
     catalog = load_catalog()
@@ -349,7 +342,7 @@ def open_notebook(
     relative = shown.relative_to(folder).as_posix() if wanted else ""
     with contextlib.suppress(KeyboardInterrupt), contextlib.ExitStack() as stack:
         with console.working("Starting JupyterLab"):
-            lab = stack.enter_context(started(folder, relative))
+            lab = stack.enter_context(server.started(folder, relative))
         console.line(f"{shown} is at {lab.address}")
         invite(lab.address, console.note, show=not no_browser)
         console.emit(

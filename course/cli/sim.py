@@ -16,7 +16,8 @@ from course.cli.frame.options import argument, option
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Envelope, WrittenFile, filled
 from course.errors import UsageError
-from course.simulations.base import Result, Row, Simulation
+from course.simulations.base import Result, Row, Simulation, describe
+from course.simulations.base import run as run_simulation
 from course.simulations.registry import CHAPTER, SIMULATIONS, get
 
 # ---
@@ -139,8 +140,6 @@ def list_simulations(
 
 
 def _describe(console: Console, simulation: Simulation, *, whole: bool) -> None:
-    from course.simulations.base import describe
-
     console.heading(simulation.id, simulation.title)
     console.item("shows", simulation.teaches, width=5)
     console.item("guess", simulation.question, width=5)
@@ -202,8 +201,6 @@ def _run_all(console: Console, plot: Path | None, csv: Path | None) -> int:
 
 
 def _run_one(console: Console, name: str, pairs: Sequence[str], plot: Path | None, csv: Path | None) -> Sim:
-    from course.simulations.base import run as run_simulation
-
     simulation = get(name)
     plot = here.target(plot, "--plot", here.FORMATS) if plot else None
     csv = here.target(csv, "--csv", ("csv",)) if csv else None

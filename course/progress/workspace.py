@@ -294,16 +294,15 @@ def _new_folder(parent: Path, name: str) -> Path:
 
 def _read_marker(marker: Path) -> tuple[str, str]:
     """Course id and version out of a ``course.toml``."""
-    fix = "Correct the file, or move it away and run `course init` here again: no exercise is touched."
     try:
         # An editor of another system may have put a byte-order mark in front; TOML allows none.
         table = toml(read_bytes(marker).decode("utf-8-sig"))
     except tomllib.TOMLDecodeError as error:
         line = re.search(r"line (\d+)", str(error))
         problem = f"not valid TOML: {error}."
-        raise _bad_marker(marker, int(line[1]) if line else None, problem, fix) from error
+        raise _bad_marker(marker, int(line[1]) if line else None, problem) from error
     except (OSError, UnicodeDecodeError) as error:
-        raise _bad_marker(marker, None, f"cannot be read: {error}.", fix) from error
+        raise _bad_marker(marker, None, f"cannot be read: {error}.") from error
     version = table.get("format_version")
     if isinstance(version, int) and version > FORMAT_VERSION:
         raise MissingCapabilityError(
@@ -313,14 +312,15 @@ def _read_marker(marker: Path) -> tuple[str, str]:
         )
     course = table.get("course")
     if version != FORMAT_VERSION or not isinstance(course, dict):
-        raise _bad_marker(marker, None, "format_version or [course] is missing.", fix)
+        raise _bad_marker(marker, None, "format_version or [course] is missing.")
     name, content = course.get("id"), course.get("version")
     if not isinstance(name, str) or not isinstance(content, str):
-        raise _bad_marker(marker, None, "[course] needs an id and a version, both strings.", fix)
+        raise _bad_marker(marker, None, "[course] needs an id and a version, both strings.")
     return name, content
 
 
-def _bad_marker(marker: Path, line: int | None, problem: str, fix: str) -> ContentError:
+def _bad_marker(marker: Path, line: int | None, problem: str) -> ContentError:
+    fix = "Correct the file, or move it away and run `course init` here again: no exercise is touched."
     error = ContentError(marker, line, problem, help=fix)
     # The file is the student's, so this is nothing to report as a fault of the course.
     error.exit_code = UsageError.exit_code

@@ -4,6 +4,7 @@ import hashlib
 import os
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated
 
@@ -130,9 +131,7 @@ class AuthorPack(Envelope, tag="course.author-pack/1", frozen=True, kw_only=True
 # ``course author coverage``: where the course has each part of the chapter it grew out of.
 
 
-def coverage(
-    write: Annotated[bool, option("--write", "Write docs/coverage.md again.")] = False,
-) -> int:
+def coverage(write: Annotated[bool, option("--write", "Write docs/coverage.md again.")] = False) -> int:
     """Show where the course covers each part of the chapter that it is based on.
 
     Lists the chapter's headings, objectives, examples, exercises and questions, each with its place in the
@@ -192,8 +191,6 @@ def is_command(words: tuple[str, ...]) -> bool:
 
     Simulations count as words of ``sim run``, exercises that ask for prose as one of ``reflect``.
     """
-    from importlib import import_module
-
     entry = COMMANDS.get(words[0]) if words else None
     if words[:1] == ("reflect",) and len(words) == 2:
         catalog = load_catalog()
@@ -417,7 +414,6 @@ def _show_report(console: Console, catalog: Catalog, report: AuditReport) -> Non
 def _emit_report(console: Console, catalog: Catalog, report: AuditReport) -> None:
     if not console.json:
         return
-
     try:
         course = catalog.ref
     except ContentError:
@@ -497,9 +493,7 @@ def _say_blanks(catalog: Catalog, exercise: Exercise) -> None:
 
 
 @app.command(epilog="Example: course author mutants integrators")
-def mutants(
-    name: _EachExercise = None,
-) -> int:
+def mutants(name: _EachExercise = None) -> int:
     """Show the feedback for each wrong solution.
 
     Grades every mutant and shows the message, the advice and the diagnosis that its author would see. Exit

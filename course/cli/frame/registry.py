@@ -184,11 +184,11 @@ def group(summary: str) -> typer.Typer:
     return typer.Typer(help=summary, no_args_is_help=True, **OPTIONS)
 
 
-def build(cls: type[TyperGroup], *, fancy: bool) -> typer.Typer:
+def build(*, fancy: bool) -> typer.Typer:
     """The empty program: its commands come from ``COMMANDS``."""
     return typer.Typer(
         name="course",
-        cls=cls,
+        cls=LazyGroup,
         invoke_without_command=True,
         rich_markup_mode="rich" if fancy else None,
         **OPTIONS,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from datetime import date, datetime
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated
 
 from course.cli.frame.console import Console, current
 from course.cli.frame.options import option
@@ -25,7 +25,7 @@ from course.cli.quiz.screen import (
 from course.errors import INTERRUPTED, UsageError
 from course.progress import quiz
 from course.progress.quiz import Attempt
-from course.quizzing.answers import read_answers
+from course.quizzing.answers import AnswerFile, read_answers
 from course.quizzing.bank import MarkedQuestion, PosedQuestion, check_seed, mark, mark_sentence, needed
 from course.quizzing.desk import Due, answered, finished, fits
 
@@ -117,13 +117,8 @@ def _take_file(console: Console, desk: Desk, path: Path, seed: int | None) -> in
     """An attempt whose answers are all in a file."""
     file = read_answers(path)
     open_one = desk.history.open
-    if seed is None:
-        seed = file.seed
-    if seed is None and open_one is not None:
-        seed = open_one.seed
-    if seed is None:
-        _no_seed(path, "take")
-    posed = desk.bank.pose(check_seed(seed))
+    seed = _seed("take", file, seed, file.seed, open_one.seed if open_one is not None else None)
+    posed = desk.bank.pose(seed)
     answers = file.choose(posed, desk.bank, seed)
     screen.show_mark(console, len(posed))
     attempt = open_one if open_one is not None and agrees(desk.bank, open_one, seed, answers) else None
@@ -135,9 +130,13 @@ def _take_file(console: Console, desk: Desk, path: Path, seed: int | None) -> in
     return _finish(console, desk, attempt, posed, resumed=resumed)
 
 
-def _no_seed(path: Path, command: str) -> NoReturn:
+def _seed(command: str, file: AnswerFile, *seeds: int | None) -> int:
+    """The first seed that is known of those that a file of answers may be for."""
+    for seed in seeds:
+        if seed is not None:
+            return check_seed(seed)
     raise UsageError(
-        f"{path} does not say which questions its answers are for.",
+        f"{file.path} does not say which questions its answers are for.",
         help=f"Add a line `seed = N`, as `course quiz {command} --questions` prints it, or give --seed N.",
         code="seed_missing",
     )
@@ -214,11 +213,8 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
 
 def _review_file(console: Console, desk: Desk, path: Path, seed: int | None, ids: Sequence[str]) -> int:
     file = read_answers(path)
-    if seed is None:
-        seed = file.seed
-    if seed is None:
-        _no_seed(path, "review")
-    posed = desk.bank.pose(check_seed(seed), only=ids)
+    seed = _seed("review", file, seed, file.seed)
+    posed = desk.bank.pose(seed, only=ids)
     options = file.choose(posed, desk.bank, seed)
     marked = [_reviewed(desk, question, options[question.question], seed) for question in posed]
     for number, one in enumerate(marked, start=1):

@@ -8,6 +8,8 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Annotated
 
+from rich.console import Console as RichConsole
+
 from course.browser import keep_closed
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise, Lesson
@@ -170,8 +172,6 @@ def _reader(
             width=console.width,
             wraps=console.wraps,
         )
-    from rich.console import Console as RichConsole
-
     quiet = RichConsole(file=text, width=MAX_WIDTH, no_color=True, markup=False, emoji=False, highlight=False)
     return Reader(catalog, chosen, quiet, plain=True, figures_dir=figures, width=MAX_WIDTH)
 

@@ -209,7 +209,6 @@ class PlainPrinter:
                 self._say(f"To save the pictures: course lesson {self._lesson.id} --figures DIR")
             self._told_how = True
             return
-
         path = save(figure.id, self._figures_dir)
         self.pictures.append(path)
         self._say(f"Picture: {path}")

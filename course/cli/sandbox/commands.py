@@ -87,9 +87,7 @@ def menu(
 
 
 @app.command("list", epilog="Example: course sandbox list newtons-cradle")
-def list_scenes(
-    scene: Annotated[str | None, _SCENE] = None,
-) -> int:
+def list_scenes(scene: Annotated[str | None, _SCENE] = None) -> int:
     """List the scenes, or one of them with all its parameters.
 
     Each asks for a number: guess it before you run the scene, then see.
@@ -130,9 +128,7 @@ def play(
 
 
 @app.command(epilog="Example: course sandbox replay run.jsonl")
-def replay(
-    file: Annotated[Path, argument("FILE", "A recording.")],
-) -> int:
+def replay(file: Annotated[Path, argument("FILE", "A recording.")]) -> int:
     """Run a recording again, and say where it first differs.
 
     Exit code 1 if it does.

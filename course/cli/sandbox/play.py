@@ -34,6 +34,7 @@ from course.sandbox.scene.loading import (
 )
 from course.sandbox.views.stage import Desk
 from course.sandbox.world.accounts import Event, Receipt
+from course.sandbox.world.engine import versions
 from course.sandbox.world.world import Snapshot, World
 
 # ---
@@ -274,7 +275,6 @@ def _guess(console: Console, chosen: Chosen, options: PlayOptions) -> float | No
         return options.guess
     if not console.interactive or console.quiet:
         return None
-
     console.line((question(chosen), "bold"))
     while True:
         answer = console.ask(f"Your guess in {asked.unit} (Enter for none): ")
@@ -464,7 +464,6 @@ def _keep(chosen: Chosen, comparison: Comparison | None) -> None:
     """Put a guess into the workspace's progress, if there is a workspace."""
     if comparison is None or comparison.guess is None or chosen.own:
         return
-
     try:
         store = Here.load().workspace.store
     except CourseError:
@@ -485,8 +484,6 @@ def _keep(chosen: Chosen, comparison: Comparison | None) -> None:
 def _emit(
     console: Console, chosen: Chosen, done: Run, told: tuple[str, ...], files: tuple[SandboxFile, ...]
 ) -> None:
-    from course.sandbox.world.engine import versions
-
     if not console.json:
         return
     scene = chosen.scene

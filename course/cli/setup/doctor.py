@@ -22,7 +22,6 @@ from urllib.parse import quote
 import msgspec
 
 from course import __version__
-from course.catalog.load import Catalog
 from course.catalog.models import CourseRef
 from course.cli.frame import here
 from course.cli.frame.app import INSTALLATION
@@ -102,13 +101,14 @@ def doctor(
     kind = "checkout (instructor's)" if catalog.content.is_checkout else "wheel (student's)"
     shape = terminal(console)
     complete = not any(item.group == "" and not item.ok for item in found) and not trouble
-    _show_basics(console, catalog, kind)
-    _show_packages(console, found)
-    _show_protection(console, level, causes, advice)
-    console.item(
-        "Terminal", "; ".join(f"{name} {value}" for name, value in shape.items()), indent=0, width=_WIDTH
-    )
-    console.item("Workspace", workspace or "none here", indent=0, width=_WIDTH)
+    _fact("Course", f"{catalog.title} {catalog.version}, installed as a {kind}")
+    _fact("Python", f"{platform.python_version()} at {sys.executable}, {platform.platform()}")
+    _fact("Packages", _in_words(found))
+    _fact("Protection", f"{level}: {_LEVELS[level]}" if level in _LEVELS else level)
+    for sentence in (*causes, *advice):
+        console.line(sentence, indent=2)
+    _fact("Terminal", "; ".join(f"{name} {value}" for name, value in shape.items()))
+    _fact("Workspace", workspace or "none here")
     for line in (repaired, trouble):
         if line:
             console.line(line)
@@ -144,7 +144,8 @@ def doctor(
     return code
 
 
-_WIDTH = 12
+def _fact(label: str, words: str) -> None:
+    current().item(label, words, indent=0, width=12)
 
 
 def packages() -> Iterable[Package]:
@@ -241,28 +242,13 @@ def terminal(console: Console) -> dict[str, str]:
     }
 
 
-def _show_basics(console: Console, catalog: Catalog, kind: str) -> None:
-    course = f"{catalog.title} {catalog.version}, installed as a {kind}"
-    console.item("Course", course, indent=0, width=_WIDTH)
-    python = f"{platform.python_version()} at {sys.executable}, {platform.platform()}"
-    console.item("Python", python, indent=0, width=_WIDTH)
-
-
-def _show_packages(console: Console, found: Iterable[Package]) -> None:
-    names = []
-    for item in found:
-        if item.group and not item.ok:
-            continue
-        wanted = "" if item.ok else f" (needs {item.requirement})"
-        names.append(f"{item.name} {item.installed or 'MISSING'}{wanted}")
-    console.item("Packages", ", ".join(names), indent=0, width=_WIDTH)
-
-
-def _show_protection(console: Console, level: str, causes: tuple[str, ...], advice: tuple[str, ...]) -> None:
-    meaning = _LEVELS.get(level, "")
-    console.item("Protection", f"{level}{': ' if meaning else ''}{meaning}", indent=0, width=_WIDTH)
-    for sentence in (*causes, *advice):
-        console.line(sentence, indent=2)
+def _in_words(found: Iterable[Package]) -> str:
+    """What is installed, and what is missing of the base."""
+    return ", ".join(
+        f"{item.name} {item.installed or 'MISSING'}" + ("" if item.ok else f" (needs {item.requirement})")
+        for item in found
+        if item.ok or not item.group
+    )
 
 
 # ---

@@ -60,10 +60,7 @@ def diff(exercise: ExerciseName = None) -> int:
     )
 
 
-def reset(
-    exercise: OneExercise,
-    yes: Annotated[bool, option("--yes -y", "Do not ask.")] = False,
-) -> int:
+def reset(exercise: OneExercise, yes: Annotated[bool, option("--yes -y", "Do not ask.")] = False) -> int:
     """Go back to the stub; a copy is kept.
 
     Asks first on a terminal; anywhere else it needs --yes. The copy's path is printed.
@@ -102,9 +99,7 @@ def reset(
     return here.answer(Reset(exercise=chosen.id, changed=True, backups=tuple(backups), next=NextStep(step)))
 
 
-def update(
-    dry_run: Annotated[bool, option("--dry-run", "Only print what would be done.")] = False,
-) -> int:
+def update(dry_run: Annotated[bool, option("--dry-run", "Only print what would be done.")] = False) -> int:
     """Bring newer course content in.
 
     For exercises you started: a file that you never edited is replaced (a copy is kept). A file that you

@@ -203,7 +203,6 @@ def _is_edited(here: Here, work: StudentWork) -> bool:
     """Whether a file was edited since it was handed out."""
     if work.notebook is None:
         return here.workspace.is_edited(work.exercise.place, work.name, work.data)
-
     return not is_untouched(work.data) and fingerprint(work.source) != fingerprint(work.stub)
 
 

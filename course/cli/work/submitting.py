@@ -15,14 +15,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-import typer
-
 from course.catalog.models import Exercise
 from course.catalog.pack import zip_entry
 from course.cli.frame.completion import exercise_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd
-from course.cli.frame.options import option
+from course.cli.frame.options import argument, option
 from course.cli.frame.replies import FileReply
 from course.cli.work.chosen import StudentWork, as_handed_in, work_of
 from course.cli.work.replies import Submit, SubmitFile
@@ -39,12 +37,7 @@ from course.scoring.verdict import Verdict, format_points
 def submit(
     exercises: Annotated[
         list[str] | None,
-        typer.Argument(
-            metavar="[EXERCISE]...",
-            help="Only these, without the quiz; everything if left out.",
-            autocompletion=exercise_ids,
-            show_default=False,
-        ),
+        argument("[EXERCISE]...", "Only these, without the quiz; everything if left out.", exercise_ids),
     ] = None,
     output: Annotated[
         Path | None, option("-o --output FILE", "File to write; in the workspace if left out.")

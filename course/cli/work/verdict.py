@@ -323,11 +323,7 @@ class _Page:
     def _printed(self, check: CheckResult) -> None:
         if check.stdout:
             show_lines(
-                self.console,
-                "Your code printed:",
-                check.stdout,
-                whole=self.verbose,
-                indent=_DETAIL_INDENT,
+                self.console, "Your code printed:", check.stdout, whole=self.verbose, indent=_DETAIL_INDENT
             )
 
     def _text(self, text: str) -> None:

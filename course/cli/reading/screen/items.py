@@ -137,7 +137,6 @@ class CellItem(Item):
 
     def edit(self, page: Page) -> None:
         cell = self._cell(page)
-
         progress = page.progress
 
         def keep(source: str) -> None:

@@ -198,10 +198,7 @@ class ScreenPrinter(FancyPrinter):
         """A warm-up or an exercise: its text, and how far the student is with it."""
         now = self._practice.of(task.id)
         done = ", done" if now.done else ""
-        shown: list[RenderableType] = [
-            self._rule(f"{task.what}{done}"),
-            Text(task.title, style="bold"),
-        ]
+        shown: list[RenderableType] = [self._rule(f"{task.what}{done}"), Text(task.title, style="bold")]
         for block in task.blocks:
             made = self._block(block)
             shown += [Text(""), made] if made is not None else []
@@ -270,10 +267,7 @@ class ScreenPrinter(FancyPrinter):
             return super()._code(block)
         state = self._progress.cell(cell)
         changed = ", changed" if state.source != cell.source else ""
-        shown: list[RenderableType] = [
-            self._rule(f"Python, cell {cell.number}{changed}"),
-            Code(state.source),
-        ]
+        shown: list[RenderableType] = [self._rule(f"Python, cell {cell.number}{changed}"), Code(state.source)]
         busy, words = self._busy()
         if busy == cell.key:
             shown.append(self._rule(words))

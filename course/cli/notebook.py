@@ -33,6 +33,7 @@ from course.handed_in.notebook import notebook_source
 from course.notebooks import server
 from course.notebooks.build import FOLDERS, NBGRADER, WORKSPACE, Generated, Layout, generate
 from course.notebooks.merge import CannotMergeError, is_untouched, merged
+from course.printable import counted
 from course.progress.workspace import write_atomically
 
 # ---
@@ -288,11 +289,10 @@ def _write(console: Console, catalog: Catalog, folder: Path, notebooks: Iterable
             raise CourseError(f"{folder / notebook.path}: {error.strerror or error}.") from error
         console.line(_sentence(folder, files[-1]))
     changed = sum(file.action != "current" for file in files)
-    count = "1 notebook" if len(files) == 1 else f"{len(files)} notebooks"
     new = f"{changed} of them new or changed"
     if len(files) == 1:
         new = "new or changed" if changed else "not changed"
-    console.line((f"{count} in {folder}, {new}.", "bold"))
+    console.line((f"{counted(len(files), 'notebook')} in {folder}, {new}.", "bold"))
     if find_spec("jupyterlab"):
         console.note(f"Open them with: {shlex.join(['jupyter', 'lab', str(folder)])}")
     else:

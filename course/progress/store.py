@@ -129,11 +129,7 @@ class Store:
         """
         # A page or a terminal can send half a surrogate, which no file can hold.
         text = json.dumps(data or {}, ensure_ascii=False).encode("utf-8", "replace").decode()
-        row = (_now(), kind, subject, text)
-        with self._connection(create=True) as database:
-            database.execute("BEGIN IMMEDIATE")
-            database.execute(_INSERT, row)
-            database.execute("COMMIT")
+        self._add([(_now(), kind, subject, text)])
 
     def events(self, kind: str = "", subject: str = "") -> tuple[Event, ...]:
         """Events of a kind and about a subject, oldest first; an empty string stands for any.
@@ -173,11 +169,14 @@ class Store:
             # It belongs to the damaged file, and SQLite would apply it to the new one.
             journal.rename(kept.with_name(kept.name + "-journal"))
         saved = _salvage(kept)
+        self._add(saved)
+        return Repair(kept=kept, carried=len(saved))
+
+    def _add(self, rows: Sequence[tuple[str, str, str, str]]) -> None:
         with self._connection(create=True) as database:
             database.execute("BEGIN IMMEDIATE")
-            database.executemany(_INSERT, saved)
+            database.executemany(_INSERT, rows)
             database.execute("COMMIT")
-        return Repair(kept=kept, carried=len(saved))
 
     @contextlib.contextmanager
     def _connection(self, *, create: bool) -> Iterator[sqlite3.Connection]:

@@ -20,21 +20,6 @@ from course.errors import MissingCapabilityError, UsageError
 # The replies of ``course engines ... --json``, as types.
 
 
-class Engine(msgspec.Struct, frozen=True, kw_only=True):
-    """One engine. ``usable`` is "installed and it starts"; ``command`` installs what is missing."""
-
-    id: str
-    name: str
-    package: str
-    version: str | None
-    extra: str
-    licence: str
-    about: str
-    usable: bool
-    missing: str
-    command: str
-
-
 class EngineScenario(msgspec.Struct, frozen=True, kw_only=True):
     """One scenario; ``truth`` is None where nothing is true or false, "inf" for "any speed"."""
 
@@ -48,7 +33,7 @@ class EngineScenario(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class EngineList(Envelope, tag="course.engines-list/1", frozen=True, kw_only=True):
-    engines: tuple[Engine, ...]
+    engines: tuple[EngineState, ...]
     scenarios: tuple[EngineScenario, ...]
 
 
@@ -99,7 +84,7 @@ class Engines(Envelope, tag="course.engines/1", frozen=True, kw_only=True):
     machine: EngineMachine
     reference: EngineMachine | None
     quick: bool
-    engines: tuple[Engine, ...]
+    engines: tuple[EngineState, ...]
     scenarios: tuple[EngineScenario, ...]
     rows: tuple[EngineRow, ...]
     findings: tuple[str, ...]
@@ -180,7 +165,7 @@ def list_engines() -> int:
     for scenario in SCENARIOS.values():
         console.item(scenario.id, f"{scenario.title}. {scenario.question}", width=15)
     console.note(("Next: course engines compare --quick", "bold"))
-    console.emit(EngineList(engines=_engines(states), scenarios=_scenarios(SCENARIOS)))
+    console.emit(EngineList(engines=states, scenarios=_scenarios(SCENARIOS)))
     return 0
 
 
@@ -267,10 +252,6 @@ def _step(text: str) -> float:
     return step
 
 
-def _engines(states: Iterable[EngineState]) -> tuple[Engine, ...]:
-    return tuple(filled(Engine, state) for state in states)
-
-
 def _scenarios(ids: Iterable[str]) -> tuple[EngineScenario, ...]:
     from course.engines.scenarios import SCENARIOS
 
@@ -290,7 +271,7 @@ def _reply(
         machine=filled(EngineMachine, comparison.machine),
         reference=filled(EngineMachine, shipped, shipped.machine) if shipped else None,
         quick=comparison.quick,
-        engines=_engines(comparison.engines),
+        engines=comparison.engines,
         scenarios=_scenarios(dict.fromkeys(row.scenario for row in comparison.rows)),
         rows=rows(comparison),
         findings=tuple(said),

@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from course import extras
 from course.catalog.load import Catalog
@@ -29,6 +29,7 @@ from course.cli.grade.options import (
     agreed,
     in_words,
     levels,
+    points,
     show_change,
     show_roster,
 )
@@ -162,12 +163,10 @@ def _graders(jobs: int, local_cluster: int | None, scheduler: str | None) -> Abs
     """The graders: processes on this machine, or a cluster."""
     if local_cluster is None and scheduler is None:
         return nullcontext(partial(batch.grade_all, graders=jobs))
-    cluster: AbstractContextManager[GradeAll] = (
-        extras.load("cluster").local_cluster(local_cluster or 1)
-        if scheduler is None
-        else extras.load("cluster").remote_cluster(scheduler)
-    )
-    return cluster
+    part: Any = extras.load("cluster")
+    graders: AbstractContextManager[GradeAll]
+    graders = part.local_cluster(local_cluster) if scheduler is None else part.remote_cluster(scheduler)
+    return graders
 
 
 def _show_people(console: Console, summary: Summary) -> None:
@@ -369,7 +368,7 @@ def _show_result(
         at = found.override.at
         console.item("override", f"{found.override.reason} (set {at}; {checks_gave(found)})", width=10)
     if found.late is not None:
-        cost = f"{in_points(found.penalty)} off {score_of(found)}" if found.penalty else "no penalty"
+        cost = f"{in_points(found.penalty)} off {points(found.raw_score)}" if found.penalty else "no penalty"
         console.item("late", f"{in_days(found.late)}, {cost}", width=10)
     if result.number:
         level = f" at {verdict.isolation}" if verdict.isolation else ""
@@ -403,9 +402,4 @@ def checks_gave(found: Effective) -> str:
     """What the graders said of work that has a score by hand."""
     if found.verdict.state in {"ungradable", MISSING, NOT_YET}:
         return "no check ran"
-    return f"the checks gave {score_of(found)}"
-
-
-def score_of(found: Effective) -> str:
-    """The checks' result in words."""
-    return "no score" if found.raw_score is None else format_points(found.raw_score)
+    return f"the checks gave {points(found.raw_score)}"

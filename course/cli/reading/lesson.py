@@ -195,7 +195,7 @@ class PlainPrinter:
 
     def _verbatim(self, label: str, text: str) -> None:
         rows = text.splitlines()
-        self._say(f"{label}, {len(rows)} line{'s' if len(rows) != 1 else ''}:")
+        self._say(f"{label}, {counted(len(rows), 'line')}:")
         for row in rows:
             self._say(row, whole=True)
         self._say(f"End of {'output' if label == 'It prints' else label.lower()}")
@@ -410,17 +410,19 @@ class FancyPrinter:
         return Text(lead + "─" * (min(self._prose, 58) - len(lead)), style="dim")
 
     def _figure(self, figure: b.Figure) -> RenderableType:
-        number = self._figure_ids.index(figure.id) + 1
-        caption = Text.assemble((f"Figure {number}. ", "bold"), self._text(figure.caption))
         shown: list[RenderableType] = []
         drawn = picture(self._console, os.environ, lambda: build(figure.id), self._prose)
         if drawn is not None:
             shown.append(drawn)
-        shown.append(caption)
+        shown.append(self._caption(figure))
         if not protocol_of(self._console, os.environ):  # half blocks are coarse: words go with them
             shown.append(Text.assemble(("To be seen: ", "bold"), figure.alt, style="dim"))
         shown.append(self._where(figure))
         return Group(*shown)
+
+    def _caption(self, figure: b.Figure) -> Text:
+        number = self._figure_ids.index(figure.id) + 1
+        return Text.assemble((f"Figure {number}. ", "bold"), self._text(figure.caption))
 
     def _where(self, figure: b.Figure) -> Text:
         """The picture's path, or the command that writes it."""

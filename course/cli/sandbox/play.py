@@ -18,6 +18,7 @@ from course.cli.frame.here import Here, cwd, target
 from course.cli.frame.replies import Backup, Envelope, filled
 from course.errors import CourseError, MissingCapabilityError, UsageError
 from course.extras import require
+from course.printable import counted
 from course.progress.store import numbered
 from course.sandbox.runs import running
 from course.sandbox.runs.recording import Film, Recording, ffmpeg
@@ -433,7 +434,7 @@ def _show(console: Console, chosen: Chosen, done: Run, told: tuple[str, ...], op
         console.heading(chosen.scene.title, f"{done.duration:.4g} s in {done.steps} steps")
         if not options.describe:
             count = sum(event.kind == "contact" for event in done.events)
-            console.line(f"{count} contact{'' if count == 1 else 's'}; --describe tells what happened.")
+            console.line(f"{counted(count, 'contact')}; --describe tells what happened.")
         for sentence in told:
             console.line(sentence)
         for probe in chosen.scene.probe:

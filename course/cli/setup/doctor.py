@@ -31,6 +31,7 @@ from course.cli.frame.options import option
 from course.cli.frame.replies import Envelope, WrittenFile, filled
 from course.errors import CourseError, MissingCapabilityError
 from course.extras import requirements
+from course.printable import counted
 
 
 class Bug(Envelope, tag="course.bug/1", frozen=True, kw_only=True):
@@ -377,9 +378,7 @@ def _last_crash() -> str | None:
             text = path.read_text(encoding="utf-8", errors="backslashreplace")
             if mark in text:
                 minutes = max(0, round((time.time() - when) / 60))
-                ago = f"{minutes} minute{'' if minutes == 1 else 's'}"
-                if minutes >= 120:
-                    ago = f"{minutes // 60} hours"
+                ago = counted(minutes, "minute") if minutes < 120 else counted(minutes // 60, "hour")
                 text = _TYPED.sub("command: left out", text.replace(mark, ""))
                 return f"The last crash, {ago} ago:\n{text}"
     return None

@@ -302,8 +302,7 @@ class ScreenPrinter(FancyPrinter):
         return [grid]
 
     def _figure(self, figure: b.Figure) -> RenderableType:
-        number = self._figure_ids.index(figure.id) + 1
-        caption = Text.assemble((f"Figure {number}. ", "bold"), self._text(figure.caption))
+        caption = self._caption(figure)
         seen = Text.assemble(("The figure shows: ", "bold"), figure.alt, style="dim")
         picture = self._picture(figure.id, None, self._prose)
         if not picture:

@@ -6,23 +6,21 @@ import asyncio
 import contextlib
 import os
 import signal
+import threading
+from collections.abc import Callable, Sequence
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
+from rich.console import RenderableType
 from rich.text import Text
-from textual.app import App
+from textual.app import App, ComposeResult
 from textual.binding import Binding
 from textual.containers import VerticalScroll
+from textual.events import Key
 from textual.screen import ModalScreen
 from textual.widgets import Input, Static
 
 if TYPE_CHECKING:
-    import threading
-    from collections.abc import Callable, Sequence
-
-    from rich.console import RenderableType
-    from textual.app import ComposeResult
-    from textual.events import Key
     from textual.widget import Widget as _Widget
 else:
     _Widget = object  # Textual takes a widget's style from its first base that is one
@@ -70,7 +68,6 @@ class FullScreenApp(App[None]):
             raise self.failure
 
     def on_mount(self) -> None:
-        """Be ready for signals."""
         loop = asyncio.get_running_loop()
         for name in ("SIGINT", "SIGTERM", "SIGHUP"):
             # A closed window or a plain kill leaves the terminal as clean as a key does. Where signals cannot
@@ -108,11 +105,9 @@ class FullScreenApp(App[None]):
         return action in self.ALWAYS or len(self.screen_stack) == 1 or not hasattr(self, f"action_{action}")
 
     async def action_quit(self) -> None:
-        """Leave."""
         self.action_quit_now()
 
     def action_quit_now(self) -> None:
-        """Leave."""
         self.exit()
 
 
@@ -137,7 +132,6 @@ class Overlay(ModalScreen[Answer | None]):
             self.dismiss(answer)
 
     def action_leave(self) -> None:
-        """Close the box."""
         self.close(None)
 
 

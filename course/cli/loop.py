@@ -8,6 +8,7 @@ twenty times a second: one question to the file system, which works on every dri
 from __future__ import annotations
 
 import contextlib
+import os
 import re
 import select
 import shlex
@@ -35,7 +36,7 @@ from course.cli.work.checking import curve_replies, reply_to, show_curve
 from course.cli.work.chosen import NOTEBOOK, asked_for, chosen_work
 from course.cli.work.hinting import give_hint
 from course.cli.work.replies import Check, Watch, WatchRun
-from course.cli.work.verdict import is_unwritten, show_loading, show_verdict
+from course.cli.work.verdict import is_unwritten, show_changes, show_loading, show_verdict
 from course.errors import INTERRUPTED, CourseError, UngradableError
 from course.handed_in import attempts
 from course.handed_in.attempts import Attempt
@@ -73,8 +74,6 @@ class Keys:
         return _LEAVE in self._held
 
     def _take(self, seconds: float) -> None:
-        import os
-
         ready, _, _ = select.select([self._descriptor], [], [], seconds)
         if ready:
             pressed = os.read(self._descriptor, 1)
@@ -112,7 +111,6 @@ PATIENCE_MS = 200
 SECOND_LOOK = 0.05
 #: How often a newer save is looked for, in s.
 _GLANCE = 0.05
-_LABEL_WIDTH = 9
 #: A link, as a README writes it.
 _LINK = re.compile(r"\[([^]]*)\]\([^)]*\)")
 
@@ -192,8 +190,7 @@ class _Loop:
                     task = self._work(task)
         except KeyboardInterrupt:
             code = INTERRUPTED
-            if self.console.fancy:
-                self.console.blank()  # the terminal has written ^C
+            self.console.gap()  # the terminal has written ^C
         finally:
             self.console.led = False
         self.console.emit(Watch(exit_code=code, exercise=name, runs=tuple(self.runs), last=self.last))
@@ -531,13 +528,10 @@ class Watcher:
             return
         checks = self._made.verdict.checks
         before = {check.id: check.status for check in checks if not is_unwritten([check])}
-        broke = [c for c in verdict.checks if c.status != "pass" and before.get(c.id) == "pass"]
-        fixed = [c for c in verdict.checks if c.status == "pass" and before.get(c.id, "pass") != "pass"]
-        for label, style, changed in (("broke", "bold red", broke), ("fixed", "bold green", fixed)):
-            for check in changed:
-                self.console.item(label, check.title, style=style, width=_LABEL_WIDTH)
-        if (broke or fixed) and self.console.fancy:
-            self.console.blank()
+        passing = [check for check in verdict.checks if check.status == "pass"]
+        broke = [c.title for c in verdict.checks if c not in passing and before.get(c.id) == "pass"]
+        fixed = [check.title for check in passing if before.get(check.id, "pass") != "pass"]
+        show_changes(self.console, broke, fixed)
 
     @contextlib.contextmanager
     def _at_work(self, session: GradingSession) -> Iterator[threading.Event]:

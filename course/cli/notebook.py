@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import shlex
 from collections.abc import Iterable
+from dataclasses import replace
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -16,10 +17,7 @@ from course.browser import invite
 from course.catalog.load import Catalog
 from course.catalog.models import CourseRef, Exercise
 from course.cli.frame.completion import Verbose, choice_of, exercise_ids, notebook_ids
-from course.cli.frame.console import (
-    Console,
-    current,
-)
+from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, find_workspace, here_or_outside, load_catalog, write
 from course.cli.frame.options import argument, option
 from course.cli.frame.registry import COMMANDS, group
@@ -31,9 +29,11 @@ from course.errors import CourseError, NotFoundError, UngradableError, UsageErro
 from course.extras import require
 from course.handed_in import attempts
 from course.handed_in.cells import code_cells, read_notebook
+from course.handed_in.notebook import notebook_source
+from course.notebooks import server
 from course.notebooks.build import FOLDERS, NBGRADER, WORKSPACE, Generated, Layout, generate
 from course.notebooks.merge import CannotMergeError, is_untouched, merged
-from course.notebooks.server import executed
+from course.printable import counted
 from course.progress.workspace import write_atomically
 
 # ---
@@ -82,46 +82,8 @@ class NotebookCheck(Envelope, tag="course.notebook-check/1", frozen=True, kw_onl
     result: Check
 
 
-# ---
-# ``course notebook check``: the public checks on a notebook's functions, with cells for line numbers.
-
-
-def check_file(console: Console, file: Path, exercise_id: str | None, *, verbose: bool) -> int:
-    """Check one notebook, show what was found, and give the exit code.
-
-    Raises:
-        UngradableError: it is not a notebook, or has nothing to check.
-        NotFoundError: there is no such file or exercise, or the exercise is not clear.
-    """
-    from course.handed_in.notebook import notebook_source
-
-    path = cwd() / file.expanduser()
-    if not path.exists():
-        raise NotFoundError(
-            f"There is no file {file}.", help="`course notebook build` writes notebooks.", code="no_file"
-        )
-    data = read_notebook(path)
-    here, catalog = here_or_outside()
-    exercise = _exercise(catalog, path, data, exercise_id)
-    module = notebook_source(data, exercise, file.name)
-    with console.working(f"Checking {exercise.id}"):
-        made = attempts.attempt(exercise, catalog, module.submission(exercise))
-    if here is not None and path.is_relative_to(here.workspace.root):
-        here.record("check", exercise.id, made.data(catalog.version))
-    if made.problem is not None:
-        raise made.problem
-    show_verdict(console, exercise, made.verdict, verbose=verbose)
-    for warning in here.warnings if here else ():
-        console.warn(warning)
-    reply = reply_to(catalog.ref, made.verdict, f"course notebook check {file}")
-    console.emit(NotebookCheck(exit_code=reply.exit_code, file=str(path), result=reply))
-    return reply.exit_code
-
-
 def _exercise(catalog: Catalog, path: Path, data: bytes, wanted: str | None) -> Exercise:
     """A notebook's exercise: the given one, or the one that its cells, its name or its functions show."""
-    from course.handed_in.notebook import notebook_source
-
     if wanted is not None:
         return catalog.exercise(wanted)
     exercises = catalog.exercises()
@@ -168,7 +130,6 @@ def put(folder: Path, notebook: Generated, *, update: bool = True) -> NotebookFi
         UsageError: the existing file cannot be read, or no copy of it can be kept.
         MissingCapabilityError: the folder cannot be written.
     """
-
     path = folder / notebook.path
     said = partial(NotebookFile, kind=notebook.kind, id=notebook.id, path=str(path))
     if not path.exists():
@@ -221,7 +182,6 @@ def build(
         raise UsageError(f"--format {form}: there is {' and '.join(FORMATS)}.", code="unknown_format")
     if form == "nbgrader":
         return _build_nbgrader(console, ids or [], out, executed=executed)
-
     if executed:
         require("notebook", "nbclient", "ipykernel", what="--executed")
     catalog = load_catalog()
@@ -239,7 +199,6 @@ def update(ids: Ids = None, out: Out = None) -> int:
     Your work stays: cells you edited and cells you added. Where newer text cannot be put around it, the
     newer notebook is put beside yours as NAME.new.ipynb. A copy of every replaced file is kept.
     """
-
     console, catalog = current(), load_catalog()
     folder, layout = place(out)
     there = list(generate(catalog, ids or [], layout, there=folder))
@@ -266,8 +225,27 @@ def check(
     Runs the functions of the notebook, as a grading run does, not the notebook itself. Exit code 0 if every
     check passes, 1 if one does not, 3 if nothing could be checked.
     """
-
-    return check_file(current(), file, exercise, verbose=verbose)
+    console, path = current(), cwd() / file.expanduser()
+    if not path.exists():
+        raise NotFoundError(
+            f"There is no file {file}.", help="`course notebook build` writes notebooks.", code="no_file"
+        )
+    data = read_notebook(path)
+    here, catalog = here_or_outside()
+    chosen = _exercise(catalog, path, data, exercise)
+    module = notebook_source(data, chosen, file.name)
+    with console.working(f"Checking {chosen.id}"):
+        made = attempts.attempt(chosen, catalog, module.submission(chosen))
+    if here is not None and path.is_relative_to(here.workspace.root):
+        here.record("check", chosen.id, made.data(catalog.version))
+    if made.problem is not None:
+        raise made.problem
+    show_verdict(console, chosen, made.verdict, verbose=verbose)
+    for warning in here.warnings if here else ():
+        console.warn(warning)
+    reply = reply_to(catalog.ref, made.verdict, f"course notebook check {file}")
+    console.emit(NotebookCheck(exit_code=reply.exit_code, file=str(path), result=reply))
+    return reply.exit_code
 
 
 # -- writing ---------------------------------------------------------------------------------------------
@@ -297,10 +275,8 @@ def _build_nbgrader(console: Console, ids: list[str], out: Path | None, *, execu
 
 
 def _executed(console: Console, notebook: Generated) -> Generated:
-    from dataclasses import replace
-
     with console.working(f"Running {notebook.path}"):
-        return replace(notebook, data=executed(notebook.data, str(notebook.path)))
+        return replace(notebook, data=server.executed(notebook.data, str(notebook.path)))
 
 
 def _write(console: Console, catalog: Catalog, folder: Path, notebooks: Iterable[Generated]) -> int:
@@ -313,11 +289,10 @@ def _write(console: Console, catalog: Catalog, folder: Path, notebooks: Iterable
             raise CourseError(f"{folder / notebook.path}: {error.strerror or error}.") from error
         console.line(_sentence(folder, files[-1]))
     changed = sum(file.action != "current" for file in files)
-    count = "1 notebook" if len(files) == 1 else f"{len(files)} notebooks"
     new = f"{changed} of them new or changed"
     if len(files) == 1:
         new = "new or changed" if changed else "not changed"
-    console.line((f"{count} in {folder}, {new}.", "bold"))
+    console.line((f"{counted(len(files), 'notebook')} in {folder}, {new}.", "bold"))
     if find_spec("jupyterlab"):
         console.note(f"Open them with: {shlex.join(['jupyter', 'lab', str(folder)])}")
     else:
@@ -358,8 +333,6 @@ def open_notebook(
     A missing notebook is written first, in the workspace, or outside of one in notebooks/. An existing one is
     not changed: `course notebook update` brings newer text. Ctrl+C ends it.
     """
-    from course.notebooks.server import started
-
     console = current()
     require("notebook", "jupyterlab", "ipykernel", what="Opening a notebook")
     catalog = load_catalog()
@@ -369,7 +342,7 @@ def open_notebook(
     relative = shown.relative_to(folder).as_posix() if wanted else ""
     with contextlib.suppress(KeyboardInterrupt), contextlib.ExitStack() as stack:
         with console.working("Starting JupyterLab"):
-            lab = stack.enter_context(started(folder, relative))
+            lab = stack.enter_context(server.started(folder, relative))
         console.line(f"{shown} is at {lab.address}")
         invite(lab.address, console.note, show=not no_browser)
         console.emit(

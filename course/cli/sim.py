@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import msgspec
 
@@ -18,44 +16,9 @@ from course.cli.frame.options import argument, option
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Envelope, WrittenFile, filled
 from course.errors import UsageError
-from course.simulations.base import Result, Row, Simulation
+from course.simulations.base import Result, Row, Simulation, describe
+from course.simulations.base import run as run_simulation
 from course.simulations.registry import CHAPTER, SIMULATIONS, get
-
-if TYPE_CHECKING:
-    from course.figures.registry import Builder
-
-
-# ---
-# The files that ``course sim`` writes: a table and a figure.
-
-
-def table(result: Result) -> bytes:
-    """The series of a run as CSV: a line of names with units, then every sample, every digit."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(f"{column.name} [{column.unit}]" for column in result.columns)
-    for row in zip(*(column.values.tolist() for column in result.columns), strict=True):
-        writer.writerow(map(repr, row))
-    return text.getvalue().encode()
-
-
-def figure(result: Result, kind: str) -> bytes:
-    """The figure of a run as a PNG, SVG or PDF file; the same run gives the same bytes."""
-    from course.figures.experiments import render
-
-    return render(result, kind)
-
-
-def builder(result: Result) -> Builder:
-    """Draws the figure of a run, for a screen."""
-
-    def make() -> Any:
-        from course.figures.experiments import draw
-
-        return draw(result)
-
-    return make
-
 
 # ---
 # The replies of ``course sim ... --json``, as types.
@@ -166,7 +129,6 @@ def list_simulations(
 
     Each has a question. Answer it before you run the simulation.
     """
-
     console = current()
     simulations = [get(one) for one in ((name,) if name else SIMULATIONS)]
     for simulation in simulations:
@@ -178,17 +140,13 @@ def list_simulations(
 
 
 def _describe(console: Console, simulation: Simulation, *, whole: bool) -> None:
-    """One simulation: its subject, its question, its parameters."""
-    from course.simulations.base import describe
-
     console.heading(simulation.id, simulation.title)
     console.item("shows", simulation.teaches, width=5)
     console.item("guess", simulation.question, width=5)
     if whole:
         for parameter in simulation.parameters:
             console.item("set", describe(parameter), width=5)
-    if console.fancy:
-        console.blank()
+    console.gap()
 
 
 @app.command(epilog="Example: course sim run free-fall --set height=20 --plot fall.png")
@@ -243,9 +201,6 @@ def _run_all(console: Console, plot: Path | None, csv: Path | None) -> int:
 
 
 def _run_one(console: Console, name: str, pairs: Sequence[str], plot: Path | None, csv: Path | None) -> Sim:
-    """Run, show and write one simulation."""
-    from course.simulations.base import run as run_simulation
-
     simulation = get(name)
     plot = here.target(plot, "--plot", here.FORMATS) if plot else None
     csv = here.target(csv, "--csv", ("csv",)) if csv else None
@@ -254,35 +209,37 @@ def _run_one(console: Console, name: str, pairs: Sequence[str], plot: Path | Non
     _show(console, simulation, result)
     plotted = written = None
     if plot:
+        from course.figures.experiments import render
+
         with console.working("Drawing"):
-            picture = figure(result, plot.suffix.lower().removeprefix("."))
-        plotted = _written(console, here.write(plot, picture))
+            picture = render(result, plot.suffix.lower().removeprefix("."))
+        plotted = here.write_told(plot, picture, why="sim")
     if csv:
-        written = _written(console, here.write(csv, table(result)))
+        names = (f"{column.name} [{column.unit}]" for column in result.columns)
+        samples = zip(*(column.values.tolist() for column in result.columns), strict=True)
+        written = here.write_told(csv, here.as_csv(names, samples), why="sim")
     return _reply(simulation, result, plotted, written)
-
-
-def _written(console: Console, file: WrittenFile) -> WrittenFile:
-    if file.backup:
-        console.line(f"There was a file of that name; it is kept at {file.backup.backup}.")
-    console.line(f"Wrote {file.path}")
-    return file
 
 
 # -- on the screen ---------------------------------------------------------------------------------------
 
 
 def _show(console: Console, simulation: Simulation, result: Result) -> None:
-    """Heading, settings, the table, the finding."""
     if not console.quiet:
         console.heading(simulation.title)
         changed = [p.name for p in simulation.parameters if result.settings[p.name] != p.default]
         console.line((_settings(simulation, result), "dim"))
         if changed:
             console.line(f"Changed: {', '.join(changed)}.")
-        console.figure(builder(result))
+        console.figure(lambda: _drawn(result))
         console.table_or_facts(_HEADS, [_cells(row) for row in result.rows])
     console.line((result.finding, "bold"))
+
+
+def _drawn(result: Result) -> Any:
+    from course.figures.experiments import draw
+
+    return draw(result)
 
 
 _HEADS = ("Measured", "Simulated", "Theory", "Error")

@@ -121,7 +121,10 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class EngineState(msgspec.Struct, frozen=True, kw_only=True):
-    """The state of one engine on this machine."""
+    """One engine on this machine, as ``--json`` has it too.
+
+    ``usable`` is "installed and it starts"; ``command`` installs what is missing.
+    """
 
     id: str
     name: str
@@ -131,8 +134,8 @@ class EngineState(msgspec.Struct, frozen=True, kw_only=True):
     about: str
     version: str | None
     usable: bool
-    missing: str = ""
-    command: str = ""
+    missing: str
+    command: str
 
 
 class Reference(msgspec.Struct, frozen=True, kw_only=True):

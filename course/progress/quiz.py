@@ -10,10 +10,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from course.progress.store import Event
+from course.progress.store import Event
 
 START, ANSWER, DONE, REVIEW = "quiz-start", "quiz-answer", "quiz-done", "quiz-review"
 

@@ -8,6 +8,7 @@ does not work. Each event is one short transaction on a connection of its own, s
 from __future__ import annotations
 
 import contextlib
+import itertools
 import json
 import math
 import os
@@ -128,11 +129,7 @@ class Store:
         """
         # A page or a terminal can send half a surrogate, which no file can hold.
         text = json.dumps(data or {}, ensure_ascii=False).encode("utf-8", "replace").decode()
-        row = (_now(), kind, subject, text)
-        with self._connection(create=True) as database:
-            database.execute("BEGIN IMMEDIATE")
-            database.execute(_INSERT, row)
-            database.execute("COMMIT")
+        self._add([(_now(), kind, subject, text)])
 
     def events(self, kind: str = "", subject: str = "") -> tuple[Event, ...]:
         """Events of a kind and about a subject, oldest first; an empty string stands for any.
@@ -153,10 +150,6 @@ class Store:
                 return Record(self.path)
             return Record(self.path, database.execute(query, (kind, kind, subject, subject)).fetchall())
 
-    def last(self, kind: str, subject: str = "") -> Event | None:
-        """The newest event of a kind and about a subject, or None."""
-        return next(reversed(self.events(kind, subject)), None)
-
     def repair(self) -> Repair | None:
         """Set a damaged record aside and carry over what can still be read; None if it is sound.
 
@@ -168,18 +161,22 @@ class Store:
             pass
         else:
             return None
-        kept = _free_name(self.path.with_name(f"{self.path.stem}.damaged{self.path.suffix}"))
+        names = numbered(self.path.with_name(f"{self.path.stem}.damaged{self.path.suffix}"))
+        kept = next(path for path in names if not os.path.lexists(path))
         journal = self.path.with_name(self.path.name + "-journal")
         self.path.rename(kept)
         if journal.exists():
             # It belongs to the damaged file, and SQLite would apply it to the new one.
             journal.rename(kept.with_name(kept.name + "-journal"))
         saved = _salvage(kept)
+        self._add(saved)
+        return Repair(kept=kept, carried=len(saved))
+
+    def _add(self, rows: Sequence[tuple[str, str, str, str]]) -> None:
         with self._connection(create=True) as database:
             database.execute("BEGIN IMMEDIATE")
-            database.executemany(_INSERT, saved)
+            database.executemany(_INSERT, rows)
             database.execute("COMMIT")
-        return Repair(kept=kept, carried=len(saved))
 
     @contextlib.contextmanager
     def _connection(self, *, create: bool) -> Iterator[sqlite3.Connection]:
@@ -284,13 +281,10 @@ def _salvage(damaged: Path) -> list[tuple[str, str, str, str]]:
     return rows
 
 
-def _free_name(path: Path) -> Path:
-    """``path``, or the first numbered variant of it that does not exist."""
-    candidate, number = path, 2
-    while os.path.lexists(candidate):
-        candidate = path.with_name(f"{path.stem}-{number}{path.suffix}")
-        number += 1
-    return candidate
+def numbered(path: Path) -> Iterator[Path]:
+    """``path`` itself, then run-2.csv, run-3.csv and so on, to find one that does not exist."""
+    yield path
+    yield from (path.with_name(f"{path.stem}-{number}{path.suffix}") for number in itertools.count(2))
 
 
 def _damaged(path: Path, reason: str) -> IntegrityError:

@@ -25,7 +25,7 @@ from typing import Any
 
 from course.errors import ContentError, CourseError, MissingCapabilityError, NotFoundError, UsageError
 from course.ids import WARM_UPS
-from course.progress.store import Store
+from course.progress.store import Store, numbered
 from course.strangers import read_bytes, toml
 
 MARKER = "course.toml"
@@ -203,20 +203,17 @@ class Workspace:
         return self.state / "given" / place / name
 
 
+@dataclass
 class Recorder:
     """Takes events into a record; where one cannot be kept, work goes on.
 
-    Args:
-        store: None where there is no workspace; events are dropped then.
-        trouble: why there is none.
-
     Attributes:
+        store: None where there is no workspace; events are dropped then.
         trouble: why something was not recorded, a sentence; empty while all is well.
     """
 
-    def __init__(self, store: Store | None, trouble: str = "") -> None:
-        self.store = store
-        self.trouble = trouble
+    store: Store | None
+    trouble: str = ""
 
     @classmethod
     def of_kernel(cls, course_id: str) -> Recorder | None:
@@ -288,29 +285,24 @@ def _normal(data: bytes) -> bytes:
 
 def _new_folder(parent: Path, name: str) -> Path:
     parent.mkdir(parents=True, exist_ok=True)
-    number = 1
-    while True:
-        folder = parent / (name if number == 1 else f"{name}-{number}")
-        try:
+    for folder in numbered(parent / name):
+        with contextlib.suppress(FileExistsError):
             folder.mkdir()
-        except FileExistsError:
-            number += 1
-        else:
-            return folder
+            break
+    return folder
 
 
 def _read_marker(marker: Path) -> tuple[str, str]:
     """Course id and version out of a ``course.toml``."""
-    fix = "Correct the file, or move it away and run `course init` here again: no exercise is touched."
     try:
         # An editor of another system may have put a byte-order mark in front; TOML allows none.
         table = toml(read_bytes(marker).decode("utf-8-sig"))
     except tomllib.TOMLDecodeError as error:
         line = re.search(r"line (\d+)", str(error))
         problem = f"not valid TOML: {error}."
-        raise _bad_marker(marker, int(line[1]) if line else None, problem, fix) from error
+        raise _bad_marker(marker, int(line[1]) if line else None, problem) from error
     except (OSError, UnicodeDecodeError) as error:
-        raise _bad_marker(marker, None, f"cannot be read: {error}.", fix) from error
+        raise _bad_marker(marker, None, f"cannot be read: {error}.") from error
     version = table.get("format_version")
     if isinstance(version, int) and version > FORMAT_VERSION:
         raise MissingCapabilityError(
@@ -320,14 +312,15 @@ def _read_marker(marker: Path) -> tuple[str, str]:
         )
     course = table.get("course")
     if version != FORMAT_VERSION or not isinstance(course, dict):
-        raise _bad_marker(marker, None, "format_version or [course] is missing.", fix)
+        raise _bad_marker(marker, None, "format_version or [course] is missing.")
     name, content = course.get("id"), course.get("version")
     if not isinstance(name, str) or not isinstance(content, str):
-        raise _bad_marker(marker, None, "[course] needs an id and a version, both strings.", fix)
+        raise _bad_marker(marker, None, "[course] needs an id and a version, both strings.")
     return name, content
 
 
-def _bad_marker(marker: Path, line: int | None, problem: str, fix: str) -> ContentError:
+def _bad_marker(marker: Path, line: int | None, problem: str) -> ContentError:
+    fix = "Correct the file, or move it away and run `course init` here again: no exercise is touched."
     error = ContentError(marker, line, problem, help=fix)
     # The file is the student's, so this is nothing to report as a fault of the course.
     error.exit_code = UsageError.exit_code

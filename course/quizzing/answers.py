@@ -44,7 +44,7 @@ class AnswerFile:
     seed: int | None
     answers: dict[str, Any]
 
-    def fail(self, key: str, problem: str, fix: str, code: str) -> NoReturn:
+    def fail(self, key: str, problem: str, fix: str, code: str = "answers_format") -> NoReturn:
         """Raise the UsageError that points at the line of ``key`` (empty: the whole file)."""
         raise UsageError(f"{self.path}{self._at(key)}: {problem}", help=fix, code=code)
 
@@ -154,7 +154,6 @@ def read_answers(path: Path) -> AnswerFile:
             "format_version",
             f"format_version is {version!r}, and this program knows {FORMAT_VERSION}.",
             "Write `format_version = 1`, or install a newer version of the course.",
-            "answers_format",
         )
     unknown = sorted(set(data) - {"format_version", "seed", "answers"})
     if unknown:
@@ -162,17 +161,11 @@ def read_answers(path: Path) -> AnswerFile:
             "",
             f"unknown key {unknown[0]!r} outside of the answers.",
             'A file has `seed` and a table [answers] with lines like why-simulate = "b".',
-            "answers_format",
         )
     if not isinstance(answers, dict):
-        file.fail(
-            "",
-            "there is no table of answers.",
-            'Add [answers] with lines like why-simulate = "b".',
-            "answers_format",
-        )
+        file.fail("", "there is no table of answers.", 'Add [answers] with lines like why-simulate = "b".')
     if seed is not None and (not isinstance(seed, int) or isinstance(seed, bool)):
-        file.fail("seed", "`seed` is not a whole number.", "Write: seed = 42", "answers_format")
+        file.fail("seed", "`seed` is not a whole number.", "Write: seed = 42")
     return file
 
 

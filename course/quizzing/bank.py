@@ -16,7 +16,7 @@ import hashlib
 import math
 import re
 import secrets
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -164,7 +164,8 @@ class Bank:
                 fix="Change a formula, or the values it is computed from.",
             )
         shuffled = sorted(posed.choices, key=lambda choice: draw(seed, question.id, variant.id, choice.id))
-        return _replace_choices(posed, shuffled)
+        placed = (replace(choice, letter=letter) for choice, letter in zip(shuffled, LETTERS, strict=True))
+        return replace(posed, choices=tuple(placed))
 
 
 def draw(seed: int, *words: str) -> int:
@@ -204,11 +205,6 @@ def pose_case(document: Document[Question], variant_index: int, case: int) -> Po
     )
 
 
-def _replace_choices(posed: PosedQuestion, choices: Sequence[Choice]) -> PosedQuestion:
-    placed = tuple(replace(choice, letter=letter) for choice, letter in zip(choices, LETTERS, strict=True))
-    return replace(posed, choices=placed)
-
-
 def _numbers(document: Document[Question], variant_index: int, case: int) -> dict[str, str]:
     """The numbers of one case, as they are shown."""
     values: dict[str, float] = {}
@@ -217,7 +213,7 @@ def _numbers(document: Document[Question], variant_index: int, case: int) -> dic
         if number.values:
             case, place = divmod(case, len(number.values))
             values[number.name] = number.values[place]
-            shown[number.name] = _exactly(number.values[place])
+            shown[number.name] = f"{number.values[place]:,}"
             continue
         try:
             values[number.name] = Formula(number.formula).value(values)
@@ -235,18 +231,13 @@ def _numbers(document: Document[Question], variant_index: int, case: int) -> dic
 def significant(value: float, digits: int) -> str:
     """``value`` with so many significant digits and never an exponent; a whole number (int) in full."""
     if isinstance(value, int):
-        return _exactly(value)
+        return f"{value:,}"
     if value == 0:
         return "0"
     # The rounded value decides where the digits begin: 0.09996 with three of them is 0.100.
     rounded = float(f"{value:.{digits - 1}e}")
     decimals = digits - 1 - math.floor(math.log10(abs(rounded)))
     return f"{rounded:,.{max(decimals, 0)}f}"
-
-
-def _exactly(value: float) -> str:
-    """A given number as it was given, thousands set apart."""
-    return f"{value:,}"
 
 
 def _fill(text: str, shown: Mapping[str, str]) -> str:
@@ -257,14 +248,8 @@ def _fill(text: str, shown: Mapping[str, str]) -> str:
 
 def clashing(choices: Sequence[Choice]) -> tuple[int, int] | None:
     """The first two choices that cannot be told apart, by their places; None if all can."""
-    return next(_clashes(choices), None)
-
-
-def _clashes(choices: Sequence[Choice]) -> Iterator[tuple[int, int]]:
-    for other in range(len(choices)):
-        for one in range(other):
-            if same_answer(choices[one].text, choices[other].text):
-                yield one, other
+    pairs = ((one, other) for other in range(len(choices)) for one in range(other))
+    return next((pair for pair in pairs if same_answer(*(choices[place].text for place in pair))), None)
 
 
 def same_answer(one: str, other: str) -> bool:
@@ -367,7 +352,6 @@ def mark(posed: Sequence[PosedQuestion], answers: Mapping[str, str]) -> Result:
 
 
 def check_seed(seed: int) -> int:
-    """``seed`` itself."""
     if not 0 <= seed <= MAX_SEED:
         raise UsageError(
             f"{seed} is not a seed.", help=f"Use a whole number from 0 to {MAX_SEED}.", code="invalid_seed"

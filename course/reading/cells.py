@@ -289,7 +289,6 @@ class CellRunner:
             self._connection = None
 
     def close(self) -> None:
-        """End the process."""
         self.forget()
         if self._spawner is not None:
             self._spawner.close()

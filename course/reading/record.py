@@ -117,10 +117,6 @@ class Layout:
         """Which screen a row is on, 1 first."""
         return bisect_right(self.starts, max(0, top))
 
-    def ends(self, top: int) -> bool:
-        """Whether the last line is on the screen that begins with row ``top``."""
-        return self.end_of(top) >= len(self.rows)
-
     def place(self, top: int) -> Place:
         """The place in the text of the row at the top."""
         if not self.rows:

@@ -4,6 +4,7 @@ import hashlib
 import os
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated
 
@@ -130,15 +131,12 @@ class AuthorPack(Envelope, tag="course.author-pack/1", frozen=True, kw_only=True
 # ``course author coverage``: where the course has each part of the chapter it grew out of.
 
 
-def coverage(
-    write: Annotated[bool, option("--write", "Write docs/coverage.md again.")] = False,
-) -> int:
+def coverage(write: Annotated[bool, option("--write", "Write docs/coverage.md again.")] = False) -> int:
     """Show where the course covers each part of the chapter that it is based on.
 
     Lists the chapter's headings, objectives, examples, exercises and questions, each with its place in the
     course and one word on how it is covered. Exit code 1 if a part or a place is missing.
     """
-
     console, catalog = current(), load_catalog()
     document = read_coverage(catalog)
     problems = check_coverage(document, catalog, is_command)
@@ -149,8 +147,21 @@ def coverage(
     _show_coverage(console, table, problems)
     if page:
         console.note(f"Wrote {shown(page, catalog)}.")
-    _emit_coverage(console, table, problems, shown(page, catalog) if page else None)
-    return 1 if problems else 0
+    parts = [
+        filled(CoverageRow, part, section=section.title, kind=section.kind)
+        for section in table.section
+        for part in section.parts
+    ]
+    reply = filled(
+        AuthorCoverage,
+        table,
+        exit_code=1 if problems else 0,
+        parts=tuple(parts),
+        written=shown(page, catalog) if page else None,
+        problems=_replies(problems),
+    )
+    console.emit(reply)
+    return reply.exit_code
 
 
 def _show_coverage(console: Console, table: Coverage, problems: tuple[AuditProblem, ...]) -> None:
@@ -160,31 +171,15 @@ def _show_coverage(console: Console, table: Coverage, problems: tuple[AuditProbl
         console.table(("part", "word", "where"), rows)
         console.blank()
     for problem in problems:
-        console.line((problem.where, "bold"))
-        console.line(problem.message, indent=2)
-        console.line((problem.fix, "dim"), indent=2)
+        _show_problem(console, problem)
     found = counted(len(problems), "problem") if problems else "none is missing"
     console.line(f"{counted(len(table.parts), 'part')}, {table.source_lines} lines: {found}.")
 
 
-def _emit_coverage(
-    console: Console, table: Coverage, problems: tuple[AuditProblem, ...], written: str | None
-) -> None:
-    parts = [
-        filled(CoverageRow, part, section=section.title, kind=section.kind)
-        for section in table.section
-        for part in section.parts
-    ]
-    console.emit(
-        filled(
-            AuthorCoverage,
-            table,
-            exit_code=1 if problems else 0,
-            parts=tuple(parts),
-            written=written,
-            problems=_replies(problems),
-        )
-    )
+def _show_problem(console: Console, problem: AuditProblem) -> None:
+    console.line((problem.where, "bold"))
+    console.line(problem.message, indent=2)
+    console.line((problem.fix, "dim"), indent=2)
 
 
 def _replies(problems: Iterable[AuditProblem]) -> tuple[AuthorProblem, ...]:
@@ -196,8 +191,6 @@ def is_command(words: tuple[str, ...]) -> bool:
 
     Simulations count as words of ``sim run``, exercises that ask for prose as one of ``reflect``.
     """
-    from importlib import import_module
-
     entry = COMMANDS.get(words[0]) if words else None
     if words[:1] == ("reflect",) and len(words) == 2:
         catalog = load_catalog()
@@ -325,7 +318,6 @@ def new_lesson(name: _NewId) -> int:
 
     Nothing is overwritten. Put its id into syllabus.toml at the place where students should read it.
     """
-
     catalog = load_catalog()
     return _report_new(catalog, "lesson", name, scaffold.new_lesson(catalog, name))
 
@@ -336,7 +328,6 @@ def new_question(name: _NewId) -> int:
 
     Nothing is overwritten. It has four variants, each with one right option and three wrong ones.
     """
-
     catalog = load_catalog()
     return _report_new(catalog, "question", name, scaffold.new_question(catalog, name))
 
@@ -348,7 +339,6 @@ def new_scene(name: _NewId) -> int:
     In the checkout it becomes one of the course's scenes, and you play it with `course sandbox play ID`.
     Elsewhere it is a scene of your own: ID.toml in the folder you are in. Nothing is overwritten.
     """
-
     catalog = load_catalog()
     return _report_new(catalog, "scene", name, scaffold.new_scene(catalog, name))
 
@@ -388,7 +378,6 @@ def check(
     to date, and ruff finds nothing. Scenes are valid, and every formula in their texts has a value. Exit code
     1 if something is wrong.
     """
-
     console, catalog = current(), load_catalog()
     with meter(console) as on_progress:
         report = audit(catalog, name, on_progress=on_progress, refused=refused, is_command=is_command)
@@ -404,11 +393,8 @@ def _show_report(console: Console, catalog: Catalog, report: AuditReport) -> Non
     if blanks:
         console.line((blanks[0].fix, "dim"), indent=2)
     for problem in report.problems:
-        if problem.code == "blank":
-            continue
-        console.line((problem.where, "bold"))
-        console.line(problem.message, indent=2)
-        console.line((problem.fix, "dim"), indent=2)
+        if problem.code != "blank":
+            _show_problem(console, problem)
     warm_ups = len({*report.exercises} & {*catalog.warm_up_ids()})
     among = f" ({counted(warm_ups, 'warm-up')} among them)" if warm_ups else ""
     looked = (
@@ -428,7 +414,6 @@ def _show_report(console: Console, catalog: Catalog, report: AuditReport) -> Non
 def _emit_report(console: Console, catalog: Catalog, report: AuditReport) -> None:
     if not console.json:
         return
-
     try:
         course = catalog.ref
     except ContentError:
@@ -461,7 +446,6 @@ def build(
     date. With --accept each wrong program is graded, and `record.json` beside the solution keeps which check
     catches it and what it is told; each program that lost its check or its name is printed.
     """
-
     console, catalog = current(), load_catalog()
     instructors(catalog)
     every = (*catalog.exercises(), *catalog.warm_ups())
@@ -509,15 +493,12 @@ def _say_blanks(catalog: Catalog, exercise: Exercise) -> None:
 
 
 @app.command(epilog="Example: course author mutants integrators")
-def mutants(
-    name: _EachExercise = None,
-) -> int:
+def mutants(name: _EachExercise = None) -> int:
     """Show the feedback for each wrong solution.
 
     Grades every mutant and shows the message, the advice and the diagnosis that its author would see. Exit
     code 1 if a mutant is not caught as it is on record.
     """
-
     console, catalog = current(), load_catalog()
     instructors(catalog)
     chosen = catalog.exercises() if name is None else (catalog.exercise(name),)
@@ -527,14 +508,12 @@ def mutants(
             outcomes = run_mutants(catalog, exercise, on_progress=on_progress)
         _show_mutants(console, exercise, outcomes)
         rows += [_mutant_row(exercise, outcome) for outcome in outcomes]
-    ok = not any(row.faults for row in rows)
     wrong = sum(bool(row.faults) for row in rows)
-    console.line(
-        f"{counted(len(rows), 'mutant')}: "
-        + ("each is caught as it says." if ok else f"{wrong} not caught as they should be.")
-    )
-    console.emit(AuthorMutants(exit_code=0 if ok else 1, mutants=tuple(rows)))
-    return 0 if ok else 1
+    said = f"{wrong} not caught as they should be." if wrong else "each is caught as it says."
+    console.line(f"{counted(len(rows), 'mutant')}: {said}")
+    code = 1 if wrong else 0
+    console.emit(AuthorMutants(exit_code=code, mutants=tuple(rows)))
+    return code
 
 
 def _show_mutants(console: Console, exercise: Exercise, outcomes: tuple[MutantOutcome, ...]) -> None:

@@ -5,6 +5,7 @@ takes seconds, and names each picture that is out of date.
 """
 
 import hashlib
+import io
 import json
 import os
 import subprocess
@@ -126,8 +127,6 @@ def _until_fixed(text: str) -> str:
 
 def _diagnosis() -> bytes:
     """The screen as SVG; the same output gives the same bytes."""
-    import io
-
     from rich.console import Console as RichConsole
     from rich.text import Text
 

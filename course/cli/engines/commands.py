@@ -1,8 +1,5 @@
 """``course engines``: which real engines this machine has, and the same scenarios in each of them."""
 
-import csv
-import io
-import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Annotated, Any
@@ -12,7 +9,6 @@ import msgspec
 from course.cli.frame import here
 from course.cli.frame.completion import engine_ids, scenario_ids
 from course.cli.frame.console import Console, current, meter
-from course.cli.frame.here import inserted
 from course.cli.frame.options import option
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Envelope, WrittenFile, filled
@@ -22,21 +18,6 @@ from course.errors import MissingCapabilityError, UsageError
 
 # ---
 # The replies of ``course engines ... --json``, as types.
-
-
-class Engine(msgspec.Struct, frozen=True, kw_only=True):
-    """One engine. ``usable`` is "installed and it starts"; ``command`` installs what is missing."""
-
-    id: str
-    name: str
-    package: str
-    version: str | None
-    extra: str
-    licence: str
-    about: str
-    usable: bool
-    missing: str
-    command: str
 
 
 class EngineScenario(msgspec.Struct, frozen=True, kw_only=True):
@@ -52,7 +33,7 @@ class EngineScenario(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class EngineList(Envelope, tag="course.engines-list/1", frozen=True, kw_only=True):
-    engines: tuple[Engine, ...]
+    engines: tuple[EngineState, ...]
     scenarios: tuple[EngineScenario, ...]
 
 
@@ -103,7 +84,7 @@ class Engines(Envelope, tag="course.engines/1", frozen=True, kw_only=True):
     machine: EngineMachine
     reference: EngineMachine | None
     quick: bool
-    engines: tuple[Engine, ...]
+    engines: tuple[EngineState, ...]
     scenarios: tuple[EngineScenario, ...]
     rows: tuple[EngineRow, ...]
     findings: tuple[str, ...]
@@ -141,46 +122,16 @@ def rows(comparison: Comparison) -> tuple[EngineRow, ...]:
     from course.engines.scenarios import SCENARIOS
 
     best = best_rows(comparison.rows)
-    made = []
-    for row in comparison.rows:
-        scenario = SCENARIOS[row.scenario]
-        made.append(
-            filled(
-                EngineRow,
-                row,
-                scenario,
-                error=None if row.value is None else scenario.error(row.value),
-                best=id(row) in best,
-            )
+    return tuple(
+        filled(
+            EngineRow,
+            row,
+            scenario := SCENARIOS[row.scenario],
+            error=None if row.value is None else scenario.error(row.value),
+            best=id(row) in best,
         )
-    return tuple(made)
-
-
-def table(comparison: Comparison) -> bytes:
-    """All rows as CSV: a line of names, then every digit."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(_COLUMNS)
-    for row in rows(comparison):
-        writer.writerow(_plain(getattr(row, column)) for column in _COLUMNS)
-    return text.getvalue().encode()
-
-
-def _plain(value: object) -> str:
-    if value is None:
-        return ""
-    if isinstance(value, float) and math.isinf(value):
-        return "inf"
-    return repr(value) if isinstance(value, float) else str(value)
-
-
-def figures(comparison: Comparison, path: Path) -> list[tuple[Path, bytes]]:
-    """The figures that can be drawn from the rows, each with the name of its file."""
-    from course.figures.engines import render
-
-    kind = path.suffix.lower().removeprefix(".")
-    pictures = render(comparison.rows, kind)
-    return [(inserted(path, name), data) for name, data in pictures.items()]
+        for row in comparison.rows
+    )
 
 
 app = group(COMMANDS["engines"].summary)
@@ -214,7 +165,7 @@ def list_engines() -> int:
     for scenario in SCENARIOS.values():
         console.item(scenario.id, f"{scenario.title}. {scenario.question}", width=15)
     console.note(("Next: course engines compare --quick", "bold"))
-    console.emit(EngineList(engines=_engines(states), scenarios=_scenarios(SCENARIOS)))
+    console.emit(EngineList(engines=states, scenarios=_scenarios(SCENARIOS)))
     return 0
 
 
@@ -267,19 +218,20 @@ def _write(
     console: Console, comparison: Comparison, plot: Path | None, csv: Path | None
 ) -> tuple[tuple[WrittenFile, ...], WrittenFile | None]:
     """Write the requested figures and table, and say where they are."""
-    plots: tuple[WrittenFile, ...] = ()
+    plots: list[WrittenFile] = []
     if plot:
+        from course.figures.engines import render
+
         with console.working("Drawing"):
-            pictures = figures(comparison, plot)
-        plots = tuple(here.write(path, data, why="engines") for path, data in pictures)
+            pictures = render(comparison.rows, plot.suffix.lower().removeprefix("."))
+        for name, picture in pictures.items():
+            plots.append(here.write_told(here.inserted(plot, name), picture, why="engines"))
         if not plots:
             console.line("No figure: steps need three values of --dt, speed needs boxes and stack.")
-    rows = here.write(csv, table(comparison), why="engines") if csv else None
-    for file in (*plots, *([rows] if rows else [])):
-        if file.backup:
-            console.line(f"There was a file of that name; it is kept at {file.backup.backup}.")
-        console.line(f"Wrote {file.path}")
-    return plots, rows
+    if csv is None:
+        return tuple(plots), None
+    lines = ([getattr(row, column) for column in _COLUMNS] for row in rows(comparison))
+    return tuple(plots), here.write_told(csv, here.as_csv(_COLUMNS, lines), why="engines")
 
 
 def _step(text: str) -> float:
@@ -298,10 +250,6 @@ def _step(text: str) -> float:
             code="bad_step",
         )
     return step
-
-
-def _engines(states: Iterable[EngineState]) -> tuple[Engine, ...]:
-    return tuple(filled(Engine, state) for state in states)
 
 
 def _scenarios(ids: Iterable[str]) -> tuple[EngineScenario, ...]:
@@ -323,7 +271,7 @@ def _reply(
         machine=filled(EngineMachine, comparison.machine),
         reference=filled(EngineMachine, shipped, shipped.machine) if shipped else None,
         quick=comparison.quick,
-        engines=_engines(comparison.engines),
+        engines=comparison.engines,
         scenarios=_scenarios(dict.fromkeys(row.scenario for row in comparison.rows)),
         rows=rows(comparison),
         findings=tuple(said),

@@ -25,7 +25,7 @@ import typer
 from course import __version__
 from course.cli.frame.console import Console, current, install
 from course.cli.frame.options import Line, global_options
-from course.cli.frame.registry import HOME, LazyGroup, build, find, understood
+from course.cli.frame.registry import HOME, build, find, understood
 from course.errors import INTERRUPTED, CourseError, InternalError, NotFoundError, UsageError
 
 SHELLS = ("bash", "zsh", "fish", "powershell", "pwsh")
@@ -72,9 +72,12 @@ def run(arguments: Sequence[str]) -> int:
     except CourseError as error:
         code = _say(console, line, error.exit_code, error.code, error.message, error.help)
     except Exception as error:  # noqa: BLE001 - the boundary: nothing passes it
-        code = (
-            _usage(console, line, error) if hasattr(error, "format_message") else _crash(console, line, error)
-        )
+        if hasattr(error, "format_message"):
+            code = _usage(console, line, error)
+        else:  # our fault: the details go to a file, one line to the screen
+            kind = f"A fault in the course, not in your work ({type(error).__name__})"
+            message = f"{kind}; the details are in {write_report(error)}."
+            code = _say(console, line, InternalError.exit_code, "internal", message)
     if console.json and not console.emitted:
         _emit(console, line, code)
     console.flush()
@@ -83,8 +86,8 @@ def run(arguments: Sequence[str]) -> int:
 
 def again(arguments: Sequence[str]) -> int:
     """Run a command within this run, with its console; raises what the command raises."""
-    program = _program(fancy=current().fancy)
-    return _code(program.main(list(arguments), prog_name="course", standalone_mode=False))
+    result = _program(fancy=current().fancy).main(list(arguments), prog_name="course", standalone_mode=False)
+    return result if isinstance(result, int) else 0
 
 
 def _dispatch(line: Line, console: Console) -> int:
@@ -96,13 +99,12 @@ def _dispatch(line: Line, console: Console) -> int:
         _enter(line.settings.directory)
     if line.rest[:1] in {("--show-completion",), ("--install-completion",)} and len(line.rest) == 2:
         return _completion(console, *line.rest)
-    program = _program(fancy=console.fancy)
     if not console.json:
-        return _code(program.main(list(line.rest), prog_name="course", standalone_mode=False))
+        return again(line.rest)
     # A library's own output must not end up beside the one object.
     stray = io.StringIO()
     with contextlib.redirect_stdout(stray):
-        code = _code(program.main(list(line.rest), prog_name="course", standalone_mode=False))
+        code = again(line.rest)
     if stray.getvalue() and not console.emitted and {"-h", "--help"} & set(line.rest):
         from course.cli.frame.replies import Help
 
@@ -113,7 +115,7 @@ def _dispatch(line: Line, console: Console) -> int:
 
 
 def _program(*, fancy: bool) -> Any:
-    app = build(LazyGroup, fancy=fancy)
+    app = build(fancy=fancy)
     app.callback(epilog="Start with: course demo, then course init my-course.")(_root)
     program = typer.main.get_command(app)
     for option in program.params:
@@ -183,10 +185,6 @@ def _enter(directory: str) -> None:
         ) from error
 
 
-def _code(result: Any) -> int:
-    return result if isinstance(result, int) else 0
-
-
 def _say(
     console: Console,
     line: Line,
@@ -238,14 +236,6 @@ def _choices(error: Any, context: Any) -> list[str]:
         return []
     found = [str(item.value) for item in param.shell_complete(context, "")]
     return found if len(found) <= _MOST_CHOICES else []
-
-
-def _crash(console: Console, line: Line, error: BaseException) -> int:
-    """Our fault: the details go to a file, one line to the screen."""
-
-    where = write_report(error)
-    message = f"A fault in the course, not in your work ({type(error).__name__}); the details are in {where}."
-    return _say(console, line, InternalError.exit_code, "internal", message)
 
 
 # ---

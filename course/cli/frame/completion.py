@@ -5,11 +5,12 @@ from __future__ import annotations
 import ast
 import importlib
 from collections.abc import Callable, Iterable
+from contextlib import closing
 from pathlib import Path
 from typing import Annotated, Any
 
 from course.cli.frame.options import argument, option
-from course.errors import CourseError
+from course.errors import CourseError, NotFoundError
 from course.ids import WARM_UPS
 
 
@@ -29,12 +30,10 @@ def exercise_ids(incomplete: str) -> list[str]:
 
 
 def warm_up_ids(incomplete: str) -> list[str]:
-    """Warm-ups whose id begins with what was typed."""
     return _beginning(incomplete, (folder.name for folder in _in_content("exercises", f"{WARM_UPS}/*")))
 
 
 def lesson_ids(incomplete: str) -> list[str]:
-    """Lessons whose id begins with what was typed."""
     return _beginning(incomplete, (file.stem for file in _in_content("lessons", "*.md")))
 
 
@@ -83,7 +82,6 @@ def check_ids(ctx: Any, incomplete: str) -> list[str]:
 
 def simulation_settings(ctx: Any, incomplete: str) -> list[str]:
     """The names that ``--set`` takes for the simulation on the line, with the equals sign."""
-    from course.errors import NotFoundError
     from course.simulations.registry import get
 
     try:
@@ -95,8 +93,6 @@ def simulation_settings(ctx: Any, incomplete: str) -> list[str]:
 
 def scene_settings(ctx: Any, incomplete: str) -> list[str]:
     """The names that ``--set`` takes for the scene on the line, with the equals sign."""
-    from pathlib import Path
-
     from course.strangers import read_bytes, toml
 
     name = _given(ctx, "scene")
@@ -136,7 +132,6 @@ def run_numbers(ctx: Any, incomplete: str) -> list[str]:
 def _in_gradebook(ctx: Any, query: str) -> list[Any]:
     """A column of an existing gradebook; empty if it cannot be read."""
     import sqlite3
-    from contextlib import closing
 
     from course.strangers import no_programs
 

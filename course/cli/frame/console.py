@@ -225,7 +225,6 @@ class Console:
 
     @property
     def width(self) -> int:
-        """Columns to write in."""
         return self.rich().width if self.fancy else min(self.terminal_width, MAX_WIDTH)
 
     @property
@@ -293,9 +292,14 @@ class Console:
         self._human.write("".join(f"{filled(row, self.width, margin, hanging)}\n" for row in rows))
 
     def blank(self) -> None:
-        """An empty line, if the output has a layout."""
+        """An empty line; ``--quiet`` drops it."""
         if not self.quiet:
             self._human.write("\n")
+
+    def gap(self) -> None:
+        """An empty line, where the output has a layout."""
+        if self.fancy:
+            self.blank()
 
     def heading(self, text: str, aside: str = "") -> None:
         """A line that names what follows it."""
@@ -446,9 +450,7 @@ class Console:
         """Ask a yes-or-no question. Without a user to answer it, the answer is no."""
         if not self.interactive:
             return False
-        self._out.write(f"{question} [y/N] ")
-        self._out.flush()
-        return sys.stdin.readline().strip().lower() in {"y", "yes"}
+        return (self.ask(f"{question} [y/N] ") or "").lower() in {"y", "yes"}
 
     def ask(self, question: str) -> str | None:
         """What the user types on one line, without surrounding space; None at the end of the input."""
@@ -466,11 +468,10 @@ class Console:
     @property
     def fills_the_screen(self) -> bool:
         """Whether the reader can open here: a user is there, and non-ASCII letters are shown."""
-        if not (self.fancy and self.interactive) or self.quiet:
+        reads = self.fancy and self.interactive and not self.quiet
+        if not (reads and sys.stdout and sys.stdout.isatty()):
             return False
         if os.environ.get("TERM", "") in {"", "dumb", "unknown"}:
-            return False
-        if not (sys.stdin and sys.stdin.isatty() and sys.stdout and sys.stdout.isatty()):
             return False
         return (sys.stdout.encoding or "").lower().replace("-", "") == "utf8"
 

@@ -5,6 +5,9 @@ Everything a command needs to know before it starts; heavier imports wait until 
 
 from __future__ import annotations
 
+import csv
+import io
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -179,6 +182,13 @@ class Here:
     def history(self, exercise: Exercise) -> History:
         return history_of(self.workspace.store.events(subject=exercise.id))
 
+    def known_history(self, exercise: Exercise) -> History:
+        """As far as it can be read; a record that cannot be read is warned about elsewhere."""
+        try:
+            return self.history(exercise)
+        except CourseError:
+            return history_of(())
+
     def standing(self) -> Standing:
         """How far the student is with everything, as it is now; raises what ``history`` raises."""
         return Standing.of(self.workspace, self.catalog.syllabus.split)
@@ -286,7 +296,25 @@ def inserted(path: Path, name: str) -> Path:
     return path.with_name(f"{path.stem}-{name}{path.suffix}")
 
 
-def write(path: Path, data: bytes, *, why: str = "sim") -> WrittenFile:
+def as_csv(names: Iterable[str], rows: Iterable[Iterable[object]]) -> bytes:
+    """A table as CSV: a line of names, then every row, each number with every digit."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(names)
+    writer.writerows(rows)
+    return text.getvalue().encode()
+
+
+def write_told(path: Path, data: bytes, *, why: str) -> WrittenFile:
+    """As ``write``, and say where the file is, and the copy."""
+    file = write(path, data, why=why)
+    if file.backup:
+        current().line(f"There was another {file.path}; it is kept at {file.backup.backup}.")
+    current().line(f"Wrote {file.path}")
+    return file
+
+
+def write(path: Path, data: bytes, *, why: str) -> WrittenFile:
     """Write a file; if there is another one of that name, keep a copy of it first.
 
     Inside a workspace copies go where all its backups are, elsewhere beside the file.
@@ -309,7 +337,6 @@ def write(path: Path, data: bytes, *, why: str = "sim") -> WrittenFile:
 
 
 def _keep(path: Path, old: bytes, why: str) -> Path:
-    """Copy a file and give the copy's place."""
     try:
         return Workspace.find(path.parent).backup(path, why)
     except CourseError as error:

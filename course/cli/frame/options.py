@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import typer
@@ -35,7 +36,6 @@ class Line:
 
 
 def global_options(arguments: Sequence[str]) -> Line:
-    """Take the global options out of ``arguments``."""
     found: set[str] = set()
     directory: str | None = None
     rest: list[str] = []
@@ -67,8 +67,6 @@ def global_options(arguments: Sequence[str]) -> Line:
 
 def _below(first: str | None, second: str) -> str:
     """Two ``-C`` in a row add up, the second below the first."""
-    from pathlib import Path
-
     return second if first is None else str(Path(first) / second)
 
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 import base64
 import struct
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from rich.cells import cell_len
@@ -102,19 +103,19 @@ def protocol_of(console: Console, environ: Mapping[str, str]) -> Protocol | None
     return None
 
 
+@dataclass(frozen=True)
 class InlinePicture:
     """A PNG that Rich can print.
 
-    Args:
+    Attributes:
         columns: width on the screen; the height follows.
         letter: pixels in a column's width, which only sixels need.
     """
 
-    def __init__(self, png: bytes, protocol: Protocol, columns: int, letter: int = _LETTER) -> None:
-        self._png = png
-        self._protocol = protocol
-        self._columns = columns
-        self._letter = letter
+    png: bytes
+    protocol: Protocol
+    columns: int
+    letter: int = _LETTER
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[Segment]:
         # A control segment has no width and is dropped where there is no terminal.
@@ -123,19 +124,19 @@ class InlinePicture:
 
     def escape_codes(self) -> str:
         """The characters to send to the terminal."""
-        if self._protocol == "sixel":
+        if self.protocol == "sixel":
             from course.figures.terminal import sixels
 
-            return sixels(self._png, self._columns * self._letter)
-        data = base64.b64encode(self._png).decode("ascii")
-        if self._protocol == "iterm2":
-            size = f"size={len(self._png)};width={self._columns};preserveAspectRatio=1"
+            return sixels(self.png, self.columns * self.letter)
+        data = base64.b64encode(self.png).decode("ascii")
+        if self.protocol == "iterm2":
+            size = f"size={len(self.png)};width={self.columns};preserveAspectRatio=1"
             return f"\x1b]1337;File=inline=1;{size}:{data}\x07"
         chunks = [data[start : start + _CHUNK] for start in range(0, len(data), _CHUNK)]
         codes = []
         for index, chunk in enumerate(chunks):
             # q=2: no reply, which would arrive as if it had been typed.
-            head = f"a=T,f=100,q=2,c={self._columns}," if index == 0 else ""
+            head = f"a=T,f=100,q=2,c={self.columns}," if index == 0 else ""
             more = int(index < len(chunks) - 1)
             codes.append(f"\x1b_G{head}m={more};{chunk}\x1b\\")
         return "".join(codes)

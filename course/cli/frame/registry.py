@@ -18,8 +18,6 @@ from course.errors import CourseError, UsageError
 
 GLOBAL_OPTIONS = "Every command also takes --json, --plain, --quiet (-q) and -C DIR."
 
-_HELP_OPTIONS = {"help_option_names": ["-h", "--help"]}
-
 LEARN = "Learn"
 PRACTISE = "Practise"
 PLAY = "Play"
@@ -37,13 +35,14 @@ class Entry:
         module, name: where it is: a function, or ``app``, a group of commands.
         panel: the heading it is listed under.
         summary: one line for lists.
+        given: its arguments in the example below its help; the commands of a group have their own.
     """
 
     module: str
     name: str
     panel: str
     summary: str
-    example: str
+    given: str = ""
 
     @property
     def is_group(self) -> bool:
@@ -51,103 +50,43 @@ class Entry:
 
 
 COMMANDS: dict[str, Entry] = {
-    "demo": Entry("setup.demo", "demo", LEARN, "Find and fix a mistake, without a workspace.", "course demo"),
-    "init": Entry("setup.making", "init", LEARN, "Make a workspace.", "course init my-course"),
-    "go": Entry("loop", "go", LEARN, "Do one task after the other, checked at every save.", "course go"),
-    "next": Entry(
-        "home.overview", "next_command", LEARN, "Name what is next, and open nothing.", "course next"
-    ),
-    "lessons": Entry(
-        "reading.commands", "lessons", LEARN, "List the lessons, with what is read.", "course lessons"
-    ),
-    "lesson": Entry(
-        "reading.commands", "lesson", LEARN, "Read one lesson.", "course lesson numerical-integration"
-    ),
-    "quiz": Entry(
-        "quiz.commands", "app", LEARN, "Answer the quiz, and review what was missed.", "course quiz take"
-    ),
-    "progress": Entry("home.overview", "progress", LEARN, "Show everything done so far.", "course progress"),
-    "warmup": Entry(
-        "reading.commands", "warmup", PRACTISE, "Do a lesson's small tasks.", "course warmup fall-time"
-    ),
-    "exercises": Entry("home.overview", "exercises", PRACTISE, "List the exercises.", "course exercises"),
-    "start": Entry(
-        "work.changing", "start", PRACTISE, "Put an exercise into the workspace.", "course start integrators"
-    ),
-    "check": Entry("work.checking", "check", PRACTISE, "Run the public checks.", "course check integrators"),
-    "watch": Entry("loop", "watch", PRACTISE, "Check again on every save.", "course watch integrators"),
-    "hint": Entry("work.hinting", "hint", PRACTISE, "Show the next hint.", "course hint integrators"),
-    "diff": Entry(
-        "work.changing", "diff", PRACTISE, "Show what changed since the stub.", "course diff integrators"
-    ),
+    "demo": Entry("setup.demo", "demo", LEARN, "Find and fix a mistake, without a workspace."),
+    "init": Entry("setup.making", "init", LEARN, "Make a workspace.", "my-course"),
+    "go": Entry("loop", "go", LEARN, "Do one task after the other, checked at every save."),
+    "next": Entry("home.overview", "next_command", LEARN, "Name what is next, and open nothing."),
+    "lessons": Entry("reading.commands", "lessons", LEARN, "List the lessons, with what is read."),
+    "lesson": Entry("reading.commands", "lesson", LEARN, "Read one lesson.", "numerical-integration"),
+    "quiz": Entry("quiz.commands", "app", LEARN, "Answer the quiz, and review what was missed."),
+    "progress": Entry("home.overview", "progress", LEARN, "Show everything done so far."),
+    "warmup": Entry("reading.commands", "warmup", PRACTISE, "Do a lesson's small tasks.", "fall-time"),
+    "exercises": Entry("home.overview", "exercises", PRACTISE, "List the exercises."),
+    "start": Entry("work.changing", "start", PRACTISE, "Put an exercise into the workspace.", "integrators"),
+    "check": Entry("work.checking", "check", PRACTISE, "Run the public checks.", "integrators"),
+    "watch": Entry("loop", "watch", PRACTISE, "Check again on every save.", "integrators"),
+    "hint": Entry("work.hinting", "hint", PRACTISE, "Show the next hint.", "integrators"),
+    "diff": Entry("work.changing", "diff", PRACTISE, "Show what changed since the stub.", "integrators"),
     "report": Entry(
-        "work.reporting",
-        "report",
-        PRACTISE,
-        "Show what your code does, with figures.",
-        "course report sim-to-real",
+        "work.reporting", "report", PRACTISE, "Show what your code does, with figures.", "sim-to-real"
     ),
     "reflect": Entry(
-        "work.hinting",
-        "reflect",
-        PRACTISE,
-        "Answer in prose, and grade your answer.",
-        "course reflect sim-to-real",
+        "work.hinting", "reflect", PRACTISE, "Answer in prose, and grade your answer.", "sim-to-real"
     ),
     "solution": Entry(
-        "work.hinting",
-        "solution",
-        PRACTISE,
-        "Show a released solution, after a pass.",
-        "course solution integrators",
+        "work.hinting", "solution", PRACTISE, "Show a released solution, after a pass.", "integrators"
     ),
-    "reset": Entry(
-        "work.changing", "reset", PRACTISE, "Go back to the stub; a copy is kept.", "course reset integrators"
-    ),
-    "notebook": Entry(
-        "notebook",
-        "app",
-        PRACTISE,
-        "Write notebooks, check them, bring them up to date.",
-        "course notebook build integrators",
-    ),
-    "open": Entry(
-        "notebook", "open_notebook", PRACTISE, "Open one notebook in JupyterLab.", "course open integrators"
-    ),
-    "sandbox": Entry(
-        "sandbox.commands",
-        "app",
-        PLAY,
-        "Play with collisions, and see where the energy goes.",
-        "course sandbox play newtons-cradle",
-    ),
-    "sim": Entry("sim", "app", PLAY, "Run a simulation and compare with theory.", "course sim run free-fall"),
-    "engines": Entry(
-        "engines.commands",
-        "app",
-        PLAY,
-        "Compare real physics engines on this machine.",
-        "course engines compare --quick",
-    ),
-    "submit": Entry(
-        "work.submitting", "submit", HAND_IN, "Write the file to hand in.", "course submit -o mine.zip"
-    ),
-    "update": Entry(
-        "work.changing", "update", MACHINE, "Bring newer course content in.", "course update --dry-run"
-    ),
-    "doctor": Entry("setup.doctor", "doctor", MACHINE, "Say what works on this machine.", "course doctor"),
-    "bug": Entry(
-        "setup.doctor", "bug", MACHINE, "Write what a fault report needs into a file.", "course bug"
-    ),
-    "schema": Entry(
-        "frame.schemas", "schema", MACHINE, "Print the JSON Schema of a reply.", "course schema check"
-    ),
-    "grade": Entry(
-        "grade.commands", "app", TEACH, "Grade a class.", "course grade run submissions --out grades"
-    ),
-    "author": Entry(
-        "author.commands", "app", WRITE, "Write and check the course itself.", "course author check"
-    ),
+    "reset": Entry("work.changing", "reset", PRACTISE, "Go back to the stub; a copy is kept.", "integrators"),
+    "notebook": Entry("notebook", "app", PRACTISE, "Write notebooks, check them, bring them up to date."),
+    "open": Entry("notebook", "open_notebook", PRACTISE, "Open one notebook in JupyterLab.", "integrators"),
+    "sandbox": Entry("sandbox.commands", "app", PLAY, "Play with collisions, and see where the energy goes."),
+    "sim": Entry("sim", "app", PLAY, "Run a simulation and compare with theory."),
+    "engines": Entry("engines.commands", "app", PLAY, "Compare real physics engines on this machine."),
+    "submit": Entry("work.submitting", "submit", HAND_IN, "Write the file to hand in.", "-o mine.zip"),
+    "update": Entry("work.changing", "update", MACHINE, "Bring newer course content in.", "--dry-run"),
+    "doctor": Entry("setup.doctor", "doctor", MACHINE, "Say what works on this machine."),
+    "bug": Entry("setup.doctor", "bug", MACHINE, "Write what a fault report needs into a file."),
+    "schema": Entry("frame.schemas", "schema", MACHINE, "Print the JSON Schema of a reply.", "check"),
+    "grade": Entry("grade.commands", "app", TEACH, "Grade a class."),
+    "author": Entry("author.commands", "app", WRITE, "Write and check the course itself."),
 }
 
 
@@ -245,11 +184,11 @@ def group(summary: str) -> typer.Typer:
     return typer.Typer(help=summary, no_args_is_help=True, **OPTIONS)
 
 
-def build(cls: type[TyperGroup], *, fancy: bool) -> typer.Typer:
+def build(*, fancy: bool) -> typer.Typer:
     """The empty program: its commands come from ``COMMANDS``."""
     return typer.Typer(
         name="course",
-        cls=cls,
+        cls=LazyGroup,
         invoke_without_command=True,
         rich_markup_mode="rich" if fancy else None,
         **OPTIONS,
@@ -262,14 +201,13 @@ def find(module: str, name: str) -> Any:
 
 
 def _load(name: str, entry: Entry, mode: Any) -> Any:
-    """Import a command and hand it to typer."""
     target = find(entry.module, entry.name)
     if entry.is_group:
         target.info.name = name
         target.rich_markup_mode = mode
         return _with_global_options(typer.main.get_group(target))
     app = typer.Typer(add_completion=False, rich_markup_mode=mode, **OPTIONS)
-    app.command(name, epilog=f"Example: {entry.example}")(target)
+    app.command(name, epilog=f"Example: course {name} {entry.given}".rstrip())(target)
     return _with_global_options(typer.main.get_command(app))
 
 

@@ -50,7 +50,7 @@ from course.grading.gradebook.records import Decision, SubmittedAt
 from course.grading.gradebook.salvage import Salvaged, back_up
 from course.grading.gradebook.salvage import salvage as rescue
 from course.grading.results import effective as overriding
-from course.grading.results.effective import Effective, Recording, Results, ScoreChange, recorded
+from course.grading.results.effective import Recording, Results, ScoreChange, recorded
 from course.grading.results.late import (
     Worksheet,
     in_days,
@@ -211,7 +211,11 @@ def late(
             if known:
                 book.add_times(known, replace=True)
         results = Results(book)
-        found = [_late_one(item) for item in results.all() if item.late is not None or item.flagged_late]
+        found = [
+            filled(LateOne, item, submitted_at=utc(item.submitted_at) or None)
+            for item in results.all()
+            if item.late is not None or item.flagged_late
+        ]
         handed_in = [item for item in results.all() if item.result.number] if results.policy else []
         unknown_time = sum(item.submitted_at is None for item in handed_in)
         unknown = _unknown(results, known)
@@ -239,7 +243,7 @@ def _show_moved(console: Console, moved: list[ScoreChange], *, dry_run: bool) ->
         console.line(line, indent=2)
     if moved or dry_run:
         would = "would change" if dry_run else "changed"
-        console.line((f"{len(moved)} {'score' if len(moved) == 1 else 'scores'} {would}.", "bold"))
+        console.line((f"{counted(len(moved), 'score')} {would}.", "bold"))
 
 
 def _times(
@@ -304,10 +308,6 @@ def _everybody(results: Results) -> set[str]:
     return names | {person.student for person in people if person is not None}
 
 
-def _late_one(item: Effective) -> LateOne:
-    return filled(LateOne, item, submitted_at=utc(item.submitted_at) or None)
-
-
 def _show_late(
     console: Console, results: Results, found: list[LateOne], unknown_time: int, unknown: list[str]
 ) -> None:
@@ -368,20 +368,20 @@ def similar(
 
 
 def _show_similar(console: Console, found: Similar) -> None:
-    for group in found.groups[:20]:
+    for group in found.groups[:_SHOWN]:
         names = ", ".join(map(one_line, group.members[:8]))
         names += f" and {len(group.members) - 8} more" if group.members[8:] else ""
         words = f"{group.exercise}, weakest pair {group.share:.0%}: {names}"
         console.item(f"group of {len(group.members)}", words)
-    if found.groups[20:]:
-        console.line(f"and {counted(len(found.groups) - 20, 'more group')}", indent=2)
-    for pair in found.pairs[:20]:
+    if found.groups[_SHOWN:]:
+        console.line(f"and {counted(len(found.groups) - _SHOWN, 'more group')}", indent=2)
+    for pair in found.pairs[:_SHOWN]:
         both = f"{pair.first.label} and {pair.second.label}"
         console.item(
             f"{pair.share:.0%}", f"{both}, {pair.exercise}, {counted(pair.lines, 'line')} alike", width=5
         )
-    if len(found.pairs) > 20:
-        console.line(f"and {counted(len(found.pairs) - 20, 'more pair')}", indent=2)
+    if len(found.pairs) > _SHOWN:
+        console.line(f"and {counted(len(found.pairs) - _SHOWN, 'more pair')}", indent=2)
     console.line(
         (f"{counted(len(found.pairs), 'pair')} among {counted(found.compared, 'submission')}.", "bold")
     )

@@ -31,10 +31,7 @@ _SHOWN = 20
 
 def export(
     out: Annotated[Path | None, argument("OUT", "Folder of a grading run; an autograder needs none.")] = None,
-    format: Annotated[  # noqa: A002 - the option's name
-        str,
-        one_of("--format", *FORMATS, AUTOGRADER),
-    ] = "csv",
+    format: Annotated[str, one_of("--format", *FORMATS, AUTOGRADER)] = "csv",  # noqa: A002 - its name
     output: Annotated[
         Path | None, option("-o --output PATH", "File to write; in OUT if left out. - is standard output.")
     ] = None,
@@ -95,12 +92,7 @@ def export(
 
 
 def _from_gradebook(
-    console: Console,
-    out: Path,
-    name: str,
-    output: Path | None,
-    people: Roster | None,
-    options: ExportOptions,
+    console: Console, out: Path, name: str, output: Path | None, people: Roster | None, options: ExportOptions
 ) -> tuple[Written | None, Merged]:
     """Write it, and say first what the roster changes; nothing is written if it was printed."""
     with open_results(out) as opened:
@@ -199,11 +191,6 @@ def _show(console: Console, name: str, written: Written, out: Path | None, found
 
 
 app = group(COMMANDS["grade"].summary)
-
-
-@app.callback()
-def _group() -> None:
-    """Grade a class: hidden checks, protected workers, one gradebook."""
 
 
 for _command, _example in (

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
 import msgspec
-import typer
 
 from course.cli.frame.completion import choice_of, exercise_ids, run_numbers
 from course.cli.frame.console import Console
@@ -33,7 +32,7 @@ def levels(isolation: str) -> tuple[str | None, str]:
 
 def one_of(name: str, *values: str, help: str | None = None) -> Any:  # noqa: A002 - the option's name
     """An option that takes one of these values, which the shell completes."""
-    return typer.Option(name, metavar="|".join(values), autocompletion=choice_of(*values), help=help)
+    return option(f"{name} {'|'.join(values)}", help, choice_of(*values))
 
 
 def _share(text: str | float) -> float:
@@ -95,7 +94,7 @@ Share = Annotated[
 ]
 
 
-Yes = Annotated[bool, typer.Option("--yes", "-y", help="Run the graders that are kept there; do not ask.")]
+Yes = Annotated[bool, option("--yes -y", "Run the graders that are kept there; do not ask.")]
 
 
 def agreed(console: Console, attempt: Callable[[str], T], *, yes: bool) -> T:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, nullcontext
-from dataclasses import replace
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
@@ -13,7 +13,7 @@ from course import extras
 from course.catalog.load import Catalog
 from course.catalog.models import CourseRef
 from course.cli.frame.completion import exercise_ids, graded_ids, student_ids, submitted_ids
-from course.cli.frame.console import Console, current
+from course.cli.frame.console import Console, current, meter
 from course.cli.frame.here import load_catalog
 from course.cli.frame.options import argument, option
 from course.cli.frame.replies import filled
@@ -29,6 +29,7 @@ from course.cli.grade.options import (
     agreed,
     in_words,
     levels,
+    points,
     show_change,
     show_roster,
 )
@@ -44,7 +45,7 @@ from course.grading.running import batch
 from course.grading.running.folder import open_results
 from course.grading.running.rerun import Change, RerunOptions, rerun
 from course.grading.running.run import GradeAll, RunOptions, Summary, Ungraded, grade_class
-from course.printable import command, one_line
+from course.printable import command, counted, one_line
 from course.scoring.judging.submission import Terms
 from course.scoring.verdict import LARGEST_SEED, format_points, in_points
 
@@ -90,11 +91,11 @@ def run(
             f"Each folder in {submissions} is taken for a student, and all are called as exercises. If they"
             " are one student's, name the folder above them."
         )
-    progress = _progress(console, catalog.ref)
+    progress = _Progress(console, catalog.ref)
 
     def grading(accepted: str) -> tuple[Summary, tuple[Change, ...]]:
         mine = replace(options, accepted=accepted)
-        with _graders(jobs, local_cluster, scheduler) as grade, progress as report:
+        with _graders(jobs, local_cluster, scheduler) as grade, progress.shown() as report:
             summary = grade_class(submissions, out, catalog, mine, report, grade=grade)
             return summary, _would_change(console, summary, out, catalog, terms, grade)
 
@@ -106,7 +107,7 @@ def run(
     return summary.exit_code
 
 
-def _interrupted(progress: _progress, out: Path) -> CourseError:
+def _interrupted(progress: _Progress, out: Path) -> CourseError:
     """What is there after Ctrl-C, and how it goes on."""
     done, total = progress.reached
     if not out.exists():
@@ -162,12 +163,10 @@ def _graders(jobs: int, local_cluster: int | None, scheduler: str | None) -> Abs
     """The graders: processes on this machine, or a cluster."""
     if local_cluster is None and scheduler is None:
         return nullcontext(partial(batch.grade_all, graders=jobs))
-    cluster: AbstractContextManager[GradeAll] = (
-        extras.load("cluster").local_cluster(local_cluster or 1)
-        if scheduler is None
-        else extras.load("cluster").remote_cluster(scheduler)
-    )
-    return cluster
+    part: Any = extras.load("cluster")
+    graders: AbstractContextManager[GradeAll]
+    graders = part.local_cluster(local_cluster) if scheduler is None else part.remote_cluster(scheduler)
+    return graders
 
 
 def _show_people(console: Console, summary: Summary) -> None:
@@ -224,61 +223,40 @@ def explain(
     return 0
 
 
-class _progress:  # noqa: N801 - used as a function
-    """Shows results as they arrive: a bar on a terminal, lines elsewhere, JSON Lines with ``--json``."""
+@dataclass
+class _Progress:
+    """Shows results as they arrive: a bar on a terminal, lines elsewhere, JSON Lines with ``--json``.
 
-    def __init__(self, console: Console, course: CourseRef) -> None:
-        self._console = console
-        self._course = course
-        self._bar: Any = None
-        self.reached = 0, 0  # students done, and all
+    Attributes:
+        reached: students done, and all.
+    """
 
-    def __enter__(self) -> Callable[[Effective, int, int], None]:
-        show = self._shown()
+    console: Console
+    course: CourseRef
+    reached: tuple[int, int] = 0, 0
 
-        def report(result: Effective, done: int, total: int) -> None:
-            self.reached = done, total
-            show(result, done, total)
+    @contextmanager
+    def shown(self) -> Iterator[Callable[[Effective, int, int], None]]:
+        """A function to call with each result, students done, and all of them."""
+        console = self.console
+        with meter(console) if console.fancy else nullcontext() as advance:
 
-        return report
+            def report(result: Effective, done: int, total: int) -> None:
+                self.reached = done, total
+                if console.json:
+                    console.emit_line(grade_line(result, self.course))
+                elif advance is not None:
+                    advance(done, total, "graded")
+                elif not console.quiet:
+                    console.line(_graded(result, done, total))
 
-    def _shown(self) -> Callable[[Effective, int, int], None]:
-        console = self._console
-        if console.json:
-            return self._json
-        if console.quiet:
-            return lambda *_: None
-        if not console.fancy:
-            return self._line
-        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+            yield report
 
-        columns = (
-            TextColumn("{task.description}"),
-            BarColumn(None),
-            MofNCompleteColumn(),
-            TimeRemainingColumn(),
-        )
-        self._bar = Progress(*columns, console=console.rich(), transient=True)
-        self._task = self._bar.add_task("Grading", total=None)
-        self._bar.start()
-        return self._advance
 
-    def __exit__(self, *_: object) -> None:
-        if self._bar is not None:
-            self._bar.stop()
-
-    def _advance(self, _result: Effective, done: int, total: int) -> None:
-        self._bar.update(self._task, completed=done, total=total)
-
-    def _line(self, result: Effective, done: int, total: int) -> None:
-        verdict = result.verdict
-        ending = f"{verdict.score:g}/{verdict.max_score:g}" if verdict.error is None else verdict.error.code
-        self._console.line(
-            f"{done}/{total} {one_line(result.student)} {result.exercise} {verdict.state} {ending}"
-        )
-
-    def _json(self, result: Effective, _done: int, _total: int) -> None:
-        self._console.emit_line(grade_line(result, self._course))
+def _graded(result: Effective, done: int, total: int) -> str:
+    verdict = result.verdict
+    ending = f"{verdict.score:g}/{verdict.max_score:g}" if verdict.error is None else verdict.error.code
+    return f"{done}/{total} {one_line(result.student)} {result.exercise} {verdict.state} {ending}"
 
 
 def _show_summary(
@@ -302,12 +280,8 @@ def _show_summary(
         )
         return
     graded = summary.states["graded"]
-    console.line(
-        (
-            f"{graded} graded, {summary.passed} of them pass{_mark(summary)}. {summary.elapsed_s:.1f} s.",
-            "bold",
-        )
-    )
+    said = f"{graded} graded, {summary.passed} of them pass{_mark(summary)}. {summary.elapsed_s:.1f} s."
+    console.line((said, "bold"))
     for state, words in (
         ("ungradable", "could not be graded"),
         ("grader_error", "hit a fault of the grader and are marked for regrading"),
@@ -332,9 +306,7 @@ def _show_summary(
     if summary.already:
         console.note(f"{summary.already} had been graded before.")
     for level, count in sorted(summary.levels.items()):
-        console.note(
-            f"{count} {'submission' if count == 1 else 'submissions'} ran at protection level {level}."
-        )
+        console.note(f"{counted(count, 'submission')} ran at protection level {level}.")
     if options.terms.at_least == "L1":
         console.warn("Graded as plain processes (L1): submissions could read files and use the network.")
     files = "gradebook.sqlite, grades.csv, results.jsonl, report.html"
@@ -351,8 +323,7 @@ def _alike(rows: list[Ungraded]) -> list[tuple[str, Ungraded]]:
         else:
             told.append((f"{one_line(row.student)} {row.exercise}", row))
     for (exercise, _), those in files.items():
-        count = "1 submission" if len(those) == 1 else f"{len(those)} submissions"
-        told.append((f"{exercise}, {count}", those[0]))
+        told.append((f"{exercise}, {counted(len(those), 'submission')}", those[0]))
     return told
 
 
@@ -397,7 +368,7 @@ def _show_result(
         at = found.override.at
         console.item("override", f"{found.override.reason} (set {at}; {checks_gave(found)})", width=10)
     if found.late is not None:
-        cost = f"{in_points(found.penalty)} off {score_of(found)}" if found.penalty else "no penalty"
+        cost = f"{in_points(found.penalty)} off {points(found.raw_score)}" if found.penalty else "no penalty"
         console.item("late", f"{in_days(found.late)}, {cost}", width=10)
     if result.number:
         level = f" at {verdict.isolation}" if verdict.isolation else ""
@@ -431,9 +402,4 @@ def checks_gave(found: Effective) -> str:
     """What the graders said of work that has a score by hand."""
     if found.verdict.state in {"ungradable", MISSING, NOT_YET}:
         return "no check ran"
-    return f"the checks gave {score_of(found)}"
-
-
-def score_of(found: Effective) -> str:
-    """The checks' result in words."""
-    return "no score" if found.raw_score is None else format_points(found.raw_score)
+    return f"the checks gave {points(found.raw_score)}"

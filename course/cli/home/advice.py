@@ -27,10 +27,7 @@ def next_step(here: Here, made: Attempt) -> str:
 
 def hint_is_due(here: Here, exercise: Exercise) -> bool:
     """Whether ``course hint`` would give a new one; not where the record cannot be read."""
-    try:
-        return here.history(exercise).hint_is_due(fingerprint(here.stub(exercise)))
-    except CourseError:
-        return False
+    return here.known_history(exercise).hint_is_due(fingerprint(here.stub(exercise)))
 
 
 def after_warm_up(here: Here, warm_up: Exercise) -> str:
@@ -42,10 +39,7 @@ def after_warm_up(here: Here, warm_up: Exercise) -> str:
 
 def after_report(here: Here, exercise: Exercise) -> str:
     """Its checks; once they pass, what comes after the exercise."""
-    try:
-        last = here.history(exercise).last_graded
-    except CourseError:
-        last = None
+    last = here.known_history(exercise).last_graded
     if last is None or not last.all_pass:
         return f"course check {exercise.id}"
     return _after(here, exercise) if exercise.is_warm_up else "course submit"

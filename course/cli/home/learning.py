@@ -10,6 +10,7 @@ from pathlib import Path
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.cli.frame.console import Console
+from course.cli.frame.replies import filled
 from course.cli.home.replies import (
     ExerciseState,
     MistakeState,
@@ -57,12 +58,12 @@ class Learning:
             by_lesson=tuple(_counts(one, [x for x in said if x.lesson == one]) for one in lessons),
             by_day=tuple(_counts(day, [x for x in said if _day(x) == day]) for day in days),
             each=tuple(
-                PredictionState(
-                    lesson=one.lesson,
+                filled(
+                    PredictionState,
+                    one,
                     section=self._section(one),
                     question=asked[1].words if (asked := self._asked(one)) else "",
                     said=one.text or None,
-                    judged=one.judged,
                     at=one.at.isoformat(),
                 )
                 for one in said
@@ -96,16 +97,14 @@ class Learning:
             exercise = known.get(one.exercise)
             if exercise is None:
                 continue
-            yield MistakeState(
-                exercise=one.exercise,
-                task=one.task,
+            yield filled(
+                MistakeState,
+                one,
                 title=exercise.task_titled(one.task),
-                diagnosis=one.diagnosis,
                 looks_like=_looks_like(exercise, one.diagnosis) or _raised(one),
                 read=exercise.where_to_read(one.task),
                 first_seen=one.first.isoformat(),
                 last_seen=one.last.isoformat(),
-                runs=one.runs,
                 mended_at=one.mended.isoformat() if one.mended else None,
                 given=one.diagnosis in {task.fault for task in exercise.task if task.id == one.task},
             )
@@ -184,12 +183,8 @@ def _show_predictions(console: Console, predictions: PredictionsState) -> None:
 
 def _show_mistakes(console: Console, mistakes: Sequence[MistakeState]) -> None:
     _show_some(console, "Mistakes", "made", [one for one in mistakes if not one.given])
-    _show_some(
-        console,
-        "Faults in the programs you were given",
-        "found by a check",
-        [one for one in mistakes if one.given],
-    )
+    given = [one for one in mistakes if one.given]
+    _show_some(console, "Faults in the programs you were given", "found by a check", given)
 
 
 #: So many mistakes that are open and so many that are mended are shown, the newest of each.
@@ -276,14 +271,13 @@ def objective_states(
     rights = [attempt.right.items() for attempt in standing.quiz.counting]
     answered = {question for items in rights for question, right in items if right}
     return tuple(
-        ObjectiveState(
-            title=one.title,
-            lessons=one.lessons,
+        filled(
+            ObjectiveState,
+            one,
             lessons_read=tuple(name for name in one.lessons if name in standing.read),
             predictions=sum(lesson in one.lessons for lesson, _ in predicted),
             warm_ups=sum(state.lesson in one.lessons for state in warm_ups),
             warm_ups_done=sum(state.lesson in one.lessons and state.state == "done" for state in warm_ups),
-            exercises=one.exercises,
             passed=tuple(name for name in one.exercises if name in passed),
             questions=one.quiz,
             answered=tuple(name for name in one.quiz if name in answered),

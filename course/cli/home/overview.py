@@ -22,6 +22,7 @@ from course.cli.home.replies import (
     WarmUpState,
 )
 from course.errors import CourseError
+from course.printable import counted
 from course.progress.history import History
 from course.progress.standing import Standing
 from course.scoring.verdict import format_points
@@ -49,7 +50,6 @@ def progress() -> int:
     Lessons read, exercises checked, with dates and scores; what you predicted and how well, which mistakes
     you made and fixed, and what to read again.
     """
-
     console, here = current(), Here.load()
     catalog, standing = here.catalog, here.standing()
     exercises, lessons = exercise_states(catalog, standing), lesson_states(catalog, standing)
@@ -65,7 +65,7 @@ def progress() -> int:
             console.line(f"{name}: {_progress_line(exercise)}", indent=2)
         if quiz is not None:
             console.heading("Quiz", _quiz_line(quiz))
-        often = _count(len(sent), "time")
+        often = counted(len(sent), "time")
         console.heading("Handed in", f"{often}, last {day(sent[-1])}" if sent else "never")
         show_learning(console, learning)
     step = next_in_course(catalog, standing)
@@ -164,14 +164,7 @@ def quiz_state(catalog: Catalog, standing: Standing) -> QuizState | None:
 def lesson_states(catalog: Catalog, standing: Standing) -> tuple[LessonState, ...]:
     """Every lesson and when it was first read; raises what reading the record raises."""
     return tuple(
-        LessonState(
-            id=lesson.id,
-            title=lesson.title,
-            summary=lesson.summary,
-            minutes=lesson.minutes,
-            exercises=lesson.exercises,
-            read_at=standing.read[lesson.id].isoformat() if lesson.id in standing.read else None,
-        )
+        filled(LessonState, lesson, read_at=at.isoformat() if (at := standing.read.get(lesson.id)) else None)
         for lesson in catalog.lessons()
     )
 
@@ -194,7 +187,7 @@ def _outside(console: Console, catalog: Catalog) -> int:
     step = "course init my-course"
     console.heading(catalog.title)
     console.line(
-        f"{_count(len(lessons), 'lesson')}, {_count(len(exercises), 'exercise')}; all of it works offline."
+        f"{counted(len(lessons), 'lesson')}, {counted(len(exercises), 'exercise')}; all of it works offline."
     )
     console.line("You are not in a workspace: the folder that holds your own files.")
     console.note("See what it looks like first: course demo")
@@ -275,9 +268,9 @@ def _progress_line(exercise: ExerciseState) -> str:
         if exercise.best_score is not None and exercise.best_score > exercise.score:
             parts.append(f"best {format_points(exercise.best_score)}")
     if exercise.checks_run:
-        parts.append(f"checked {_count(exercise.checks_run, 'time')}")
+        parts.append(f"checked {counted(exercise.checks_run, 'time')}")
     if exercise.hints_shown:
-        parts.append(_count(exercise.hints_shown, "hint"))
+        parts.append(counted(exercise.hints_shown, "hint"))
     if exercise.passed_at:
         parts.append(f"first passed {day(exercise.passed_at)}")
     elif exercise.checked_at:
@@ -295,7 +288,7 @@ def _quiz_line(quiz: QuizState) -> str:
     if quiz.best is None:
         return "not taken yet"
     parts = ["passed" if quiz.passed else "not passed yet", f"best {quiz.best} of {quiz.total}"]
-    return ", ".join([*parts, _count(quiz.attempts, "attempt")])
+    return ", ".join([*parts, counted(quiz.attempts, "attempt")])
 
 
 def score_of(state: ExerciseState) -> str:
@@ -303,10 +296,6 @@ def score_of(state: ExerciseState) -> str:
     if state.score is None or state.max_score is None:
         return ""
     return f"{format_points(state.score)}/{format_points(state.max_score)}"
-
-
-def _count(number: int, one: str) -> str:
-    return f"{number} {one}{'' if number == 1 else 's'}"
 
 
 def next_command() -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from datetime import date, datetime
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated
 
 from course.cli.frame.console import Console, current
 from course.cli.frame.options import option
@@ -13,22 +13,21 @@ from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import NextStep
 from course.cli.quiz import screen
 from course.cli.quiz.screen import (
+    KEYS,
     Desk,
     Quiz,
     QuizHistoryReply,
     QuizReview,
     agrees,
-    answer,
     open_or_new,
     printed_seed,
-    start,
 )
 from course.errors import INTERRUPTED, UsageError
 from course.progress import quiz
 from course.progress.quiz import Attempt
-from course.quizzing.answers import read_answers
+from course.quizzing.answers import AnswerFile, read_answers
 from course.quizzing.bank import MarkedQuestion, PosedQuestion, check_seed, mark, mark_sentence, needed
-from course.quizzing.desk import Due, finished, fits
+from course.quizzing.desk import Due, answered, finished, fits
 
 app = group(COMMANDS["quiz"].summary)
 
@@ -56,9 +55,10 @@ def take(answers: AnswersOption = None, seed: SeedOption = None, questions: Ques
     --questions, put the answers into a file, and pass it with --answers. Afterwards you are told why a missed
     answer is wrong; `course quiz history --all` explains every option.
     """
-
     console = current()
-    _check_options(console, answers, seed, questions, "take")
+    _check_options(answers, seed, questions, "take")
+    if answers is None and not questions:
+        _need_terminal(console, "take")
     desk = Desk.load()
     if answers is not None:
         return _take_file(console, desk, answers, seed)
@@ -70,7 +70,7 @@ def take(answers: AnswersOption = None, seed: SeedOption = None, questions: Ques
     attempt, resumed = open_or_new(console, desk, seed)
     posed = desk.bank.pose(attempt.seed)
     screen.show_mark(console, len(posed))
-    screen.show_keys(console)
+    console.note(KEYS)
     if resumed:
         console.line(f"Continuing the attempt you left: {len(attempt.answers)} of {len(posed)} answered.")
     if not _ask_all(console, desk, attempt, posed):
@@ -79,9 +79,7 @@ def take(answers: AnswersOption = None, seed: SeedOption = None, questions: Ques
     return _finish(console, desk, attempt, posed, resumed=resumed)
 
 
-def _check_options(
-    console: Console, answers: Path | None, seed: int | None, questions: bool, command: str
-) -> None:
+def _check_options(answers: Path | None, seed: int | None, questions: bool, command: str) -> None:
     if seed is not None:
         check_seed(seed)
     if answers is not None and questions:
@@ -89,8 +87,6 @@ def _check_options(
             "--questions prints the questions and --answers answers them; give one of the two.",
             help=f"First: course quiz {command} --questions. Then: course quiz {command} --answers FILE.",
         )
-    if answers is None and not questions and command == "take":
-        _need_terminal(console, command)
 
 
 def _need_terminal(console: Console, command: str) -> None:
@@ -113,7 +109,7 @@ def _ask_all(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[Pos
         chosen = screen.ask(console, question, number, len(posed))
         if chosen is None:
             return False
-        answer(desk, attempt, question.question, chosen.id)
+        answered(attempt, question.question, chosen.id, desk.here.record)
     return True
 
 
@@ -121,27 +117,26 @@ def _take_file(console: Console, desk: Desk, path: Path, seed: int | None) -> in
     """An attempt whose answers are all in a file."""
     file = read_answers(path)
     open_one = desk.history.open
-    if seed is None:
-        seed = file.seed
-    if seed is None and open_one is not None:
-        seed = open_one.seed
-    if seed is None:
-        _no_seed(path, "take")
-    posed = desk.bank.pose(check_seed(seed))
+    seed = _seed("take", file, seed, file.seed, open_one.seed if open_one is not None else None)
+    posed = desk.bank.pose(seed)
     answers = file.choose(posed, desk.bank, seed)
     screen.show_mark(console, len(posed))
     attempt = open_one if open_one is not None and agrees(desk.bank, open_one, seed, answers) else None
     resumed = attempt is not None and bool(attempt.answers)
-    attempt = attempt or start(desk, seed)
+    attempt = attempt or desk.begin(seed)
     for name, picked in answers.items():
         if name not in attempt.answers:
-            answer(desk, attempt, name, picked)
+            answered(attempt, name, picked, desk.here.record)
     return _finish(console, desk, attempt, posed, resumed=resumed)
 
 
-def _no_seed(path: Path, command: str) -> NoReturn:
+def _seed(command: str, file: AnswerFile, *seeds: int | None) -> int:
+    """The first seed that is known of those that a file of answers may be for."""
+    for seed in seeds:
+        if seed is not None:
+            return check_seed(seed)
     raise UsageError(
-        f"{path} does not say which questions its answers are for.",
+        f"{file.path} does not say which questions its answers are for.",
         help=f"Add a line `seed = N`, as `course quiz {command} --questions` prints it, or give --seed N.",
         code="seed_missing",
     )
@@ -150,7 +145,6 @@ def _no_seed(path: Path, command: str) -> NoReturn:
 def _finish(
     console: Console, desk: Desk, attempt: Attempt, posed: Sequence[PosedQuestion], *, resumed: bool
 ) -> int:
-    """Score, record, show."""
     result = finished(attempt, posed, desk.here.record)
     due = desk.reviews()
     step = _step(result.missed, due, passed=result.passed)
@@ -178,7 +172,6 @@ def _finish(
 
 
 def _step(missed: Sequence[MarkedQuestion], due: Sequence[Due], *, passed: bool) -> str:
-    """The command to run next."""
     if passed:
         return "course quiz review" if due else "course"
     read = next((marked.posed.read for marked in missed if marked.posed.read), "")
@@ -192,9 +185,8 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
     A missed question is due every two days until it was right three times in a row. Exit code 1 if a question
     was missed again; 0 if not, or if none is due. A review changes no score.
     """
-
     console = current()
-    _check_options(console, answers, seed, questions, "review")
+    _check_options(answers, seed, questions, "review")
     desk = Desk.load()
     ids = [entry.question for entry in desk.reviews() if entry.on <= today()]
     if not ids:
@@ -207,7 +199,7 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
     posed = desk.bank.pose(seed, only=ids)
     if questions:
         return screen.hand_out(console, desk.here, posed, seed, "review")
-    screen.show_keys(console)
+    console.note(KEYS)
     marked: list[MarkedQuestion] = []
     for number, question in enumerate(posed, start=1):
         one = screen.ask(console, question, number, len(posed))
@@ -221,11 +213,8 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
 
 def _review_file(console: Console, desk: Desk, path: Path, seed: int | None, ids: Sequence[str]) -> int:
     file = read_answers(path)
-    if seed is None:
-        seed = file.seed
-    if seed is None:
-        _no_seed(path, "review")
-    posed = desk.bank.pose(check_seed(seed), only=ids)
+    seed = _seed("review", file, seed, file.seed)
+    posed = desk.bank.pose(seed, only=ids)
     options = file.choose(posed, desk.bank, seed)
     marked = [_reviewed(desk, question, options[question.question], seed) for question in posed]
     for number, one in enumerate(marked, start=1):
@@ -251,7 +240,7 @@ def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence
             if desk.history.finished
             else "Nothing is under review yet: take the quiz first."
         )
-    elif not marked:
+    else:
         console.line("Nothing is due today.")
     screen.show_due(console, due, today())
     best = desk.history.best

@@ -27,7 +27,7 @@ from course.quizzing.bank import (
     mark_sentence,
     needed,
 )
-from course.quizzing.desk import GAP_DAYS, ROUNDS, Due, answered, begun, fits, schedule
+from course.quizzing.desk import GAP_DAYS, ROUNDS, Due, begun, fits, schedule
 
 # ---
 # The replies of ``course quiz ... --json``, as types.
@@ -153,7 +153,7 @@ class QuizHistoryReply(Envelope, tag="course.quiz-history/1", frozen=True, kw_on
 
 
 _PROMPT = "Your answer: "
-_KEYS = f"Type {LETTERS[0]} to {LETTERS[-1]} or 1 to {len(LETTERS)}, then Enter; q stops."
+KEYS = f"Type {LETTERS[0]} to {LETTERS[-1]} or 1 to {len(LETTERS)}, then Enter; q stops."
 #: Width of the longest label beside an option: "Your answer".
 _LABEL = 11
 
@@ -161,11 +161,6 @@ _LABEL = 11
 def show_mark(console: Console, total: int) -> None:
     """The pass mark, before the first question."""
     console.line((f"{mark_sentence(total)}.", "bold"))
-
-
-def show_keys(console: Console) -> None:
-    """The keys for answers."""
-    console.note(_KEYS)
 
 
 def ask(console: Console, posed: PosedQuestion, number: int, total: int) -> Choice | None:
@@ -182,7 +177,7 @@ def ask(console: Console, posed: PosedQuestion, number: int, total: int) -> Choi
         choice = posed.choice(typed)
         if choice is not None:
             return choice
-        console.line(_KEYS)
+        console.line(KEYS)
 
 
 def _show_question(console: Console, posed: PosedQuestion, number: int, total: int) -> None:
@@ -281,7 +276,6 @@ def _when(day: date, today: date) -> str:
 
 
 def show_attempts(console: Console, attempts: Sequence[QuizAttempt], best: Attempt | None) -> None:
-    """Every attempt as a row."""
     if not attempts:
         console.line("No attempt yet.")
         return
@@ -324,7 +318,7 @@ def hand_out(console: Console, here: Here, posed: Sequence[PosedQuestion], seed:
 
 def _template(posed: Sequence[PosedQuestion], seed: int) -> str:
     lines = ["format_version = 1", f"seed = {seed}", "", "[answers]"]
-    return "\n".join([*lines, *(f'{question.question} = ""' for question in posed)]) + "\n"
+    return "\n".join([*lines, *(f'{question.question} = ""' for question in posed), ""])
 
 
 def _asked(posed: PosedQuestion) -> QuizAsked:
@@ -403,6 +397,10 @@ class Desk:
         """A seed that asks no question in the same way as last time."""
         return fresh_seed(self.bank, self.history.last_seeds())
 
+    def begin(self, seed: int) -> Attempt:
+        """A new attempt, recorded."""
+        return begun(self.bank, seed, self.here.catalog.version, self.here.record)
+
     def reviews(self) -> tuple[Due, ...]:
         """The questions under review, from the record as it is now."""
         try:
@@ -422,7 +420,7 @@ def open_or_new(console: Console, desk: Desk, seed: int | None) -> tuple[Attempt
     elif open_one is not None and open_one.answers:
         left = f"{len(open_one.answers)} of {len(open_one.questions)} answered"
         console.line(f"This is another attempt; the one you left (seed {open_one.seed}, {left}) ends here.")
-    return start(desk, desk.new_seed() if seed is None else seed), False
+    return desk.begin(desk.new_seed() if seed is None else seed), False
 
 
 def printed_seed(console: Console, desk: Desk, seed: int | None) -> int:
@@ -434,16 +432,6 @@ def printed_seed(console: Console, desk: Desk, seed: int | None) -> int:
     if seed is not None and open_one is not None and open_one.answers:
         return seed
     return open_or_new(console, desk, seed)[0].seed
-
-
-def start(desk: Desk, seed: int) -> Attempt:
-    """Record the beginning of an attempt."""
-    return begun(desk.bank, seed, desk.here.catalog.version, desk.here.record)
-
-
-def answer(desk: Desk, attempt: Attempt, question: str, option: str) -> None:
-    """Record one answer at once."""
-    answered(attempt, question, option, desk.here.record)
 
 
 def agrees(bank: Bank, attempt: Attempt, seed: int, answers: Mapping[str, str]) -> bool:

@@ -281,7 +281,7 @@ class LineReader:
         """Unchanged text, with its length before it and "End of output" after it, as in a printed lesson."""
         rows = len(text.splitlines())
         if rows:
-            self._say(f"{label}, {rows} line{'s' if rows > 1 else ''}:")
+            self._say(f"{label}, {counted(rows, 'line')}:")
             self._console.block(text)
             self._say("End of output")
 

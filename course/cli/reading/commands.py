@@ -8,6 +8,8 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Annotated
 
+from rich.console import Console as RichConsole
+
 from course.browser import keep_closed
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise, Lesson
@@ -112,11 +114,14 @@ def lesson(
         return _read_on_screen(console, here, catalog, chosen, section)
     text = io.StringIO()
     reader = _reader(catalog, chosen, console, figures, text if console.json else None)
-    paged = page and console.interactive and section is None
+    paged, whole = page and console.interactive and section is None, section is None
     if section is not None:
-        whole = reader.show_section(section)
+        reader.show_section(section)
+    elif paged:
+        whole = _read_by_line(console, here, catalog, chosen, reader)
     else:
-        whole = _read_by_line(console, here, catalog, chosen, reader) if paged else _print_all(reader)
+        for item in reader.pages:
+            reader.show(item)
     # Printing is not reading: the student may never have seen the end.
     if here is not None and whole and paged:
         here.record("lesson", chosen.id, {"version": catalog.version})
@@ -125,9 +130,8 @@ def lesson(
         step += " --page"
     if paged:
         _say_unkept(console, here)
-    if here is not None:
-        for warning in here.warnings:
-            console.warn(warning)
+    for warning in here.warnings if here else ():
+        console.warn(warning)
     for picture in reader.pictures:
         console.note(f"Wrote {picture}")
     console.next(step)
@@ -168,14 +172,11 @@ def _reader(
             width=console.width,
             wraps=console.wraps,
         )
-    from rich.console import Console as RichConsole
-
     quiet = RichConsole(file=text, width=MAX_WIDTH, no_color=True, markup=False, emoji=False, highlight=False)
     return Reader(catalog, chosen, quiet, plain=True, figures_dir=figures, width=MAX_WIDTH)
 
 
 def _section(catalog: Catalog, chosen: Lesson, slug: str) -> Section:
-    """A section of a lesson, by its slug."""
     sections = read_script(chosen, catalog.warm_ups(chosen.id)).sections
     found = next((section for section in sections if section.slug == slug), None)
     if found is None:
@@ -227,13 +228,6 @@ def _read_by_line(
 
     with kept_sandboxes():  # its tasks are checked one after the other
         return LineReader(console, here, catalog, chosen, reader).read()
-
-
-def _print_all(reader: Reader) -> bool:
-    """Show everything."""
-    for item in reader.pages:
-        reader.show(item)
-    return True
 
 
 def _after(here: Here | None, chosen: Lesson) -> str:
@@ -350,7 +344,6 @@ def _begin(console: Console, here: Here, chosen: Exercise) -> int:
 
 
 def show_text(console: Console, here: Here, chosen: Exercise) -> None:
-    """The text of a warm-up."""
     lesson = here.catalog.lesson(chosen.lesson)
     reader = _reader(here.catalog, lesson, console, None, None)
     console.heading(chosen.title, counted(chosen.minutes, "minute"))

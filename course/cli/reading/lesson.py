@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import assert_never
 
@@ -29,7 +29,7 @@ from course.cli.frame.pictures import Code, picture, protocol_of
 from course.errors import NotFoundError
 from course.figures.registry import build, save
 from course.printable import counted
-from course.reading.parts import Section, read_script
+from course.reading.parts import Section, is_unseen, read_script
 
 # ---
 # Words shared by all ways of printing a lesson.
@@ -87,26 +87,18 @@ def link_words(catalog: Catalog, target: str, words: str) -> str:
 _SENTENCE_END = re.compile(r"(?<=[.!?])(?<!\b[A-Z]\.)[\"”)]?\s+(?=[A-Z\"“(\d])")
 
 
+@dataclass
 class PlainPrinter:
     """Prints the parts of one lesson as plain lines."""
 
-    def __init__(
-        self,
-        catalog: Catalog,
-        lesson: Lesson,
-        console: Console,
-        figure_ids: list[str],
-        figures_dir: Path | None,
-        wraps: bool = False,
-    ) -> None:
-        self._catalog = catalog
-        self._lesson = lesson
-        self._console = console
-        self._figure_ids = figure_ids
-        self._figures_dir = figures_dir
-        self._wraps = wraps
-        self.pictures: list[Path] = []
-        self._told_how = False  # to save them: said once
+    _catalog: Catalog
+    _lesson: Lesson
+    _console: Console
+    _figure_ids: list[str]
+    _figures_dir: Path | None
+    _wraps: bool
+    pictures: list[Path] = field(default_factory=list)
+    _told_how: bool = False  # to save them: said once
 
     def head(self) -> None:
         """Title, summary, objectives."""
@@ -203,7 +195,7 @@ class PlainPrinter:
 
     def _verbatim(self, label: str, text: str) -> None:
         rows = text.splitlines()
-        self._say(f"{label}, {len(rows)} line{'s' if len(rows) != 1 else ''}:")
+        self._say(f"{label}, {counted(len(rows), 'line')}:")
         for row in rows:
             self._say(row, whole=True)
         self._say(f"End of {'output' if label == 'It prints' else label.lower()}")
@@ -217,7 +209,6 @@ class PlainPrinter:
                 self._say(f"To save the pictures: course lesson {self._lesson.id} --figures DIR")
             self._told_how = True
             return
-
         path = save(figure.id, self._figures_dir)
         self.pictures.append(path)
         self._say(f"Picture: {path}")
@@ -289,7 +280,6 @@ class FancyPrinter:
         figure_ids: list[str],
         figures_dir: Path | None,
         width: int,
-        environ: Mapping[str, str],
     ) -> None:
         self._catalog = catalog
         self._lesson = lesson
@@ -298,7 +288,6 @@ class FancyPrinter:
         self._figures_dir = figures_dir
         self._room = max(20, width - _MARGIN)
         self._prose = min(self._room, _PROSE)
-        self._environ = environ
         self.pictures: list[Path] = []
 
     def head(self) -> None:
@@ -421,17 +410,19 @@ class FancyPrinter:
         return Text(lead + "─" * (min(self._prose, 58) - len(lead)), style="dim")
 
     def _figure(self, figure: b.Figure) -> RenderableType:
-        number = self._figure_ids.index(figure.id) + 1
-        caption = Text.assemble((f"Figure {number}. ", "bold"), self._text(figure.caption))
         shown: list[RenderableType] = []
-        drawn = picture(self._console, self._environ, lambda: build(figure.id), self._prose)
+        drawn = picture(self._console, os.environ, lambda: build(figure.id), self._prose)
         if drawn is not None:
             shown.append(drawn)
-        shown.append(caption)
-        if not protocol_of(self._console, self._environ):  # half blocks are coarse: words go with them
+        shown.append(self._caption(figure))
+        if not protocol_of(self._console, os.environ):  # half blocks are coarse: words go with them
             shown.append(Text.assemble(("To be seen: ", "bold"), figure.alt, style="dim"))
         shown.append(self._where(figure))
         return Group(*shown)
+
+    def _caption(self, figure: b.Figure) -> Text:
+        number = self._figure_ids.index(figure.id) + 1
+        return Text.assemble((f"Figure {number}. ", "bold"), self._text(figure.caption))
 
     def _where(self, figure: b.Figure) -> Text:
         """The picture's path, or the command that writes it."""
@@ -440,7 +431,7 @@ class FancyPrinter:
             self.pictures.append(path)
             link = Style(link=path.absolute().as_uri())
             return Text.assemble(("Picture: ", "bold"), (str(path), link))
-        if protocol_of(self._console, self._environ):
+        if protocol_of(self._console, os.environ):
             return Text("")
         command = f"course lesson {self._lesson.id} --figures DIR"
         return Text.assemble(("Picture: ", "bold"), (command, _SPANS["code"]))
@@ -473,20 +464,20 @@ class FancyPrinter:
         return Text(link_words(self._catalog, target, words), style=style + Style(underline=False))
 
 
+@dataclass(frozen=True)
 class _Prefixed:
     """Output with the same mark before each line, and without trailing blanks, so that none are copied."""
 
-    def __init__(self, inner: RenderableType, mark: str, style: Style | None = None) -> None:
-        self._inner = inner
-        self._mark = mark
-        self._style = style
+    inner: RenderableType
+    mark: str
+    style: Style | None = None
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[Segment]:
-        room = options.update_width(options.max_width - len(self._mark))
-        for line in console.render_lines(self._inner, room, pad=False):
+        room = options.update_width(options.max_width - len(self.mark))
+        for line in console.render_lines(self.inner, room, pad=False):
             kept = _stripped(line)
-            if kept or self._style:
-                yield Segment(self._mark, self._style)
+            if kept or self.style:
+                yield Segment(self.mark, self.style)
             for text, style, control in kept:
                 yield Segment(text.replace(KEEP, " "), style, control)
             yield Segment.line()
@@ -558,8 +549,6 @@ class Reader:
 
     Args:
         catalog: names what the lesson links to.
-        lesson: the one to show.
-        console: where to print.
         plain: one fact a line, no boxes, formulae in words, figures and diagrams as their descriptions.
         figures_dir: folder to write the figures to as PNG; None writes none.
         width: columns to use; the console's own if left out.
@@ -595,9 +584,8 @@ class Reader:
         if plain or not console.encoding.lower().startswith("utf"):
             self._printer = PlainPrinter(catalog, lesson, console, numbers, figures_dir, wraps)
         else:
-            self._printer = FancyPrinter(
-                catalog, lesson, console, numbers, figures_dir, width or console.width, os.environ
-            )
+            room = width or console.width
+            self._printer = FancyPrinter(catalog, lesson, console, numbers, figures_dir, room)
 
     @property
     def pictures(self) -> tuple[Path, ...]:
@@ -605,15 +593,13 @@ class Reader:
         return tuple(self._printer.pictures)
 
     def show(self, page: Page) -> None:
-        """Print one page."""
         if page.first:
             self._printer.head()
         self._printer.blocks(page.blocks)
 
-    def show_section(self, section: Section) -> bool:
-        """Print one section of the lesson; returns False, because that is not the whole lesson."""
+    def show_section(self, section: Section) -> None:
+        """Print one section of the lesson."""
         self._printer.blocks(self.script.blocks[section.start : section.end])
-        return False
 
     def show_task(self, warm_up: Exercise) -> None:
         """Print the text of a warm-up of the lesson."""
@@ -626,13 +612,13 @@ def paginate(blocks: tuple[b.Block, ...]) -> tuple[Page, ...]:
     section, current = "", []  # type: str, list[b.Block]
     for block in blocks:
         begins = isinstance(block, b.Task) or (isinstance(block, b.Heading) and block.level == 2)
-        if (begins or (current and _ends_page(current[-1]))) and not all(map(_unseen, current)):
+        if (begins or (current and _ends_page(current[-1]))) and not all(map(is_unseen, current)):
             pages.append(Page(section, tuple(current), first=not pages))
             current = []
         if isinstance(block, b.Heading) and block.level == 2:
             section = b.plain_text(block.inlines)
         current.append(block)
-    if pages and all(map(_unseen, current)):
+    if pages and all(map(is_unseen, current)):
         pages[-1] = replace(pages[-1], blocks=(*pages[-1].blocks, *current))
     elif current:
         pages.append(Page(section, tuple(current), first=not pages))
@@ -642,7 +628,3 @@ def paginate(blocks: tuple[b.Block, ...]) -> tuple[Page, ...]:
 def _ends_page(block: b.Block) -> bool:
     answers = isinstance(block, b.Callout) and block.kind == "answer"
     return answers or isinstance(block, b.Prediction | b.Task)
-
-
-def _unseen(block: b.Block) -> bool:
-    return isinstance(block, b.CodeCell) and block.hidden

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import math
 import shlex
 from pathlib import Path
 from typing import Annotated, Any
@@ -17,8 +18,7 @@ from course.cli.frame.here import target as target_file
 from course.cli.frame.options import argument, option
 from course.cli.frame.registry import COMMANDS, OPTIONS
 from course.cli.frame.replies import filled
-from course.cli.sandbox import play as sandbox_files
-from course.cli.sandbox import play as sandbox_play
+from course.cli.sandbox import play as playing
 from course.cli.sandbox.play import (
     SandboxEntry,
     SandboxExport,
@@ -29,6 +29,7 @@ from course.cli.sandbox.play import (
 )
 from course.errors import NotFoundError, UsageError
 from course.sandbox.exports.formats import START, mjcf, sdf, start_script
+from course.sandbox.runs import recording
 from course.sandbox.scene.loading import choose, question, scenes, unchanged
 from course.sandbox.scene.loading import scene_ids as known_scenes
 from course.sandbox.scene.model import Scene
@@ -59,12 +60,7 @@ def _suggest(name: str, commands: list[str]) -> None:
         )
 
 
-app = typer.Typer(
-    cls=_Scenes,
-    help=COMMANDS["sandbox"].summary,
-    invoke_without_command=True,
-    **OPTIONS,
-)
+app = typer.Typer(cls=_Scenes, help=COMMANDS["sandbox"].summary, invoke_without_command=True, **OPTIONS)
 
 _SCENE = argument("SCENE", "A scene, or a file of your own that ends in .toml.", scene_ids)
 _SET = option("--set KEY=VALUE", "Set a parameter; repeatable.", scene_settings)
@@ -85,15 +81,13 @@ def menu(
         return None
     console = current()
     if web or (console.interactive and console.fancy):
-        return sandbox_play.gallery(console, web=web, port=port, browser=not no_browser)
+        return playing.gallery(console, web=web, port=port, browser=not no_browser)
     _list(console, None)
     return 0
 
 
 @app.command("list", epilog="Example: course sandbox list newtons-cradle")
-def list_scenes(
-    scene: Annotated[str | None, _SCENE] = None,
-) -> int:
+def list_scenes(scene: Annotated[str | None, _SCENE] = None) -> int:
     """List the scenes, or one of them with all its parameters.
 
     Each asks for a number: guess it before you run the scene, then see.
@@ -130,19 +124,15 @@ def play(
     In a terminal the scene opens for you to play with. With --headless, --describe, --json, a file to write,
     or outside a terminal, it runs to its end and shows theory, guess and simulation side by side.
     """
-    return sandbox_play.play(current(), sandbox_play.PlayOptions(**locals()))  # a field for each option
+    return playing.play(current(), playing.PlayOptions(**locals()))  # a field for each option
 
 
 @app.command(epilog="Example: course sandbox replay run.jsonl")
-def replay(
-    file: Annotated[Path, argument("FILE", "A recording.")],
-) -> int:
+def replay(file: Annotated[Path, argument("FILE", "A recording.")]) -> int:
     """Run a recording again, and say where it first differs.
 
     Exit code 1 if it does.
     """
-    from course.sandbox.runs import recording
-
     console = current()
     recorded = recording.read(cwd() / file.expanduser())
     with console.working("Replaying"):
@@ -195,20 +185,20 @@ def export(
         raise UsageError(f"There is no format {format_[:20]!r}.", help="Formats: sdf, mjcf.")
     console = current()
     target = target_file(output, "-o", ("sdf", "world", "xml")) if output else None
-    chosen = sandbox_files.chosen(scene, settings or ())
+    chosen = playing.chosen(scene, settings or ())
     data = writers[format_](chosen)
     written = None
     if target is None:
         if not console.json:
             console.raw(data.decode())
     else:
-        written = sandbox_files.write(console, target, data, format_)
+        written = playing.write(target, data, format_)
     beside = None
     start = start_script(data) if format_ == "sdf" else None
     if start is not None and target is None:
         console.warn(f"Its velocities at the start need a file beside it: with -o FILE, {START} comes along.")
     elif start is not None and target is not None:
-        beside = sandbox_files.write(console, target.with_name(START), start, "python")
+        beside = playing.write(target.with_name(START), start, "python")
         folder = shlex.quote(str(target.parent))
         console.note(f"Run it: GZ_SIM_SYSTEM_PLUGIN_PATH={folder} gz sim {shlex.quote(str(target))}")
     text = "" if written else data.decode()
@@ -216,7 +206,7 @@ def export(
     return 0
 
 
-def _list(console: Console, name: str | None) -> tuple[Scene, ...]:
+def _list(console: Console, name: str | None) -> None:
     found = scenes() if name is None else (choose(name).scene,)
     if not found:
         raise NotFoundError("There are no scenes.", help="Install the course again.", code="no_scenes")
@@ -224,7 +214,6 @@ def _list(console: Console, name: str | None) -> tuple[Scene, ...]:
         _describe(console, scene, place, whole=name is not None)
     console.note((f"Next: course sandbox play {name or found[0].id}", "bold"))
     console.emit(SandboxList(scenes=tuple(_entry(scene) for scene in found)))
-    return found
 
 
 def _describe(console: Console, scene: Scene, place: int, *, whole: bool) -> None:
@@ -240,17 +229,11 @@ def _describe(console: Console, scene: Scene, place: int, *, whole: bool) -> Non
         default = "each body's own" if parameter.default is None else f"{parameter.default:g}"
         unit = "" if parameter.unit == "1" else f" {parameter.unit}"
         span = f"{parameter.low:g} to {parameter.high:g}"
-        console.item(
-            "set",
-            f"{parameter.name}={default}{unit} ({span}): {parameter.meaning}",
-            width=5,
-        )
+        console.item("set", f"{parameter.name}={default}{unit} ({span}): {parameter.meaning}", width=5)
     console.item("after", scene.after, width=5)
 
 
 def _entry(scene: Scene) -> SandboxEntry:
-    import math
-
     wheels = next((body.wheels for body in scene.body if body.wheels), None)
     own = {
         "gravity": math.hypot(*scene.gravity),

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import contextlib
-import csv
 import importlib
-import io
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +18,9 @@ from course.cli.frame.here import Here, cwd, target
 from course.cli.frame.replies import Backup, Envelope, filled
 from course.errors import CourseError, MissingCapabilityError, UsageError
 from course.extras import require
+from course.printable import counted
+from course.progress.store import numbered
+from course.sandbox.runs import running
 from course.sandbox.runs.recording import Film, Recording, ffmpeg
 from course.sandbox.runs.running import Run
 from course.sandbox.scene.loading import (
@@ -34,6 +35,7 @@ from course.sandbox.scene.loading import (
 )
 from course.sandbox.views.stage import Desk
 from course.sandbox.world.accounts import Event, Receipt
+from course.sandbox.world.engine import versions
 from course.sandbox.world.world import Snapshot, World
 
 # ---
@@ -173,32 +175,23 @@ def pairs(settings: Sequence[str]) -> dict[str, object]:
 def chosen(scene: str, settings: Sequence[str]) -> Chosen:
     """The scene of this name, or of this file in the current folder, with its settings."""
     if scene.endswith(".toml"):
-        from pathlib import Path
-
         scene = str(cwd() / Path(scene).expanduser())
     return choose(scene, pairs(settings))
 
 
-def write(console: Console, path: Path, data: bytes, kind: str) -> SandboxFile:
+def write(path: Path, data: bytes, kind: str) -> SandboxFile:
     """Write a file, keep a copy of an earlier one, and say so."""
-    file = here.write(path, data, why="sandbox")
-    if file.backup:
-        console.line(f"There was a file of that name; it is kept at {file.backup.backup}.")
-    console.line(f"Wrote {file.path}")
-    return SandboxFile(kind=kind, path=file.path, backup=file.backup)
+    return filled(SandboxFile, here.write_told(path, data, why="sandbox"), kind=kind)
 
 
 def table(run: Run) -> bytes:
     """The samples of a run as CSV: a line of names with units, then a row for each body and time."""
-    from course.sandbox.runs.running import COLUMNS
-
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    for t, names, state in run.samples:
-        for name, row in zip(names, state.tolist(), strict=True):
-            writer.writerow([repr(round(t, 9)), name, *map(repr, row)])
-    return text.getvalue().encode()
+    rows = (
+        (round(t, 9), name, *row)
+        for t, names, state in run.samples
+        for name, row in zip(names, state.tolist(), strict=True)
+    )
+    return here.as_csv(running.COLUMNS, rows)
 
 
 #: Frames per simulated second of a film.
@@ -233,27 +226,14 @@ class PlayOptions:
         return self.headless or self.describe or any((self.csv, self.gif, self.mp4, self.png))
 
 
-@dataclass
-class _Targets:
-    """Where files go, checked before anything runs."""
-
-    paths: dict[str, Path] = field(default_factory=dict)
-
-    @classmethod
-    def of(cls, options: PlayOptions) -> _Targets:
-        paths = {}
-        for kind, path, endings in (
-            ("csv", options.csv, ("csv",)),
-            ("gif", options.gif, ("gif",)),
-            ("mp4", options.mp4, ("mp4",)),
-            ("png", options.png, ("png",)),
-            ("record", options.record, ("jsonl",)),
-        ):
-            if path is not None:
-                paths[kind] = target(path, f"--{kind}", endings)
-        if options.mp4 is not None:
-            ffmpeg()
-        return cls(paths)
+def _targets(options: PlayOptions) -> dict[str, Path]:
+    """Where each kind of file goes, checked before anything runs."""
+    endings = {"csv": "csv", "gif": "gif", "mp4": "mp4", "png": "png", "record": "jsonl"}
+    given = {kind: path for kind in endings if (path := getattr(options, kind)) is not None}
+    targets = {kind: target(path, f"--{kind}", (endings[kind],)) for kind, path in given.items()}
+    if options.mp4 is not None:
+        ffmpeg()
+    return targets
 
 
 def play(console: Console, options: PlayOptions) -> int:
@@ -263,7 +243,7 @@ def play(console: Console, options: PlayOptions) -> int:
         the exit code.
     """
     _check(options)
-    targets = _Targets.of(options)
+    targets = _targets(options)
     picked = chosen(options.scene, tuple(options.settings or ()))
     if lines := unwritten(picked.path):
         left = f"and {len(lines) - 1} more below are" if len(lines) > 1 else "is"
@@ -296,7 +276,6 @@ def _guess(console: Console, chosen: Chosen, options: PlayOptions) -> float | No
         return options.guess
     if not console.interactive or console.quiet:
         return None
-
     console.line((question(chosen), "bold"))
     while True:
         answer = console.ask(f"Your guess in {asked.unit} (Enter for none): ")
@@ -311,18 +290,14 @@ def _guess(console: Console, chosen: Chosen, options: PlayOptions) -> float | No
 # -- seen ------------------------------------------------------------------------------------------------
 
 
-def _play_seen(console: Console, chosen: Chosen, options: PlayOptions, targets: _Targets) -> int:
+def _play_seen(console: Console, chosen: Chosen, options: PlayOptions, targets: dict[str, Path]) -> int:
     """Open a view; it asks for the prediction and shows the comparison itself."""
+    browser = not options.no_browser
     recorded = _view_of(
-        console,
-        chosen,
-        web=options.web,
-        port=options.port,
-        browser=not options.no_browser,
-        guess=options.guess,
+        console, chosen, web=options.web, port=options.port, browser=browser, guess=options.guess
     )
-    if "record" in targets.paths:
-        write(console, targets.paths["record"], recorded, "record")
+    if "record" in targets:
+        write(targets["record"], recorded, "record")
     console.note(("After playing: ", "bold"), chosen.scene.after)
     return 0
 
@@ -360,11 +335,7 @@ def _desk() -> Desk:
                 Here.load().workspace.store.append("sandbox-played", scene, {})
 
     def save(name: str, data: bytes) -> str:
-        path = cwd() / name
-        number = 1
-        while path.exists():
-            number += 1
-            path = cwd() / f"{Path(name).stem}-{number}{Path(name).suffix}"
+        path = next(path for path in numbered(cwd() / name) if not path.exists())
         return str(here.write(path, data, why="sandbox").path)
 
     return Desk(keep=_keep, save=save, played=frozenset(played), opened=opened)
@@ -381,7 +352,6 @@ def _saying(console: Console) -> Callable[[str], None]:
 
 
 def _view(name: str) -> Callable[..., bytes]:
-    """A view's ``play``."""
     try:
         module = importlib.import_module(f"course.sandbox.views.{name}.view")
     except ModuleNotFoundError as error:
@@ -398,18 +368,15 @@ def _view(name: str) -> Callable[..., bytes]:
 
 
 def _run_unseen(
-    console: Console, chosen: Chosen, options: PlayOptions, targets: _Targets, guess: float | None
+    console: Console, chosen: Chosen, options: PlayOptions, targets: dict[str, Path], guess: float | None
 ) -> int:
-    from course.sandbox.runs.recording import Recording
-    from course.sandbox.runs.running import run
-
     made: dict[str, Any] = {}
-    film = Film(chosen.scene) if {"gif", "mp4", "png"} & targets.paths.keys() else None
+    film = Film(chosen.scene) if {"gif", "mp4", "png"} & targets.keys() else None
     recordings: list[Recording] = []
-    watch = (lambda world: recordings.append(Recording(world))) if "record" in targets.paths else None
-    filming = bool({"gif", "mp4"} & targets.paths.keys())
+    watch = (lambda world: recordings.append(Recording(world))) if "record" in targets else None
+    filming = bool({"gif", "mp4"} & targets.keys())
     with console.working(f"Running {chosen.scene.id}"):
-        done = run(
+        done = running.run(
             chosen,
             duration=options.duration,
             guess=guess,
@@ -421,16 +388,17 @@ def _run_unseen(
         )
     if recordings:
         made["record"] = recordings[0].encode()
-    if "csv" in targets.paths:
+    if "csv" in targets:
         made["csv"] = table(done)
     if film is not None:
         with console.working("Drawing"):
-            made |= {kind: getattr(film, kind)(_FPS) for kind in ("mp4", "gif") if kind in targets.paths}
-            if "png" in targets.paths:
+            made |= {kind: getattr(film, kind)(_FPS) for kind in ("mp4", "gif") if kind in targets}
+            if "png" in targets:
                 made["png"] = film.png(*made["picture"])
-    told = _sentences(done)
-    _show(console, chosen, done, told, options)
-    files = tuple(write(console, targets.paths[kind], made[kind], kind) for kind in targets.paths)
+    account = (*running.account(done.receipt), *running.momentum(done))
+    told = (*running.sentences(done.events), *account)
+    _show(console, chosen, done, told if options.describe else account, options)
+    files = tuple(write(targets[kind], made[kind], kind) for kind in targets)
     if guess is not None:
         _keep(chosen, done.comparison)
     _emit(console, chosen, done, told, files)
@@ -461,19 +429,13 @@ def _taker(
     return take
 
 
-def _sentences(done: Run) -> tuple[str, ...]:
-    from course.sandbox.runs import running
-
-    return (*running.sentences(done.events), *running.account(done.receipt), *running.momentum(done))
-
-
 def _show(console: Console, chosen: Chosen, done: Run, told: tuple[str, ...], options: PlayOptions) -> None:
     if not console.quiet:
         console.heading(chosen.scene.title, f"{done.duration:.4g} s in {done.steps} steps")
         if not options.describe:
             count = sum(event.kind == "contact" for event in done.events)
-            console.line(f"{count} contact{'' if count == 1 else 's'}; --describe tells what happened.")
-        for sentence in told if options.describe else told[-_account_lines(done) :]:
+            console.line(f"{counted(count, 'contact')}; --describe tells what happened.")
+        for sentence in told:
             console.line(sentence)
         for probe in chosen.scene.probe:
             value = done.probes[probe.name]
@@ -481,12 +443,6 @@ def _show(console: Console, chosen: Chosen, done: Run, told: tuple[str, ...], op
             console.line(f"{probe.name}: {'did not happen' if math.isnan(value) else f'{value:.6g}{unit}'}")
     _show_comparison(console, done.comparison)
     console.note(("Think: ", "bold"), chosen.scene.after)
-
-
-def _account_lines(done: Run) -> int:
-    from course.sandbox.runs import running
-
-    return len(running.account(done.receipt)) + len(running.momentum(done))
 
 
 def _show_comparison(console: Console, comparison: Comparison | None) -> None:
@@ -509,7 +465,6 @@ def _keep(chosen: Chosen, comparison: Comparison | None) -> None:
     """Put a guess into the workspace's progress, if there is a workspace."""
     if comparison is None or comparison.guess is None or chosen.own:
         return
-
     try:
         store = Here.load().workspace.store
     except CourseError:
@@ -530,8 +485,6 @@ def _keep(chosen: Chosen, comparison: Comparison | None) -> None:
 def _emit(
     console: Console, chosen: Chosen, done: Run, told: tuple[str, ...], files: tuple[SandboxFile, ...]
 ) -> None:
-    from course.sandbox.world.engine import versions
-
     if not console.json:
         return
     scene = chosen.scene

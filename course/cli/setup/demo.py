@@ -12,9 +12,12 @@ import shutil
 import sys
 import textwrap
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import msgspec
+import numpy as np
 
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
@@ -49,9 +52,6 @@ class Demo(Envelope, tag="course.demo/2", frozen=True, kw_only=True):
     energy_before: tuple[float, float]
     energy_after: tuple[float, float]
 
-
-if TYPE_CHECKING:
-    import numpy as np
 
 #: The worked example, a folder beside the lessons; not an exercise.
 WORKED = "worked/spring"
@@ -125,13 +125,13 @@ def demo() -> int:
     return 0
 
 
+@dataclass
 class _Bench:
     """Checks versions of the module, and lets them compute the motion that is drawn."""
 
-    def __init__(self, console: Console, session: GradingSession) -> None:
-        self.console = console
-        self._session = session
-        self._checked: dict[str, Attempt] = {}
+    console: Console
+    _session: GradingSession
+    _checked: dict[str, Attempt] = field(default_factory=dict)
 
     def verdict(self, source: str) -> Verdict:
         """The checks' results; each version is checked once."""
@@ -139,8 +139,6 @@ class _Bench:
 
     def motion(self, source: str, *, passes: bool) -> _Motion:
         """The motion of a version whose checks must pass, or must not."""
-        import numpy as np
-
         verdict, problem = self.verdict(source), self._attempt(source).problem
         if problem is not None:
             raise InternalError(problem.message, help=problem.help, code=problem.code)
@@ -252,8 +250,6 @@ def _say_next(console: Console) -> None:
 
 def worked_example(catalog: Catalog) -> Exercise:
     """The worked example as an exercise, so that the same session can check it."""
-    import msgspec
-
     folder = catalog.content.lessons / WORKED
     if not folder.is_dir():
         # Another course need not have one; the one that came with the program always does.

@@ -22,7 +22,6 @@ from urllib.parse import quote
 import msgspec
 
 from course import __version__
-from course.catalog.load import Catalog
 from course.catalog.models import CourseRef
 from course.cli.frame import here
 from course.cli.frame.app import INSTALLATION
@@ -32,6 +31,7 @@ from course.cli.frame.options import option
 from course.cli.frame.replies import Envelope, WrittenFile, filled
 from course.errors import CourseError, MissingCapabilityError
 from course.extras import requirements
+from course.printable import counted
 
 
 class Bug(Envelope, tag="course.bug/1", frozen=True, kw_only=True):
@@ -93,7 +93,6 @@ def doctor(
     It also says what is missing, with the command that installs it. Exit code 4 if the course cannot work
     without a missing part.
     """
-
     console = current()
     catalog = load_catalog()
     found = tuple(packages())
@@ -103,13 +102,14 @@ def doctor(
     kind = "checkout (instructor's)" if catalog.content.is_checkout else "wheel (student's)"
     shape = terminal(console)
     complete = not any(item.group == "" and not item.ok for item in found) and not trouble
-    _show_basics(console, catalog, kind)
-    _show_packages(console, found)
-    _show_protection(console, level, causes, advice)
-    console.item(
-        "Terminal", "; ".join(f"{name} {value}" for name, value in shape.items()), indent=0, width=_WIDTH
-    )
-    console.item("Workspace", workspace or "none here", indent=0, width=_WIDTH)
+    _fact("Course", f"{catalog.title} {catalog.version}, installed as a {kind}")
+    _fact("Python", f"{platform.python_version()} at {sys.executable}, {platform.platform()}")
+    _fact("Packages", _in_words(found))
+    _fact("Protection", f"{level}: {_LEVELS[level]}" if level in _LEVELS else level)
+    for sentence in (*causes, *advice):
+        console.line(sentence, indent=2)
+    _fact("Terminal", "; ".join(f"{name} {value}" for name, value in shape.items()))
+    _fact("Workspace", workspace or "none here")
     for line in (repaired, trouble):
         if line:
             console.line(line)
@@ -145,7 +145,8 @@ def doctor(
     return code
 
 
-_WIDTH = 12
+def _fact(label: str, words: str) -> None:
+    current().item(label, words, indent=0, width=12)
 
 
 def packages() -> Iterable[Package]:
@@ -242,28 +243,13 @@ def terminal(console: Console) -> dict[str, str]:
     }
 
 
-def _show_basics(console: Console, catalog: Catalog, kind: str) -> None:
-    course = f"{catalog.title} {catalog.version}, installed as a {kind}"
-    console.item("Course", course, indent=0, width=_WIDTH)
-    python = f"{platform.python_version()} at {sys.executable}, {platform.platform()}"
-    console.item("Python", python, indent=0, width=_WIDTH)
-
-
-def _show_packages(console: Console, found: Iterable[Package]) -> None:
-    names = []
-    for item in found:
-        if item.group and not item.ok:
-            continue
-        wanted = "" if item.ok else f" (needs {item.requirement})"
-        names.append(f"{item.name} {item.installed or 'MISSING'}{wanted}")
-    console.item("Packages", ", ".join(names), indent=0, width=_WIDTH)
-
-
-def _show_protection(console: Console, level: str, causes: tuple[str, ...], advice: tuple[str, ...]) -> None:
-    meaning = _LEVELS.get(level, "")
-    console.item("Protection", f"{level}{': ' if meaning else ''}{meaning}", indent=0, width=_WIDTH)
-    for sentence in (*causes, *advice):
-        console.line(sentence, indent=2)
+def _in_words(found: Iterable[Package]) -> str:
+    """What is installed, and what is missing of the base."""
+    return ", ".join(
+        f"{item.name} {item.installed or 'MISSING'}" + ("" if item.ok else f" (needs {item.requirement})")
+        for item in found
+        if item.ok or not item.group
+    )
 
 
 # ---
@@ -288,10 +274,7 @@ def bug(
     target = here.target(out or Path("course-bug.txt"), "-o", ("txt", "md"))
     crash = _last_crash()
     text = redacted("\n".join(_report(crash)))
-    written = here.write(target, text.encode("utf-8", "backslashreplace"), why="bug")
-    if written.backup:
-        console.line(f"There was another {written.path}; it is kept at {written.backup.backup}.")
-    console.line(f"Wrote {written.path}")
+    written = here.write_told(target, text.encode("utf-8", "backslashreplace"), why="bug")
     console.line(
         "It contains a traceback." if crash else "No crash of the course was found: it has no traceback."
     )
@@ -395,9 +378,7 @@ def _last_crash() -> str | None:
             text = path.read_text(encoding="utf-8", errors="backslashreplace")
             if mark in text:
                 minutes = max(0, round((time.time() - when) / 60))
-                ago = f"{minutes} minute{'' if minutes == 1 else 's'}"
-                if minutes >= 120:
-                    ago = f"{minutes // 60} hours"
+                ago = counted(minutes, "minute") if minutes < 120 else counted(minutes // 60, "hour")
                 text = _TYPED.sub("command: left out", text.replace(mark, ""))
                 return f"The last crash, {ago} ago:\n{text}"
     return None

@@ -13,7 +13,7 @@ from typing import Annotated
 from course.catalog.load import Catalog
 from course.catalog.models import CourseRef
 from course.cli.frame import here
-from course.cli.frame.console import Console, current
+from course.cli.frame.console import current
 from course.cli.frame.here import cwd, load_catalog
 from course.cli.frame.options import argument, option
 from course.cli.frame.replies import Envelope, NextStep, WrittenFile
@@ -96,7 +96,7 @@ def write_surroundings(root: Path, kinds: tuple[str, ...], requirement: str | No
             raise UsageError(
                 f"The folder {path.parent} cannot be made ({error.strerror or error}).", code="not_writable"
             ) from error
-        written.append(here.write(path, text(requirement).encode("utf-8"), why="init"))
+        written.append(here.write_told(path, text(requirement).encode("utf-8"), why="init"))
     return written
 
 
@@ -201,7 +201,6 @@ def init(
     Creates the folder if necessary, and course.toml in it. Existing files are not changed; if --with replaces
     one, a copy is kept.
     """
-
     console, catalog = current(), load_catalog()
     kinds = chosen_kinds(surroundings) if surroundings is not None else ()
     requirement = usable(requirement)
@@ -216,7 +215,6 @@ def init(
         workspace = Workspace.read(root)
         console.line(f"{root} is a workspace already" + ("." if kinds else "; nothing was changed."))
     written = write_surroundings(root, kinds, requirement)
-    _say_written(console, written)
     if "github" in kinds and not (root / ".git").exists():
         console.note("GitHub reads workflows in the top folder of a repository only.")
     step = "course go"
@@ -233,13 +231,6 @@ def init(
         )
     )
     return 0
-
-
-def _say_written(console: Console, written: list[WrittenFile]) -> None:
-    for file in written:
-        if file.backup:
-            console.line(f"There was another {file.path}; it is kept at {file.backup.backup}.")
-        console.line(f"Wrote {file.path}")
 
 
 def _refuse_odd_places(root: Path, catalog: Catalog) -> None:

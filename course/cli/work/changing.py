@@ -35,7 +35,6 @@ def diff(exercise: ExerciseName = None) -> int:
     A unified diff: lines you removed begin with -, lines you added with +. Of a notebook it shows the code
     that is graded.
     """
-
     console, here = current(), Here.load()
     work = chosen_work(here, *asked_for(here, exercise))
     report_source_file(console, here, work)
@@ -61,15 +60,11 @@ def diff(exercise: ExerciseName = None) -> int:
     )
 
 
-def reset(
-    exercise: OneExercise,
-    yes: Annotated[bool, option("--yes -y", "Do not ask.")] = False,
-) -> int:
+def reset(exercise: OneExercise, yes: Annotated[bool, option("--yes -y", "Do not ask.")] = False) -> int:
     """Go back to the stub; a copy is kept.
 
     Asks first on a terminal; anywhere else it needs --yes. The copy's path is printed.
     """
-
     console, here = current(), Here.load()
     chosen = here.exercise(exercise)
     path = here.workspace.path(chosen.place, chosen.module)
@@ -83,12 +78,13 @@ def reset(
             help=f"Start it: `course start {chosen.id}`.",
             code="not_started",
         )
+    why_not = ""
     if there and path.read_bytes() == stub:
-        console.line(f"{shown} is the stub already; nothing was changed.")
-        console.emit(Reset(exercise=chosen.id, changed=False, backups=(), next=NextStep(step)))
-        return 0
-    if there and not yes and not _agreed(console, shown):
-        console.line("Nothing was changed.")
+        why_not = f"{shown} is the stub already; nothing was changed."
+    elif there and not yes and not _agreed(console, shown):
+        why_not = "Nothing was changed."
+    if why_not:
+        console.line(why_not)
         console.emit(Reset(exercise=chosen.id, changed=False, backups=(), next=NextStep(step)))
         return 0
     backups = []
@@ -103,16 +99,13 @@ def reset(
     return here.answer(Reset(exercise=chosen.id, changed=True, backups=tuple(backups), next=NextStep(step)))
 
 
-def update(
-    dry_run: Annotated[bool, option("--dry-run", "Only print what would be done.")] = False,
-) -> int:
+def update(dry_run: Annotated[bool, option("--dry-run", "Only print what would be done.")] = False) -> int:
     """Bring newer course content in.
 
     For exercises you started: a file that you never edited is replaced (a copy is kept). A file that you
     edited stays, and the newer one is put beside it as NAME.new. In a notebook the newer text is put around
     your work.
     """
-
     console, here = current(), Here.load()
     old, new = here.workspace.version, here.catalog.version
     changes = tuple(_updates(here, dry_run=dry_run))
@@ -164,7 +157,6 @@ def _update_notebook(here: Here, notebook: Generated, *, dry_run: bool) -> Chang
 
 
 def _update_file(here: Here, exercise: Exercise, name: str, new: bytes, *, dry_run: bool) -> Change:
-    """Bring one file up to date, or say what would happen."""
     workspace = here.workspace
     path = workspace.path(exercise.place, name)
     given = workspace.given(exercise.place, name)
@@ -238,7 +230,6 @@ def start(
 
     You get the stub to fill in and its README. An existing file is not changed.
     """
-
     console, here = current(), Here.load()
     if exercise is None:
         raise UsageError(

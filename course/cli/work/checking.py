@@ -19,6 +19,7 @@ from course.cli.work.verdict import (
     annotate,
     annotate_error,
     known_format,
+    show_changes,
     show_loading,
     show_verdict,
 )
@@ -54,13 +55,12 @@ def show_curve(console: Console, made: Attempt, *, focus: str = "", drawn: bool 
     from course.figures.described import plot_of
     from course.figures.plots import draw
 
-    if not drawn and console.fancy:
-        console.blank()
-    elif console.fancy:
+    if drawn:
         console.figure(lambda: draw(plot_of(curve)))
+    else:
+        console.gap()
     console.line((f"{check}: {curve.description}", "dim"))
-    if console.fancy:
-        console.blank()
+    console.gap()
 
 
 def _curves(made: Attempt, focus: str = "") -> Iterator[tuple[str, Curve]]:
@@ -77,10 +77,8 @@ def _reply(check: str, curve: Curve) -> CurveReply:
     from course.figures.described import thinned
 
     few = thinned(curve)
-    return CurveReply(
-        check, curve.quantity, curve.units, curve.right_is, curve.parts_at, curve.description,
-        tuple(few.t.tolist()), tuple(few.yours.tolist()), tuple(few.right.tolist()),
-    )  # fmt: skip
+    points = {name: tuple(getattr(few, name).tolist()) for name in ("t", "yours", "right")}
+    return filled(CurveReply, curve, check=check, **points)
 
 
 FAILED = 1
@@ -196,16 +194,11 @@ def _check_one(
 
 def _show_changes(console: Console, here: Here, exercise: Exercise) -> None:
     """First the functions that the last edit broke, and those that it fixed."""
-    try:
-        fixed, broke = here.history(exercise).changed_tasks()
-    except CourseError:  # a record that cannot be read is warned about elsewhere
-        return
-    for label, style, tasks in (("broke", "bold red", broke), ("fixed", "bold green", fixed)):
-        for task in exercise.task:
-            if task.id in tasks:
-                console.item(label, f"{task.title}  [{task.id}]", style=style, width=9)
-    if (fixed or broke) and console.fancy:
-        console.blank()
+    fixed, broke = (
+        [f"{task.title}  [{task.id}]" for task in exercise.task if task.id in changed]
+        for changed in here.known_history(exercise).changed_tasks()
+    )
+    show_changes(console, broke, fixed)
 
 
 def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int:
@@ -242,8 +235,5 @@ def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int
 
 def _estimate(here: Here, exercise: Exercise) -> str:
     """How long it took last time, if that was long."""
-    try:
-        last = here.history(exercise).last
-    except CourseError:
-        return ""
+    last = here.known_history(exercise).last
     return f", about {last.seconds:.0f} s" if last is not None and last.seconds >= 1 else ""

@@ -8,7 +8,7 @@ be handed in.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -73,7 +73,6 @@ def asked_for(here: Here, wanted: str | None) -> tuple[Exercise, str | None]:
     Raises:
         NotFoundError: there is no such exercise or file.
     """
-
     if wanted is None or Path(wanted).suffix not in (".py", NOTEBOOK):
         return here.exercise(wanted), None
     path = (cwd() / Path(wanted).expanduser()).resolve()
@@ -141,19 +140,15 @@ def work_of(
             chosen.append(notebook)
         elif module == _STUB or exercise.id in here.workspace.started() or here.moved(exercise):
             other = here.misnamed(exercise) or here.moved(exercise)
-            left_out += _reply(
-                exercise, exercise.module, f"{module}; {other} is not read" if other else module
-            )
+            why = f"{module}; {other} is not read" if other else module
+            left_out.append(FileReply(path=f"{exercise.place}/{exercise.module}", action=why))
         if why_not:
-            left_out += _reply(exercise, _notebook_name(exercise), why_not)
+            path = f"{exercise.place}/{_notebook_name(exercise)}"
+            left_out.append(FileReply(path=path, action=why_not))
     return chosen, left_out
 
 
 _STUB, _MISSING = "still the stub", "not there"
-
-
-def _reply(exercise: Exercise, name: str, why: str) -> Iterator[FileReply]:
-    yield FileReply(path=f"{exercise.place}/{name}", action=why)
 
 
 def _notebook_name(exercise: Exercise) -> str:
@@ -164,7 +159,6 @@ def _notebook_name(exercise: Exercise) -> str:
 
 
 def _module(here: Here, exercise: Exercise) -> StudentWork:
-    """The module as it lies in the workspace."""
     source = here.source(exercise)
     other = here.misnamed(exercise)
     note = (
@@ -209,7 +203,6 @@ def _is_edited(here: Here, work: StudentWork) -> bool:
     """Whether a file was edited since it was handed out."""
     if work.notebook is None:
         return here.workspace.is_edited(work.exercise.place, work.name, work.data)
-
     return not is_untouched(work.data) and fingerprint(work.source) != fingerprint(work.stub)
 
 

@@ -38,7 +38,6 @@ def hint(
     A new hint is due after a check that failed on changed code; comments and layout do not count as a change.
     Until then the last hint is shown again.
     """
-
     console, here = current(), Here.load()
     chosen, named = asked_for(here, exercise)
     reply = give_hint(console, here, chosen, task, named)
@@ -66,29 +65,24 @@ def give_hint(
 
 
 def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | None) -> Hint:
-    """Decide what to show, and record it if it is new.
-
-    Args:
-        named: the file that was named, to be called by its name.
-    """
-
+    """Decide what to show, and record it if it is new; arguments as of ``give_hint``."""
     history = here.history(exercise)
     started = exercise.id in here.workspace.started()
     again = f"course check {exercise.id}" if started else f"course start {exercise.id}"
     task = _task(exercise, history, wanted)
     last = history.last
     if last is None:
-        return _no_hint(
-            exercise, "not_checked", "Hints follow a check that failed. Check your work first.", again
-        )
+        message = "Hints follow a check that failed. Check your work first."
+        return _hint(exercise, again, reason="not_checked", message=message)
     if last.state != "graded":
         message = "Your file could not be run at the last check; what that check said is the hint for now."
-        return _no_hint(exercise, "ungradable", message, again)
+        return _hint(exercise, again, reason="ungradable", message=message)
     if task is None:
         which = f"Every public check of {wanted} passes" if wanted else "Every public check passes"
         done = after_warm_up(here, exercise) if exercise.is_warm_up else "course submit"
         step = again if wanted else done
-        return _no_hint(exercise, "passing", f"{which}: there is nothing to hint at.", step)
+        message = f"{which}: there is nothing to hint at."
+        return _hint(exercise, step, reason="passing", message=message)
     known = here.catalog.hints(exercise)
     hints, shown, failed = known.of(task), history.hints_for(task), history.diagnosed(task)
     begun = task not in history.unwritten_tasks()
@@ -103,9 +97,10 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
             f"Read the lesson again with this function beside it: course lesson {exercise.lesson}. "
             "A solution can be shown after a pass, where one was released."
         )
-        return _no_hint(exercise, "exhausted", message, f"course lesson {exercise.lesson}", task)
+        step = f"course lesson {exercise.lesson}"
+        return _hint(exercise, step, reason="exhausted", task=task, message=message)
     here.record("hint", exercise.id, {"task": task, "index": following, "fingerprint": last.fingerprint})
-    return _hint(exercise, given=True, task=task, hint=hints.said(following, failed), step=again)
+    return _hint(exercise, again, given=True, task=task, hint=hints.said(following, failed))
 
 
 def _task(exercise: Exercise, history: History, wanted: str | None) -> str | None:
@@ -142,24 +137,14 @@ def _not_due(exercise: Exercise, task: str, last: str | None, file: str) -> Hint
             "You have had that one already. The next one follows a check that fails on changed code in "
             f"{file}."
         )
-    return _hint(
-        exercise,
-        reason="unchanged",
-        task=task,
-        hint=last,
-        message=message,
-        step=f"course check {exercise.id}",
-    )
-
-
-def _no_hint(exercise: Exercise, reason: str, message: str, step: str, task: str | None = None) -> Hint:
-    return _hint(exercise, reason=reason, task=task, message=message, step=step)
+    step = f"course check {exercise.id}"
+    return _hint(exercise, step, reason="unchanged", task=task, hint=last, message=message)
 
 
 def _hint(
     exercise: Exercise,
-    *,
     step: str,
+    *,
     given: bool = False,
     reason: str = "",
     task: str | None = None,
@@ -183,7 +168,6 @@ def solution(exercise: ExerciseName = None) -> int:
     Once a check of yours has reached the pass mark, this shows the solution if your instructor has handed
     one out: put the .coursepack file into the workspace.
     """
-
     console, here = current(), Here.load()
     chosen = here.exercise(exercise)
     if here.history(chosen).first_pass is None:

@@ -103,9 +103,7 @@ def _drawn(console: Console, plot: Plot, path: Path) -> WrittenFile:
         console.line(("Figure: " + plot.description, "dim"))
     # An unchanged figure needs no copy of the old one.
     path.unlink(missing_ok=True)
-    file = here.write(path, picture, why="report")
-    console.line(f"Wrote {file.path}")
-    return file
+    return here.write_told(path, picture, why="report")
 
 
 def _write_bag(console: Console, made: Report, bag: Path) -> str:

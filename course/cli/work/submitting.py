@@ -15,20 +15,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
-import typer
-
 from course.catalog.models import Exercise
 from course.catalog.pack import zip_entry
 from course.cli.frame.completion import exercise_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, cwd
-from course.cli.frame.options import option
+from course.cli.frame.options import argument, option
 from course.cli.frame.replies import FileReply
 from course.cli.work.chosen import StudentWork, as_handed_in, work_of
 from course.cli.work.replies import Submit, SubmitFile
 from course.errors import CourseError, UngradableError, UsageError
 from course.handed_in import attempts
 from course.handed_in.limits import FORMAT_VERSION, MANIFEST, MAX_UNPACKED
+from course.printable import counted
 from course.progress.history import fingerprint
 from course.progress.quiz import quiz_history, records
 from course.progress.workspace import write_atomically
@@ -38,12 +37,7 @@ from course.scoring.verdict import Verdict, format_points
 def submit(
     exercises: Annotated[
         list[str] | None,
-        typer.Argument(
-            metavar="[EXERCISE]...",
-            help="Only these, without the quiz; everything if left out.",
-            autocompletion=exercise_ids,
-            show_default=False,
-        ),
+        argument("[EXERCISE]...", "Only these, without the quiz; everything if left out.", exercise_ids),
     ] = None,
     output: Annotated[
         Path | None, option("-o --output FILE", "File to write; in the workspace if left out.")
@@ -58,7 +52,6 @@ def submit(
     file is still the stub is left out; if you worked in its notebook instead, the notebook is handed in,
     without its outputs. If the file to write exists, a copy of it is kept.
     """
-
     console, here = current(), Here.load()
     only = tuple(here.exercise(name) for name in exercises or ())
     target = _target(here, output, only)
@@ -127,12 +120,8 @@ def archive(
 
 def _packed(here: Here, works: Sequence[StudentWork], quiz: Sequence[Mapping[str, object]]) -> bytes:
     """The archive's bytes; refused if no grading run would take them."""
-    data = archive(
-        here.catalog.course_id,
-        here.catalog.version,
-        {work.path: work.data for work in works},
-        quiz,
-    )
+    files = {work.path: work.data for work in works}
+    data = archive(here.catalog.course_id, here.catalog.version, files, quiz)
     if len(data) > MAX_UNPACKED:
         raise UngradableError(
             f"Together the files are larger than {MAX_UNPACKED:,} bytes, which no grading run unpacks.",
@@ -213,10 +202,7 @@ def _check(here: Here, work: StudentWork) -> _GoesIn:
 
 def _is_known(here: Here, work: StudentWork) -> bool:
     """Whether the record has a check of this very work."""
-    try:
-        last = here.history(work.exercise).last_graded
-    except CourseError:
-        return False
+    last = here.known_history(work.exercise).last_graded
     return last is not None and last.fingerprint == fingerprint(work.source)
 
 
@@ -243,12 +229,10 @@ def _show(
     for one in goes_in:
         console.line(f"{one.work.path}: {len(one.work.data):,} bytes, {_score(one)}", indent=2)
     if quiz:
-        attempts = "1 attempt" if len(quiz) == 1 else f"{len(quiz)} attempts"
         best = max(quiz, key=lambda record: record["score"])
+        score = f"best {best['score']} of {len(best['questions'])}"
         console.line(
-            f"The quiz: {attempts}, best {best['score']} of {len(best['questions'])}; "
-            "scored again when graded",
-            indent=2,
+            f"The quiz: {counted(len(quiz), 'attempt')}, {score}; scored again when graded", indent=2
         )
     if files or quiz:
         console.line(

@@ -9,19 +9,18 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from course.catalog.models import Exercise, Task
 from course.cli.frame.console import STATUS_STYLE, Console
 from course.cli.frame.here import Here, cwd
 from course.cli.work.chosen import StudentWork
 from course.errors import CourseError, UsageError
-from course.printable import steady, unheeded
+from course.printable import counted, steady, unheeded
 from course.scoring.verdict import CheckResult, Verdict, format_points, in_points, numbers_of
 
-if TYPE_CHECKING:
-    Tasks = Sequence[tuple[Task, Sequence[CheckResult]]]
+Tasks = Sequence[tuple[Task, Sequence[CheckResult]]]
 
 
 # ---
@@ -43,7 +42,7 @@ def show_lines(console: Console, heading: str, text: str, *, whole: bool, indent
     console.block("\n".join(kept), indent=indent + _INDENT)
     if len(kept) < len(lines):
         left = len(lines) - len(kept)
-        more = f"and {left} more {'line' if left == 1 else 'lines'}; --verbose shows all"
+        more = f"and {counted(left, 'more line')}; --verbose shows all"
         console.line((more, "dim"), indent=indent + _INDENT)
 
 
@@ -51,8 +50,7 @@ def show_loading(console: Console, printed: str, *, whole: bool) -> None:
     """Show a file's output while it was loaded, if any."""
     if printed and not console.quiet:
         show_lines(console, "Loading your file printed:", printed, whole=whole)
-        if console.fancy:
-            console.blank()
+        console.gap()
 
 
 def show_unshown(console: Console, verdict: Verdict) -> None:
@@ -96,7 +94,9 @@ def show_verdict(
         keyed: keys show what is kept back, and they are named below.
     """
     if not console.quiet:
-        page = _Page(console, verbose=verbose, brief=brief, focus=focus, scored=not exercise.is_warm_up)
+        page = _Page(
+            console=console, verbose=verbose, brief=brief, focus=focus, scored=not exercise.is_warm_up
+        )
         page.tasks([(task, [c for c in verdict.checks if c.task == task.id]) for task in exercise.task])
         # Checks of a task that the exercise does not list must not vanish.
         known = {task.id for task in exercise.task}
@@ -113,9 +113,18 @@ def show_verdict(
         console.line((sentence, "bold green" if verdict.all_pass else "bold"))
 
 
+def show_changes(console: Console, broke: Sequence[str], fixed: Sequence[str]) -> None:
+    """First what the last edit broke, and what it fixed: titles of functions or of checks."""
+    for label, style, titles in (("broke", "bold red", broke), ("fixed", "bold green", fixed)):
+        for title in titles:
+            console.item(label, title, style=style, width=_LABEL_WIDTH)
+    if broke or fixed:
+        console.gap()
+
+
 def show_everything(console: Console, exercise: Exercise, checks: Sequence[CheckResult]) -> None:
     """Every check of a grading run, hidden ones with their values: for the instructor."""
-    page = _Page(console, verbose=True, brief=False, hidden=True)
+    page = _Page(console=console, verbose=True, brief=False, hidden=True)
     for task in exercise.task:
         page.task(task.title, [check for check in checks if check.task == task.id])
 
@@ -128,19 +137,19 @@ def summary(exercise: Exercise, verdict: Verdict) -> list[str]:
         which = "The one check passes" if total == 1 else f"All {total} checks pass"
         some = f"{passing} of {total} checks {'passes' if passing == 1 else 'pass'}."
         return [f"{which}: this warm-up is done." if verdict.all_pass else some]
-    score = f"score {format_points(verdict.score)}/{format_points(verdict.max_score)}"
+    score = f"Score {format_points(verdict.score)}/{format_points(verdict.max_score)}"
     hidden = exercise.hidden_checks
     later = ""
     if hidden:
         later = f"; {hidden} hidden {'check runs' if hidden == 1 else 'checks run'} when it is graded"
     if verdict.all_pass:
         everything = "The one public check passes" if total == 1 else f"All {total} public checks pass"
-        return [f"{everything}{later}.", _capital(f"{score}.")]
+        return [f"{everything}{later}.", f"{score}."]
     points = verdict.max_score + exercise.hidden_points
     mark = f"a pass takes {format_points(exercise.pass_mark * points)} of {format_points(points)} points"
     return [
         f"{passing} of {total} public checks {'passes' if passing == 1 else 'pass'}{later}.",
-        _capital(f"{score}; {mark}{', hidden checks included' if exercise.hidden_points else ''}."),
+        f"{score}; {mark}{', hidden checks included' if exercise.hidden_points else ''}.",
     ]
 
 
@@ -149,30 +158,21 @@ def _part(verdict: Verdict) -> list[str]:
     return [f"{passing} of {total} {'check passes' if passing == total == 1 else 'checks pass'}."]
 
 
+@dataclass(kw_only=True)
 class _Page:
     """Shows one verdict; remembers what it has said, so as not to say it seven times."""
 
-    def __init__(
-        self,
-        console: Console,
-        *,
-        verbose: bool,
-        brief: bool,
-        hidden: bool = False,
-        focus: str = "",
-        scored: bool = True,
-    ) -> None:
-        self._console = console
-        self._scored = scored
-        self._hidden = hidden
-        self._verbose = verbose
-        self._brief = brief
-        self._focus = focus
-        self._left_out = False
-        self._said: set[str] = set()
-        self._kept_back = False
-        self._shortened = False
-        self._unscored = False
+    console: Console
+    verbose: bool
+    brief: bool
+    hidden: bool = False
+    focus: str = ""
+    scored: bool = True
+    _said: set[str] = field(default_factory=set)
+    _left_out: bool = False
+    _kept_back: bool = False
+    _shortened: bool = False
+    _unscored: bool = False
 
     def tasks(self, tasks: Tasks) -> None:
         """The functions that pass, the unwritten ones, and last those that fail."""
@@ -184,7 +184,7 @@ class _Page:
             elif checks:
                 whole = all(check.status == "pass" for check in checks)
                 (done if whole else failing).append((task, checks))
-        if self._brief and failing:
+        if self.brief and failing:
             failing = [self._but_one(done, unwritten, failing)]
         else:
             for task, checks in done:
@@ -197,38 +197,38 @@ class _Page:
     def _but_one(self, done: Tasks, unwritten: Tasks, failing: Tasks) -> tuple[Task, Sequence[CheckResult]]:
         """A line for each function except the one to show in detail, which is returned."""
         for task, checks in done:
-            self._label("pass", task.title, f"  {_number_of(checks)}")
+            self._label("pass", task.title, f"  {counted(len(checks), 'check')}")
         if unwritten:
             names = ", ".join(task.id for task, _ in unwritten)
-            self._console.item("to do", names, style="yellow", width=_LABEL_WIDTH)
-        chosen = next((pair for pair in failing if pair[0].id == self._focus), failing[0])
+            self.console.item("to do", names, style="yellow", width=_LABEL_WIDTH)
+        chosen = next((pair for pair in failing if pair[0].id == self.focus), failing[0])
         for task, checks in failing:
             if task is not chosen[0]:
                 self._left_out = True
                 first = next(check for check in checks if check.status != "pass")
                 self._label(first.status, task.title, f"  [{task.id}]")
         if done or unwritten or self._left_out:
-            self._gap()
+            self.console.gap()
         return chosen
 
     def task(self, title: str, checks: Sequence[CheckResult]) -> None:
         """A heading with the points, and the task's checks."""
-        self._console.heading(title, self._worth(checks))
-        if _all_alike(checks) and not self._hidden:
+        self.console.heading(title, self._worth(checks))
+        if _all_alike(checks) and not self.hidden:
             self._alike(next(check for check in checks if check.status != "skip"))
-        elif self._brief and not self._verbose:
+        elif self.brief and not self.verbose:
             self._first_failure(checks)
         else:
             for check in checks:
                 self.check(check)
-        self._gap()
+        self.console.gap()
 
     def _first_failure(self, checks: Sequence[CheckResult]) -> None:
         """One check in detail, below a line for each other that does not pass."""
         passing = [check for check in checks if check.status == "pass"]
         failing = sorted((c for c in checks if c.status != "pass"), key=lambda check: check.status == "skip")
         if passing:
-            self._label("pass", _number_of(passing))
+            self._label("pass", counted(len(passing), "check"))
         for check in failing[1:]:
             why = f"  runs after {check.blocked_by} passes" if check.blocked_by else ""
             aside = why if check.status == "skip" else f"  [{check.id}]"
@@ -239,31 +239,27 @@ class _Page:
     def unwritten(self, tasks: Tasks) -> None:
         """The functions that are still the stub's, with their common advice once."""
         every = [check for _, checks in tasks for check in checks]
-        self._console.heading("Not written yet", self._worth(every))
+        self.console.heading("Not written yet", self._worth(every))
         for task, _ in tasks:
-            self._console.item(
+            self.console.item(
                 "to do", task.title, (f"  [{task.id}]", "dim"), style="yellow", width=_LABEL_WIDTH
             )
         self._text(next(check.help for check in every if check.diagnosis == _UNWRITTEN))
-        self._gap()
+        self.console.gap()
 
     def _worth(self, checks: Sequence[CheckResult]) -> str:
         """The points of some checks; a warm-up has none."""
-        return _points(checks) if self._scored else ""
-
-    def _gap(self) -> None:
-        if self._console.fancy:
-            self._console.blank()
+        return _points(checks) if self.scored else ""
 
     def check(self, check: CheckResult) -> None:
         """One check: its title, and everything about it if it did not pass."""
         aside = "" if check.status in {"pass", "skip"} else f"  [{check.id}]"
-        if self._hidden:
+        if self.hidden:
             hidden = ", hidden" if check.visibility == "hidden" else ""
             aside = f"  [{check.id}{hidden}, {_points([check]) if check.max_points else 'no points'}]"
         self._label(check.status, self._title(check), aside)
         if check.status == "pass":
-            if self._verbose:
+            if self.verbose:
                 self._printed(check)
             return
         if check.blocked_by:
@@ -276,7 +272,7 @@ class _Page:
 
     def _title(self, check: CheckResult) -> str:
         """The title; with a mark if the check gives no points in an exercise that has some."""
-        if self._hidden or not self._scored or check.max_points:
+        if self.hidden or not self.scored or check.max_points:
             return check.title
         self._unscored = True
         return f"{check.title} *"
@@ -284,16 +280,16 @@ class _Page:
     def close(self, *, keyed: bool) -> None:
         """Say once what the mark means, and how to see what was kept back, unless keys do."""
         if self._unscored:
-            self._console.line(("* No points here; the grading run judges it.", "dim"))
+            self.console.line(("* No points here; the grading run judges it.", "dim"))
         if keyed:
             return
         if self._left_out:
-            command = "`course check`" if self._scored else "--verbose"
-            self._console.note((f"One function at a time in detail; {command} shows all.", "dim"))
+            command = "`course check`" if self.scored else "--verbose"
+            self.console.note((f"One function at a time in detail; {command} shows all.", "dim"))
         if self._shortened:
-            self._console.note(("Long lists of numbers are left out; --verbose shows them.", "dim"))
+            self.console.note(("Long lists of numbers are left out; --verbose shows them.", "dim"))
         if self._kept_back:
-            self._console.note(("--verbose shows tracebacks.", "dim"))
+            self.console.note(("--verbose shows tracebacks.", "dim"))
 
     def _alike(self, check: CheckResult) -> None:
         """The same thing keeps every check of the task from running: say it once."""
@@ -304,54 +300,46 @@ class _Page:
         if check.help and check.help not in self._said:
             self._text(check.help)
         for label, text in numbers_of(check):
-            row = max(self._console.width, _USUAL) - _BESIDE  # a narrow window must not hide two numbers
-            if self._brief and not self._verbose and len(text) > _SHORT * row:
+            row = max(self.console.width, _USUAL) - _BESIDE  # a narrow window must not hide two numbers
+            if self.brief and not self.verbose and len(text) > _SHORT * row:
                 self._shortened = True
             else:
-                self._console.item(label, text, style="dim", indent=_DETAIL_INDENT, width=_LABEL_WIDTH)
-        if check.diagnosis and self._verbose:  # the name of a mistake tells its student nothing
+                self.console.item(label, text, style="dim", indent=_DETAIL_INDENT, width=_LABEL_WIDTH)
+        if check.diagnosis and self.verbose:  # the name of a mistake tells its student nothing
             place = {"indent": _DETAIL_INDENT, "width": _LABEL_WIDTH}
-            self._console.item("diagnosis", check.diagnosis, style="dim", **place)
+            self.console.item("diagnosis", check.diagnosis, style="dim", **place)
         self._said.add(check.help)
         self._printed(check)
-        if check.traceback and self._verbose:
+        if check.traceback and self.verbose:
             show_lines(
-                self._console,
+                self.console,
                 "Traceback, your lines only:",
                 check.traceback,
                 whole=True,
                 indent=_DETAIL_INDENT,
             )
-        self._kept_back |= bool(check.traceback) and not self._verbose
+        self._kept_back |= bool(check.traceback) and not self.verbose
 
     def _printed(self, check: CheckResult) -> None:
         if check.stdout:
             show_lines(
-                self._console,
-                "Your code printed:",
-                check.stdout,
-                whole=self._verbose,
-                indent=_DETAIL_INDENT,
+                self.console, "Your code printed:", check.stdout, whole=self.verbose, indent=_DETAIL_INDENT
             )
 
     def _text(self, text: str) -> None:
         if text:
-            self._console.line(text, indent=_DETAIL_INDENT)
+            self.console.line(text, indent=_DETAIL_INDENT)
 
     def _label(self, status: str, text: str, aside: str = "") -> None:
         """A status as a word, upper case where something is wrong, so that colour only repeats it."""
         word = status if status in {"pass", "skip"} else status.upper()
-        self._console.item(word, text, (aside, "dim"), style=STATUS_STYLE.get(status, ""), width=_LABEL_WIDTH)
+        self.console.item(word, text, (aside, "dim"), style=STATUS_STYLE.get(status, ""), width=_LABEL_WIDTH)
 
 
 def is_unwritten(checks: Sequence[CheckResult]) -> bool:
     """True if the task's function is as the stub has it."""
     ran = [check for check in checks if check.status != "skip"]
     return bool(ran) and all(check.diagnosis == _UNWRITTEN for check in ran)
-
-
-def _number_of(checks: Sequence[CheckResult]) -> str:
-    return f"{len(checks)} {'check' if len(checks) == 1 else 'checks'}"
 
 
 def _all_alike(checks: Sequence[CheckResult]) -> bool:
@@ -365,10 +353,6 @@ def _all_alike(checks: Sequence[CheckResult]) -> bool:
 def _points(checks: Sequence[CheckResult]) -> str:
     points = format_points(sum(check.points for check in checks))
     return f"{points}/{in_points(sum(check.max_points for check in checks))}"
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]
 
 
 # ---

@@ -242,7 +242,7 @@ def test_screens_show_every_row_once(height):
     layout = Layout(rows_of(5, 1, 12, 3, 30, 2, whole=True), height)
     seen = [row for top in layout.starts for row in range(top, layout.end_of(top))]
     assert seen == list(range(len(layout)))
-    assert layout.ends(layout.last)
+    assert layout.end_of(layout.last) == len(layout)
 
 
 def test_what_fits_on_a_screen_is_not_cut():

@@ -45,10 +45,8 @@ def read(
     """Read until the reader leaves. The terminal is restored, whatever happens.
 
     Args:
-        catalog: the course.
-        first: id of the lesson to open.
         workspace: the student's; None outside of one.
-        section: slug of the section to open it at; where it was left if empty.
+        first, section: as of ``ReaderApp``.
 
     Returns:
         The lesson that was open last, and why something was not recorded ("" if all was).
@@ -82,7 +80,6 @@ class ReaderApp(FullScreenApp):
     """One lesson after the other on the whole screen, to predict, run, practise, follow and search.
 
     Args:
-        catalog: the course.
         first: id of the lesson to open.
         section: slug of the section to open it at; where it was left if empty.
         events: what is recorded about a lesson.
@@ -154,11 +151,9 @@ class ReaderApp(FullScreenApp):
     # -- coming and going --------------------------------------------------------------------------------
 
     def compose(self) -> ComposeResult:
-        """The page is all there is."""
         yield self.page
 
     def on_mount(self) -> None:
-        """Start."""
         self.page.focus()
         self.set_interval(_TICK, self.page.tick)
         self.page.open(self._first, section=self._section)
@@ -202,7 +197,6 @@ class ReaderApp(FullScreenApp):
             self.action_quit_now()
 
     def say(self, message: str) -> None:
-        """Show something in the last line for a moment."""
         super().say(message)
         self.page.say_round()
 
@@ -218,7 +212,6 @@ class ReaderApp(FullScreenApp):
             self.page.show(others[to])
 
     def action_line(self, lines: int) -> None:
-        """A line on or back."""
         last = len(self.page.book.layout) - self.page.room
         self.page.go(max(0, min(self.page.top + lines, last)), paged=False)
         self.page.settle()
@@ -241,12 +234,10 @@ class ReaderApp(FullScreenApp):
             self.page.open(*self.page.trail.pop())
 
     def on_mouse_scroll_down(self) -> None:
-        """Some lines on."""
         if len(self.screen_stack) == 1:
             self.action_line(_WHEEL)
 
     def on_mouse_scroll_up(self) -> None:
-        """Some lines back."""
         if len(self.screen_stack) == 1:
             self.action_line(-_WHEEL)
 
@@ -330,7 +321,6 @@ class ReaderApp(FullScreenApp):
             self.page.show(self.page.book.layout.row(Place(int(rest))))
 
     def action_search(self) -> None:
-        """Look for words."""
         self.push_screen(Find(self._search), self._chosen)
 
     def _search(self, wanted: str) -> list[tuple[str, str]]:
@@ -356,7 +346,6 @@ class ReaderApp(FullScreenApp):
         self.page.show(self.page.book.layout.row(Place(following[0])))
 
     def action_help(self) -> None:
-        """All keys."""
         self.push_screen(TextOverlay("Keys", [keys_table(self.size.width)]))
 
 

@@ -65,7 +65,6 @@ class Predict(Overlay[str]):
         self._question = question
 
     def compose(self) -> ComposeResult:
-        """The question above the line to type in."""
         with VerticalScroll(classes="box", can_focus=False) as box:
             box.border_title = "Predict first"
             box.border_subtitle = "Enter: keep it and open the answer   Escape: not yet"
@@ -76,7 +75,6 @@ class Predict(Overlay[str]):
             yield entry
 
     def on_mount(self) -> None:
-        """Ready to type."""
         self.query_one(Input).focus()
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
@@ -89,7 +87,6 @@ class _Chooser(Overlay[str]):
     """Has a list to choose from. Dismissed with the key of what was chosen, or None."""
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
-        """Take it."""
         self.close(event.option.id)
 
 
@@ -107,7 +104,6 @@ class Choice(_Chooser):
         self._title, self._options, self._at = title, options, at
 
     def compose(self) -> ComposeResult:
-        """The list."""
         with Vertical(classes="box") as box:
             box.border_title, box.border_subtitle = self._title, "Enter: go there   Escape: back"
             yield OptionList(
@@ -135,7 +131,6 @@ class Find(_Chooser):
         self._search = search
 
     def compose(self) -> ComposeResult:
-        """A line to type in, and the hits below it."""
         with Vertical(classes="box") as box:
             box.border_title = "Search"
             box.border_subtitle = "Enter: look   Escape: back"
@@ -145,12 +140,10 @@ class Find(_Chooser):
             yield OptionList()
 
     def on_mount(self) -> None:
-        """Ready to type."""
         self.query_one(OptionList).display = False
         self.query_one(Input).focus()
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Look."""
         hits = self._search(event.value)
         chooser = self.query_one(OptionList)
         chooser.clear_options()
@@ -175,11 +168,9 @@ class _Code(InOrder, TextArea):
     ]
 
     def action_to_start(self) -> None:
-        """The first line."""
         self.move_cursor((0, 0))
 
     def action_to_end(self) -> None:
-        """The end of the last line."""
         self.move_cursor(self.document.end)
 
     def _on_key(self, event: Key) -> None:  # type: ignore[override]
@@ -223,7 +214,6 @@ class Edit(Overlay[bool]):
         self._told = ""  # below the code, in place of the keys
 
     def compose(self) -> ComposeResult:
-        """The code, with the keys that end editing below it."""
         with Vertical(classes="box") as box:
             box.border_title = self._title
             box.border_subtitle = self._keys
@@ -248,12 +238,10 @@ class Edit(Overlay[bool]):
         return self._area.text == self._source or self.kept()
 
     def action_keep(self) -> None:
-        """Keep the code as it is now."""
         if self.kept():
             self.close(False)
 
     def action_run(self) -> None:
-        """Keep it, and run or check it."""
         if self.kept():
             self.close(True)
 

@@ -32,7 +32,6 @@ class LinkItem(Item):
     at_once = True
 
     def keys(self, page: Page) -> str:
-        """Where it leads."""
         del page
         kind, _, rest = self.target.partition(":")
         where = f"open {rest.partition('#')[0] if kind in {'lesson', 'exercise'} else self.target}"
@@ -41,7 +40,6 @@ class LinkItem(Item):
         return f"Enter: {where}   Tab next   Space on"
 
     def act(self, page: Page) -> None:
-        """Follow it."""
         kind, _, rest = self.target.partition(":")
         name, _, slug = rest.partition("#")
         if kind == "lesson" or self.target.startswith("#"):
@@ -75,7 +73,6 @@ class QuestionItem(Item):
         return "Enter predict   s skip   ? keys" if self.is_offered(page) else KEYS
 
     def act(self, page: Page) -> None:
-        """Ask for a prediction."""
         question = page.progress.asked_by(self.block)
         if question is None:
             page.forward()
@@ -139,9 +136,7 @@ class CellItem(Item):
     act = run
 
     def edit(self, page: Page) -> None:
-        """Change it."""
         cell = self._cell(page)
-
         progress = page.progress
 
         def keep(source: str) -> None:
@@ -156,14 +151,12 @@ class CellItem(Item):
         page.app.push_screen(Edit(f"Cell {cell.number}", progress.cell(cell).source, keep, "run"), done)
 
     def undo(self, page: Page) -> None:
-        """The lesson's own code again."""
         cell = self._cell(page)
         page.progress.edit(cell, cell.source)
         page.rebuild(self.block)
         page.reader.say("The lesson's own code is back.")
 
     def copy(self, page: Page) -> None:
-        """Copy it."""
         cell = self._cell(page)
         page.app.copy_to_clipboard(page.progress.cell(cell).source + "\n")
         page.reader.say(f"Cell {cell.number} is copied, if your terminal allows it; w writes a file.")

@@ -161,7 +161,6 @@ class Page(Widget):
 
     Args:
         reader: the app, which shows messages.
-        catalog: the course.
         practice: the warm-ups and exercises in the student's workspace.
         pictures: draws figures for this terminal; None to describe them.
         events: what is recorded about a lesson.

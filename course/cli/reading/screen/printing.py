@@ -88,7 +88,7 @@ class ScreenPrinter(FancyPrinter):
         script = progress.script
         figures = [one.id for one in b.walk_blocks(script.blocks) if isinstance(one, b.Figure)]
         self._width = max(20, width - 2)
-        super().__init__(catalog, script.lesson, console, figures, None, min(self._width, COLUMN), {})
+        super().__init__(catalog, script.lesson, console, figures, None, min(self._width, COLUMN))
         self._progress = progress
         self._script = script
         self._practice = practice
@@ -198,10 +198,7 @@ class ScreenPrinter(FancyPrinter):
         """A warm-up or an exercise: its text, and how far the student is with it."""
         now = self._practice.of(task.id)
         done = ", done" if now.done else ""
-        shown: list[RenderableType] = [
-            self._rule(f"{task.what}{done}"),
-            Text(task.title, style="bold"),
-        ]
+        shown: list[RenderableType] = [self._rule(f"{task.what}{done}"), Text(task.title, style="bold")]
         for block in task.blocks:
             made = self._block(block)
             shown += [Text(""), made] if made is not None else []
@@ -270,10 +267,7 @@ class ScreenPrinter(FancyPrinter):
             return super()._code(block)
         state = self._progress.cell(cell)
         changed = ", changed" if state.source != cell.source else ""
-        shown: list[RenderableType] = [
-            self._rule(f"Python, cell {cell.number}{changed}"),
-            Code(state.source),
-        ]
+        shown: list[RenderableType] = [self._rule(f"Python, cell {cell.number}{changed}"), Code(state.source)]
         busy, words = self._busy()
         if busy == cell.key:
             shown.append(self._rule(words))
@@ -308,8 +302,7 @@ class ScreenPrinter(FancyPrinter):
         return [grid]
 
     def _figure(self, figure: b.Figure) -> RenderableType:
-        number = self._figure_ids.index(figure.id) + 1
-        caption = Text.assemble((f"Figure {number}. ", "bold"), self._text(figure.caption))
+        caption = self._caption(figure)
         seen = Text.assemble(("The figure shows: ", "bold"), figure.alt, style="dim")
         picture = self._picture(figure.id, None, self._prose)
         if not picture:

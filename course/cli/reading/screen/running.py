@@ -30,6 +30,7 @@ from course.cli.frame.pictures import half_blocks
 from course.errors import CourseError, MissingCapabilityError
 from course.isolation.failures import IsolationError
 from course.progress.history import history_of
+from course.progress.store import numbered
 from course.progress.workspace import Workspace, write_atomically
 from course.reading.parts import Cell
 from course.reading.record import InProgress
@@ -148,23 +149,18 @@ def write_new(name: str, text: str) -> Path:
     Raises:
         MissingCapabilityError: the folder cannot be written.
     """
-    stem, _, ending = name.rpartition(".")
-    number = 1
-    while True:
-        path = Path(name if number == 1 else f"{stem}-{number}.{ending}")
+    for path in numbered(Path(name)):
         try:
-            with path.open("x", encoding="utf-8") as file:
+            with contextlib.suppress(FileExistsError), path.open("x", encoding="utf-8") as file:
                 file.write(text)
-        except FileExistsError:
-            number += 1
+                break
         except OSError as error:
             raise MissingCapabilityError(
                 f"{path} cannot be written ({error.strerror or error}).",
                 help="Change to a folder that can be written.",
                 code="not_writable",
             ) from error
-        else:
-            return path
+    return path
 
 
 # ---

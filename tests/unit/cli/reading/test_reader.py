@@ -432,7 +432,7 @@ def test_the_place_is_kept_by_a_window_that_closes_as_it_changes(catalog, tmp_pa
         assert not app.page.book.whole
 
     app = reading(catalog, journey, store=store)
-    assert store.last("bookmark", LESSON).data["block"] == app.page.place().block > 0
+    assert store.events("bookmark", LESSON)[-1].data["block"] == app.page.place().block > 0
 
 
 def test_links_search_contents_and_the_way_back(catalog):

@@ -53,7 +53,7 @@ def test_a_student_reads_predicts_runs_and_comes_back_to_the_line(
     until = time.monotonic() + 40.0
     while not store.events("prediction") and time.monotonic() < until:
         time.sleep(0.1)
-    assert store.last("prediction", LESSON).data["text"] == "half a metre"
+    assert store.events("prediction", LESSON)[-1].data["text"] == "half a metre"
     terminal.type("r")
     terminal.wait("prints the same")
     terminal.resize(60, 30)
@@ -62,15 +62,15 @@ def test_a_student_reads_predicts_runs_and_comes_back_to_the_line(
     os.kill(int((workspace / "pid").read_text()), signal.SIGTERM)  # a closed window: the place is kept
     terminal.wait("Next: course")
     assert terminal.state() == AS_IT_WAS
-    assert store.last("cell", LESSON).data["error"] == ""
-    assert store.last("lesson", LESSON) is not None
-    place = store.last("bookmark", LESSON).data
+    assert store.events("cell", LESSON)[-1].data["error"] == ""
+    assert store.events("lesson", LESSON)
+    place = store.events("bookmark", LESSON)[-1].data
     assert place["block"] > 0
     terminal.line(f"clear; {sys.executable} -m course lesson {LESSON}")
     terminal.wait("min left")
     terminal.keys("C-c")
     terminal.wait("Next: course")
-    assert store.last("bookmark", LESSON).data["block"] == place["block"]
+    assert store.events("bookmark", LESSON)[-1].data["block"] == place["block"]
 
 
 @pytest.mark.parametrize(
@@ -82,4 +82,4 @@ def test_a_terminal_that_cannot_be_drawn_on_gets_the_printed_lesson(
     terminal.line(f"env {before} {sys.executable} -m course lesson {LESSON}")
     assert "\x1b" not in terminal.wait("Next: course")
     assert terminal.state() == AS_IT_WAS
-    assert Store(workspace / ".course" / "progress.sqlite").last("lesson", LESSON) is None
+    assert not Store(workspace / ".course" / "progress.sqlite").events("lesson", LESSON)

@@ -10,7 +10,7 @@ import difflib
 import re
 import tomllib
 from bisect import bisect_left
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -19,7 +19,7 @@ from typing import Any, Generic, NamedTuple, NoReturn, TypeAlias, TypeVar
 import msgspec
 
 from course.catalog.models import FORMAT_VERSION
-from course.errors import ContentError
+from course.errors import ContentError, UsageError
 from course.strangers import read_bytes, toml
 
 # ---
@@ -180,6 +180,29 @@ class Document(Generic[T]):
     def fail(self, where: str | tuple[str | int, ...], problem: str, *, fix: str) -> NoReturn:
         """Raise the ContentError that points at ``where``."""
         raise ContentError(self.path, self.lines.line(where), problem, help=fix)
+
+    def check_words(self, where: Keys, text: str) -> None:
+        """A text that people read says something."""
+        if not text.strip():
+            name = next(str(step) for step in reversed(where) if isinstance(step, str))
+            self.fail(where, f"`{name}` is empty.", fix="Fill it in.")
+
+    def check_id(self, where: Keys, text: str, kind: Callable[[str], object]) -> None:
+        """An id is well formed, as its type in ``course.ids`` says."""
+        try:
+            kind(text)
+        except UsageError as error:
+            self.fail(where, error.message, fix=error.help)
+
+    def check_own_id(self, text: str, kind: Callable[[str], object]) -> None:
+        """The file's own id is well formed, and the file is called so."""
+        self.check_id(("id",), text, kind)
+        if text != self.path.stem:
+            self.fail(
+                ("id",),
+                f"`id` is {text}, and the file is called {self.path.name}.",
+                fix=f'Write `id = "{self.path.stem}"`, or rename the file {text}{self.path.suffix}.',
+            )
 
 
 def read_text(path: Path) -> str:
@@ -356,12 +379,17 @@ def _in_words(kinds: str) -> str:
 BLANK = re.compile(r"<<FILL IN:?\s*(?P<what>.*?)>>")
 
 
+def blanks(path: Path) -> Iterator[tuple[int, str]]:
+    """The line of each blank that is left in a file, and what to say of it."""
+    for number, line in enumerate(read_text(path).split("\n"), start=1):
+        for match in BLANK.finditer(line):
+            yield number, f"still to be filled in: {match['what'].strip() or 'this'}."
+
+
 def refuse_blanks(path: Path) -> None:
     """Refuse a file that its author has not finished."""
-    for number, line in enumerate(read_text(path).split("\n"), start=1):
-        if match := BLANK.search(line):
-            problem = f"still to be filled in: {match['what'].strip() or 'this'}."
-            raise ContentError(path, number, problem, help="`course author check` lists what is left.")
+    for number, problem in blanks(path):
+        raise ContentError(path, number, problem, help="`course author check` lists what is left.")
 
 
 # ---

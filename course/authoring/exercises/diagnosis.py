@@ -469,18 +469,13 @@ class Tally:
     otherwise: int = 0
     survived: int = 0
 
-    def __add__(self, other: Tally) -> Tally:
-        return Tally(
-            self.named + other.named,
-            self.general + other.general,
-            self.otherwise + other.otherwise,
-            self.survived + other.survived,
-        )
-
 
 def tally(fate: Callable[[Reported], str], rows: tuple[Reported, ...]) -> Tally:
     """How the programs of these rows are diagnosed."""
-    return sum((Tally(**{fate(row): row.count}) for row in rows), Tally())
+    counts: Counter[str] = Counter()
+    for row in rows:
+        counts[fate(row)] += row.count
+    return Tally(**counts)
 
 
 def fate_of(catalog: Catalog, exercise: Exercise) -> Callable[[Reported], str]:

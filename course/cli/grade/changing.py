@@ -50,7 +50,7 @@ from course.grading.gradebook.records import Decision, SubmittedAt
 from course.grading.gradebook.salvage import Salvaged, back_up
 from course.grading.gradebook.salvage import salvage as rescue
 from course.grading.results import effective as overriding
-from course.grading.results.effective import Effective, Recording, Results, ScoreChange, recorded
+from course.grading.results.effective import Effective, Results, ScoreChange, recorded
 from course.grading.results.late import (
     Worksheet,
     in_days,
@@ -203,7 +203,7 @@ def late(
     why = reason or ", ".join(str(file) for file in (policy, times, roster) if file) or "no policy"
     with previewed(out) if changes and dry_run else open_results(out, writing=changes) as opened:
         book = opened.book
-        with recorded(book, "late", why) if changes else nullcontext(Recording()) as told:
+        with recorded(book, "late", why) if changes else nullcontext(list[ScoreChange]()) as moved:
             if text is not None or clear:
                 book.set_meta(late_policy=text)
             dropped = _take_in(book, people)
@@ -223,14 +223,14 @@ def late(
                 time_unknown=unknown_time,
                 unknown_names=tuple(unknown),
                 dry_run=dry_run,
-                moved=tuple(told.moved),
+                moved=tuple(moved),
                 dropped=tuple(dropped),
             )
         )
     else:
         _show_late(console, results, found, unknown_time, unknown)
         show_roster(console, people.file if people else "", (), dropped)
-        _show_moved(console, told.moved, dry_run=dry_run)
+        _show_moved(console, moved, dry_run=dry_run)
     return 0
 
 

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from course.errors import MissingCapabilityError, NotFoundError, UsageError
-from course.grading.results.effective import Effective, Results
+from course.errors import MissingCapabilityError, UsageError
+from course.grading.results.effective import Effective, Results, no_exercise
 from course.grading.results.roster import FOR_TESTS, Column, Person, Roster
 from course.printable import command
 from course.scoring.verdict import CheckResult, Problem, Verdict, for_student
@@ -130,11 +130,7 @@ def select(
     known = {exercise.id for exercise in results.exercises()}
     unknown = [name for name in (*options.exercises, *options.assignments) if name not in known]
     if unknown:
-        raise NotFoundError(
-            f"The gradebook has no exercise {unknown[0]!r}.",
-            help=f"It has {', '.join(sorted(known)) or 'none'}.",
-            code="exercise_not_found",
-        )
+        raise no_exercise(unknown[0], sorted(known))
     if usable is not None and results.roster is None:
         raise UsageError(
             "This format finds students by the platform's ids, which are in a roster.",

@@ -19,7 +19,6 @@ from course.authoring.exercises.grading import (
     GradeSources,
     declared_checks,
     grade_sources,
-    instructors,
     solutions_folder,
 )
 from course.authoring.exercises.mutants import caught_by
@@ -162,7 +161,7 @@ def audit(
         NotFoundError: there is nothing with the id ``only``.
     """
     started = time.monotonic()
-    instructors(catalog)
+    catalog.content.instructors()
     findings = Findings(catalog.content.root)
     try:
         lessons, exercises = _chosen(catalog, only)

@@ -21,7 +21,6 @@ from course.catalog.locate import content as current_content
 from course.catalog.models import (
     CourseRef,
     Exercise,
-    Hints,
     Lesson,
     Rubric,
     Syllabus,
@@ -417,9 +416,6 @@ class Catalog:
             problem = f"what was measured cannot be read: {error}."
             fix = "Delete the file, then run `course author build`."
             raise ContentError(self.times_path, None, problem, help=fix) from None
-
-    def hints(self, exercise: Exercise) -> Hints:
-        return Hints(exercise.task)
 
     def rubric(self, exercise: Exercise) -> Rubric | None:
         """The question of an exercise that is answered in prose; None if it has none."""

@@ -230,11 +230,6 @@ def read_text(path: Path) -> str:
     return text.replace("\r\n", "\n")
 
 
-def read_toml(path: Path, kind: type[T]) -> T:
-    """The TOML file at ``path`` as a value of the type ``kind``."""
-    return read_document(path, kind).value
-
-
 def read_document(
     path: Path,
     kind: type[T],
@@ -243,7 +238,7 @@ def read_document(
     first_line: int = 1,
     reserved: Iterable[str] = (),
 ) -> Document[T]:
-    """Like ``read_toml``, with the lines kept for the caller's own checks.
+    """The TOML file at ``path`` as a value of the type ``kind``, with the lines that its values stand on.
 
     Args:
         text, first_line: the TOML and the line it starts on, where it is only a part of the file.

@@ -310,11 +310,9 @@ def rows_of(
     catalog: Catalog,
     exercise: Exercise,
     *,
-    scopes: tuple[str, ...] = ("public", "full", "alone"),
     on_progress: Progress | None = None,
-    each: int = _EACH,
 ) -> dict[str, tuple[Reported, ...]]:
-    """Try ``each`` known wrong programs for every task: all with one mistake, then some with two.
+    """Try known wrong programs for every task: all with one mistake, then some with two.
 
     Returns:
         By scope, what they are told at home ("public"), in a grading run ("full"), and in one that knows none
@@ -325,12 +323,12 @@ def rows_of(
     single = [item for item in known if len(item[1]) == 1]
     chosen = list(single)
     for task in (task.id for task in exercise.task):
-        left = each - sum(item[0] == task for item in chosen)
+        left = _EACH - sum(item[0] == task for item in chosen)
         pairs = [item for item in known if len(item[1]) > 1 and item[0] == task]
         # Spread evenly over all there are.
         some = [pairs[i * len(pairs) // left] for i in range(left)] if left < len(pairs) else pairs
         chosen += [as_one(exercise, item) for item in some]
-    tried = {scope: single if scope == "alone" else chosen for scope in scopes}
+    tried = {"public": chosen, "full": chosen, "alone": single}
     rows: dict[str, tuple[Reported, ...]] = {}
     done, total = 0, sum(map(len, tried.values()))
     for scope, programs in tried.items():

@@ -21,7 +21,6 @@ from course.authoring.exercises.grading import (
     accepted_sources,
     declared_checks,
     exercise_graders,
-    instructors,
     mistakes_of,
     solution_path,
     solutions_folder,
@@ -345,7 +344,7 @@ _TEXT_SUFFIXES = {".py", ".toml", ".md"}
 
 def exercise_folders(catalog: Catalog, exercise_id: str) -> tuple[Path, Path, Path]:
     """The folders an exercise is spread over: the student's part, solutions, hidden graders."""
-    solutions, graders = instructors(catalog)
+    solutions, graders = catalog.content.instructors()
     place = catalog.content.place_of(exercise_id)
     return catalog.content.exercises / place, solutions / place, graders / place
 

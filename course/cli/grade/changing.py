@@ -69,7 +69,7 @@ from course.grading.running.rerun import Regraded, RerunOptions
 from course.grading.running.rerun import rerun as regrade
 from course.grading.similar import Similar, compare, page
 from course.isolation.launch import private_folder, remove_tree
-from course.printable import command, counted, one_line
+from course.printable import command, counted, one_line, some
 from course.scoring.verdict import format_points, in_points
 
 _SHOWN = 20
@@ -369,8 +369,7 @@ def similar(
 
 def _show_similar(console: Console, found: Similar) -> None:
     for group in found.groups[:20]:
-        names = ", ".join(map(one_line, group.members[:8]))
-        names += f" and {len(group.members) - 8} more" if group.members[8:] else ""
+        names = some([one_line(name) for name in group.members], 8)
         words = f"{group.exercise}, weakest pair {group.share:.0%}: {names}"
         console.item(f"group of {len(group.members)}", words)
     if found.groups[20:]:

@@ -99,7 +99,7 @@ class Learning:
             yield MistakeState(
                 exercise=one.exercise,
                 task=one.task,
-                title=exercise.task_titled(one.task),
+                title=exercise.task_called(one.task).title,
                 diagnosis=one.diagnosis,
                 looks_like=_looks_like(exercise, one.diagnosis) or _raised(one),
                 read=exercise.where_to_read(one.task),

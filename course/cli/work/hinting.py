@@ -57,7 +57,7 @@ def give_hint(
     """
     reply = _next_hint(here, exercise, task, named)
     if reply.task is not None and not console.quiet:
-        console.heading(exercise.task_titled(reply.task), reply.task)
+        console.heading(exercise.task_called(reply.task).title, reply.task)
     if reply.hint is not None:
         console.line(reply.hint)
     if reply.message:
@@ -89,14 +89,13 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
         done = after_warm_up(here, exercise) if exercise.is_warm_up else "course submit"
         step = again if wanted else done
         return _no_hint(exercise, "passing", f"{which}: there is nothing to hint at.", step)
-    known = here.catalog.hints(exercise)
-    hints, shown, failed = known.of(task), history.hints_for(task), history.diagnosed(task)
+    entry, shown, failed = exercise.task_called(task), history.hints_for(task), history.diagnosed(task)
     begun = task not in history.unwritten_tasks()
     if not begun or not history.hint_is_due(fingerprint(here.stub(exercise))):
-        shown_last = next((index for index in reversed(shown) if index < len(hints.hints)), None)
-        last_words = None if shown_last is None else hints.said(shown_last, failed)
+        shown_last = next((index for index in reversed(shown) if index < len(entry.hints)), None)
+        last_words = None if shown_last is None else entry.said(shown_last, failed)
         return _not_due(exercise, task, last_words, named or _file_name(here, exercise))
-    following = known.after(task, {code for code, _ in failed}, shown)
+    following = entry.following({code for code, _ in failed}, shown)
     if following is None:
         message = (
             f"Every hint for this function has been given; you have worked for all of them. "
@@ -105,7 +104,7 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
         )
         return _no_hint(exercise, "exhausted", message, f"course lesson {exercise.lesson}", task)
     here.record("hint", exercise.id, {"task": task, "index": following, "fingerprint": last.fingerprint})
-    return _hint(exercise, given=True, task=task, hint=hints.said(following, failed), step=again)
+    return _hint(exercise, given=True, task=task, hint=entry.said(following, failed), step=again)
 
 
 def _task(exercise: Exercise, history: History, wanted: str | None) -> str | None:

@@ -36,7 +36,7 @@ from course.grading.intake.archives import ArchiveContent, RefusedError, reader
 from course.grading.intake.downloads import Place, Student, is_clutter, is_notebook, kind_of, plain
 from course.handed_in.limits import HANDED_IN, MANIFEST, MAX_FILE, MAX_NOTEBOOK
 from course.handed_in.notebook import RECORD
-from course.printable import one_line
+from course.printable import one_line, some
 from course.scoring.judging.submission import Submission
 from course.scoring.verdict import Problem, Verdict
 from course.strangers import in_utf8
@@ -570,9 +570,8 @@ def found_for(exercise: Exercise, candidates: Iterable[Candidate], *, asked: boo
 def described(candidates: Sequence[Candidate]) -> str:
     """Files and their functions, as part of a sentence."""
     told = []
-    for one in candidates[:_SHOWN]:
+    for one in candidates:
         names = ", ".join(one.defines[:_SHOWN]) + (", ..." if len(one.defines) > _SHOWN else "")
         facts = [*filter(None, [one.kind]), *([f"defines {names}"] if names else [])]
         told.append(f"{one.name} ({', '.join(facts)})" if facts else one.name)
-    more = len(candidates) - _SHOWN
-    return ", ".join(told) + (f" and {more} more" if more > 0 else "")
+    return some(told, _SHOWN)

@@ -354,7 +354,7 @@ class Results:
         # The tolerance is rounding of sums of points, not mercy.
         return noted is not None and score >= noted.pass_share * most - 1e-9
 
-    def _nothing(self, student: str, exercise: str, state: str = "ungradable") -> Result:
+    def _nothing(self, student: str, exercise: str, state: str) -> Result:
         """Stands in for a grading where nothing was handed in."""
         noted = self._exercises.get(exercise)
         problem = _NOTHING[state]

@@ -459,12 +459,6 @@ class Found(msgspec.Struct, frozen=True):
     times: tuple[tuple[str, float | None], ...] = ()
 
 
-@dataclass
-class _Search:
-    left: int = _ENTRIES
-    files: list[tuple[str, Path]] = field(default_factory=list)
-
-
 def survey(place: Place, used: set[tuple[str, str]], exercises: Sequence[Exercise]) -> list[Candidate]:
     """A student's files that no exercise was graded from.
 
@@ -491,27 +485,26 @@ def survey(place: Place, used: set[tuple[str, str]], exercises: Sequence[Exercis
 def _files(place: Place) -> list[tuple[str, Path]]:
     if place.files is not None:
         return [(name, path) for name, path in place.files if path.is_file() and not path.is_symlink()]
-    search = _Search()
-    _search(place.root, "", 0, search)
-    return search.files
+    return list(_below(place.root, "", 0, iter(range(_ENTRIES))))
 
 
-def _search(folder: Path, above: str, depth: int, search: _Search) -> None:
+def _below(folder: Path, above: str, depth: int, left: Iterator[int]) -> Iterator[tuple[str, Path]]:
+    """Names and paths of the files in a folder, until as many entries were looked at as are left."""
     try:
         entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
     except OSError:
         return  # a folder that cannot be listed was refused with its reason elsewhere
     for entry in entries:
-        search.left -= 1
-        if search.left < 0:
+        if next(left, None) is None:
             return
+        path = folder / entry.name
         if is_clutter(entry.name) or entry.is_symlink():
             continue
         if entry.is_dir(follow_symlinks=False):
-            if depth < _DEEP and not (folder / entry.name / "pyvenv.cfg").exists():
-                _search(folder / entry.name, f"{above}{entry.name}/", depth + 1, search)
+            if depth < _DEEP and not (path / "pyvenv.cfg").exists():
+                yield from _below(path, f"{above}{entry.name}/", depth + 1, left)
         elif entry.is_file(follow_symlinks=False) and entry.name != MANIFEST:
-            search.files.append((above + entry.name, folder / entry.name))
+            yield above + entry.name, path
 
 
 def _outlined(

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import re
 import shlex
+from collections.abc import Sequence
 
 _UNUSUAL = re.compile(r"[^ -~]")
 _UNUSUAL_IN_LINES = re.compile(r"[^\n\t -~]")
@@ -26,6 +27,12 @@ def command(*words: object) -> str:
 def counted(number: int, word: str) -> str:
     """A number and its noun, in the plural where it needs one: 1 step, 2,000 steps."""
     return f"{number:,} {word}{'' if number == 1 else 's'}"
+
+
+def some(listed: Sequence[str], most: int) -> str:
+    """The first of a list, and how many more there are: "a, b and 3 more"."""
+    more = f" and {len(listed) - most} more" if len(listed) > most else ""
+    return ", ".join(listed[:most]) + more
 
 
 def one_line(text: str, limit: int | None = None) -> str:

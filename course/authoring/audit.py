@@ -19,7 +19,6 @@ from course.authoring.exercises.grading import (
     GradeSources,
     declared_checks,
     grade_sources,
-    instructors,
     solutions_folder,
 )
 from course.authoring.exercises.mutants import caught_by
@@ -97,11 +96,7 @@ def audit_quiz(catalog: Catalog, findings: Findings, only: str | None = None) ->
 
 
 def _audit_question(catalog: Catalog, document: Document[Question], findings: Findings) -> None:
-    question = document.value
-
-    def wrong(where: tuple[str | int, ...], message: str, fix: str) -> None:
-        findings.add(document.path, document.lines.line(where), "quiz", message, fix)
-
+    question, wrong = document.value, findings.about(document.path, document.lines, "quiz")
     if len(question.variant) < LEAST_VARIANTS:
         wrong(
             (),
@@ -166,7 +161,7 @@ def audit(
         NotFoundError: there is nothing with the id ``only``.
     """
     started = time.monotonic()
-    instructors(catalog)
+    catalog.content.instructors()
     findings = Findings(catalog.content.root)
     try:
         lessons, exercises = _chosen(catalog, only)
@@ -263,32 +258,29 @@ def _check_scenes(only: str | None, findings: Findings) -> tuple[str, ...]:
 
 def _check_scene(path: Path, scene: Scene, findings: Findings) -> None:
     """It has a place of its own, asks for a number, and its run gives the one of its theory."""
-    lines = LineMap(read_text(path))
+    wrong = findings.about(path, LineMap(read_text(path)), "scene")
     for name in scene_ids():
         with contextlib.suppress(ContentError):  # reported where that scene is checked
             other = read_scene(scene_path(name))
             if other.id < scene.id and other.order == scene.order:
-                problem, fix = (
-                    f"scene {other.id} has the order {scene.order} too.",
-                    "Give each one of its own.",
-                )
-                findings.add(path, lines.line(("order",)), "scene", problem, fix)
-    where = lines.line(("prediction",))
+                problem = f"scene {other.id} has the order {scene.order} too."
+                wrong(("order",), problem, "Give each one of its own.")
+    where = ("prediction",)
     if scene.prediction is None:
         problem = "it asks for no number before the run."
-        findings.add(path, where, "scene", problem, "Add [prediction]: docs/sandbox.md describes it.")
+        wrong(where, problem, "Add [prediction]: docs/sandbox.md describes it.")
         return
     for name in unsaid(scene):
         problem = f"with another {name} the answer is another, and `question` and `why` stay the same."
         wanted = "g" if name == "gravity" else name.replace("-", "_")
         known = [one for one in values_of(unchanged(scene)) if one.rpartition(".")[2] == wanted]
         fix = f"Write in one of them a formula in braces with {' or '.join(known[:3])}."
-        findings.add(path, where, "scene", problem, fix)
+        wrong(where, problem, fix)
     found = run(unchanged(scene)).comparison
     if found is not None and not found.agree:
         problem = f"theory gives {found.theory:g} {found.unit}, and the run {found.simulation:g}."
         fix = "Correct the formula or the probe, or let `agrees` say how far apart they may be, and why."
-        findings.add(path, where, "scene", problem, fix)
+        wrong(where, problem, fix)
 
 
 def _read(catalog: Catalog, exercise_id: str, findings: Findings, whole: list[Exercise]) -> _Candidate | None:

@@ -107,28 +107,26 @@ def check_coverage(
 ) -> tuple[AuditProblem, ...]:
     """The table's faults: lines without a part, parts without a place, places that do not exist."""
     coverage, findings = document.value, Findings(catalog.content.root)
+    wrong = findings.about(document.path, document.lines, "coverage")
     places = _Places(catalog, is_command)
     seen: dict[int, str] = {}
     for i, section in enumerate(coverage.section):
         if section.kind not in _KINDS:
-            line = document.lines.line(("section", i))
             problem = f"{section.title}: there is no kind {section.kind!r}."
-            findings.add(document.path, line, "coverage", problem, f"The kinds are {', '.join(_KINDS)}.")
+            wrong(("section", i), problem, f"The kinds are {', '.join(_KINDS)}.")
         for k, part in enumerate(section.parts):
-            line = document.lines.line(("section", i, "parts", k))
+            where = ("section", i, "parts", k)
             if part.what in seen.values():
                 problem = f"{part.what}: another part is called so."
-                findings.add(document.path, line, "coverage", problem, "Give each part a name of its own.")
+                wrong(where, problem, "Give each part a name of its own.")
             for problem, fix in (*_wrong_with(part, seen), *places.missing(part)):
-                findings.add(document.path, line, "coverage", f"{part.what}: {problem}", fix)
+                wrong(where, f"{part.what}: {problem}", fix)
             seen.update(dict.fromkeys(part.span, part.what))
     left = sorted(set(range(1, coverage.source_lines + 1)) - set(seen))
     if left:
         lines = ", ".join(map(str, left[:10]))
-        findings.add(
-            document.path,
-            document.lines.line(("source_lines",)),
-            "coverage",
+        wrong(
+            ("source_lines",),
             f"{counted(len(left), 'line')} of the chapter belong{'s' * (len(left) == 1)} to no part: "
             f"{lines}{', …' if len(left) > 10 else ''}.",
             "Add the parts they hold.",

@@ -5,10 +5,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeAlias
 
+from course.catalog.reading import Keys, LineMap
 from course.errors import ContentError
 
 #: Called with steps done, steps in all, and what is being done now.
 Progress: TypeAlias = "Callable[[int, int, str], None]"
+#: Called with the place of a value, what is wrong with it, and the fix.
+About: TypeAlias = "Callable[[Keys, str, str], None]"
 
 
 #: Codes of what is out of date.
@@ -82,6 +85,10 @@ class Findings:
         problem = AuditProblem(shown, line, code, message, fix)
         if problem not in self.problems:
             self.problems.append(problem)
+
+    def about(self, path: Path, lines: LineMap, code: str) -> About:
+        """Notes problems of one kind with the values of one TOML file, each where the value stands."""
+        return lambda where, message, fix: self.add(path, lines.line(where), code, message, fix)
 
     def add_error(self, error: ContentError) -> None:
         """Note what the loader refused."""

@@ -14,7 +14,6 @@ from typing import Any, Self
 
 import jinja2
 
-from course.authoring.exercises.grading import instructors
 from course.authoring.exercises.proofs import MUTANTS_EACH
 from course.catalog.load import Catalog
 from course.errors import UsageError
@@ -107,7 +106,7 @@ def new_warm_up(
     words = _words_of(catalog, warm_up_id, functions, title, summary, lesson)
     words["order"] = 1 + max((one.order for one in catalog.warm_ups(words["lesson"])), default=0)
     place = Path(WARM_UPS, words["id"])
-    student, solutions = catalog.content.exercises / place, instructors(catalog)[0] / place
+    student, solutions = catalog.content.exercises / place, catalog.content.instructors()[0] / place
     files = {
         student / name: (f"warm-up/{name}", words) for name in ("exercise.toml", "README.md", "checks.py")
     }
@@ -141,7 +140,7 @@ def new_exercise(
     words = _words_of(catalog, exercise_id, functions, title, summary, lesson)
     words["order"] = 1 + max((exercise.order for exercise in catalog.exercises()), default=0)
     name, module, asked = words["id"], words["module"], words["functions"]
-    solutions, graders = (folder / name for folder in instructors(catalog))
+    solutions, graders = (folder / name for folder in catalog.content.instructors())
     student = catalog.content.exercises / name
     files = {
         student / "exercise.toml": ("exercise.toml", words),
@@ -171,11 +170,7 @@ def _words_of(
     """The values for the templates of an exercise or a warm-up, except its place in the list."""
     name = ExerciseId(exercise_id)
     if name in (*catalog.exercise_ids(), *catalog.warm_up_ids()):
-        raise UsageError(
-            f"There is a {name} already, and nothing is overwritten.",
-            help="Choose another id.",
-            code="exists",
-        )
+        raise _exists(f"There is a {name} already")
     asked = tuple(functions) or (Function(f"{name.replace('-', '_')}(x)"),)
     names = [function.name for function in asked]
     if len(set(names)) < len(names):
@@ -196,14 +191,14 @@ def _words_of(
 
 def new_lesson(catalog: Catalog, lesson_id: str) -> tuple[Path, ...]:
     """Write the file of a new lesson; its place in the syllabus is the author's to choose."""
-    instructors(catalog)
+    catalog.content.instructors()
     name = LessonId(lesson_id)
     return _write({catalog.content.lessons / f"{name}.md": ("lesson.md", {"id": name})})
 
 
 def new_question(catalog: Catalog, question_id: str) -> tuple[Path, ...]:
     """Write the file of a new quiz question, with as many variants as the audit asks for."""
-    instructors(catalog)
+    catalog.content.instructors()
     name = QuestionId(question_id)
     lessons = catalog.lesson_ids()
     words = {
@@ -222,19 +217,19 @@ def new_scene(catalog: Catalog, scene_id: str) -> tuple[Path, ...]:
     """
     from course.sandbox.scene.loading import FOLDER, scene_ids
 
-    instructors(catalog)
+    catalog.content.instructors()
     name, root = SceneId(scene_id), catalog.content.root
     here, folder = Path.cwd(), root / "scenes"
     if FOLDER.is_relative_to(root):
         folder = FOLDER if here.is_relative_to(root) else here
     if name in scene_ids():
-        raise UsageError(
-            f"There is a scene {name} already, and nothing is overwritten.",
-            help="Choose another id.",
-            code="exists",
-        )
+        raise _exists(f"There is a scene {name} already")
     words = {"id": name, "order": str(1 + len(scene_ids()))}
     return _write({folder / f"{name}.toml": ("scene.toml", words)})
+
+
+def _exists(what: str) -> UsageError:
+    return UsageError(f"{what}, and nothing is overwritten.", help="Choose another id.", code="exists")
 
 
 def _module(function: str) -> str:
@@ -251,9 +246,7 @@ def _write(files: Mapping[Path, tuple[str, Mapping[str, Any]]]) -> tuple[Path, .
     """Fill each template with its words and write it where nothing is yet."""
     for target in files:
         if target.exists() or target.is_symlink():
-            raise UsageError(
-                f"{target} exists, and nothing is overwritten.", help="Choose another id.", code="exists"
-            )
+            raise _exists(f"{target} exists")
     # Nothing is escaped: these are Python, TOML and Markdown.
     templates = jinja2.Environment(
         loader=jinja2.FileSystemLoader(_TEMPLATES),

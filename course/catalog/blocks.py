@@ -277,9 +277,13 @@ def plain_text(inlines: Inlines) -> str:
 
 
 def slug(heading: Heading) -> str:
-    """The heading as an anchor: lower-case words joined by hyphens."""
-    words = "".join(char if char.isalnum() else " " for char in plain_text(heading.inlines).lower())
-    return "-".join(words.split())
+    """The heading as an anchor."""
+    return anchor(plain_text(heading.inlines))
+
+
+def anchor(heading: str) -> str:
+    """A heading's words in lower case, joined by hyphens."""
+    return "-".join("".join(char if char.isalnum() else " " for char in heading.lower()).split())
 
 
 def walk_blocks(blocks: tuple[Block, ...]) -> Iterator[Block]:

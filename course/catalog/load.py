@@ -13,7 +13,6 @@ import sys
 from collections.abc import Callable, Iterable
 from functools import cache, cached_property
 from pathlib import Path
-from typing import Any
 
 import msgspec
 
@@ -23,7 +22,6 @@ from course.catalog.models import (
     LONGEST,
     CourseRef,
     Exercise,
-    Hints,
     Lesson,
     Rubric,
     Syllabus,
@@ -31,7 +29,7 @@ from course.catalog.models import (
     fields_of,
 )
 from course.catalog.reading import Document, read_document, read_text, split_front_matter
-from course.errors import ContentError, NotFoundError, UsageError
+from course.errors import ContentError, NotFoundError
 from course.ids import SLUG, WARM_UPS, ExerciseId, LessonId
 
 # ---
@@ -53,9 +51,9 @@ def check_syllabus(document: Document[Syllabus]) -> None:
     syllabus = document.value
     if not SLUG.fullmatch(syllabus.id):
         document.fail(("id",), "`id` is not lower-case words joined by hyphens.", fix="Write: physics-sim")
-    _check_words(document, ("title",), syllabus.title)
+    document.check_words(("title",), syllabus.title)
     for index, lesson_id in enumerate(syllabus.lessons):
-        _check_id(document, ("lessons", index), lesson_id, LessonId)
+        document.check_id(("lessons", index), lesson_id, LessonId)
         if lesson_id in syllabus.lessons[:index]:
             document.fail(
                 ("lessons", index), f"lesson {lesson_id} is listed twice.", fix="Remove one of the two lines."
@@ -68,15 +66,9 @@ def check_syllabus(document: Document[Syllabus]) -> None:
 def check_lesson(document: Document[Lesson]) -> None:
     """The head of a lesson fits its file name and says something."""
     lesson = document.value
-    _check_id(document, ("id",), lesson.id, LessonId)
-    if lesson.id != document.path.stem:
-        document.fail(
-            ("id",),
-            f"`id` is {lesson.id}, and the file is called {document.path.name}.",
-            fix=f'Write `id = "{document.path.stem}"`, or rename the file {lesson.id}.md.',
-        )
-    _check_words(document, ("title",), lesson.title)
-    _check_words(document, ("summary",), lesson.summary)
+    document.check_own_id(lesson.id, LessonId)
+    document.check_words(("title",), lesson.title)
+    document.check_words(("summary",), lesson.summary)
     if lesson.minutes <= 0:
         document.fail(("minutes",), "`minutes` must be more than 0.", fix="Say how long reading it takes.")
     if not lesson.objectives:
@@ -86,28 +78,28 @@ def check_lesson(document: Document[Lesson]) -> None:
             fix="Say what a reader can do afterwards, one line each.",
         )
     for index, objective in enumerate(lesson.objectives):
-        _check_words(document, ("objectives", index), objective)
+        document.check_words(("objectives", index), objective)
     for key, ids in (("before", lesson.before), ("exercises", lesson.exercises)):
         for index, name in enumerate(ids):
             if name in ids[:index]:
                 document.fail((key, index), f"{name} is listed twice.", fix="Remove one of the two.")
-            _check_id(document, (key, index), name, LessonId if key == "before" else ExerciseId)
+            document.check_id((key, index), name, LessonId if key == "before" else ExerciseId)
 
 
 def check_exercise(document: Document[Exercise]) -> None:
     """Names, marks and points of an exercise make sense by themselves."""
     exercise = document.value
     folder = document.path.parent.name
-    _check_id(document, ("id",), exercise.id, ExerciseId)
+    document.check_id(("id",), exercise.id, ExerciseId)
     if exercise.id != folder:
         document.fail(
             ("id",),
             f"`id` is {exercise.id}, and the folder is called {folder}.",
             fix=f'Write `id = "{folder}"`, or rename the folder.',
         )
-    _check_words(document, ("title",), exercise.title)
-    _check_words(document, ("summary",), exercise.summary)
-    _check_id(document, ("lesson",), exercise.lesson, LessonId)
+    document.check_words(("title",), exercise.title)
+    document.check_words(("summary",), exercise.summary)
+    document.check_id(("lesson",), exercise.lesson, LessonId)
     _check_module(document, exercise.module)
     _check_kind(document)
     if exercise.order < 1:
@@ -186,7 +178,7 @@ def _check_tasks(document: Document[Exercise]) -> None:
             document.fail(
                 ("task", index, "id"), f"task {task.id} is listed twice.", fix="Remove or rename one of them."
             )
-        _check_words(document, ("task", index, "title"), task.title)
+        document.check_words(("task", index, "title"), task.title)
         if not (math.isfinite(task.points) and task.points > 0):
             document.fail(
                 ("task", index, "points"),
@@ -214,7 +206,7 @@ def _check_hints(document: Document[Exercise]) -> None:
         numbers = [str(number + 1) for number in range(len(entry.hints))]
         known = f"Its hints are 1 to {len(numbers)}" if numbers else "It has none yet"
         for number, hint in enumerate(entry.hints):
-            _check_words(document, ("task", index, "hints", number), hint)
+            document.check_words(("task", index, "hints", number), hint)
         for fitting in entry.fits:
             if fitting not in numbers:
                 problem = f"task {entry.id} has no hint number {fitting}."
@@ -233,9 +225,9 @@ def _check_hints(document: Document[Exercise]) -> None:
 def check_rubric(document: Document[Rubric]) -> None:
     """There is a question, something to grade by, and an answer that is long enough itself."""
     rubric = document.value
-    _check_words(document, ("question",), rubric.question.strip())
+    document.check_words(("question",), rubric.question.strip())
     for index, point in enumerate(rubric.points):
-        _check_words(document, ("points", index), point)
+        document.check_words(("points", index), point)
     if not rubric.points:
         document.fail(("points",), "there is nothing to grade an answer by.", fix="Add a sentence or more.")
     if len(rubric.good_answer.split()) < max(1, rubric.least_words):
@@ -244,24 +236,6 @@ def check_rubric(document: Document[Rubric]) -> None:
             f"the good answer has fewer than {max(1, rubric.least_words)} words.",
             fix="Make it longer, or `least_words` smaller.",
         )
-
-
-def _check_words(document: Document[Any], where: tuple[str | int, ...], text: str) -> None:
-    if not text.strip():
-        name = next(str(step) for step in reversed(where) if isinstance(step, str))
-        document.fail(where, f"`{name}` is empty.", fix="Fill it in.")
-
-
-def _check_id(
-    document: Document[Any],
-    where: tuple[str | int, ...],
-    text: str,
-    kind: type[ExerciseId] | type[LessonId],
-) -> None:
-    try:
-        kind(text)
-    except UsageError as error:
-        document.fail(where, error.message, fix=error.help)
 
 
 #: A number of an exercise or a lesson has fewer digits than this.
@@ -449,9 +423,6 @@ class Catalog:
             problem = f"what was measured cannot be read: {error}."
             fix = "Delete the file, then run `course author build`."
             raise ContentError(self.times_path, None, problem, help=fix) from None
-
-    def hints(self, exercise: Exercise) -> Hints:
-        return Hints(exercise.task)
 
     def rubric(self, exercise: Exercise) -> Rubric | None:
         """The question of an exercise that is answered in prose; None if it has none."""

@@ -76,6 +76,12 @@ class Task(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
                     return f"{self.hints[index]} {''.join(parts)}"
         return self.hints[index]
 
+    def following(self, diagnoses: Collection[str], given: Collection[int]) -> int | None:
+        """The next hint, from 0: one that fits a diagnosis, else the mildest; None if all are given."""
+        left = [index for index in range(len(self.hints)) if index not in given]
+        fitting = [int(number) - 1 for number, codes in self.fits.items() if set(codes) & set(diagnoses)]
+        return next((index for index in fitting if index in left), left[0] if left else None)
+
 
 #: At home a check may take so many times what it takes at most of a right solution, and so many once another
 #: check of its function ran out of time: what hangs has been told by then.
@@ -190,12 +196,13 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     def where_to_read(self, task_id: str) -> str:
         """The section that explains a task, as "lesson#section", or a lesson alone."""
-        read = next((task.read for task in self.task if task.id == task_id), "")
-        return read or (f"{self.lesson}#{self.after}" if self.after else self.lesson)
+        return self.task_called(task_id).read or (
+            f"{self.lesson}#{self.after}" if self.after else self.lesson
+        )
 
-    def task_titled(self, task_id: str) -> str:
-        """The title of a task; the id itself when there is none of that id."""
-        return next((task.title for task in self.task if task.id == task_id), task_id)
+    def task_called(self, task_id: str) -> Task:
+        """A task; where there is none of that id, an empty one that is called so."""
+        return next((task for task in self.task if task.id == task_id), Task(task_id, task_id, 0.0))
 
 
 class Measured(msgspec.Struct, frozen=True):
@@ -210,22 +217,6 @@ class Times(msgspec.Struct, frozen=True):
 
     format_version: int = 1
     exercises: dict[str, Measured] = {}
-
-
-class Hints(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The hints of an exercise, from its tasks."""
-
-    task: tuple[Task, ...]
-
-    def of(self, task_id: str) -> Task:
-        return next((task for task in self.task if task.id == task_id), Task(task_id, task_id, 0.0))
-
-    def after(self, task_id: str, diagnoses: Collection[str], given: Collection[int]) -> int | None:
-        """The next hint, from 0: one that fits a diagnosis, else the mildest; None if all are given."""
-        task = self.of(task_id)
-        left = [index for index in range(len(task.hints)) if index not in given]
-        fitting = [int(number) - 1 for number, codes in task.fits.items() if set(codes) & set(diagnoses)]
-        return next((index for index in fitting if index in left), left[0] if left else None)
 
 
 class Rubric(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

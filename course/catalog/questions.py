@@ -19,8 +19,7 @@ from typing import Any
 
 import msgspec
 
-from course.catalog.reading import Document, read_document, refuse_blanks
-from course.errors import UsageError
+from course.catalog.reading import Document, Keys, read_document, refuse_blanks
 from course.ids import SLUG, QuestionId
 from course.printable import counted
 
@@ -138,8 +137,6 @@ _DIGITS = range(1, 7)
 
 _PLACEHOLDER = re.compile(r"\{([^{}]*)\}")
 
-Where = tuple[str | int, ...]
-
 
 class Number(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A number of a variant: drawn from ``values`` or computed by ``formula`` from the numbers above it.
@@ -232,13 +229,13 @@ def _read(path: Path) -> Document[Question]:
     refuse_blanks(path)
     document = read_document(path, Question)
     question = document.value
-    _check_id(document, question.id)
-    _check_words(document, ("title",), question.title)
+    document.check_own_id(question.id, QuestionId)
+    document.check_words(("title",), question.title)
     if question.order < 1:
         document.fail(("order",), "`order` must be 1 or more.", fix="Number the questions from 1.")
     for name, belief in question.misconceptions.items():
         _check_slug(document, ("misconceptions", name), name, "misconception")
-        _check_words(document, ("misconceptions", name), belief)
+        document.check_words(("misconceptions", name), belief)
     if not question.variant:
         document.fail((), "there is no variant.", fix="Add a [[variant]] with four [[variant.option]].")
     _check_distinct(document, ("variant",), [variant.id for variant in question.variant], "variant")
@@ -247,23 +244,10 @@ def _read(path: Path) -> Document[Question]:
     return document
 
 
-def _check_id(document: Document[Question], name: str) -> None:
-    try:
-        QuestionId(name)
-    except UsageError as error:
-        document.fail(("id",), error.message, fix=error.help)
-    if name != document.path.stem:
-        document.fail(
-            ("id",),
-            f"`id` is {name}, and the file is called {document.path.name}.",
-            fix=f'Write `id = "{document.path.stem}"`, or rename the file {name}.toml.',
-        )
-
-
-def _check_variant(document: Document[Question], where: Where, variant: Variant) -> None:
+def _check_variant(document: Document[Question], where: Keys, variant: Variant) -> None:
     _check_slug(document, (*where, "id"), variant.id, "variant")
-    _check_words(document, (*where, "prompt"), variant.prompt)
-    _check_words(document, (*where, "source"), variant.source)
+    document.check_words((*where, "prompt"), variant.prompt)
+    document.check_words((*where, "source"), variant.source)
     if len(variant.option) != OPTIONS:
         document.fail(
             where,
@@ -284,7 +268,7 @@ def _check_variant(document: Document[Question], where: Where, variant: Variant)
     _check_placeholders(document, where, variant)
 
 
-def _check_option(document: Document[Question], where: Where, option: Option) -> None:
+def _check_option(document: Document[Question], where: Keys, option: Option) -> None:
     _check_slug(document, (*where, "id"), option.id, "option")
     if len(option.id) == 1:
         document.fail(
@@ -292,8 +276,8 @@ def _check_option(document: Document[Question], where: Where, option: Option) ->
             f"`id` is the letter {option.id}.",
             fix="Use a word: letters name places on screen.",
         )
-    _check_words(document, (*where, "text"), option.text)
-    _check_words(document, (*where, "explanation"), option.explanation)
+    document.check_words((*where, "text"), option.text)
+    document.check_words((*where, "explanation"), option.explanation)
     known = document.value.misconceptions
     if option.right and option.misconception:
         document.fail(
@@ -308,7 +292,7 @@ def _check_option(document: Document[Question], where: Where, option: Option) ->
         )
 
 
-def _check_numbers(document: Document[Question], where: Where, variant: Variant) -> None:
+def _check_numbers(document: Document[Question], where: Keys, variant: Variant) -> None:
     known: set[str] = set()
     for index, number in enumerate(variant.number):
         at = (*where, "number", index)
@@ -341,7 +325,7 @@ def _check_numbers(document: Document[Question], where: Where, variant: Variant)
         )
 
 
-def _check_formula(document: Document[Question], where: Where, text: str, known: set[str]) -> None:
+def _check_formula(document: Document[Question], where: Keys, text: str, known: set[str]) -> None:
     try:
         formula = Formula(text)
     except FormulaError as error:
@@ -355,9 +339,9 @@ def _check_formula(document: Document[Question], where: Where, text: str, known:
         )
 
 
-def _check_placeholders(document: Document[Question], where: Where, variant: Variant) -> None:
+def _check_placeholders(document: Document[Question], where: Keys, variant: Variant) -> None:
     known = {number.name for number in variant.number}
-    texts: list[tuple[Where, str]] = [((*where, "prompt"), variant.prompt)]
+    texts: list[tuple[Keys, str]] = [((*where, "prompt"), variant.prompt)]
     for index, option in enumerate(variant.option):
         texts += [((*where, "option", index, key), getattr(option, key)) for key in ("text", "explanation")]
     used: set[str] = set()
@@ -384,7 +368,7 @@ def _check_placeholders(document: Document[Question], where: Where, variant: Var
             )
 
 
-def _check_slug(document: Document[Any], where: Where, name: str, kind: str) -> None:
+def _check_slug(document: Document[Any], where: Keys, name: str, kind: str) -> None:
     if not SLUG.fullmatch(name):
         document.fail(
             where,
@@ -393,12 +377,7 @@ def _check_slug(document: Document[Any], where: Where, name: str, kind: str) -> 
         )
 
 
-def _check_words(document: Document[Any], where: Where, text: str) -> None:
-    if not text.strip():
-        document.fail(where, f"`{where[-1]}` is empty.", fix="Fill it in.")
-
-
-def _check_distinct(document: Document[Any], where: Where, names: list[str], kind: str) -> None:
+def _check_distinct(document: Document[Any], where: Keys, names: list[str], kind: str) -> None:
     for index, name in enumerate(names):
         if name in names[:index]:
             document.fail((*where, index), f"{kind} {name} is there twice.", fix="Rename one of the two.")

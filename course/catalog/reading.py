@@ -10,7 +10,7 @@ import difflib
 import re
 import tomllib
 from bisect import bisect_left
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -19,7 +19,7 @@ from typing import Any, Generic, NamedTuple, NoReturn, TypeAlias, TypeVar
 import msgspec
 
 from course.catalog.models import FORMAT_VERSION
-from course.errors import ContentError
+from course.errors import ContentError, UsageError
 from course.strangers import read_bytes, toml
 
 # ---
@@ -181,6 +181,29 @@ class Document(Generic[T]):
         """Raise the ContentError that points at ``where``."""
         raise ContentError(self.path, self.lines.line(where), problem, help=fix)
 
+    def check_words(self, where: Keys, text: str) -> None:
+        """A text that people read says something."""
+        if not text.strip():
+            name = next(str(step) for step in reversed(where) if isinstance(step, str))
+            self.fail(where, f"`{name}` is empty.", fix="Fill it in.")
+
+    def check_id(self, where: Keys, text: str, kind: Callable[[str], object]) -> None:
+        """An id is well formed, as its type in ``course.ids`` says."""
+        try:
+            kind(text)
+        except UsageError as error:
+            self.fail(where, error.message, fix=error.help)
+
+    def check_own_id(self, text: str, kind: Callable[[str], object]) -> None:
+        """The file's own id is well formed, and the file is called so."""
+        self.check_id(("id",), text, kind)
+        if text != self.path.stem:
+            self.fail(
+                ("id",),
+                f"`id` is {text}, and the file is called {self.path.name}.",
+                fix=f'Write `id = "{self.path.stem}"`, or rename the file {text}{self.path.suffix}.',
+            )
+
 
 def read_text(path: Path) -> str:
     """A UTF-8 text with Unix line ends."""
@@ -207,11 +230,6 @@ def read_text(path: Path) -> str:
     return text.replace("\r\n", "\n")
 
 
-def read_toml(path: Path, kind: type[T]) -> T:
-    """The TOML file at ``path`` as a value of the type ``kind``."""
-    return read_document(path, kind).value
-
-
 def read_document(
     path: Path,
     kind: type[T],
@@ -220,7 +238,7 @@ def read_document(
     first_line: int = 1,
     reserved: Iterable[str] = (),
 ) -> Document[T]:
-    """Like ``read_toml``, with the lines kept for the caller's own checks.
+    """The TOML file at ``path`` as a value of the type ``kind``, with the lines that its values stand on.
 
     Args:
         text, first_line: the TOML and the line it starts on, where it is only a part of the file.
@@ -236,50 +254,38 @@ def read_document(
             f"this is not valid TOML: {str(error).rsplit(' (at ', 1)[0]}.",  # the error gives the place
             help="Check quotes, brackets and commas here and on the line above.",
         ) from None
-    lines = LineMap(source, first_line)
-    _check_version(path, data, lines)
+    raw = Document(path, data, LineMap(source, first_line))
+    _check_version(raw)
     for key in reserved:
         if key in data:
-            _unknown_key(path, lines, (), key, kind, hide=tuple(reserved))
+            _unknown_key(raw, (), key, kind, hide=tuple(reserved))
     try:
-        return Document(path, msgspec.convert(data, kind), lines)
+        return Document(path, msgspec.convert(data, kind), raw.lines)
     except msgspec.ValidationError as error:
-        _raise_in_words(path, lines, str(error), kind, tuple(reserved))
+        _raise_in_words(raw, str(error), kind, tuple(reserved))
 
 
-def _check_version(path: Path, data: dict[str, Any], lines: LineMap) -> None:
-    version = data.get("format_version")
+def _check_version(raw: Document[dict[str, Any]]) -> None:
+    version = raw.value.get("format_version")
     if version is None:
-        raise ContentError(
-            path,
-            lines.line(()),
-            "the file declares no format_version.",
-            help=f"Add `format_version = {FORMAT_VERSION}` at the top.",
-        )
+        problem = "the file declares no format_version."
+        raw.fail((), problem, fix=f"Add `format_version = {FORMAT_VERSION}` at the top.")
     if type(version) is not int or version < 1:
-        raise ContentError(
-            path,
-            lines.line(("format_version",)),
-            "format_version must be a whole number, 1 or more.",
-            help=f"Write `format_version = {FORMAT_VERSION}`.",
-        )
+        problem = "format_version must be a whole number, 1 or more."
+        raw.fail(("format_version",), problem, fix=f"Write `format_version = {FORMAT_VERSION}`.")
     if version > FORMAT_VERSION:
-        raise ContentError(
-            path,
-            lines.line(("format_version",)),
-            f"the file has format {version}, and this program knows formats up to {FORMAT_VERSION}.",
-            help="Install a newer version of the course.",
-        )
+        problem = f"the file has format {version}, and this program knows formats up to {FORMAT_VERSION}."
+        raw.fail(("format_version",), problem, fix="Install a newer version of the course.")
 
 
-def _raise_in_words(path: Path, lines: LineMap, text: str, kind: type, reserved: tuple[str, ...]) -> NoReturn:
+def _raise_in_words(raw: Document[Any], text: str, kind: type, reserved: tuple[str, ...]) -> NoReturn:
     """An error of msgspec's as a ContentError that a person can act on."""
     at = _AT.search(text)
     where = at["path"] if at else "$"
     steps = parse_path(where)
     words = text[: at.start()] if at else text
     if match := _UNKNOWN.search(words):
-        _unknown_key(path, lines, steps, match["key"], kind, hide=reserved)
+        _unknown_key(raw, steps, match["key"], kind, hide=reserved)
     if match := _MISSING.search(words):
         key = match["key"]
         place = f"{_named(steps)} lacks" if steps else "the file lacks"
@@ -289,27 +295,20 @@ def _raise_in_words(path: Path, lines: LineMap, text: str, kind: type, reserved:
             if _holds_tables(kind, steps, key)
             else f"Add a line `{key} = ...`."
         )
-        raise ContentError(path, lines.line(steps), f"{place} the key `{key}`.", help=fix)
+        raw.fail(steps, f"{place} the key `{key}`.", fix=fix)
     if match := _EXPECTED.search(words):
         wanted, given = (_in_words(match[side]) for side in ("wanted", "given"))
-        raise ContentError(
-            path,
-            lines.line(steps),
-            f"{_named(steps)} must be {wanted}, and is {given}.",
-            help=f"Write {wanted}.",
-        )
-    raise ContentError(
-        path, lines.line(steps), f"{_named(steps)}: {words}.", help="Compare it with a file of the same kind."
-    )
+        raw.fail(steps, f"{_named(steps)} must be {wanted}, and is {given}.", fix=f"Write {wanted}.")
+    raw.fail(steps, f"{_named(steps)}: {words}.", fix="Compare it with a file of the same kind.")
 
 
 def _unknown_key(
-    path: Path, lines: LineMap, steps: tuple[str | int, ...], key: str, kind: type, *, hide: tuple[str, ...]
+    raw: Document[Any], steps: tuple[str | int, ...], key: str, kind: type, *, hide: tuple[str, ...]
 ) -> NoReturn:
     known = [name for name in _keys_at(kind, steps) if steps or name not in hide]
     close = difflib.get_close_matches(key, known, n=1)
     fix = f"Did you mean `{close[0]}`?" if close else f"Known keys: {', '.join(known)}."
-    raise ContentError(path, lines.line((*steps, key)), f"unknown key `{key}`.", help=fix)
+    raw.fail((*steps, key), f"unknown key `{key}`.", fix=fix)
 
 
 def _keys_at(kind: type, steps: tuple[str | int, ...]) -> list[str]:
@@ -356,12 +355,17 @@ def _in_words(kinds: str) -> str:
 BLANK = re.compile(r"<<FILL IN:?\s*(?P<what>.*?)>>")
 
 
+def blanks(path: Path) -> Iterator[tuple[int, str]]:
+    """The line of each blank that is left in a file, and what to say of it."""
+    for number, line in enumerate(read_text(path).split("\n"), start=1):
+        for match in BLANK.finditer(line):
+            yield number, f"still to be filled in: {match['what'].strip() or 'this'}."
+
+
 def refuse_blanks(path: Path) -> None:
     """Refuse a file that its author has not finished."""
-    for number, line in enumerate(read_text(path).split("\n"), start=1):
-        if match := BLANK.search(line):
-            problem = f"still to be filled in: {match['what'].strip() or 'this'}."
-            raise ContentError(path, number, problem, help="`course author check` lists what is left.")
+    for number, problem in blanks(path):
+        raise ContentError(path, number, problem, help="`course author check` lists what is left.")
 
 
 # ---

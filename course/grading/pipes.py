@@ -1,26 +1,32 @@
 """Frames on the pipes between our own processes: a 4-byte little-endian length, then msgpack.
 
-Also the life of such a process, which ends with the one that started it, and its limits where it reads
-untrusted files.
+Also the life of such a process, which ends with the one that started it, and, where it reads untrusted files,
+its limits and its replacement.
 """
 
 import _thread
+import contextlib
 import os
 import queue
 import signal
 import struct
+import subprocess
+import sys
 import threading
 import time
+from collections.abc import Iterator
+from pathlib import Path
 from time import process_time
 from typing import IO, Any
 
 import msgspec
 
+from course.errors import InternalError
+
 try:
     import resource
 except ImportError:  # Windows has none of these limits
     resource = None  # type: ignore[assignment]
-from collections.abc import Iterator
 
 _LENGTH = struct.Struct("<I")
 #: Wall seconds that a process has to clean up after the one it worked for is gone.
@@ -70,6 +76,76 @@ def served(source: IO[bytes]) -> Iterator[bytes]:
     while (frame := waiting.get()) is not None:
         yield frame
         waiting.task_done()
+
+
+class Servant:
+    """A process that reads strangers' files; started when it is first needed, and again after one killed it.
+
+    Args:
+        module: its program: it writes a frame when it is ready, then answers each frame with one.
+        arguments: of that program.
+        wall_s: seconds after which it is killed over a question.
+    """
+
+    def __init__(self, module: str, *arguments: str, wall_s: float) -> None:
+        self._command = [sys.executable, "-P", "-m", module, *arguments]
+        self._wall_s = wall_s
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def ask(self, question: Any, most: int | None = None) -> bytes | None:
+        """Its answer; None if it died over the question, took too long, or says more than ``most`` bytes.
+
+        Raises:
+            InternalError: it does not start.
+        """
+        process = self._process or self._start()
+        assert process.stdin is not None
+        assert process.stdout is not None
+        too_long = threading.Timer(self._wall_s, process.kill)
+        too_long.start()
+        try:
+            write_frame(process.stdin, question)
+            frame = read_frame(process.stdout, most)
+        except OSError:
+            frame = None
+        finally:
+            too_long.cancel()
+        if frame is None:
+            self.close()
+        return frame
+
+    def close(self) -> None:
+        """End the process; the next question starts another one."""
+        process, self._process = self._process, None
+        if process is None:
+            return
+        process.kill()
+        process.wait()
+        for stream in (process.stdin, process.stdout):
+            with contextlib.suppress(OSError):
+                if stream is not None:
+                    stream.close()
+
+    def _start(self) -> subprocess.Popen[bytes]:
+        environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+        environment["PYTHONPATH"] = path_with(Path(__file__).resolve().parents[2])
+        process = self._process = subprocess.Popen(
+            self._command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env=environment,
+            start_new_session=True,  # Ctrl-C is for whoever asks, which ends it
+        )
+        assert process.stdout is not None
+        if read_frame(process.stdout) is None:
+            self.close()
+            raise InternalError("The process that reads submissions does not start; see what it printed.")
+        return process
+
+
+def path_with(folder: Path) -> str:
+    """This process's ``PYTHONPATH`` with a folder before all others."""
+    return os.pathsep.join(filter(None, (str(folder), os.environ.get("PYTHONPATH"))))
 
 
 def _interrupt_main() -> None:

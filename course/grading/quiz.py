@@ -50,15 +50,12 @@ class QuizScore:
     """The attempt that counts.
 
     Attributes:
-        finished_at: by the student's clock; for display only.
         attempts: how many were handed in.
         repeated: how many of them did not count because an earlier one had the same seed.
     """
 
     result: Result
     seed: int
-    version: str
-    finished_at: str
     attempts: int
     repeated: int
 
@@ -76,15 +73,11 @@ def score_record(bank: Bank, record: object) -> QuizScore | None:
     attempts = _read(record)
     if not attempts:
         return None
-    scores: dict[int, QuizScore] = {}
+    results: dict[int, Result] = {}
     for number, attempt in enumerate(attempts, start=1):
-        result = _score(bank, attempt, f"Attempt {number} of the quiz")
-        kept = QuizScore(result, attempt.seed, attempt.version, attempt.finished_at, len(attempts), 0)
-        scores.setdefault(attempt.seed, kept)
-    best = max(scores.values(), key=lambda score: score.result.score)
-    return QuizScore(
-        best.result, best.seed, best.version, best.finished_at, len(attempts), len(attempts) - len(scores)
-    )
+        results.setdefault(attempt.seed, _score(bank, attempt, f"Attempt {number} of the quiz"))
+    seed = max(results, key=lambda seed: results[seed].score)
+    return QuizScore(results[seed], seed, len(attempts), len(attempts) - len(results))
 
 
 def grade_quiz(bank: Bank, record: object) -> Verdict | None:
@@ -153,31 +146,28 @@ def _fault(record: object) -> str | None:
 
 
 def _score(bank: Bank, attempt: _Record, which: str) -> Result:
-    if tuple(sorted(attempt.questions)) != tuple(sorted(bank.ids)):
+    def wrong(said: str) -> UngradableError:
+        return _inconsistent(f"{which} {said}.", attempt.version)
+
+    if sorted(attempt.questions) != sorted(bank.ids):
         strange = sorted(set(attempt.questions) ^ set(bank.ids))
         named = f": {', '.join(strange[:5])}" if strange else ""
-        raise _inconsistent(f"{which} is not about the questions of this quiz{named}.", attempt.version)
+        raise wrong(f"is not about the questions of this quiz{named}")
     missing = sorted(set(bank.ids) - set(attempt.answers))
     if missing:
-        raise _inconsistent(f"{which} has no answer to {missing[0]}.", attempt.version)
+        raise wrong(f"has no answer to {missing[0]}")
     if len(attempt.answers) > len(bank.ids):
         strange = sorted(set(attempt.answers) - set(bank.ids))
-        raise _inconsistent(f"{which} answers {strange[0]}, which was not asked.", attempt.version)
+        raise wrong(f"answers {strange[0]}, which was not asked")
     posed = bank.pose(attempt.seed)
     for question in posed:
         given = attempt.answers[question.question]
         if given not in {choice.id for choice in question.choices}:
-            raise _inconsistent(
-                f"{which} answers {question.question} with {given!r}, "
-                f"which seed {attempt.seed} does not offer.",
-                attempt.version,
-            )
+            said = f"answers {question.question} with {given!r}, which seed {attempt.seed} does not offer"
+            raise wrong(said)
     result = mark(posed, attempt.answers)
     if result.score != attempt.score:
-        raise _inconsistent(
-            f"{which} claims {attempt.score} of {result.total}, and its answers score {result.score}.",
-            attempt.version,
-        )
+        raise wrong(f"claims {attempt.score} of {result.total}, and its answers score {result.score}")
     return result
 
 

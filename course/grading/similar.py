@@ -7,13 +7,10 @@ few right solutions.
 """
 
 import ast
-import contextlib
 import hashlib
 import math
 import os
-import subprocess
 import sys
-import threading
 import warnings
 from collections import Counter, deque
 from collections.abc import Iterable, Iterator
@@ -26,7 +23,7 @@ import msgspec
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.errors import NotFoundError
-from course.grading.pipes import limit_cpu, limit_memory, read_frame, write_frame
+from course.grading.pipes import Servant, limit_cpu, limit_memory, read_frame, write_frame
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.results.effective import Results
 
@@ -165,65 +162,34 @@ class Parser:
     """A process that fingerprints sources; started again if one of them kills it."""
 
     def __init__(self) -> None:
-        self._process: subprocess.Popen[bytes] | None = None
+        self._servant = Servant("course.grading.similar", wall_s=_WALL_S)
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._end()
+        self._servant.close()
 
     def __call__(self, source: bytes) -> Prints | None:
         """The fingerprints of a source; None if it is not Python, takes too long or is too long."""
         if len(source) > LONGEST:
             return None
-        process = self._process = self._process or _start()
-        assert process.stdin is not None
-        assert process.stdout is not None
-        deadline = threading.Timer(_WALL_S, process.kill)
-        deadline.start()
-        try:
-            write_frame(process.stdin, source)
-            frame = read_frame(process.stdout)
-        except OSError:
-            frame = None
-        finally:
-            deadline.cancel()
-        if frame is None:
-            self._end()
-            return None
-        return msgspec.msgpack.decode(frame, type=_Reply).prints
-
-    def _end(self) -> None:
-        process, self._process = self._process, None
-        if process is None:
-            return
-        process.kill()
-        process.wait()
-        for stream in (process.stdin, process.stdout):
-            if stream is not None:
-                with contextlib.suppress(OSError):
-                    stream.close()
-
-
-def _start() -> subprocess.Popen[bytes]:
-    package = str(Path(__file__).resolve().parents[2])
-    environment = {**os.environ}
-    environment["PYTHONPATH"] = os.pathsep.join(filter(None, (package, environment.get("PYTHONPATH"))))
-    command = [sys.executable, "-P", "-m", "course.grading.similar"]
-    # Its output is of no use: a source that cannot be parsed is reported by name.
-    return subprocess.Popen(
-        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment
-    )
+        frame = self._servant.ask(source)
+        return msgspec.msgpack.decode(frame, type=_Reply).prints if frame is not None else None
 
 
 def main() -> None:
     """Serve until standard input ends."""
     limit_memory(_MEMORY)
     source, sink = sys.stdin.buffer, sys.stdout.buffer
+    write_frame(sink, None)
     while (frame := read_frame(source)) is not None:
         limit_cpu(_CPU_S)
-        write_frame(sink, _Reply(fingerprints(msgspec.msgpack.decode(frame, type=bytes))))
+        try:
+            found = fingerprints(msgspec.msgpack.decode(frame, type=bytes))
+        except MemoryError:
+            os._exit(1)  # the parent process reports the source by name
+        write_frame(sink, _Reply(found))
 
 
 #: A fingerprint in more submissions than this proposes no pairs; it counts in those that others propose.

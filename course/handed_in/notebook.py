@@ -66,8 +66,6 @@ class NotebookSource(Places):
 
     def submission(self, exercise: Exercise) -> Submission:
         """The module to be graded; its lines are reported as cells."""
-        from course.scoring.judging.submission import Submission
-
         return Submission({exercise.module: self.source}, replace(self, module=exercise.module), self.notes)
 
     def phrase(self, line: int) -> str:
@@ -98,8 +96,6 @@ _IN_TRACE = re.compile(r"^\S+:(\d+) in ", re.MULTILINE)
 
 def opened(files: Mapping[str, bytes], exercise: Exercise) -> Submission:
     """The submission, ready for grading; with a notebook's ``RECORD``, messages name its cells."""
-    from course.scoring.judging.submission import Submission
-
     record = files.get(RECORD)
     if record is None:
         return Submission(files)

@@ -141,7 +141,7 @@ def _makers(catalog: Catalog, layout: Layout) -> Makers:
 
     makers: Makers = {}
     for name in catalog.lesson_ids():
-        make = partial(_lesson, catalog, name, layout)
+        make = partial(lesson_notebook, catalog, name, layout)
         makers["lesson", name] = layout.lesson(name), make
     for exercise in catalog.exercises():
         make = partial(exercise_notebook, catalog, exercise)
@@ -150,11 +150,6 @@ def _makers(catalog: Catalog, layout: Layout) -> Makers:
         makers[QUIZ, QUIZ] = PurePosixPath("quiz.ipynb"), partial(quiz_notebook, catalog)
     makers[SANDBOX, SANDBOX] = PurePosixPath("sandbox.ipynb"), partial(sandbox_notebook, catalog)
     return makers
-
-
-def _lesson(catalog: Catalog, lesson_id: str, layout: Layout) -> bytes:
-
-    return lesson_notebook(catalog, catalog.lesson(lesson_id), layout)
 
 
 def _unknown(wanted: str, known: Sequence[str]) -> NotFoundError:
@@ -368,12 +363,13 @@ _CHECKS = "%load_ext course.notebooks"
 _PREDICTIONS = "from course.notebooks.predicting import predict"
 
 
-def lesson_notebook(catalog: Catalog, lesson: Lesson, layout: Layout) -> bytes:
+def lesson_notebook(catalog: Catalog, lesson_id: str, layout: Layout) -> bytes:
     """The notebook file of a lesson.
 
     Raises:
         ContentError: the lesson's file is wrong.
     """
+    lesson = catalog.lesson(lesson_id)
     cells = lesson_cells(catalog, lesson, layout)
     return document(cells, kind="lesson", id=lesson.id, version=catalog.version)
 

@@ -17,6 +17,8 @@ from typing import Any
 
 import msgspec
 
+from course.catalog.blocks import anchor
+
 _KERNEL = {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"}
 #: In the first cell of every notebook. The course is on no package index, so a file or folder is named.
 _NEEDS = """\
@@ -80,7 +82,7 @@ def document(cells: list[Cell], **about: Any) -> bytes:
     section = "top"
     for cell in cells:
         heading = _SECTION.match(cell.source) if cell.kind == "markdown" else None
-        section = _slug(heading[1]) if heading else section
+        section = anchor(heading[1]) if heading else section
         made = digest(cell.kind, cell.source, cell.tags)
         tags = {**cell.tags, "made": made, "slot": _counted(slots, _slot(cell, section))}
         entry: dict[str, Any] = {
@@ -117,7 +119,3 @@ def _slot(cell: Cell, section: str) -> str:
 def _counted(seen: dict[str, int], name: str) -> str:
     seen[name] = seen.get(name, 0) + 1
     return name if seen[name] == 1 else f"{name}-{seen[name]}"
-
-
-def _slug(heading: str) -> str:
-    return "-".join("".join(char if char.isalnum() else " " for char in heading.lower()).split())

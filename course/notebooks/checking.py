@@ -26,7 +26,7 @@ from course.handed_in.limits import MAX_FILE, SOURCES
 from course.handed_in.notebook import SETUP, NotebookSource, notebook_source, source_of
 from course.notebooks.build import pieces
 from course.notebooks.show import ReportPage, image_of
-from course.printable import counted
+from course.printable import counted, some
 from course.progress.history import fingerprint
 from course.progress.workspace import Recorder, not_recorded
 from course.scoring.judging.submission import Submission
@@ -181,6 +181,8 @@ def _first_lines(text: str) -> list[str]:
 _DEF = re.compile(r"^(?:async\s+)?def\s+(\w+)|^class\s+(\w+)", re.MULTILINE)
 #: Cells that are not in the file get numbers from here on.
 _UNSAVED = 1_000_000
+#: Cells that a note names.
+_NAMED = 5
 
 
 @dataclass(frozen=True)
@@ -301,12 +303,12 @@ def _as_saved_now(
     notes = list(module.notes)
     if unsaved:
         notes.append(
-            f"{name} is not saved as you ran it: {_listed(unsaved)}. This check took what you ran. What is"
-            " handed in is the file, so save it."
+            f"{name} is not saved as you ran it: {some(unsaved, _NAMED)}. This check took what you ran. What"
+            " is handed in is the file, so save it."
         )
     if changed:
         notes.append(
-            f"Changed since you ran it: {_listed(changed)}. This check took it as it is in the file now."
+            f"Changed since you ran it: {some(changed, _NAMED)}. This check took it as it is in the file now."
         )
     return replace(module, notes=tuple(notes))
 
@@ -328,10 +330,6 @@ def _placed(saved: list[CodeCell], at: float, runs: Sequence[Run]) -> tuple[dict
         elif run.at > at and text:
             new[run.cell or text] = run
     return last, list(new.values())
-
-
-def _listed(cells: list[str]) -> str:
-    return ", ".join(cells[:5]) + (f" and {len(cells) - 5} more" if cells[5:] else "")
 
 
 def module_of(history: Sequence[str], exercise: Exercise) -> NotebookSource:

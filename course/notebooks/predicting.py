@@ -12,7 +12,7 @@ from course.notebooks.sandbox import alive
 from course.progress.quiz import quiz_history
 from course.progress.standing import lesson_events
 from course.progress.workspace import Recorder
-from course.quizzing.bank import Result, fresh_seed
+from course.quizzing.bank import Bank, Result, fresh_seed
 from course.reading.parts import Question, Script, read_script
 from course.reading.record import JUDGEMENTS, InProgress
 
@@ -202,7 +202,6 @@ class OngoingAttempt:
     """
 
     def __init__(self) -> None:
-        from course.quizzing.bank import Bank
         from course.quizzing.desk import begun, fits
 
         catalog = Catalog()

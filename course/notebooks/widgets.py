@@ -1,4 +1,4 @@
-"""A form in a cell, with a place below it for the reply."""
+"""What lives in a cell: forms, each with a place below it for the reply, and the sandbox."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from course.sandbox.views.web.session import SCRIPTS, Page, Session
 from course.sandbox.world.world import World
 
 _SCRIPTS = Path(__file__).parent / "static"
+#: The web view's files.
 STATIC = Path(course.sandbox.views.web.__file__).parent / "static"
 
 
@@ -33,7 +34,7 @@ class Form(anywidget.AnyWidget):  # type: ignore[misc]
 
     def __init__(self) -> None:
         super().__init__()
-        self._loop = asyncio.get_running_loop()  # see ``sandbox.Sandbox``: messages come on another thread
+        self._loop = asyncio.get_running_loop()  # see ``Sandbox``: messages come on another thread
         self._shown = uuid4().hex
         self.on_msg(lambda _, message, __: self._loop.call_soon_threadsafe(self._hear, message))
 
@@ -101,8 +102,6 @@ class Predict(Form):
 # ---
 # The sandbox's style in a cell's output: the web view's own, adapted to a place inside a page.
 
-
-#: The web view's files.
 
 #: Where the web view asks for its window's width, a cell has to ask for its own: two notebooks side by side
 #: leave half a window. Below this width the picture would be narrower than the panel beside it.

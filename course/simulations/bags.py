@@ -336,10 +336,6 @@ _STATIC = ("/tf_static", "tf2_msgs/msg/TFMessage")
 _FOR_EVER = (9223372036, 854775807)
 
 
-def available() -> bool:
-    return extras.available("ros")
-
-
 def write_bag(path: Path, streams: Iterable[Stream], *, storage: str = "sqlite3") -> Path:
     """Write streams as a bag: all of it, or nothing.
 
@@ -355,7 +351,7 @@ def write_bag(path: Path, streams: Iterable[Stream], *, storage: str = "sqlite3"
         UsageError: the path exists, there is nothing to write, or a type comes twice.
         MissingCapabilityError: the extra ``ros`` is not installed.
     """
-    rosbag2 = _rosbag2()
+    rosbag2 = extras.load("ros")
     given = list(streams)
     chosen: dict[type[Stream], Stream] = {type(stream): stream for stream in given}
     if not chosen or len(chosen) != len(given):
@@ -392,7 +388,7 @@ def read_bag(path: Path) -> tuple[Stream, ...]:
         UsageError: it has none of the topics, or a scan that changes its shape.
         MissingCapabilityError: the extra ``ros`` is not installed.
     """
-    rosbag2 = _rosbag2()
+    rosbag2 = extras.load("ros")
     if not (path / "metadata.yaml").is_file():
         raise NotFoundError(
             f"{path} is not a bag: it has no metadata.yaml.",
@@ -420,10 +416,6 @@ def read_bag(path: Path) -> tuple[Stream, ...]:
             code="bag_topics",
         )
     return tuple(_READERS[topic](messages[topic]) for topic, _ in _TOPICS.values() if topic in messages)
-
-
-def _rosbag2() -> Any:
-    return extras.load("ros")
 
 
 @cache

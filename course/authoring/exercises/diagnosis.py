@@ -310,11 +310,9 @@ def rows_of(
     catalog: Catalog,
     exercise: Exercise,
     *,
-    scopes: tuple[str, ...] = ("public", "full", "alone"),
     on_progress: Progress | None = None,
-    each: int = _EACH,
 ) -> dict[str, tuple[Reported, ...]]:
-    """Try ``each`` known wrong programs for every task: all with one mistake, then some with two.
+    """Try known wrong programs for every task: all with one mistake, then some with two.
 
     Returns:
         By scope, what they are told at home ("public"), in a grading run ("full"), and in one that knows none
@@ -325,7 +323,7 @@ def rows_of(
     single = [item for item in known if len(item[1]) == 1]
     chosen = list(single)
     for task in (task.id for task in exercise.task):
-        left = each - sum(item[0] == task for item in chosen)
+        left = _EACH - sum(item[0] == task for item in chosen)
         pairs = [item for item in known if len(item[1]) > 1 and item[0] == task]
         # As if by lot, by their names alone: another program moves few of those that are tried.
         seen: Counter[tuple[str, ...]] = Counter()
@@ -334,7 +332,7 @@ def rows_of(
             seen[item[1]] += 1
             lots.append((hashlib.sha256(f"{task} {item[1]} {seen[item[1]]}".encode()).digest(), item))
         chosen += [as_one(exercise, item) for _, item in sorted(lots, key=lambda lot: lot[0])[: max(left, 0)]]
-    tried = {scope: single if scope == "alone" else chosen for scope in scopes}
+    tried = {"public": chosen, "full": chosen, "alone": single}
     rows: dict[str, tuple[Reported, ...]] = {}
     done, total = 0, sum(map(len, tried.values()))
     for scope, programs in tried.items():
@@ -473,18 +471,13 @@ class Tally:
     otherwise: int = 0
     survived: int = 0
 
-    def __add__(self, other: Tally) -> Tally:
-        return Tally(
-            self.named + other.named,
-            self.general + other.general,
-            self.otherwise + other.otherwise,
-            self.survived + other.survived,
-        )
-
 
 def tally(fate: Callable[[Reported], str], rows: tuple[Reported, ...]) -> Tally:
     """How the programs of these rows are diagnosed."""
-    return sum((Tally(**{fate(row): row.count}) for row in rows), Tally())
+    counts: Counter[str] = Counter()
+    for row in rows:
+        counts[fate(row)] += row.count
+    return Tally(**counts)
 
 
 def fate_of(catalog: Catalog, exercise: Exercise) -> Callable[[Reported], str]:

@@ -21,7 +21,6 @@ from course.authoring.exercises.grading import (
     accepted_sources,
     declared_checks,
     exercise_graders,
-    instructors,
     mistakes_of,
     solution_path,
     solutions_folder,
@@ -36,10 +35,10 @@ from course.authoring.exercises.source import (
     signatures,
 )
 from course.authoring.mistakes import mistakes_path
-from course.authoring.report import Findings
+from course.authoring.report import About, Findings
 from course.catalog.load import Catalog
 from course.catalog.models import QUICK, Exercise, Measured, Times
-from course.catalog.reading import BLANK, read_document, read_text
+from course.catalog.reading import blanks, read_document, read_text
 from course.errors import ContentError
 from course.printable import counted
 from course.progress.workspace import write_atomically
@@ -216,20 +215,21 @@ def _sums(exercise: Exercise, checks: tuple[CheckSource, ...]) -> Iterator[_Sum]
 
 def audit_points(exercise: Exercise, checks: tuple[CheckSource, ...], findings: Findings) -> None:
     """Report each number that differs from the sum over the checks."""
-    path = exercise.checks_path.with_name("exercise.toml")
-    lines = read_document(path, Exercise).lines
+    wrong = _declaration(exercise, "points", findings)
     for one in _sums(exercise, checks):
         if one.where[0] == "task" and not one.due:
             task = exercise.task[int(one.where[1])].id
-            message, fix = (
-                f"no check gives task {task} a point.",
-                "Mark a check of it: @pytest.mark.points(2).",
-            )
-            findings.add(path, lines.line(one.where), "points", message, fix)
+            fix = "Mark a check of it: @pytest.mark.points(2)."
+            wrong(one.where, f"no check gives task {task} a point.", fix)
         elif one.stale:
             message = f"{one.about} come to {one.due:g}, and {one.written:g} is written here."
-            fix = f"Run `course author build {exercise.id}`."
-            findings.add(path, lines.line(one.where), "points", message, fix)
+            wrong(one.where, message, f"Run `course author build {exercise.id}`.")
+
+
+def _declaration(exercise: Exercise, code: str, findings: Findings) -> About:
+    """Notes problems of one kind with the values of ``exercise.toml``."""
+    path = exercise.checks_path.with_name("exercise.toml")
+    return findings.about(path, read_document(path, Exercise).lines, code)
 
 
 def write_points(catalog: Catalog, exercise: Exercise) -> Path | None:
@@ -344,7 +344,7 @@ _TEXT_SUFFIXES = {".py", ".toml", ".md"}
 
 def exercise_folders(catalog: Catalog, exercise_id: str) -> tuple[Path, Path, Path]:
     """The folders an exercise is spread over: the student's part, solutions, hidden graders."""
-    solutions, graders = instructors(catalog)
+    solutions, graders = catalog.content.instructors()
     place = catalog.content.place_of(exercise_id)
     return catalog.content.exercises / place, solutions / place, graders / place
 
@@ -361,15 +361,10 @@ def find_blanks(catalog: Catalog, exercise_id: str, findings: Findings) -> bool:
 
 def blanks_in(path: Path, findings: Findings) -> bool:
     """Report the blanks of one file; True if there is one."""
-    found = False
-    for number, line in enumerate(read_text(path).split("\n"), start=1):
-        for match in BLANK.finditer(line):
-            found = True
-            what = match["what"].strip() or "this"
-            findings.add(
-                path, number, "blank", f"still to be filled in: {what}.", "Replace the whole marker."
-            )
-    return found
+    found = list(blanks(path))
+    for number, problem in found:
+        findings.add(path, number, "blank", problem, "Replace the whole marker.")
+    return bool(found)
 
 
 def audit_files(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[CheckSource, ...]:
@@ -391,27 +386,16 @@ def _audit_declaration(catalog: Catalog, exercise: Exercise, findings: Findings)
 
     A warm-up names its lesson and the section it follows instead, so that a lesson need not list them.
     """
-    path = exercise.readme_path.with_name("exercise.toml")
-    lines = read_document(path, Exercise).lines
+    wrong = _declaration(exercise, "exercise", findings)
     if exercise.lesson not in catalog.lesson_ids():
-        findings.add(
-            path,
-            lines.line(("lesson",)),
-            "exercise",
-            f"there is no lesson {exercise.lesson}.",
-            f"Known: {', '.join(catalog.lesson_ids())}.",
-        )
+        fix = f"Known: {', '.join(catalog.lesson_ids())}."
+        wrong(("lesson",), f"there is no lesson {exercise.lesson}.", fix)
     elif exercise.is_warm_up:
-        _audit_section(catalog, exercise, path, lines.line(("after",)), findings)
+        _audit_section(catalog, exercise, wrong)
     elif exercise.id not in catalog.lesson(exercise.lesson).exercises:
-        findings.add(
-            path,
-            lines.line(("lesson",)),
-            "exercise",
-            f"lesson {exercise.lesson} does not name this exercise.",
-            f'Add "{exercise.id}" to `exercises` in the head of {exercise.lesson}.md.',
-        )
-    _audit_order(catalog, exercise, path, lines.line(("order",)), findings)
+        fix = f'Add "{exercise.id}" to `exercises` in the head of {exercise.lesson}.md.'
+        wrong(("lesson",), f"lesson {exercise.lesson} does not name this exercise.", fix)
+    _audit_order(catalog, exercise, wrong)
     for other in map(partial(_readable, catalog), (*catalog.exercise_ids(), *catalog.warm_up_ids())):
         if other is None or other.id >= exercise.id:
             continue
@@ -422,26 +406,17 @@ def _audit_declaration(catalog: Catalog, exercise: Exercise, findings: Findings)
         ):
             if same:
                 problem = f"{other.kind} {other.id} has the {key} {getattr(exercise, key)} too."
-                fix = f"Give each a {what} of its own."
-                findings.add(path, lines.line((key,)), "exercise", problem, fix)
+                wrong((key,), problem, f"Give each a {what} of its own.")
 
 
-def _audit_section(
-    catalog: Catalog, exercise: Exercise, path: Path, line: int | None, findings: Findings
-) -> None:
+def _audit_section(catalog: Catalog, exercise: Exercise, wrong: About) -> None:
     """The section that a warm-up follows is one of its lesson."""
     if not exercise.after:
         return
-    headings = read_script(catalog.lesson(exercise.lesson)).sections
-    known = [section.slug for section in headings]
+    known = [section.slug for section in read_script(catalog.lesson(exercise.lesson)).sections]
     if exercise.after not in known:
-        findings.add(
-            path,
-            line,
-            "exercise",
-            f"lesson {exercise.lesson} has no section {exercise.after!r}.",
-            f"Known: {', '.join(known)}.",
-        )
+        problem = f"lesson {exercise.lesson} has no section {exercise.after!r}."
+        wrong(("after",), problem, f"Known: {', '.join(known)}.")
 
 
 def _rank(exercise: Exercise) -> tuple[str, int]:
@@ -449,7 +424,7 @@ def _rank(exercise: Exercise) -> tuple[str, int]:
     return (exercise.lesson if exercise.is_warm_up else "", exercise.order)
 
 
-def _audit_order(catalog: Catalog, exercise: Exercise, path: Path, line: int, findings: Findings) -> None:
+def _audit_order(catalog: Catalog, exercise: Exercise, wrong: About) -> None:
     """Exercises are in the order in which the lessons lead to them, warm-ups in that of their sections."""
     lessons = catalog.lesson_ids()
     if exercise.lesson not in lessons:
@@ -473,7 +448,7 @@ def _audit_order(catalog: Catalog, exercise: Exercise, path: Path, line: int, fi
             continue
         problem = f"{other.kind} {other.id} has a lower order, {other.order}, and its {what} comes later."
         fix = f"Let the orders follow the {what}s: {exercise.id} before {other.id}."
-        findings.add(path, line, "exercise", problem, fix)
+        wrong(("order",), problem, fix)
         return
 
 
@@ -485,20 +460,18 @@ def _readable(catalog: Catalog, exercise_id: str) -> Exercise | None:
 
 
 def _audit_hints(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
-    path = exercise.readme_path.with_name("exercise.toml")
-    lines = read_document(path, Exercise).lines
+    wrong = _declaration(exercise, "hints", findings)
     least = LEAST_HINTS_OF_WARM_UP if exercise.is_warm_up else LEAST_HINTS
     known = mistakes_of(catalog, exercise).words.keys()
     for index, task in enumerate(exercise.task):
         if len(task.hints) < least:
             where = ("task", index, "hints") if task.hints else ("task", index, "id")
             message = f"task {task.id} has {counted(len(task.hints), 'hint')}, and needs {least}."
-            findings.add(path, lines.line(where), "hints", message, "Add hints, mildest first.")
+            wrong(where, message, "Add hints, mildest first.")
         told = {code for codes in task.fits.values() for code in codes}
         for code in sorted(told - known if known else ()):
             message = f"there are no words for the diagnosis {code}."
-            fix = "A hint can only follow a diagnosis that there is."
-            findings.add(path, lines.line(("task", index, "fits")), "hints", message, fix)
+            wrong(("task", index, "fits"), message, "A hint can only follow a diagnosis that there is.")
 
 
 def _audit_code(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:

@@ -45,18 +45,13 @@ from course.scoring.verdict import Verdict
 # that its definitions win; what ``mistakes.py`` has is put there likewise.
 
 
-def instructors(catalog: Catalog) -> tuple[Path, Path]:
-    """The folders of solutions and of hidden graders."""
-    return catalog.content.instructors()
-
-
 def solutions_folder(catalog: Catalog, exercise: Exercise) -> Path:
-    return instructors(catalog)[0] / exercise.place
+    return catalog.content.instructors()[0] / exercise.place
 
 
 def exercise_graders(catalog: Catalog, exercise: Exercise) -> Path:
     """Where the hidden checks of an exercise lie; a warm-up has none."""
-    return instructors(catalog)[1] / exercise.place
+    return catalog.content.instructors()[1] / exercise.place
 
 
 def solution_path(catalog: Catalog, exercise: Exercise) -> Path:
@@ -508,7 +503,7 @@ def write_pack(catalog: Catalog, exercise_ids: Sequence[str], output: Path) -> d
         UsageError: no exercise is named, or ``output`` cannot be written.
         MissingCapabilityError: this installation has no solutions.
     """
-    instructors(catalog)
+    catalog.content.instructors()
     if output.exists():
         raise UsageError(
             f"{output} exists, and nothing is overwritten.", help="Name another file with -o.", code="exists"

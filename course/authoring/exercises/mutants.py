@@ -8,7 +8,6 @@ from pathlib import Path
 import msgspec
 
 from course.authoring.exercises.grading import (
-    GradeSources,
     grade_sources,
     mistakes_of,
     solution_path,
@@ -63,7 +62,6 @@ def run_mutants(
     exercise: Exercise,
     *,
     on_progress: Progress | None = None,
-    grade: GradeSources = grade_sources,
 ) -> tuple[MutantOutcome, ...]:
     """Grade every wrong program of an exercise and compare with what is on record."""
     mistakes, solution = mistakes_of(catalog, exercise), solution_path(catalog, exercise)
@@ -72,7 +70,7 @@ def run_mutants(
     verdicts: dict[int, Verdict] = {}
     if on_progress:
         on_progress(0, len(sources), "")
-    for index, verdict in grade([(exercise, source) for source in sources]):
+    for index, verdict in grade_sources([(exercise, source) for source in sources]):
         verdicts[index] = verdict
         if on_progress:
             on_progress(len(verdicts), len(sources), f"{exercise.id}: {mistakes.wrong[index].name}")

@@ -18,7 +18,7 @@ from urllib.parse import unquote
 from course.authoring.lessons.cells import run_lesson
 from course.authoring.report import Findings
 from course.catalog import blocks as b
-from course.catalog.blocks import Block, Figure, Heading, Link, Text, slug, walk_blocks, walk_inlines
+from course.catalog.blocks import Block, Figure, Heading, Link, slug, walk_blocks, walk_inlines
 from course.catalog.load import Catalog
 from course.catalog.markdown import read_blocks
 from course.catalog.models import Exercise, Lesson
@@ -388,7 +388,7 @@ def _anchors(path: Path, *, lesson: bool) -> frozenset[str]:
 
     tokens = MarkdownIt("commonmark").enable("table").parse(read_text(path))
     return frozenset(
-        slug(Heading(line=1, level=2, inlines=(Text(_words(tokens[index + 1].children or [])),)))
+        b.anchor(_words(tokens[index + 1].children or []))
         for index, token in enumerate(tokens)
         if token.type == "heading_open"
     )
@@ -429,16 +429,11 @@ def audit_syllabus(catalog: Catalog, findings: Findings) -> None:
     """Every listed lesson has a file, and objectives name what there is, once."""
     syllabus = catalog.content.syllabus
     listed = catalog.lesson_ids()
-    lines = LineMap(read_text(syllabus))
+    wrong = findings.about(syllabus, LineMap(read_text(syllabus)), "syllabus")
     for index, lesson_id in enumerate(listed):
         if not (catalog.content.lessons / f"{lesson_id}.md").is_file():
-            findings.add(
-                syllabus,
-                lines.line(("lessons", index)),
-                "syllabus",
-                f"lesson {lesson_id} has no file.",
-                f"Write {lesson_id}.md beside the syllabus, or remove the line.",
-            )
+            fix = f"Write {lesson_id}.md beside the syllabus, or remove the line."
+            wrong(("lessons", index), f"lesson {lesson_id} has no file.", fix)
     known = {
         "lessons": listed,
         "exercises": catalog.exercise_ids(),
@@ -448,13 +443,12 @@ def audit_syllabus(catalog: Catalog, findings: Findings) -> None:
     for index, objective in enumerate(catalog.syllabus.objective):
         for kind, ids in known.items():
             for place, name in enumerate(getattr(objective, kind)):
-                line = lines.line(("objective", index, kind, place))
+                where = ("objective", index, kind, place)
                 if name not in ids:
-                    fix = f"Known: {', '.join(ids)}."
-                    findings.add(syllabus, line, "syllabus", f"there is no {name} among the {kind}.", fix)
+                    wrong(where, f"there is no {name} among the {kind}.", f"Known: {', '.join(ids)}.")
                 elif (kind, name) in named:
                     problem = f"{name} belongs to an objective above already."
-                    findings.add(syllabus, line, "syllabus", problem, "Leave it in one of the two.")
+                    wrong(where, problem, "Leave it in one of the two.")
                 named.add((kind, name))
 
 
@@ -544,13 +538,12 @@ def reading_minutes(blocks: tuple[b.Block, ...]) -> float:
 def _audit_head(
     catalog: Catalog, path: Path, lesson: Lesson, blocks: tuple[b.Block, ...], findings: Findings
 ) -> None:
-    lines = LineMap(split_front_matter(read_text(path), path).toml, first_line=2)
+    head = split_front_matter(read_text(path), path)
+    wrong = findings.about(path, LineMap(head.toml, first_line=2), "lesson")
     took = reading_minutes(blocks)
     if abs(lesson.minutes - took) > OFF_BY and catalog.syllabus.objective:
-        findings.add(
-            path,
-            lines.line(("minutes",)),
-            "lesson",
+        wrong(
+            ("minutes",),
             f"`minutes` is {lesson.minutes}; by its words, predictions and code it takes about {took:.0f}.",
             f"Write: minutes = {5 * max(round(took / 5), 1)}",
         )
@@ -558,22 +551,12 @@ def _audit_head(
     place = order.index(lesson.id) if lesson.id in order else len(order)
     for index, earlier in enumerate(lesson.before):
         if earlier not in order[:place]:
-            findings.add(
-                path,
-                lines.line(("before", index)),
-                "lesson",
-                f"lesson {earlier} does not come before this one in the syllabus.",
-                "Correct the id, or change the order of the syllabus.",
-            )
+            problem = f"lesson {earlier} does not come before this one in the syllabus."
+            wrong(("before", index), problem, "Correct the id, or change the order of the syllabus.")
     for index, exercise_id in enumerate(lesson.exercises):
         if exercise_id not in catalog.exercise_ids():
-            findings.add(
-                path,
-                lines.line(("exercises", index)),
-                "lesson",
-                f"there is no exercise {exercise_id}.",
-                f"Known: {', '.join(catalog.exercise_ids())}.",
-            )
+            fix = f"Known: {', '.join(catalog.exercise_ids())}."
+            wrong(("exercises", index), f"there is no exercise {exercise_id}.", fix)
 
 
 def _audit_numbers(path: Path, findings: Findings) -> None:

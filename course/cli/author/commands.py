@@ -16,7 +16,7 @@ from course.authoring.audit import audit
 from course.authoring.coverage import Coverage, as_markdown, check_coverage, read_coverage, written_to
 from course.authoring.exercises import diagnosis
 from course.authoring.exercises.files import find_blanks, write_points, write_times
-from course.authoring.exercises.grading import instructors, write_pack
+from course.authoring.exercises.grading import write_pack
 from course.authoring.exercises.mutants import MutantOutcome, run_mutants
 from course.authoring.report import AuditProblem, AuditReport, Findings
 from course.catalog.load import Catalog
@@ -447,7 +447,7 @@ def build(
     catches it and what it is told; each program that lost its check or its name is printed.
     """
     console, catalog = current(), load_catalog()
-    instructors(catalog)
+    catalog.content.instructors()
     every = (*catalog.exercises(), *catalog.warm_ups())
     chosen = every if name is None else (catalog.exercise(name),)
     made: list[Path | None] = []
@@ -500,7 +500,7 @@ def mutants(name: _EachExercise = None) -> int:
     code 1 if a mutant is not caught as it is on record.
     """
     console, catalog = current(), load_catalog()
-    instructors(catalog)
+    catalog.content.instructors()
     chosen = catalog.exercises() if name is None else (catalog.exercise(name),)
     rows = []
     for exercise in chosen:

@@ -50,7 +50,7 @@ from course.grading.gradebook.records import Decision, SubmittedAt
 from course.grading.gradebook.salvage import Salvaged, back_up
 from course.grading.gradebook.salvage import salvage as rescue
 from course.grading.results import effective as overriding
-from course.grading.results.effective import Recording, Results, ScoreChange, recorded
+from course.grading.results.effective import Results, ScoreChange, recorded
 from course.grading.results.late import (
     Worksheet,
     in_days,
@@ -69,7 +69,7 @@ from course.grading.running.rerun import Regraded, RerunOptions
 from course.grading.running.rerun import rerun as regrade
 from course.grading.similar import Similar, compare, page
 from course.isolation.launch import private_folder, remove_tree
-from course.printable import command, counted, one_line
+from course.printable import command, counted, one_line, some
 from course.scoring.verdict import format_points, in_points
 
 _SHOWN = 20
@@ -203,7 +203,7 @@ def late(
     why = reason or ", ".join(str(file) for file in (policy, times, roster) if file) or "no policy"
     with previewed(out) if changes and dry_run else open_results(out, writing=changes) as opened:
         book = opened.book
-        with recorded(book, "late", why) if changes else nullcontext(Recording()) as told:
+        with recorded(book, "late", why) if changes else nullcontext(list[ScoreChange]()) as moved:
             if text is not None or clear:
                 book.set_meta(late_policy=text)
             dropped = _take_in(book, people)
@@ -227,14 +227,14 @@ def late(
                 time_unknown=unknown_time,
                 unknown_names=tuple(unknown),
                 dry_run=dry_run,
-                moved=tuple(told.moved),
+                moved=tuple(moved),
                 dropped=tuple(dropped),
             )
         )
     else:
         _show_late(console, results, found, unknown_time, unknown)
         show_roster(console, people.file if people else "", (), dropped)
-        _show_moved(console, told.moved, dry_run=dry_run)
+        _show_moved(console, moved, dry_run=dry_run)
     return 0
 
 
@@ -369,8 +369,7 @@ def similar(
 
 def _show_similar(console: Console, found: Similar) -> None:
     for group in found.groups[:_SHOWN]:
-        names = ", ".join(map(one_line, group.members[:8]))
-        names += f" and {len(group.members) - 8} more" if group.members[8:] else ""
+        names = some([one_line(name) for name in group.members], 8)
         words = f"{group.exercise}, weakest pair {group.share:.0%}: {names}"
         console.item(f"group of {len(group.members)}", words)
     if found.groups[_SHOWN:]:

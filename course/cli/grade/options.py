@@ -15,7 +15,7 @@ from course.grading.intake.downloads import LAYOUTS
 from course.grading.results.effective import ScoreChange
 from course.grading.running.rerun import Change
 from course.grading.running.snapshot import FOREIGN, ForeignGradersError
-from course.printable import one_line
+from course.printable import one_line, some
 from course.scoring.verdict import format_points
 
 T = TypeVar("T")
@@ -170,8 +170,7 @@ def show_roster(console: Console, file: str, moved: Sequence[ScoreChange], dropp
             if len(dropped) == 1
             else f"{len(dropped)} students are not in {file} and leave"
         )
-        more = f" and {len(dropped) - _MOST} more" if dropped[_MOST:] else ""
-        console.line(f"{leave} the roster: {', '.join(map(one_line, dropped[:_MOST]))}{more}")
+        console.line(f"{leave} the roster: {some([one_line(name) for name in dropped], _MOST)}")
 
 
 def points(score: float | None, most: float | None = None) -> str:

@@ -100,7 +100,7 @@ class Learning:
             yield filled(
                 MistakeState,
                 one,
-                title=exercise.task_titled(one.task),
+                title=exercise.task_called(one.task).title,
                 looks_like=_looks_like(exercise, one.diagnosis) or _raised(one),
                 read=exercise.where_to_read(one.task),
                 first_seen=one.first.isoformat(),

@@ -21,7 +21,7 @@ import numpy as np
 
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
-from course.catalog.reading import read_toml
+from course.catalog.reading import read_document
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
 from course.cli.frame.replies import Envelope
@@ -254,7 +254,9 @@ def worked_example(catalog: Catalog) -> Exercise:
     if not folder.is_dir():
         # Another course need not have one; the one that came with the program always does.
         folder = Path(__file__).resolve().parents[2] / "lessons" / WORKED
-    return msgspec.structs.replace(read_toml(folder / "exercise.toml", Exercise), folder=str(folder))
+    return msgspec.structs.replace(
+        read_document(folder / "exercise.toml", Exercise).value, folder=str(folder)
+    )
 
 
 def _loop(source: str) -> str:

@@ -56,7 +56,7 @@ def give_hint(
     """
     reply = _next_hint(here, exercise, task, named)
     if reply.task is not None and not console.quiet:
-        console.heading(exercise.task_titled(reply.task), reply.task)
+        console.heading(exercise.task_called(reply.task).title, reply.task)
     if reply.hint is not None:
         console.line(reply.hint)
     if reply.message:
@@ -83,14 +83,13 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
         step = again if wanted else done
         message = f"{which}: there is nothing to hint at."
         return _hint(exercise, step, reason="passing", message=message)
-    known = here.catalog.hints(exercise)
-    hints, shown, failed = known.of(task), history.hints_for(task), history.diagnosed(task)
+    entry, shown, failed = exercise.task_called(task), history.hints_for(task), history.diagnosed(task)
     begun = task not in history.unwritten_tasks()
     if not begun or not history.hint_is_due(fingerprint(here.stub(exercise))):
-        shown_last = next((index for index in reversed(shown) if index < len(hints.hints)), None)
-        last_words = None if shown_last is None else hints.said(shown_last, failed)
+        shown_last = next((index for index in reversed(shown) if index < len(entry.hints)), None)
+        last_words = None if shown_last is None else entry.said(shown_last, failed)
         return _not_due(exercise, task, last_words, named or _file_name(here, exercise))
-    following = known.after(task, {code for code, _ in failed}, shown)
+    following = entry.following({code for code, _ in failed}, shown)
     if following is None:
         message = (
             f"Every hint for this function has been given; you have worked for all of them. "
@@ -100,7 +99,7 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
         step = f"course lesson {exercise.lesson}"
         return _hint(exercise, step, reason="exhausted", task=task, message=message)
     here.record("hint", exercise.id, {"task": task, "index": following, "fingerprint": last.fingerprint})
-    return _hint(exercise, again, given=True, task=task, hint=hints.said(following, failed))
+    return _hint(exercise, again, given=True, task=task, hint=entry.said(following, failed))
 
 
 def _task(exercise: Exercise, history: History, wanted: str | None) -> str | None:

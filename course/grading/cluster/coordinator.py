@@ -14,14 +14,14 @@ from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
 from course.errors import CourseError, InternalError, MissingCapabilityError
-from course.grading.cluster.worker import FORMAT, Answers, Batch, decode_answers, encode
+from course.grading.cluster.worker import FORMAT, Answers, Batch, decode, encode
 from course.grading.intake.students import Entry
 from course.grading.running.batch import (
+    KILLED_ITS_GRADER,
     MAX_TRIES,
     Graded,
     as_error,
     job_of,
-    killed_its_grader,
     without_grading,
 )
 from course.grading.running.grader import Job
@@ -207,7 +207,7 @@ class _Coordinator:
         if isinstance(outcome, LostBatch):
             self._lost(batch, outcome)
         elif isinstance(outcome, bytes):
-            self._answered(batch, decode_answers(outcome))
+            self._answered(batch, decode(outcome, Answers))
         else:
             self._failure = outcome
 
@@ -232,7 +232,7 @@ class _Coordinator:
             if not answer.is_about(work.job):
                 self._lost([work], LostBatch())
             elif answer.verdict is None:
-                self._blame(work, killed_its_grader())
+                self._blame(work, KILLED_ITS_GRADER)
             else:
                 self._done.append(Graded(work.entry, answer.verdict, answer.version))
         if len(reply.answers) < len(batch):

@@ -81,17 +81,8 @@ def encode(message: Batch | Answers) -> bytes:
     return msgspec.msgpack.encode(message)
 
 
-def decode_batch(payload: bytes) -> Batch | None:
-    """The batch in ``payload``; None if it is of another format."""
-    return _decode(payload, Batch)
-
-
-def decode_answers(payload: bytes) -> Answers | None:
-    """The answers in ``payload``; None if they are of another format."""
-    return _decode(payload, Answers)
-
-
-def _decode(payload: bytes, kind: type[T]) -> T | None:
+def decode(payload: bytes, kind: type[T]) -> T | None:
+    """A message of this kind; None if it is none, or of another format."""
     try:
         message = msgspec.msgpack.decode(payload, type=kind)
     except msgspec.MsgspecError:
@@ -111,7 +102,7 @@ _snapshots: deque[contextlib.ExitStack] = deque()
 
 def grade_batch(payload: bytes) -> bytes:
     """Grade a batch; both it and the answers are in the form that crosses the wire."""
-    batch = decode_batch(payload)
+    batch = decode(payload, Batch)
     host = socket.gethostname()
     started = time.monotonic()
     if batch is None:

@@ -16,6 +16,7 @@ import msgspec
 from course.errors import UsageError
 from course.grading.exports.grades import csv_bytes, for_moodle, is_safe, number, safe_cell, write_bytes
 from course.grading.exports.selection import (
+    SHOWN,
     ExportOptions,
     Needs,
     Selection,
@@ -24,11 +25,10 @@ from course.grading.exports.selection import (
     checks_for_student,
     problem_for_student,
     select,
-    some,
 )
 from course.grading.results.effective import Effective, Results
 from course.grading.results.roster import Column, Person, in_english, moodle_key, read_text
-from course.printable import counted, one_line
+from course.printable import counted, one_line, some
 from course.scoring.verdict import CheckResult, Problem, Status, Visibility, finite, in_points
 
 _CANVAS = Needs(
@@ -232,7 +232,7 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
         written.kept = kept
         rows_have = "1 row has" if len(kept) == 1 else f"{len(kept)} rows have"
         written.notes.append(
-            f"{rows_have} a grade or feedback already, and nothing was changed there: {some(kept)}."
+            f"{rows_have} a grade or feedback already, and nothing was changed there: {some(kept, SHOWN)}."
             " --overwrite writes ours in their place."
         )
     if locked:

@@ -4,13 +4,14 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from course.errors import MissingCapabilityError, NotFoundError, UsageError
-from course.grading.results.effective import Effective, Results
+from course.errors import MissingCapabilityError, UsageError
+from course.grading.results.effective import Effective, Results, no_exercise
 from course.grading.results.roster import FOR_TESTS, Column, Person, Roster
-from course.printable import command
+from course.printable import command, some
 from course.scoring.verdict import CheckResult, Problem, Verdict, for_student
 
-_SHOWN = 10
+#: Names in a message.
+SHOWN = 10
 
 
 @dataclass(frozen=True)
@@ -130,11 +131,7 @@ def select(
     known = {exercise.id for exercise in results.exercises()}
     unknown = [name for name in (*options.exercises, *options.assignments) if name not in known]
     if unknown:
-        raise NotFoundError(
-            f"The gradebook has no exercise {unknown[0]!r}.",
-            help=f"It has {', '.join(sorted(known)) or 'none'}.",
-            code="exercise_not_found",
-        )
+        raise no_exercise(unknown[0], sorted(known))
     if usable is not None and results.roster is None:
         raise UsageError(
             "This format finds students by the platform's ids, which are in a roster.",
@@ -157,7 +154,7 @@ def select(
         if blocking and not options.partial:
             raise _unmatched(results, blocking, key)
         if tests and usable is not None:
-            written.notes.append(f"{some(tests)} is {FOR_TESTS} and was left out.")
+            written.notes.append(f"{some(tests, SHOWN)} is {FOR_TESTS} and was left out.")
         written.unmatched = sorted(unmatched)
     exercises = options.exercises or tuple(exercise.id for exercise in results.exercises())
     return Selection(results, exercises, people, written, options.missing == "zero")
@@ -175,7 +172,7 @@ def check_settled(selection: Selection, options: ExportOptions) -> None:
     if waiting:
         are = "1 student is" if len(waiting) == 1 else f"{len(waiting)} students are"
         raise MissingCapabilityError(
-            f"{are} not graded yet: {some(waiting)}. Nothing was written.",
+            f"{are} not graded yet: {some(waiting, SHOWN)}. Nothing was written.",
             help="Finish the run first: the command that began it, with --resume, goes on.",
             code="not_graded_yet",
         )
@@ -188,16 +185,11 @@ def check_settled(selection: Selection, options: ExportOptions) -> None:
     ]
     if unseen:
         raise MissingCapabilityError(
-            f"{len(unseen)} could not be graded and would get 0: {some(unseen)}. Nothing was written.",
+            f"{len(unseen)} could not be graded and would get 0: {some(unseen, SHOWN)}. Nothing was written.",
             help=f"{command('grade', 'assign', selection.results.folder)} lists them and how to settle"
             " each; --accept-zeros writes the zeros.",
             code="unseen_zeros",
         )
-
-
-def some(listed: list[str]) -> str:
-    """The first of a list, and how many more there are."""
-    return ", ".join(listed[:_SHOWN]) + (f" and {len(listed) - _SHOWN} more" if listed[_SHOWN:] else "")
 
 
 def is_part(results: Results, options: ExportOptions) -> bool:
@@ -222,11 +214,7 @@ def _unmatched(results: Results, why: dict[str, str], needs: str) -> MissingCapa
     by_reason: dict[str, list[str]] = {}
     for student, reason in sorted(why.items()):
         by_reason.setdefault(reason, []).append(repr(student))
-    listed = " ".join(
-        f"{reason}: {', '.join(names[:_SHOWN])}"
-        + (f" and {len(names) - _SHOWN} more." if names[_SHOWN:] else ".")
-        for reason, names in by_reason.items()
-    )
+    listed = " ".join(f"{reason}: {some(names, SHOWN)}." for reason, names in by_reason.items())
     key = f" and {needs}" if needs else ""
     about = "1 student" if len(why) == 1 else f"{len(why)} students"
     return MissingCapabilityError(

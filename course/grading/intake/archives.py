@@ -14,9 +14,7 @@ import os
 import re
 import stat
 import struct
-import subprocess
 import sys
-import threading
 import zipfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -27,10 +25,10 @@ from typing import IO, Any, TypeVar
 import msgspec
 
 from course.catalog.models import Exercise
-from course.errors import InternalError, UngradableError
+from course.errors import UngradableError
 from course.grading.intake import downloads
 from course.grading.intake.downloads import is_folder_meant, is_meant
-from course.grading.pipes import limit_cpu, limit_memory, read_frame, served, write_frame
+from course.grading.pipes import Servant, limit_cpu, limit_memory, served, write_frame
 from course.grading.quiz import checked_record
 from course.handed_in.limits import (
     FORMAT_VERSION,
@@ -372,11 +370,11 @@ class _Limits:
 
 
 class Reader:
-    """A process that reads; started when it is first needed, and again after a file killed it."""
+    """What the process reads; all that a file makes it refuse is a RefusedError."""
 
     def __init__(self, limits: _Limits = _Limits()) -> None:
-        self._limits = limits
-        self._process: subprocess.Popen[bytes] | None = None
+        self._servant = Servant(__name__, str(limits.cpu_s), str(limits.memory), wall_s=limits.wall_s)
+        self.close = self._servant.close
 
     def notebook(self, content: bytes, exercise: Exercise, name: str) -> tuple[bytes, bytes]:
         """The module that a notebook makes up, and the record of its cells."""
@@ -417,33 +415,9 @@ class Reader:
         told = self._ask(_Request("quiz", one_line(path.name), path=os.fsencode(path.absolute())))
         return json.loads(told.content)
 
-    def close(self) -> None:
-        """End the process; the next file starts another one."""
-        process, self._process = self._process, None
-        if process is None:
-            return
-        process.kill()
-        process.wait()
-        for stream in (process.stdin, process.stdout):
-            with contextlib.suppress(OSError):
-                if stream is not None:
-                    stream.close()
-
     def _ask(self, ask: _Request) -> _Reply:
-        process = self._process or self._start()
-        assert process.stdin is not None
-        assert process.stdout is not None
-        too_long = threading.Timer(self._limits.wall_s, process.kill)
-        too_long.start()
-        try:
-            write_frame(process.stdin, ask)
-            frame = read_frame(process.stdout, MAX_ANSWER)
-        except OSError:
-            frame = None
-        finally:
-            too_long.cancel()
+        frame = self._servant.ask(ask, MAX_ANSWER)
         if frame is None:
-            self.close()
             raise RefusedError(
                 "unreadable",
                 f"{ask.name} takes more time or memory to read than any honest file.",
@@ -454,29 +428,6 @@ class Reader:
             problem = told.problem
             raise RefusedError(problem.code, problem.message, problem.help)
         return told
-
-    def _start(self) -> subprocess.Popen[bytes]:
-        """The process, once it is ready.
-
-        Raises:
-            InternalError: it does not start.
-        """
-        package = str(Path(__file__).resolve().parents[3])
-        environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
-        environment["PYTHONPATH"] = os.pathsep.join(filter(None, (package, environment.get("PYTHONPATH"))))
-        limits = self._limits
-        process = self._process = subprocess.Popen(
-            [sys.executable, "-P", "-m", __name__, str(limits.cpu_s), str(limits.memory)],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            env=environment,
-            start_new_session=True,  # Ctrl-C is for the run, which ends it
-        )
-        assert process.stdout is not None
-        if read_frame(process.stdout, MAX_ANSWER) is None:
-            self.close()
-            raise InternalError("The process that reads submissions does not start; see what it printed.")
-        return process
 
 
 #: The one of this process: a run reads one file after the other.

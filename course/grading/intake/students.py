@@ -36,7 +36,7 @@ from course.grading.intake.archives import ArchiveContent, RefusedError, reader
 from course.grading.intake.downloads import Place, Student, is_clutter, is_notebook, kind_of, plain
 from course.handed_in.limits import HANDED_IN, MANIFEST, MAX_FILE, MAX_NOTEBOOK
 from course.handed_in.notebook import RECORD
-from course.printable import one_line
+from course.printable import one_line, some
 from course.scoring.judging.submission import Submission
 from course.scoring.verdict import Problem, Verdict
 from course.strangers import in_utf8
@@ -459,12 +459,6 @@ class Found(msgspec.Struct, frozen=True):
     times: tuple[tuple[str, float | None], ...] = ()
 
 
-@dataclass
-class _Search:
-    left: int = _ENTRIES
-    files: list[tuple[str, Path]] = field(default_factory=list)
-
-
 def survey(place: Place, used: set[tuple[str, str]], exercises: Sequence[Exercise]) -> list[Candidate]:
     """A student's files that no exercise was graded from.
 
@@ -491,27 +485,26 @@ def survey(place: Place, used: set[tuple[str, str]], exercises: Sequence[Exercis
 def _files(place: Place) -> list[tuple[str, Path]]:
     if place.files is not None:
         return [(name, path) for name, path in place.files if path.is_file() and not path.is_symlink()]
-    search = _Search()
-    _search(place.root, "", 0, search)
-    return search.files
+    return list(_below(place.root, "", 0, iter(range(_ENTRIES))))
 
 
-def _search(folder: Path, above: str, depth: int, search: _Search) -> None:
+def _below(folder: Path, above: str, depth: int, left: Iterator[int]) -> Iterator[tuple[str, Path]]:
+    """Names and paths of the files in a folder, until as many entries were looked at as are left."""
     try:
         entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
     except OSError:
         return  # a folder that cannot be listed was refused with its reason elsewhere
     for entry in entries:
-        search.left -= 1
-        if search.left < 0:
+        if next(left, None) is None:
             return
+        path = folder / entry.name
         if is_clutter(entry.name) or entry.is_symlink():
             continue
         if entry.is_dir(follow_symlinks=False):
-            if depth < _DEEP and not (folder / entry.name / "pyvenv.cfg").exists():
-                _search(folder / entry.name, f"{above}{entry.name}/", depth + 1, search)
+            if depth < _DEEP and not (path / "pyvenv.cfg").exists():
+                yield from _below(path, f"{above}{entry.name}/", depth + 1, left)
         elif entry.is_file(follow_symlinks=False) and entry.name != MANIFEST:
-            search.files.append((above + entry.name, folder / entry.name))
+            yield above + entry.name, path
 
 
 def _outlined(
@@ -570,9 +563,8 @@ def found_for(exercise: Exercise, candidates: Iterable[Candidate], *, asked: boo
 def described(candidates: Sequence[Candidate]) -> str:
     """Files and their functions, as part of a sentence."""
     told = []
-    for one in candidates[:_SHOWN]:
+    for one in candidates:
         names = ", ".join(one.defines[:_SHOWN]) + (", ..." if len(one.defines) > _SHOWN else "")
         facts = [*filter(None, [one.kind]), *([f"defines {names}"] if names else [])]
         told.append(f"{one.name} ({', '.join(facts)})" if facts else one.name)
-    more = len(candidates) - _SHOWN
-    return ", ".join(told) + (f" and {more} more" if more > 0 else "")
+    return some(told, _SHOWN)

@@ -12,8 +12,8 @@ an option decides how an export writes it. Until a run has looked at all of a st
 import contextlib
 import itertools
 import math
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Self
@@ -354,7 +354,7 @@ class Results:
         # The tolerance is rounding of sums of points, not mercy.
         return noted is not None and score >= noted.pass_share * most - 1e-9
 
-    def _nothing(self, student: str, exercise: str, state: str = "ungradable") -> Result:
+    def _nothing(self, student: str, exercise: str, state: str) -> Result:
         """Stands in for a grading where nothing was handed in."""
         noted = self._exercises.get(exercise)
         problem = _NOTHING[state]
@@ -382,13 +382,6 @@ class ScoreChange(msgspec.Struct, frozen=True):
     max_after: float | None = None
 
 
-@dataclass
-class Recording:
-    """The scores that a decision changed, once it is made."""
-
-    moved: list[ScoreChange] = field(default_factory=list)
-
-
 def counting(results: Results) -> Scores:
     """The effective scores."""
     return {(item.student, item.exercise): (item.score, item.max_score) for item in results.all()}
@@ -405,18 +398,18 @@ def moved(before: Scores, after: Scores) -> list[ScoreChange]:
 
 
 @contextlib.contextmanager
-def recorded(book: Gradebook, kind: str, reason: str) -> Iterator[Recording]:
-    """Record which scores the decision in this block changed.
+def recorded(book: Gradebook, kind: str, reason: str) -> Iterator[list[ScoreChange]]:
+    """Record which scores the decision in this block changed; they are in the list after it.
 
     Args:
         kind: as in ``Decision``.
     """
-    told = Recording()
+    told: list[ScoreChange] = []
     before = counting(Results(book))
     yield told
-    told.moved = moved(before, counting(Results(book)))
-    old = [(one.student, one.exercise, one.before) for one in told.moved]
-    new = [(one.student, one.exercise, one.after) for one in told.moved]
+    told += moved(before, counting(Results(book)))
+    old = [(one.student, one.exercise, one.before) for one in told]
+    new = [(one.student, one.exercise, one.after) for one in told]
     texts = (msgspec.json.encode(old).decode(), msgspec.json.encode(new).decode())
     book.note(Decision("", "", kind, "", "", reason, *texts))
 
@@ -485,16 +478,26 @@ def override(results: Results, student: str, exercise: str, score: float, reason
             help="Give the points that are to count.",
             code="impossible_score",
         )
-    reason = reason.strip()
-    if not reason or len(reason) > _MAX_REASON:
-        raise UsageError(
-            "An override needs a reason of at most 2000 characters.",
-            help="Add --reason: it is shown wherever the score is.",
-            code="no_reason",
-        )
+    reason = given_reason(reason, "An override", "it is shown wherever the score is")
     before = _told(next(results.all(student, exercise), None))
     results.book.add_override(Override(student, exercise, float(score), reason), before)
     return next(type(results)(results.book).all(student, exercise))
+
+
+def given_reason(reason: str, what: str, shown: str) -> str:
+    """An instructor's reason for a decision.
+
+    Raises:
+        UsageError: there is none, or it is too long.
+    """
+    reason = reason.strip()
+    if not reason or len(reason) > _MAX_REASON:
+        raise UsageError(
+            f"{what} needs a reason of at most {_MAX_REASON} characters.",
+            help=f"Add --reason: {shown}.",
+            code="no_reason",
+        )
+    return reason
 
 
 def lift(results: Results, student: str, exercise: str, reason: str) -> Effective | None:
@@ -523,22 +526,36 @@ def _told(counts: Effective | None) -> str:
     return f"{format_points(counts.score)}, {by}"
 
 
-def _maximum(results: Results, student: str, exercise: str) -> float:
-    """The exercise's maximum; also checks that student and exercise exist."""
-    graded = next(iter(results.book.results(student, exercise)), None)
-    noted = next((item for item in results.exercises() if item.id == exercise), None)
-    if graded is None and noted is None:
-        raise NotFoundError(
-            f"The gradebook has no exercise {exercise!r}.",
-            help=f"It has {', '.join(item.id for item in results.exercises()) or 'none'}.",
-            code="exercise_not_found",
-        )
+def no_exercise(exercise: str, known: Sequence[str]) -> NotFoundError:
+    """What is said of an exercise that a gradebook does not have."""
+    return NotFoundError(
+        f"The gradebook has no exercise {exercise!r}.",
+        help=f"It has {', '.join(known) or 'none'}.",
+        code="exercise_not_found",
+    )
+
+
+def must_have(results: Results, student: str) -> None:
+    """Refuse a name that is no student's.
+
+    Raises:
+        NotFoundError: the gradebook has no such student.
+    """
     if student not in results.students():
         raise NotFoundError(
             f"The gradebook has no student {student!r}.",
             help="grades.csv lists all, and with a roster everybody who is enrolled.",
             code="student_not_found",
         )
+
+
+def _maximum(results: Results, student: str, exercise: str) -> float:
+    """The exercise's maximum; also checks that student and exercise exist."""
+    graded = next(iter(results.book.results(student, exercise)), None)
+    noted = next((item for item in results.exercises() if item.id == exercise), None)
+    if graded is None and noted is None:
+        raise no_exercise(exercise, [item.id for item in results.exercises()])
+    must_have(results, student)
     if noted is not None:
         return noted.max_points
     assert graded is not None

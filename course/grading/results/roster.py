@@ -30,7 +30,7 @@ import msgspec
 
 from course.errors import UsageError
 from course.grading.gradebook.records import PlatformIdentity
-from course.printable import one_line
+from course.printable import one_line, some
 from course.strangers import decoded, read_bytes
 
 COLUMNS = (
@@ -178,8 +178,7 @@ class Roster:
     def compared(self, students: Iterable[str], downloads: Mapping[str, PlatformIdentity]) -> str:
         """The columns there are, and in which of them these students were looked for, as sentences."""
         headings = self.headings or tuple(self.columns.values())
-        more = f" and {len(headings) - _NAMED} more" if headings[_NAMED:] else ""
-        told = [f"{self.called} has the columns {', '.join(headings[:_NAMED])}{more}."]
+        told = [f"{self.called} has the columns {some(headings, _NAMED)}."]
         sources = {downloads[name].source if name in downloads else "" for name in students}
         for source in sorted(sources):
             columns = _DOWNLOAD.get(source, _FOLDER)

@@ -18,14 +18,12 @@ from course.grading.gradebook.records import Decision, Key, Result, SubmittedAt
 from course.grading.intake.archives import RefusedError
 from course.grading.intake.downloads import class_list
 from course.grading.intake.students import Candidate, Entry, Found, submission_from
-from course.grading.results.effective import Effective, Results, counted
+from course.grading.results.effective import Effective, Results, counted, given_reason, must_have, no_exercise
 from course.grading.running.batch import Graded, grade_all
 from course.grading.running.run import GradeAll
 from course.grading.running.snapshot import Unpacked, fresh, frozen, kept
 from course.printable import command
 from course.scoring.judging.submission import Terms
-
-_MAX_REASON = 2000
 
 
 @dataclass(frozen=True)
@@ -104,12 +102,7 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
         UsageError: the exercise is not clear.
     """
     student = results.called(student)
-    if student not in results.students():
-        raise NotFoundError(
-            f"The gradebook has no student {student!r}.",
-            help="grades.csv lists all, and with a roster everybody who is enrolled.",
-            code="student_not_found",
-        )
+    must_have(results, student)
     mine = [item for item in unsettled(results) if item.student == student]
     known = [item.id for item in results.exercises() if item.id != "quiz"]
     if exercise is None:
@@ -126,11 +119,7 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
             )
         exercise = names.pop()
     elif exercise not in known:
-        raise NotFoundError(
-            f"The gradebook has no exercise {exercise!r}.",
-            help=f"It has {', '.join(known)}.",
-            code="exercise_not_found",
-        )
+        raise no_exercise(exercise, known)
     times: tuple[tuple[str, float | None], ...] = ()
     for item in mine:
         if item.exercise == exercise:
@@ -204,13 +193,7 @@ def assign(
         UngradableError: a file cannot be read.
         UsageError: there is no reason, or the run's graders are not this checkout's.
     """
-    reason = reason.strip()
-    if not reason or len(reason) > _MAX_REASON:
-        raise UsageError(
-            "An assignment needs a reason of at most 2000 characters.",
-            help="Add --reason: it is kept with the result.",
-            code="no_reason",
-        )
+    reason = given_reason(reason, "An assignment", "it is kept with the result")
     book, options = results.book, results.book.run_options()
     snapshot = kept(book, options.get("snapshot"), catalog.content, accepted) or fresh(catalog.content)
     timeout = float(options.get("timeout", 10.0))

@@ -21,7 +21,7 @@ from course.catalog.locate import ENVIRONMENT_VARIABLE
 from course.catalog.models import LONGEST
 from course.errors import CourseError, InternalError
 from course.grading.intake.students import Entry
-from course.grading.pipes import read_frame, write_frame
+from course.grading.pipes import path_with, read_frame, write_frame
 from course.grading.running.grader import Answer, Config, Job
 from course.grading.running.snapshot import in_use
 from course.isolation.launch import keep_private, sweep_after_the_dead
@@ -32,6 +32,12 @@ from course.scoring.verdict import Problem, Verdict, not_graded
 #: After so many deaths of graders a submission is not tried again and counts as our fault; or no grader
 #: starts.
 MAX_TRIES = 3
+#: On a submission that no grader survived.
+KILLED_ITS_GRADER = Problem(
+    "grader_died",
+    f"The grader died {MAX_TRIES} times on this submission.",
+    "Report this; the submission is marked for regrading.",
+)
 _TICK_S = 0.5
 
 
@@ -72,8 +78,7 @@ def start_grader(config: Config) -> subprocess.Popen[bytes]:
     graders = in_use(config.terms.graders)
     if graders is None:
         raise InternalError("The snapshot that is to judge is not unpacked here.")
-    path = str(graders.folder), environment.get("PYTHONPATH")
-    environment["PYTHONPATH"] = os.pathsep.join(filter(None, path))
+    environment["PYTHONPATH"] = path_with(graders.folder)
     environment[ENVIRONMENT_VARIABLE] = str(graders.catalog.content.root)
     process = subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment, start_new_session=True
@@ -202,7 +207,7 @@ class Graders:
             for entry, answer in arrived:
                 if answer.error is not None:
                     raise as_error(answer.error, answer.exit_code)
-                verdict = answer.verdict or without_grading(entry, "grader_error", killed_its_grader())
+                verdict = answer.verdict or without_grading(entry, "grader_error", KILLED_ITS_GRADER)
                 yield Graded(entry, verdict, answer.version, answer.asked)
             if not at_work:
                 return
@@ -264,15 +269,6 @@ def as_error(problem: Problem, exit_code: int) -> CourseError:
     error = CourseError(problem.message, help=problem.help, code=problem.code)
     error.exit_code = exit_code
     return error
-
-
-def killed_its_grader() -> Problem:
-    """The verdict on a submission that no grader survived."""
-    return Problem(
-        "grader_died",
-        f"The grader died {MAX_TRIES} times on this submission.",
-        "Report this; the submission is marked for regrading.",
-    )
 
 
 def without_grading(entry: Entry, state: str, problem: Problem) -> Verdict:

@@ -141,9 +141,9 @@ def remember(book: Gradebook, new: Roster) -> Merged:
     if before is None and not book.exercise_ids():
         book.set_meta(roster=text)
         return found
-    with recorded(book, "roster", f"roster {new.file}" if new.file else "another roster") as told:
+    with recorded(book, "roster", f"roster {new.file}" if new.file else "another roster") as moved:
         book.set_meta(roster=text)
-    found.moved = told.moved
+    found.moved = moved
     return found
 
 

@@ -5,7 +5,7 @@ seed. Submissions are regraded if another version of the graders scored them, or
 unscored. Old results are kept beside the new ones; an override still replaces both.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -112,7 +112,6 @@ def rerun(
     results: Results,
     catalog: Catalog,
     options: RerunOptions,
-    report: Callable[[int], None] = lambda _: None,
     *,
     grade: GradeAll = grade_all,
 ) -> Regraded:
@@ -120,7 +119,6 @@ def rerun(
 
     Args:
         results: over a gradebook opened for writing, unless it is a dry run.
-        report: called with the number of submissions regraded so far.
 
     Raises:
         MissingCapabilityError: there are no hidden graders here, or no sufficient protection.
@@ -137,7 +135,6 @@ def rerun(
             change = _change(before, after)
             if change is not None:
                 changes.append(change)
-            report(task.counts.regraded)
     counts = task.counts
     return Regraded(
         counts.regraded, counts.up_to_date, counts.kept, counts.faults, tuple(changes), snapshot.sha256

@@ -1,4 +1,4 @@
-"""Two balls meet head on: when, how fast do they part, and what is kept?"""
+"""Contact: a collision, the models of a floor, a stack of boxes and substeps."""
 
 import math
 from collections.abc import Mapping
@@ -26,6 +26,10 @@ from course.simulations.base import (
 )
 
 Array = NDArray[np.float64]
+
+
+# ---
+# Two balls meet head on: when, how fast do they part, and what is kept?
 
 
 def _run_collision(p: Mapping[str, Any]) -> Result:

@@ -1,4 +1,4 @@
-"""An arm of two links: plan a path (kinematics), find the torques (inverse), let them act (forward)."""
+"""Motion under forces: an arm, chaos, the floor and the methods of integration."""
 
 import math
 from collections.abc import Mapping
@@ -30,6 +30,10 @@ from course.simulations.base import (
 )
 
 Array = NDArray[np.float64]
+
+
+# ---
+# An arm of two links: plan a path (kinematics), find the torques (inverse), let them act (forward).
 
 
 class _Driven:
@@ -148,15 +152,13 @@ def _finding_dynamics(p: Mapping[str, Any], missed: float, torques: Array) -> st
     plan = (
         "Kinematics plans the joint angles of a straight line without any forces; inverse dynamics says "
         f"which torques that takes, up to {peak[0]:.3g} N m at the shoulder and {peak[1]:.3g} N m at the "
-        "elbow; "
-        "forward dynamics says what those torques do. "
+        "elbow; forward dynamics says what those torques do. "
     )
     if p["payload"] > 0:
         return (
             f"{plan}The real arm carries {p['payload']:g} kg that is not in the plan, and its hand "
             f"ends {missed:.2g} m from the goal. Torques are only as good as the model, and nothing here "
-            "pulls "
-            "the arm back. A controller would do that with feedback."
+            "pulls the arm back. A controller would do that with feedback."
         )
     return f"{plan}The hand ends {missed:.1e} m from its goal, because here plan and arm are the same model."
 
@@ -507,10 +509,8 @@ def _finding_integrators(p: Mapping[str, Any], rows: list[Row], worst: Mapping[s
         f"At {p['duration']:g} s explicit Euler is off by {digits(off[0])} m and semi-implicit Euler by "
         f"{digits(off[1])} m: the same two lines in another order. Explicit Euler's energy grows with every "
         f"step, to {digits(1 + worst['explicit_euler'])} times the start; semi-implicit Euler and Verlet "
-        "stay "
-        f"within {percent(worst['semi_implicit_euler'])} and {percent(worst['velocity_verlet'])}, however "
-        "long "
-        f"the run, and Runge-Kutta, now at {percent(worst['rk4'])}, goes on losing a little."
+        f"stay within {percent(worst['semi_implicit_euler'])} and {percent(worst['velocity_verlet'])}, "
+        f"however long the run, and Runge-Kutta, now at {percent(worst['rk4'])}, goes on losing a little."
     )
 
 

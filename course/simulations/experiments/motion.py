@@ -1,4 +1,4 @@
-"""A ball is let go: when does it land, and what does each method make of the simplest motion there is?"""
+"""Free motion: a fall, a throw and a spin."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -30,6 +30,10 @@ from course.simulations.base import (
 )
 
 Array = NDArray[np.float64]
+
+
+# ---
+# A ball is let go: when does it land, and what does each method make of the simplest motion there is?
 
 
 def _run_free_fall(p: Mapping[str, Any]) -> Result:

@@ -89,11 +89,12 @@ def _reader() -> Reader:
 
 def _asked(ask: Callable[[], Any]) -> str:
     """What a question to the process that reads came to; it must not end by an input this small."""
-    process = _reader()._process or _reader()._start()
+    servant = _reader()._servant
+    process = servant._process or servant._start()
     try:
         ask()
     except RefusedError as refused:
-        if _reader()._process is not process or refused.problem.code == "unreadable":
+        if servant._process is not process or refused.problem.code == "unreadable":
             raise FaultError(refused.problem.message) from None
         if not refused.problem.message.isprintable():
             raise FaultError(f"not printable: {refused.problem.message!r}") from None

@@ -140,10 +140,10 @@ def test_how_a_check_is_worded_decides_about_no_program(catalog: Catalog) -> Non
 def test_the_hint_at_a_loop_that_hands_an_argument_back_is_about_new_rows(
     catalog: Catalog, code: str
 ) -> None:
-    known = catalog.hints(catalog.exercise("integrators"))
-    given = known.after("integrate", {code}, ())
+    task = catalog.exercise("integrators").task_called("integrate")
+    given = task.following({code}, ())
     assert given is not None
-    assert "are new" in known.of("integrate").hints[given]
+    assert "are new" in task.hints[given]
 
 
 def test_what_one_run_shows_is_told_by_the_checks_that_saw_it(catalog: Catalog) -> None:

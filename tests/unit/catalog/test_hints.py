@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from course.catalog.models import Hints, Task
+from course.catalog.models import Task
 
 TASK = Task(
     id="throw",
@@ -52,4 +52,4 @@ def test_braces_in_a_students_value_stay_as_they_are():
     ],
 )
 def test_the_hint_that_fits_comes_before_the_mildest(diagnoses, given, following):
-    assert Hints((TASK,)).after("throw", diagnoses, given) == following
+    assert TASK.following(diagnoses, given) == following

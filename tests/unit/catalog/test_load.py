@@ -8,7 +8,7 @@ import pytest
 
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise, Syllabus
-from course.catalog.reading import read_toml
+from course.catalog.reading import read_document
 from course.errors import ContentError, NotFoundError
 
 EXERCISE = "exercises/doubling/exercise.toml"
@@ -25,8 +25,7 @@ def edit(path: Path, old: str, new: str) -> None:
 
 def read_everything(catalog: Catalog) -> None:
     catalog.lessons()
-    for exercise in catalog.exercises():
-        catalog.hints(exercise)
+    catalog.exercises()
 
 
 def refused(mini: Path, file: str) -> ContentError:
@@ -64,7 +63,7 @@ def test_an_exercise_knows_its_files(catalog: Catalog, mini: Path) -> None:
     exercise = catalog.exercise("doubling")
     assert exercise.stub_path == mini.resolve() / "exercises" / "doubling" / "doubling.py"
     assert exercise.max_points == 10
-    assert catalog.hints(exercise).of("double").hints[0] == "What is a number added to itself?"
+    assert exercise.task_called("double").hints[0] == "What is a number added to itself?"
 
 
 def test_listing_ids_opens_nothing_but_the_syllabus(mini: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -238,6 +237,6 @@ def test_a_folder_without_an_exercise_is_not_one(mini: Path) -> None:
 
 
 def test_any_toml_file_with_a_format_can_be_read_into_a_type(mini: Path) -> None:
-    assert read_toml(mini / EXERCISE, Exercise).task[0].id == "double"
+    assert read_document(mini / EXERCISE, Exercise).value.task[0].id == "double"
     with pytest.raises(ContentError, match="unknown key `module`"):
-        read_toml(mini / EXERCISE, Syllabus)
+        read_document(mini / EXERCISE, Syllabus)

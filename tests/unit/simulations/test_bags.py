@@ -12,10 +12,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from course import extras
 from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
 from course.simulations import bags
 
-needs_rosbags = pytest.mark.skipif(not bags.available(), reason="the extra ros is not installed")
+needs_rosbags = pytest.mark.skipif(not extras.available("ros"), reason="the extra ros is not installed")
 
 T = np.array([0.0, 0.1, 0.25])
 IMU = bags.ImuStream(T, np.array([0.1, -0.2, 0.3]), variance=0.04)

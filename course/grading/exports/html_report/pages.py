@@ -1,4 +1,7 @@
-"""The templates of these pages: text is escaped, and characters that affect other text are spelled out."""
+"""The report as pages: of the class, of the list of students, and of each student.
+
+Text is escaped in them, and characters that affect other text are spelled out.
+"""
 
 import base64
 import contextlib
@@ -354,18 +357,6 @@ class IndexRow:
     scores: tuple[tuple[float | None, str] | None, ...]
 
 
-def index_row(
-    results: Results,
-    student: str,
-    place: int,
-    href: str,
-    found: Mapping[str, Effective],
-    exercises: Sequence[str],
-) -> IndexRow:
-    scores = tuple(_score(found.get(exercise)) for exercise in exercises)
-    return IndexRow(student, place, href, results.person(student), scores)
-
-
 def _score(effective: Effective | None) -> tuple[float | None, str] | None:
     if effective is None:
         return None
@@ -573,7 +564,8 @@ def write_pages(
         scores[student] = [
             number(by_exercise[name].score) if name in by_exercise else "" for name in exercises
         ]
-        rows[student] = index_row(results, student, place, links[student], by_exercise, exercises)
+        told = tuple(_score(by_exercise.get(name)) for name in exercises)
+        rows[student] = IndexRow(student, place, links[student], results.person(student), told)
     written = sorted(rows, key=numbers.__getitem__)
     listed, table = path.with_name("students.html"), path.with_name("students.csv")
     chosen = [noted[name] for name in exercises]

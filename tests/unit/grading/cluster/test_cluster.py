@@ -24,7 +24,7 @@ from course.cli.frame.app import run as course
 from course.errors import CourseError, MissingCapabilityError, UsageError
 from course.grading.cluster import connect, coordinator, worker
 from course.grading.cluster.coordinator import LostBatch, Outcome, grade_on
-from course.grading.cluster.worker import FORMAT, Answers, Batch, decode_answers, decode_batch, encode
+from course.grading.cluster.worker import FORMAT, Answers, Batch, decode, encode
 from course.grading.intake.students import Entry
 from course.grading.running.batch import MAX_TRIES, Graded
 from course.grading.running.grader import Answer, Job
@@ -78,7 +78,7 @@ class FakeWorkers:
         return self.most
 
     def send(self, payload: bytes, done: Callable[[Outcome], None]) -> None:
-        batch = decode_batch(payload)
+        batch = decode(payload, Batch)
         assert batch is not None
         with self._lock:
             self._sent.append((batch, done))
@@ -259,12 +259,12 @@ def test_a_cluster_that_lost_all_its_workers_is_not_waited_for_forever(
 
 def test_messages_of_another_format_are_refused_and_not_half_understood() -> None:
     batch = Batch(FORMAT, Terms(), ())
-    assert decode_batch(encode(batch)) == batch
+    assert decode(encode(batch), Batch) == batch
     newer = msgspec.structs.replace(batch, format=FORMAT + 1)
     for payload in (encode(newer), b"", b"\xc1", msgspec.msgpack.encode({"format": FORMAT})):
-        assert decode_batch(payload) is None
-        assert decode_answers(payload) is None
-        reply = decode_answers(worker.grade_batch(payload))
+        assert decode(payload, Batch) is None
+        assert decode(payload, Answers) is None
+        reply = decode(worker.grade_batch(payload), Answers)
         assert reply is not None
         (answer,) = reply.answers
         assert answer.error is not None
@@ -347,7 +347,9 @@ def at_work(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Answers]]
     def answers(jobs: list[Job], level: str | None = "L1") -> Answers:
         snapshot = Snapshot.take(content())
         terms = Terms(level, "L1", 5.0, graders=snapshot.sha256)
-        reply = decode_answers(worker.grade_batch(encode(Batch(FORMAT, terms, tuple(jobs), snapshot.packed))))
+        reply = decode(
+            worker.grade_batch(encode(Batch(FORMAT, terms, tuple(jobs), snapshot.packed))), Answers
+        )
         assert reply is not None
         return reply
 
@@ -409,14 +411,14 @@ def test_a_worker_grades_by_the_snapshot_it_was_sent(
     terms = Terms("L1", "L1", 5.0, graders=snapshot.sha256)
     job = Job("doubling", {"doubling.py": solution}, version)
     for packed, wanting in ((b"", True), (snapshot.packed, False), (b"", False)):
-        reply = decode_answers(worker.grade_batch(encode(Batch(FORMAT, terms, (job,), packed))))
+        reply = decode(worker.grade_batch(encode(Batch(FORMAT, terms, (job,), packed))), Answers)
         assert reply is not None
         assert reply.wanting is wanting
         for answer in reply.answers:
             assert answer.verdict is not None
             assert (answer.verdict.score, answer.version) == (10.0, version)
     damaged = encode(Batch(FORMAT, msgspec.structs.replace(terms, graders="0" * 64), (job,), snapshot.packed))
-    reply = decode_answers(worker.grade_batch(damaged))
+    reply = decode(worker.grade_batch(damaged), Answers)
     assert reply is not None
     assert reply.answers[0].error is not None
     worker._forget()

@@ -105,7 +105,7 @@ def test_a_bomb_costs_itself_and_is_named(bomb: str, strict: Reader, doubling: E
 
 def test_the_wall_clock_ends_a_reader_that_uses_no_time(impatient: Reader, doubling: Exercise) -> None:
     impatient.notebook(notebook(_DOUBLE), doubling, "a.ipynb")
-    process = impatient._process
+    process = impatient._servant._process
     assert process is not None
     os.kill(process.pid, 19)  # SIGSTOP
     with pytest.raises(RefusedError) as caught:

@@ -43,7 +43,7 @@ def test_plane_contact(submission, draw):
 @pytest.mark.task(bundles.IMPULSE)
 @pytest.mark.points(3)
 def test_impulse_value(submission, draw):
-    """The impulse separates two bodies at e times the speed of approach"""
+    """The impulse of two bodies that approach each other"""
     bundles.expect_public(
         submission,
         bundles.IMPULSE,
@@ -57,7 +57,7 @@ def test_impulse_value(submission, draw):
 @pytest.mark.task(bundles.IMPULSE)
 @pytest.mark.points(2)
 def test_impulse_separating(submission, draw):
-    """Bodies that move apart on a line get no impulse, and only those"""
+    """Which bodies on a line get an impulse"""
     bundles.expect_public(
         submission,
         bundles.IMPULSE,
@@ -78,7 +78,7 @@ def test_impulse_walls(submission, draw):
 @pytest.mark.task(bundles.RESOLVE)
 @pytest.mark.points(4)
 def test_resolve_oblique(submission, draw):
-    """An impact at an angle changes the velocities along the normal and nothing across it"""
+    """An impact at an angle, along the normal and across it"""
     bundles.expect_public(
         submission,
         bundles.RESOLVE,
@@ -92,7 +92,7 @@ def test_resolve_oblique(submission, draw):
 @pytest.mark.task(bundles.RESOLVE)
 @pytest.mark.points(2)
 def test_resolve_separating(submission, draw):
-    """Bodies that move apart are left alone, and only those"""
+    """Which bodies are left alone"""
     bundles.expect_public(
         submission,
         bundles.RESOLVE,
@@ -114,7 +114,7 @@ def test_resolve_walls(submission, draw):
 @pytest.mark.task(bundles.FRICTION)
 @pytest.mark.points(4)
 def test_friction_regimes(submission, draw):
-    """Friction slides on a smooth surface and sticks on a rough one"""
+    """Friction that slides, and friction that sticks"""
     bundles.expect_public(
         submission,
         bundles.FRICTION,
@@ -129,7 +129,7 @@ def test_friction_regimes(submission, draw):
 @pytest.mark.task(bundles.FRICTION)
 @pytest.mark.points(2)
 def test_friction_absent(submission, draw):
-    """Without a coefficient, without slip or without an impact there is no friction"""
+    """Where friction is absent, and where it is not"""
     bundles.expect_public(
         submission,
         bundles.FRICTION,
@@ -151,7 +151,7 @@ def test_friction_walls(submission, draw):
 @pytest.mark.task(bundles.MOMENT)
 @pytest.mark.points(4)
 def test_moment_of_contact(submission, draw):
-    """The moment of contact is found head on, off centre and at a speed that jumps over the target"""
+    """The moment of contact: head on, off centre, at a speed that jumps over the target"""
     bundles.expect_public(
         submission,
         bundles.MOMENT,
@@ -165,7 +165,7 @@ def test_moment_of_contact(submission, draw):
 @pytest.mark.task(bundles.MOMENT)
 @pytest.mark.points(2)
 def test_moment_never(submission, draw):
-    """None where they miss, separate, keep their distance or meet after the step, and only there"""
+    """Which spheres touch within the step, and which do not"""
     bundles.expect_public(
         submission,
         bundles.MOMENT,
@@ -215,7 +215,7 @@ def test_moment_arguments(submission, draw):
 @pytest.mark.task(bundles.HEAD_ON)
 @pytest.mark.points(4)
 def test_head_on_mended(submission, draw):
-    """The mended program: two balls meet and separate as e says"""
+    """The mended program: two balls meet"""
     cases = bundles.asked("head_on_mended", draw)
     values = submission.call_each(bundles.HEAD_ON, [scene.args(t_end, h) for scene, t_end, h in cases])
     truths = bundles.meetings(cases, "head_on_mended")
@@ -244,7 +244,7 @@ def test_head_on_arguments(submission, draw):
 @pytest.mark.task(bundles.HEAD_ON)
 @pytest.mark.points(2)
 def test_head_on_pymunk(submission, draw):
-    """Two unequal balls move as in pymunk, to within pymunk's own error"""
+    """Two unequal balls beside pymunk's, to within pymunk's own error"""
     cases = bundles.asked("head_on_pymunk", draw)
     (scene, t_end, h), truth = cases[0], bundles.meetings(cases, "head_on_pymunk")[0]
     given = scene.shown(t_end, h)
@@ -270,7 +270,7 @@ def test_head_on_pymunk(submission, draw):
 @pytest.mark.task(bundles.DROP)
 @pytest.mark.points(3)
 def test_drop_bounces(submission, draw):
-    """A dropped ball bounces to e squared times its height, again and again, and then lies still"""
+    """A dropped ball: the heights of its bounces, and its rest"""
     cases = bundles.asked("drop_bounces", draw)
     values = submission.call_each(bundles.DROP, [scene.args(t_end, h) for scene, t_end, h in cases])
     truths = bundles.bounces(cases, "drop_bounces")
@@ -290,7 +290,7 @@ def test_drop_bounces(submission, draw):
 @pytest.mark.task(bundles.DROP)
 @pytest.mark.points(1)
 def test_drop_pymunk(submission, draw):
-    """The ball falls and bounces as in pymunk, to within pymunk's own error"""
+    """The dropped ball beside pymunk's, to within pymunk's own error"""
     cases = bundles.asked("drop_pymunk", draw)
     (scene, t_end, h), truth = cases[0], bundles.bounces(cases, "drop_pymunk")[0]
     given = scene.shown(t_end, h)

@@ -74,35 +74,35 @@ def asked(draw, told):
 @pytest.mark.task("characterise")
 @pytest.mark.points(4)
 def test_order(submission, draw):
-    """The order of three engines is found, and at home that of one of third order"""
+    """The order of three engines, and at home of one of third order"""
     judging.expect_key(known_and("order", submission, draw), "order", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(2)
 def test_symplectic(submission, draw):
-    """The report says which of three engines conserve area"""
+    """Which of three engines conserve area"""
     judging.expect_key(known(submission, draw), "symplectic", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(4)
 def test_linear_damping(submission, draw):
-    """The damping of three engines is found"""
+    """The damping of three engines"""
     judging.expect_key(known(submission, draw), "linear_damping", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(3)
 def test_max_stable_step(submission, draw):
-    """The largest stable step of three engines is found"""
+    """The largest stable step of three engines"""
     judging.expect_key(known(submission, draw), "max_stable_step", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(0)
 def test_max_stable_step_at_its_ends(submission, draw):
-    """The largest stable step is found, at home also where it is zero, infinite or the first of two"""
+    """The largest stable step, at home also where it is zero, infinite or the first of two"""
     found = known(submission, draw) if draw is not None else ends(submission)
     judging.expect_key(found, "max_stable_step", SPARED)
 
@@ -110,49 +110,49 @@ def test_max_stable_step_at_its_ends(submission, draw):
 @pytest.mark.task("characterise")
 @pytest.mark.points(2)
 def test_friction_anisotropy(submission, draw):
-    """How much harder a diagonal push must be is found for three engines"""
+    """How much harder a diagonal push must be, for three engines"""
     judging.expect_key(known(submission, draw), "friction_anisotropy", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(2)
 def test_rest_penetration(submission, draw):
-    """How deep a body sinks into the floor is found for three engines"""
+    """How deep a body sinks into the floor, for three engines"""
     judging.expect_key(known(submission, draw), "rest_penetration", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(2)
 def test_restitution(submission, draw):
-    """The restitution of three engines is found"""
+    """The restitution of three engines"""
     judging.expect_key(known(submission, draw), "restitution", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(2)
 def test_tunnelling_speed(submission, draw):
-    """The speed at which bodies get through the wall is found, for one with short steps too"""
+    """The speed at which bodies get through the wall"""
     judging.expect_key(known_and("tunnelling_speed", submission, draw), "tunnelling_speed", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(2)
 def test_deterministic(submission, draw):
-    """The report says which of three engines never repeats itself"""
+    """Which of three engines never repeats itself"""
     judging.expect_key(known(submission, draw), "deterministic", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(2)
 def test_report_complete(submission, draw):
-    """The report has exactly its nine keys, and stays as it was"""
+    """The nine keys of a report, and whether it stays as it was"""
     judging.expect_complete(submission, known(submission, draw))
 
 
 @pytest.mark.task("choose_engine")
 @pytest.mark.points(3)
 def test_choose_by_report(submission, draw):
-    """Of three engines, the cheapest that meets every requirement is chosen"""
+    """The cheapest of three engines that meets every requirement"""
     reports = _priced(cork=5.0, anvil=8.0, balsa=1.0)
     needs = [need("order", ">=", 2)]
     told = asked(
@@ -198,7 +198,7 @@ def _priced(**costs):
 @pytest.mark.task("choose_engine")
 @pytest.mark.points(2)
 def test_choose_nothing(submission, draw):
-    """None is returned where no engine meets every requirement, or one was not measured, and only there"""
+    """Where None is returned, and where an engine"""
     reports = {
         "anvil": {**boxes.TRUTH["anvil"], "cost": 2.0, "noise_db": None},
         "balsa": {**boxes.TRUTH["balsa"], "cost": 1.0},
@@ -234,7 +234,7 @@ def test_choose_nothing(submission, draw):
 @pytest.mark.task("choose_engine")
 @pytest.mark.points(3)
 def test_choose_real_engines(submission, draw):
-    """Among ODE, Bullet, PhysX and MuJoCo as measured, the cheapest that fits is chosen for six jobs"""
+    """ODE, Bullet, PhysX and MuJoCo as measured, for six jobs"""
     told = [(measured.reports(), needs, name) for needs, name in measured.QUESTIONS.values()]
     choosing.expect_choices(submission, asked(draw, told))
 
@@ -242,7 +242,7 @@ def test_choose_real_engines(submission, draw):
 @pytest.mark.task("choose_engine")
 @pytest.mark.points(1)
 def test_choose_by_numbers(submission, draw):
-    """Other names and another order change nothing, and reports and requirements stay as they were"""
+    """Other names, another order, and the arguments"""
     reports = {name: {**boxes.TRUTH[name], "cost": cost} for name, cost in
                (("cork", 5.0), ("anvil", 8.0), ("balsa", 1.0))}  # fmt: skip
     needs = [need("order", ">=", 2), need("linear_damping", "<=", 0.5)]
@@ -271,12 +271,12 @@ def test_choose_by_numbers(submission, draw):
 @pytest.mark.task("engine_facts")
 @pytest.mark.points(3)
 def test_facts_complete(submission):
-    """Each of four engines has one entry for each of five fields, in the form the README gives"""
+    """The entries for four engines and five fields"""
     listing.expect_complete(listing.entries(submission))
 
 
 @pytest.mark.task("engine_facts")
 @pytest.mark.points(3)
 def test_facts_sources(submission):
-    """Every fact has a web address as its source, and a date on which it was true"""
+    """The sources and the dates of the facts"""
     listing.expect_sources(listing.entries(submission))

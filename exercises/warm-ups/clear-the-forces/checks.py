@@ -8,7 +8,7 @@ from course.scoring import kit
 @pytest.mark.task("final_speed")
 @pytest.mark.points(1)
 def test_constant_force(submission):
-    """A constant force gives a speed that grows evenly"""
+    """The speed under a constant force"""
     kit.expect_cases(
         submission,
         "final_speed",

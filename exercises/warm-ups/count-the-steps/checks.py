@@ -8,7 +8,7 @@ from course.scoring import kit
 @pytest.mark.task("steps_in")
 @pytest.mark.points(1)
 def test_quotients_beside_a_whole_number(submission):
-    """Quotients just beside a whole number are counted as that number"""
+    """Quotients just beside a whole number"""
     kit.expect_cases(
         submission,
         "steps_in",

@@ -8,7 +8,7 @@ from course.scoring import kit
 @pytest.mark.task("reading")
 @pytest.mark.points(1)
 def test_within(submission):
-    """Distances within reach go to the nearest count"""
+    """Distances within reach"""
     kit.expect_cases(
         submission,
         "reading",
@@ -24,7 +24,7 @@ def test_within(submission):
 @pytest.mark.task("reading")
 @pytest.mark.points(1)
 def test_beyond(submission):
-    """Distances beyond the limit are read as the limit"""
+    """Distances beyond the limit"""
     kit.expect_cases(
         submission,
         "reading",

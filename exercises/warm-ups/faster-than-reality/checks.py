@@ -8,7 +8,7 @@ from course.scoring import kit
 @pytest.mark.task("real_time_factor")
 @pytest.mark.points(1)
 def test_factors(submission):
-    """Three runs have the right real-time factors"""
+    """The real-time factors of three runs"""
     kit.expect_cases(
         submission,
         "real_time_factor",

@@ -41,7 +41,7 @@ def test_gap_is_a_number(submission):
 @pytest.mark.task("run")
 @pytest.mark.points(1)
 def test_run_begins_at_the_start(submission):
-    """A run of three steps has four samples, and the first is the start"""
+    """The samples of a run of three steps"""
     states = kit.as_list(submission.call("run", 10.0, 2.0, -9.81, 3), "the run")
     kit.expect_array(
         states[0] if states else [],
@@ -78,7 +78,7 @@ def test_run_begins_at_the_start(submission):
 @pytest.mark.task("landing_time")
 @pytest.mark.points(1)
 def test_landing_is_where_the_ground_is(submission):
-    """A fall ends at the first sample at or below the ground"""
+    """Where a fall ends"""
     for heights, expected in (([0.5, 0.2, -0.2, -0.7, -1.3], 0.02), ([1.0, 0.6, 0.0, -0.9], 0.02)):
         kit.expect_close(
             submission.call("landing_time", heights),
@@ -103,7 +103,7 @@ def test_landing_is_where_the_ground_is(submission):
 @pytest.mark.task("after_contact")
 @pytest.mark.points(1)
 def test_balls_bounce(submission):
-    """Equal balls that meet head-on bounce off each other"""
+    """Equal balls that meet head-on"""
     for before, after in (((2.0, -2.0), [-2.0, 2.0]), ((3.0, 1.0), [1.0, 3.0])):
         kit.expect_array(
             submission.call("after_contact", *before),
@@ -121,7 +121,7 @@ def test_balls_bounce(submission):
 @pytest.mark.task("euler_step")
 @pytest.mark.points(1)
 def test_euler_uses_old_rates(submission):
-    """Explicit Euler moves with the velocity from before the step"""
+    """Explicit Euler: which velocity moves the ball"""
     x, v, a, h = 1.0, 0.5, -4.0, 0.1
     kit.expect_array(
         submission.call("euler_step", x, v, a, h),
@@ -138,7 +138,7 @@ def test_euler_uses_old_rates(submission):
 @pytest.mark.task("error_at_end")
 @pytest.mark.points(1)
 def test_error_is_taken_at_one_moment(submission):
-    """The exact positions themselves have no error"""
+    """The error of the exact positions themselves"""
     for omega, n in ((2.0, 50), (3.0, 7)):
         exact = [math.cos(omega * 0.01 * k) for k in range(n + 1)]
         kit.expect_close(

@@ -8,7 +8,7 @@ from course.scoring import kit
 @pytest.mark.task("ticks")
 @pytest.mark.points(1)
 def test_frames(submission):
-    """Short and long frames give the right steps and leave the right time over"""
+    """Short and long frames: their steps, and the time left over"""
     kit.expect_cases(
         submission,
         "ticks",

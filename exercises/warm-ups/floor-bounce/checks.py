@@ -8,7 +8,7 @@ from course.scoring import kit
 @pytest.mark.task("after_floor")
 @pytest.mark.points(1)
 def test_on_the_way_down(submission):
-    """A falling ball leaves with e times its speed"""
+    """A falling ball"""
     kit.expect_cases(
         submission,
         "after_floor",
@@ -26,7 +26,7 @@ def test_on_the_way_down(submission):
 @pytest.mark.task("after_floor")
 @pytest.mark.points(1)
 def test_on_the_way_up(submission):
-    """A rising or resting ball is left alone"""
+    """A rising or resting ball"""
     kit.expect_cases(
         submission,
         "after_floor",

@@ -8,7 +8,7 @@ from course.scoring import kit
 @pytest.mark.task("friction")
 @pytest.mark.points(1)
 def test_within(submission):
-    """An impulse within the limit is given in full"""
+    """An impulse within the limit"""
     kit.expect_cases(
         submission,
         "friction",
@@ -27,7 +27,7 @@ def test_within(submission):
 @pytest.mark.task("friction")
 @pytest.mark.points(1)
 def test_beyond(submission):
-    """An impulse beyond the limit is cut to it and keeps its direction"""
+    """An impulse beyond the limit"""
     kit.expect_cases(
         submission,
         "friction",

@@ -8,7 +8,7 @@ from course.scoring import kit
 @pytest.mark.task("step_ahead")
 @pytest.mark.points(1)
 def test_steps(submission):
-    """Steps forwards from three states are right"""
+    """Steps forwards from three states"""
     kit.expect_cases(
         submission,
         "step_ahead",

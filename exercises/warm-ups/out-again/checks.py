@@ -8,7 +8,7 @@ from course.scoring import kit
 @pytest.mark.task("push_out")
 @pytest.mark.points(1)
 def test_deep(submission):
-    """Bodies that are too deep are pushed out"""
+    """Bodies that are too deep"""
     kit.expect_cases(
         submission,
         "push_out",
@@ -26,7 +26,7 @@ def test_deep(submission):
 @pytest.mark.task("push_out")
 @pytest.mark.points(1)
 def test_within_slop(submission):
-    """Bodies within the slop, or apart, are left alone"""
+    """Bodies within the slop, or apart"""
     kit.expect_cases(
         submission,
         "push_out",

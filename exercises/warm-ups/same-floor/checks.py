@@ -23,7 +23,7 @@ def _expect(submission, args, expected, message, help):
 @pytest.mark.task("same_floor")
 @pytest.mark.points(1)
 def test_another_step(submission):
-    """The floor is the same at another step"""
+    """The floor at another step"""
     for args, expected in (
         ((0.75, 0.0025, 0.01, 0.005), (0.6, 0.004)),
         ((0.4, 0.002, 0.004, 0.01), (0.625, 0.00125)),
@@ -40,7 +40,7 @@ def test_another_step(submission):
 @pytest.mark.task("same_floor")
 @pytest.mark.points(1)
 def test_the_same_step(submission):
-    """The same step keeps the same numbers"""
+    """The numbers at the same step"""
     for args in ((0.75, 0.0025, 0.01, 0.01), (0.2, 0.01, 0.001, 0.001)):
         _expect(
             submission,

@@ -8,7 +8,7 @@ from course.scoring import kit
 @pytest.mark.task("pair_friction")
 @pytest.mark.points(1)
 def test_rules(submission):
-    """Each rule gives its own coefficient"""
+    """The coefficient by each rule"""
     kit.expect_cases(
         submission,
         "pair_friction",

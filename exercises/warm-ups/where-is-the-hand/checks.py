@@ -8,7 +8,7 @@ from course.scoring import kit
 @pytest.mark.task("hand")
 @pytest.mark.points(1)
 def test_positions(submission):
-    """Bent arms reach where they should"""
+    """Where bent arms reach"""
     kit.expect_cases(
         submission,
         "hand",

@@ -10,7 +10,7 @@ from course.scoring import kit
 @pytest.mark.task("swing")
 @pytest.mark.points(1)
 def test_energy_stays(submission):
-    """The energy stays near where it began, however long it swings"""
+    """The energy of a long swing"""
     k, m = 4.0, 1.0
     h = 0.1 * math.sqrt(m / k)
     for n in (20, 200, 2000, 20000):
@@ -32,7 +32,7 @@ def test_energy_stays(submission):
 @pytest.mark.points(1)
 @pytest.mark.requires("energy_stays")
 def test_quarter(submission):
-    """Let go at rest, the mass crosses the middle after a quarter of the period"""
+    """Let go at rest: a quarter of the period"""
     k, m = 9.0, 2.0
     omega = math.sqrt(k / m)
     n = 1000

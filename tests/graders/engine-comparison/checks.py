@@ -38,70 +38,70 @@ unknown = lab.cases
 @pytest.mark.task("characterise")
 @pytest.mark.points(5)
 def test_hidden_order(submission):
-    """The order of eight unknown engines is found"""
+    """The order of eight unknown engines"""
     judging.expect_key(unknown(submission), "order", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(3)
 def test_hidden_symplectic(submission):
-    """The reports say which of eight unknown engines conserve area"""
+    """Which of eight unknown engines conserve area"""
     judging.expect_key(unknown(submission), "symplectic", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(5)
 def test_hidden_linear_damping(submission):
-    """The damping of eight unknown engines is found"""
+    """The damping of eight unknown engines"""
     judging.expect_key(unknown(submission), "linear_damping", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(6)
 def test_hidden_max_stable_step(submission):
-    """The largest stable step of eight unknown engines is found, zero and infinity among them"""
+    """The largest stable step of eight unknown engines, zero and infinity among them"""
     judging.expect_key(unknown(submission), "max_stable_step", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(5)
 def test_hidden_friction_anisotropy(submission):
-    """The kind of friction cone of eight unknown engines is found"""
+    """The kind of friction cone of eight unknown engines"""
     judging.expect_key(unknown(submission), "friction_anisotropy", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(3)
 def test_hidden_rest_penetration(submission):
-    """How deep a body sinks into the floor is found for eight unknown engines"""
+    """How deep a body sinks into the floor, for eight unknown engines"""
     judging.expect_key(unknown(submission), "rest_penetration", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(3)
 def test_hidden_restitution(submission):
-    """The restitution of eight unknown engines is found"""
+    """The restitution of eight unknown engines"""
     judging.expect_key(unknown(submission), "restitution", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(5)
 def test_hidden_tunnelling_speed(submission):
-    """The speed at which bodies get through the wall is found for eight unknown engines"""
+    """The speed at which bodies get through the wall, for eight unknown engines"""
     judging.expect_key(unknown(submission), "tunnelling_speed", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(3)
 def test_hidden_deterministic(submission):
-    """The reports say which of eight unknown engines never repeat themselves"""
+    """Which of eight unknown engines never repeat themselves"""
     judging.expect_key(unknown(submission), "deterministic", SPARED)
 
 
 @pytest.mark.task("characterise")
 @pytest.mark.points(3)
 def test_hidden_report_complete(submission):
-    """Each of eight unknown engines gets a report with exactly the nine keys"""
+    """The nine keys of the reports on eight unknown engines"""
     judging.expect_complete(submission, unknown(submission))
 
 
@@ -141,7 +141,7 @@ def _questions(seed):
 @pytest.mark.task("choose_engine")
 @pytest.mark.points(4)
 def test_choose_drawn(submission):
-    """Of eight engines, the cheapest that meets all of several requirements is chosen"""
+    """The cheapest of eight engines that meets all of several requirements"""
     choosing.expect_choices(submission, _questions(submission.seed)["plain"])
 
 
@@ -149,7 +149,7 @@ def test_choose_drawn(submission):
 @pytest.mark.points(3)
 @pytest.mark.requires("choose_by_report")
 def test_choose_gaps(submission):
-    """A requirement that was not measured is not met, and where nothing fits, nothing is chosen"""
+    """Requirements that were not measured, and where nothing fits"""
     choosing.expect_choices(submission, _questions(submission.seed)["gaps"])
 
 
@@ -157,7 +157,7 @@ def test_choose_gaps(submission):
 @pytest.mark.points(3)
 @pytest.mark.requires("choose_by_report")
 def test_choose_real_again(submission):
-    """Of the four real engines as measured, the cheapest that fits is chosen for other jobs too"""
+    """The four real engines as measured, for other jobs"""
     reports = measured.reports()
     choosing.expect_choices(submission, [(reports, needs, answer) for needs, answer in choices.REAL])
 
@@ -166,7 +166,7 @@ def test_choose_real_again(submission):
 @pytest.mark.points(3)
 @pytest.mark.requires("choose_by_report")
 def test_choose_by_numbers_only(submission):
-    """Other names, another order and a second call change nothing, and the reports stay as they were"""
+    """Other names, another order, a second call, and the reports"""
     choosing.expect_choices(submission, _questions(submission.seed)["renamed"])
     needs = [measured.need("slope_error", "<=", 0.001), measured.need("pendulum_loss", "<=", 0.09)]
     choosing.expect_untouched(submission, measured.reports(), needs)
@@ -178,7 +178,7 @@ def test_choose_by_numbers_only(submission):
 @pytest.mark.task("engine_facts")
 @pytest.mark.points(2)
 def test_facts_licences(submission):
-    """The licences are today's, have their SPDX names, and are dated after they came into force"""
+    """The licences, their SPDX names and their dates"""
     entries = listing.by_pair(listing.entries(submission))
     for engine in listing.ENGINES:
         entry = _entry(entries, engine, "licence")
@@ -206,7 +206,7 @@ def test_facts_licences(submission):
 @pytest.mark.task("engine_facts")
 @pytest.mark.points(2)
 def test_facts_defaults(submission):
-    """Default integrators and default steps are the engines' own"""
+    """Default integrators and default steps"""
     entries = listing.by_pair(listing.entries(submission))
     for engine in listing.ENGINES:
         entry = _entry(entries, engine, "default_integrator")
@@ -230,7 +230,7 @@ def test_facts_defaults(submission):
 @pytest.mark.task("engine_facts")
 @pytest.mark.points(2)
 def test_facts_users(submission):
-    """The languages are right, and so are the projects in the lists of users"""
+    """The languages, and the projects in the lists of users"""
     entries = listing.by_pair(listing.entries(submission))
     for engine in listing.ENGINES:
         language = kit.as_text(_entry(entries, engine, "language")["value"], "a language")

@@ -93,7 +93,7 @@ class RemoteSubmission:
         self._main = main
         self._timeout = timeout
         self._cpu_left, self._wall_left = times * BUDGET_S, WALL * times * BUDGET_S
-        self._search_left = times * SEARCH_S
+        self._search_left = SEARCH_S
         self._patience = min(timeout, timeout if patience is None else patience)
         self._deadline = Deadline(min(self._patience, self._cpu_left))
         self._printed_before = 0

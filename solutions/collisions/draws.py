@@ -121,8 +121,12 @@ def passing(rng, d, share):
 
 
 def late(rng):
-    """A pair that meets head on in the last hundredth of the step."""
+    """A pair that meets head on in the last hundredth of the step, both on their way at the same speed.
+
+    So neither of them alone would come far enough.
+    """
     xa, va, ra, xb, vb, rb, _ = passing(rng, 3, 0.0)
+    va, vb = (va - vb) / 2, (vb - va) / 2
     meets = (float(np.linalg.norm(xb - xa)) - ra - rb) / float(np.linalg.norm(va - vb))
     return xa, va, ra, xb, vb, rb, meets * float(rng.uniform(1.001, 1.01))
 

@@ -447,8 +447,8 @@ mistakes(
 )
 mistakes(
     "TUNNELS",
-    "Only some instants are looked at, so a contact between two of them is missed, or found late.",
-    "Compute when bodies that approach touch (|dx + dv t| = ra + rb is a quadratic equation in t; on a line it is the gap over the speed of approach), and compare that time with the step. That they overlap at no sample proves nothing.",
+    "A contact within the step is missed, or found late.",
+    "Compute when bodies that approach touch (|dx + dv t| = ra + rb is a quadratic equation in t; on a line it is the gap over the speed of approach), and compare that time, the smaller root, with the step. Where the other root lies does not matter, and that they overlap at no sample proves nothing.",
 ).program(
     "time_of_impact",
     """
@@ -1511,7 +1511,7 @@ mistakes(
 mistakes(
     "WALL_MOVED",
     "The wall's velocity changes.",
-    "An impulse changes the velocity of a wall by J / inf, which is 0.0: it goes on as before.",
+    "An impulse changes the velocity of a wall by J / inf, which is 0.0: it goes on as before. If your code divides so, see in which order it returns the two.",
     kind="consequence",
 )
 mistakes(
@@ -1885,7 +1885,7 @@ mistakes(
 mistakes(
     "GAINS_ENERGY",
     "After its first contact the ball has more energy than it had before.",
-    "It leaves the floor with e times the speed it has at the floor, sqrt(v**2 + 2 g (z - radius)), and flies on for the rest of the step.",
+    "It leaves the floor with e times the speed it has at the floor, sqrt(v**2 + 2 g (z - radius)), and flies on for the rest of the step, slowed by gravity.",
     kind="consequence",
 )
 mistakes(
@@ -1944,7 +1944,7 @@ mistakes(
 mistakes(
     "INITIAL_STATE_WRONG",
     "The first row is not the initial state.",
-    "Row 0 holds the positions and velocities as they were given, before any step.",
+    "Row 0 holds the positions and velocities as they were given, before any step. An array that is stored and changed later changes in its row, too: store a copy.",
 )
 mistakes(
     "REST_OF_STEP_WITHOUT_GRAVITY",

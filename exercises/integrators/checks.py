@@ -23,7 +23,7 @@ def _signed(draw, low, high, d=1):
 @pytest.mark.task("explicit_euler_step")
 @pytest.mark.points(5)
 def test_explicit_euler_growth(submission, draw):
-    """Explicit Euler gains energy on a spring at the rate theory says"""
+    """Explicit Euler's gain of energy on a spring"""
     task, omega, h, n = "explicit_euler_step", 2.0, 0.05, 40
     q0, v0 = [8.0], [4.8]  # so far out that a position taken for an angle shows
     if draw is not None:
@@ -52,7 +52,7 @@ def test_explicit_euler_growth(submission, draw):
 @pytest.mark.task("semi_implicit_euler_step")
 @pytest.mark.points(5)
 def test_semi_implicit_energy(submission, draw):
-    """Semi-implicit Euler's energy on a spring oscillates within its bound and never drifts"""
+    """Semi-implicit Euler's energy on a spring"""
     # At this z 400 samples come near the extreme, whatever the spring and the amplitude.
     task, omega, z, n, q0 = "semi_implicit_euler_step", 2.0, 0.54, 400, [8.0]
     if draw is not None:
@@ -79,21 +79,21 @@ def test_semi_implicit_energy(submission, draw):
 @pytest.mark.task("velocity_verlet_step")
 @pytest.mark.points(6)
 def test_verlet_order(submission, draw):
-    """Halving the step divides velocity Verlet's error by four, on a driven spring"""
+    """Velocity Verlet's error on a driven spring, at half the step and a quarter"""
     _expect_order(submission, "velocity_verlet_step", [16, 32, 64], 0.1, draw)
 
 
 @pytest.mark.task("rk4_step")
 @pytest.mark.points(5)
 def test_rk4_order(submission, draw):
-    """Halving the step divides RK4's error by sixteen, on a driven spring"""
+    """RK4's error on a driven spring, at half the step and a quarter"""
     _expect_order(submission, "rk4_step", [8, 16, 32], 0.3, draw)
 
 
 @pytest.mark.task("rk4_step")
 @pytest.mark.points(2)
 def test_rk4_evaluations(submission, draw):
-    """RK4 evaluates the acceleration four times a step"""
+    """RK4's evaluations of the acceleration in a step"""
     pendulum = systems.Pendulum(g=9.81, length=1.0)
     accel = kit.acceleration(pendulum, 1)
     q, v = np.array([0.8]), np.array([-0.3])
@@ -117,7 +117,7 @@ def _spiral(angle, shrink):
 @pytest.mark.task("integrate")
 @pytest.mark.points(4)
 def test_integrate_samples(submission, draw):
-    """integrate returns N + 1 samples, the initial state first, and carries the state along"""
+    """The samples of integrate, and the state it carries along"""
     h, n, omega, angle, shrink = 0.25, 8, 2.0, 0.4, 0.98
     q0, v0 = np.array([1.0, -0.5]), np.array([0.5, 2.0])
     if draw is not None:
@@ -178,7 +178,7 @@ def _expect_samples(submission, omega, spiral, start, steps):
 @pytest.mark.task("integrate")
 @pytest.mark.points(4)
 def test_integrate_counts(submission, draw):
-    """integrate takes the right number of steps where t_end/h is not exact in floating point"""
+    """How many steps integrate takes"""
     step = _spiral(0.4, 0.98)
     durations = ((0.29, 0.01, 29), (0.8, 0.1, 8), (0.0, 0.1, 0))
     if draw is not None:
@@ -217,7 +217,7 @@ def test_integrate_counts(submission, draw):
 @pytest.mark.task("integrate")
 @pytest.mark.points(0)
 def test_integrate_refusals(submission, draw):
-    """integrate refuses durations that are not a whole number of steps"""
+    """Which durations integrate refuses"""
     durations = ((1.1, 0.2), (0.0400001, 0.0001), (60.000002, 0.2)) if draw is None else cases.refused(draw)
     cases.expect_refusals(submission, (np.array([1.0]), np.array([0.0])), durations)
 
@@ -238,7 +238,7 @@ def _awkward(draw):
 @pytest.mark.task("observed_order")
 @pytest.mark.points(4)
 def test_observed_order_slope(submission, draw):
-    """observed_order finds the power of h that the errors were made with"""
+    """Errors that were made with one power of h"""
     hs, orders = [0.1, 0.05, 0.025, 0.0125], ((3.0, 1.0), (0.2, 2.0), (7.0, 4.0))
     if draw is not None:
         hs = (0.3 * np.cumprod(draw.uniform(0.4, 0.7, 4))).tolist()
@@ -263,7 +263,7 @@ def test_observed_order_slope(submission, draw):
 @pytest.mark.task("observed_order")
 @pytest.mark.points(0)
 def test_observed_order_scattered(submission, draw):
-    """All points count where they scatter, however small"""
+    """Points that scatter, some of them small"""
     points = [
         ([0.1, 0.05, 0.02, 0.01], [0.02, 0.03, 0.004, 0.006]),
         ([0.3, 0.04, 0.006, 0.0009], [2e-3, 9e-7, 3e-10, 4e-15]),
@@ -291,7 +291,7 @@ def test_observed_order_scattered(submission, draw):
 @pytest.mark.task("max_stable_step")
 @pytest.mark.points(5)
 def test_stable_step_verlet(submission, draw):
-    """max_stable_step finds velocity Verlet's limit, h*omega = 2, for any omega"""
+    """Velocity Verlet's limit, for any omega"""
     verlet = systems.LinearStep([1, 0, -0.5], [0, 1], [0, -1, 0, 0.25], [1, 0, -0.5])
     omegas = (
         (1.0, 50.0, 0.1)
@@ -341,35 +341,35 @@ def test_stable_step_ends(submission, draw):
 @pytest.mark.task("explicit_euler_step")
 @pytest.mark.points(0)
 def test_explicit_euler_arguments(submission):
-    """The step leaves q and v alone, and takes zeros and whole numbers"""
+    """One step: its arguments, zeros, whole numbers, places far away"""
     _expect_clean(submission, "explicit_euler_step")
 
 
 @pytest.mark.task("semi_implicit_euler_step")
 @pytest.mark.points(0)
 def test_semi_implicit_arguments(submission):
-    """The step leaves q and v alone, and takes zeros and whole numbers"""
+    """One step: its arguments, zeros, whole numbers, places far away"""
     _expect_clean(submission, "semi_implicit_euler_step")
 
 
 @pytest.mark.task("velocity_verlet_step")
 @pytest.mark.points(0)
 def test_verlet_arguments(submission):
-    """The step leaves q and v alone, and takes zeros and whole numbers"""
+    """One step: its arguments, zeros, whole numbers, places far away"""
     _expect_clean(submission, "velocity_verlet_step")
 
 
 @pytest.mark.task("rk4_step")
 @pytest.mark.points(0)
 def test_rk4_arguments(submission):
-    """The step leaves q and v alone, and takes zeros and whole numbers"""
+    """One step: its arguments, zeros, whole numbers, places far away"""
     _expect_clean(submission, "rk4_step")
 
 
 @pytest.mark.task("integrate")
 @pytest.mark.points(0)
 def test_integrate_arguments(submission):
-    """integrate leaves q0 and v0 alone and takes whole numbers"""
+    """The arguments of integrate, and whole numbers"""
     q0, v0, h, n = np.array([2, -1]), np.array([1, 3]), 0.25, 4
     args = [_spiral(0.4, 0.98), systems.Oscillator(2.0), q0, v0, n * h, h]
     given = {"q0": q0, "v0": v0, "t_end": n * h, "h": h}

@@ -26,14 +26,14 @@ EXPLICIT, SEMI, VERLET, RK4 = bundles.EXPLICIT, bundles.SEMI, bundles.VERLET, bu
 @pytest.mark.task(EXPLICIT)
 @pytest.mark.points(3)
 def test_explicit_euler_order(submission, rng):
-    """Explicit Euler is of first order on six different problems"""
+    """Explicit Euler's order on six different problems"""
     bundles.expect_orders(submission, EXPLICIT, [make(rng) for make in bundles.EVERYTHING])
 
 
 @pytest.mark.task(EXPLICIT)
 @pytest.mark.points(2)
 def test_explicit_euler_one_step(submission, rng):
-    """One step of explicit Euler on an unknown system is what the formula says, with one evaluation"""
+    """One step of explicit Euler on an unknown system, and its evaluations"""
     accel, t, q, v, h = bundles.unknown_system(rng)
     result = accel.during(lambda: submission.call(EXPLICIT, accel, t, q, v, h))
     bundles.expect_one_evaluation(accel, submission, EXPLICIT)
@@ -43,7 +43,7 @@ def test_explicit_euler_one_step(submission, rng):
 @pytest.mark.task(EXPLICIT)
 @pytest.mark.points(2)
 def test_explicit_euler_inputs(submission, rng):
-    """Explicit Euler leaves its arguments alone and takes whole numbers"""
+    """Explicit Euler: its arguments, zeros, whole numbers, places far away"""
     bundles.expect_clean(submission, EXPLICIT, rng)
 
 
@@ -53,7 +53,7 @@ def test_explicit_euler_inputs(submission, rng):
 @pytest.mark.task(SEMI)
 @pytest.mark.points(4)
 def test_semi_implicit_order(submission, rng):
-    """Semi-implicit Euler is of first order on four different problems"""
+    """Semi-implicit Euler's order on four different problems"""
     bundles.expect_orders(submission, SEMI, [make(rng) for make in bundles.CONSERVATIVE])
 
 
@@ -61,14 +61,14 @@ def test_semi_implicit_order(submission, rng):
 @pytest.mark.points(2)
 @pytest.mark.requires("semi_implicit_energy")  # a step that ignores accel passes this one as well
 def test_semi_implicit_symplectic(submission, rng):
-    """Semi-implicit Euler is symplectic on an orbit, at a large step"""
+    """Areas under semi-implicit Euler, on an orbit, at a large step"""
     bundles.expect_symplectic(submission, SEMI, rng)
 
 
 @pytest.mark.task(SEMI)
 @pytest.mark.points(2)
 def test_semi_implicit_one_step(submission, rng):
-    """One step of semi-implicit Euler on an unknown system is one of its two forms, with one evaluation"""
+    """One step of semi-implicit Euler on an unknown system, and its evaluations"""
     accel, t, q, v, h = bundles.unknown_system(rng)
     result = accel.during(lambda: submission.call(SEMI, accel, t, q, v, h))
     bundles.expect_one_evaluation(accel, submission, SEMI)
@@ -78,7 +78,7 @@ def test_semi_implicit_one_step(submission, rng):
 @pytest.mark.task(SEMI)
 @pytest.mark.points(2)
 def test_semi_implicit_inputs(submission, rng):
-    """Semi-implicit Euler leaves its arguments alone and takes whole numbers"""
+    """Semi-implicit Euler: its arguments, zeros, whole numbers, places far away"""
     bundles.expect_clean(submission, SEMI, rng)
 
 
@@ -88,14 +88,14 @@ def test_semi_implicit_inputs(submission, rng):
 @pytest.mark.task(VERLET)
 @pytest.mark.points(3)
 def test_verlet_order_everywhere(submission, rng):
-    """Velocity Verlet is of second order on four different problems"""
+    """Velocity Verlet's order on four different problems"""
     bundles.expect_orders(submission, VERLET, [make(rng) for make in bundles.CONSERVATIVE])
 
 
 @pytest.mark.task(VERLET)
 @pytest.mark.points(2)
 def test_verlet_energy(submission, rng):
-    """Velocity Verlet's energy on a spring oscillates as far as theory says"""
+    """How far velocity Verlet's energy on a spring swings"""
     # A turn takes k + 0.38 steps: near the golden ratio the samples never repeat, so some fall near q = 0.
     z = 2 * math.sin(math.pi / (rng.integers(9, 16) + rng.uniform(0.37, 0.39)))
     omega, n = rng.uniform(0.5, 5.0), 300
@@ -127,7 +127,7 @@ def test_verlet_energy(submission, rng):
 @pytest.mark.task(VERLET)
 @pytest.mark.points(1)
 def test_verlet_frequency(submission, rng):
-    """On a spring, velocity Verlet oscillates a little too fast, by exactly what theory says"""
+    """How fast velocity Verlet oscillates on a spring"""
     omega, z, n = rng.uniform(0.5, 5.0), rng.uniform(0.4, 1.2), 60
     h = z / omega
     start = bundles.signed(rng, 0.5, 1.5), omega * bundles.signed(rng, 0.3, 1.0)
@@ -157,7 +157,7 @@ def test_verlet_frequency(submission, rng):
 @pytest.mark.points(1)
 @pytest.mark.requires("verlet_order")  # a step that ignores accel passes this one as well
 def test_verlet_symplectic(submission, rng):
-    """Velocity Verlet is symplectic on an orbit, at a large step"""
+    """Areas under velocity Verlet, on an orbit, at a large step"""
     bundles.expect_symplectic(submission, VERLET, rng)
 
 
@@ -165,7 +165,7 @@ def test_verlet_symplectic(submission, rng):
 @pytest.mark.points(1)
 @pytest.mark.requires("verlet_order")  # a step that ignores accel passes this one as well
 def test_verlet_reversible(submission, rng):
-    """Velocity Verlet, run forwards, reversed and run back, ends where it began"""
+    """Velocity Verlet run forwards, reversed, and run back"""
     problem, n = bundles.pendulum(rng), 60
     h = rng.uniform(0.3, 0.5) / problem.rate
     _, q, v = submission.march(VERLET, problem.system, problem.q0, problem.v0, h, n)
@@ -189,14 +189,14 @@ def test_verlet_reversible(submission, rng):
 @pytest.mark.task(VERLET)
 @pytest.mark.points(1)
 def test_verlet_free_fall(submission, rng):
-    """Velocity Verlet is exact in free fall"""
+    """Velocity Verlet in free fall"""
     bundles.expect_free_fall(submission, VERLET, rng)
 
 
 @pytest.mark.task(VERLET)
 @pytest.mark.points(1)
 def test_verlet_evaluations(submission, rng):
-    """Velocity Verlet takes one or two evaluations a step"""
+    """Velocity Verlet's evaluations of the acceleration in a step"""
     accel, t, q, v, h = bundles.unknown_system(rng)
     accel.during(lambda: submission.call(VERLET, accel, t, q, v, h))
     bundles.expect_evaluations(accel, (1, 2))
@@ -205,7 +205,7 @@ def test_verlet_evaluations(submission, rng):
 @pytest.mark.task(VERLET)
 @pytest.mark.points(2)
 def test_verlet_inputs(submission, rng):
-    """Velocity Verlet leaves its arguments alone and takes whole numbers"""
+    """Velocity Verlet: its arguments, zeros, whole numbers, places far away"""
     bundles.expect_clean(submission, VERLET, rng)
 
 
@@ -215,14 +215,14 @@ def test_verlet_inputs(submission, rng):
 @pytest.mark.task(RK4)
 @pytest.mark.points(5)
 def test_rk4_order_everywhere(submission, rng):
-    """RK4 is of fourth order on six different problems"""
+    """RK4's order on six different problems"""
     bundles.expect_orders(submission, RK4, [make(rng) for make in bundles.EVERYTHING])
 
 
 @pytest.mark.task(RK4)
 @pytest.mark.points(3)
 def test_rk4_decay(submission, rng):
-    """RK4 loses energy on a spring at the rate theory says"""
+    """RK4's loss of energy on a spring"""
     omega, z, n = rng.uniform(0.5, 5.0), rng.uniform(0.6, 1.2), 30
     system, h = systems.Oscillator(omega), z / omega
     start = bundles.signed(rng, 0.5, 1.5).tolist(), (omega * bundles.signed(rng, 0.3, 1.0)).tolist()
@@ -247,14 +247,14 @@ def test_rk4_decay(submission, rng):
 @pytest.mark.task(RK4)
 @pytest.mark.points(1)
 def test_rk4_free_fall(submission, rng):
-    """RK4 is exact in free fall"""
+    """RK4 in free fall"""
     bundles.expect_free_fall(submission, RK4, rng)
 
 
 @pytest.mark.task(RK4)
 @pytest.mark.points(2)
 def test_rk4_inputs(submission, rng):
-    """RK4 leaves its arguments alone and takes whole numbers"""
+    """RK4: its arguments, zeros, whole numbers, places far away"""
     bundles.expect_clean(submission, RK4, rng)
 
 
@@ -264,14 +264,14 @@ def test_rk4_inputs(submission, rng):
 @pytest.mark.task("integrate")
 @pytest.mark.points(3)
 def test_integrate_time(submission, rng):
-    """integrate tells each step the time at which it starts"""
+    """The times that integrate tells its steps"""
     loops.expect_times(submission, rng)
 
 
 @pytest.mark.task("integrate")
 @pytest.mark.points(2)
 def test_integrate_refuses(submission, rng):
-    """integrate raises ValueError for a duration that is not a whole number of steps, and only then"""
+    """Which durations integrate refuses, and which it takes"""
     loops.expect_awkward_durations(submission, rng)
     loops.expect_refusals(submission, rng)
 
@@ -279,7 +279,7 @@ def test_integrate_refuses(submission, rng):
 @pytest.mark.task("integrate")
 @pytest.mark.points(2)
 def test_integrate_whole_numbers(submission, rng):
-    """integrate accepts an initial state of whole numbers, and leaves it unchanged"""
+    """integrate from a state of whole numbers"""
     loops.expect_whole_numbers(submission, rng)
 
 
@@ -289,7 +289,7 @@ def test_integrate_whole_numbers(submission, rng):
 @pytest.mark.task("observed_order")
 @pytest.mark.points(3)
 def test_observed_order_least_squares(submission, rng):
-    """observed_order fits all points by least squares where they scatter"""
+    """Points that scatter, fitted by least squares"""
     hs = 0.3 * np.cumprod(rng.uniform(0.4, 0.8, 7))
     errors = rng.uniform(0.1, 10.0) * hs ** rng.uniform(0.8, 4.5) * np.exp(rng.normal(0.0, 0.2, 7))
     message = "Through points that scatter, observed_order is not the least-squares slope."
@@ -300,7 +300,7 @@ def test_observed_order_least_squares(submission, rng):
 @pytest.mark.task("observed_order")
 @pytest.mark.points(3)
 def test_observed_order_any_order(submission, rng):
-    """observed_order takes two points or many, in any order, as lists or arrays"""
+    """Two points or many, in any order, as lists or arrays"""
     two = 10 ** rng.uniform(-4, -1, 2)
     many = rng.permutation(0.5 * np.cumprod(rng.uniform(0.4, 0.8, 5)))
     points = []
@@ -318,7 +318,7 @@ def test_observed_order_any_order(submission, rng):
 @pytest.mark.task("max_stable_step")
 @pytest.mark.points(3)
 def test_stable_step_limits(submission, rng):
-    """max_stable_step finds the limit of maps that it has never seen"""
+    """The limits of maps that nobody has seen"""
     a, b, c = rng.uniform(0.6, 5.0, 3)
     angle, shear = rng.uniform(0.4, 1.2), rng.uniform(1.2, 3.0)
     spiral = [0.8, 0.0, 0.2 / a**2]
@@ -355,7 +355,7 @@ def test_stable_step_limits(submission, rng):
 @pytest.mark.task("max_stable_step")
 @pytest.mark.points(2)
 def test_stable_step_pocket(submission, rng):
-    """max_stable_step stops at the first unstable step, although larger ones are stable again"""
+    """Maps that are stable again at larger steps"""
     low = rng.uniform(0.8, 2.0)
     high = low + rng.uniform(0.6, 1.0)
     curve = 1.5 / (
@@ -377,7 +377,7 @@ def test_stable_step_pocket(submission, rng):
 @pytest.mark.task("max_stable_step")
 @pytest.mark.points(2)
 def test_stable_step_edges(submission, rng):
-    """max_stable_step is zero where every step is unstable and infinite where none is"""
+    """Limits at the ends of the search: zero, infinity and beside them"""
     euler = systems.LinearStep([1.0], [0.0, 1.0], [0.0, -1.0], [1.0])
     calm = systems.LinearStep([0.5, rng.uniform(0.01, 0.04)], [0.1], [0.0], [0.4])
     never = "For a map that is unstable at every step, the result is not zero."

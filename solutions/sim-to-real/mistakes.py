@@ -1181,6 +1181,7 @@ mistakes(
     "ONE_DRAW_FOR_ALL",
     "Here and for four other questions, your gains do about as well as any on carts that are all large or all small at once: one random number sets all five parameters of a cart.",
     "Draw a number of its own for each parameter: a generator that starts anew from the same seed gives the same numbers again.",
+    kind="consequence",
 ).body(
     "tune",
     """
@@ -1199,6 +1200,7 @@ mistakes(
     "BOX_ENDS_ALONE",
     "Here and for four other questions, your gains do about as well as any on carts whose parameters all lie at an end of their range, and none between.",
     "Draw each factor anywhere between low and high: np.exp(rng.uniform(np.log(low), np.log(high), n)).",
+    kind="consequence",
 ).body(
     "tune",
     """
@@ -1217,6 +1219,7 @@ mistakes(
     "FACTORS_DIVIDE",
     "Here and for four other questions, your gains do about as well as any on carts whose parameters are the estimate's values divided by factors from the box.",
     "Multiply: value * factor.",
+    kind="consequence",
 ).body(
     "tune",
     """
@@ -1235,6 +1238,7 @@ mistakes(
     "FACTORS_ADDED",
     "Here and for four other questions, your gains do about as well as any on carts whose parameters are the estimate's values times 1 + factor.",
     "The box has factors, not changes: value * factor.",
+    kind="consequence",
 ).body(
     "tune",
     """
@@ -1253,6 +1257,7 @@ mistakes(
     "LAG_FOR_LATENCY",
     "Here and for four other questions, your gains do about as well as any on carts whose latency is tau + latency.",
     "rollout takes tau and latency: give it each as it is, times its factor.",
+    kind="consequence",
 ).body(
     "tune",
     """

@@ -31,11 +31,19 @@ def facts(recorded, sim, real, lates, mass):
         "means": {key: float(np.mean([run[key] for run in alone])) for key in MEASURES} if several else {},
         "averages": [_average(alone, np.array(w)) for w in (n**0, counts)] if several else [],
         "alone": half([run["lag_s"] for run in alone]) if several else 0.0,
+        "even": [],
+        "about": {},
     }
     if several:
         without = [_measure(pairs[:i] + pairs[i + 1 :], lags) for i in n]
         halves = {key: half([left[key] for left in without]) for key in MEASURES}
         known["intervals"] = {k: (v - halves[k], v + halves[k]) for k, v in known["numbers"].items()}
+        known["about"] = {
+            k: _half_about(v, [left[k] for left in without]) for k, v in known["numbers"].items()
+        }
+        ids = known["used"]
+        rest = [lags.of(ids[:i] + ids[i + 1 :], even=True) for i in n]
+        known["even"] = [lags.of(ids, even=True), half(rest)]
     return known
 
 
@@ -67,6 +75,12 @@ def error(without):
 def half(without):
     """Half the width of an interval."""
     return float(model.T95[len(without) - 2] * error(without))
+
+
+def _half_about(value, without):
+    """Half the width of an interval by squares about the number."""
+    n = len(without)
+    return float(model.T95[n - 2] * math.sqrt((n - 1) / n * np.sum((np.array(without) - value) ** 2)))
 
 
 def _average(alone, weights):
@@ -114,9 +128,15 @@ class _Lags:
         squares = np.where(inside, (speed(later) - y) ** 2, 0.0)
         return squares.sum(axis=1), inside.sum(axis=1)
 
-    def of(self, ids):
-        """How late the simulation of these runs is, s: lowest point of the mean square of their samples."""
-        cost = sum(self._costs[i][0] for i in ids) / sum(self._costs[i][1] for i in ids)
+    def of(self, ids, even=False):
+        """How late the simulation of these runs is, s: lowest point of the mean square of their samples.
+
+        even: of the mean of the runs' own mean squares
+        """
+        if even:
+            cost = sum(self._costs[i][0] / self._costs[i][1] for i in ids)
+        else:
+            cost = sum(self._costs[i][0] for i in ids) / sum(self._costs[i][1] for i in ids)
         i = int(np.clip(np.argmin(cost), 1, len(cost) - 2))
         a, b, c = cost[i - 1 : i + 2]
         return float(self.STEP * (self._shifts[i] + 0.5 * (a - c) / (a - 2 * b + c)))

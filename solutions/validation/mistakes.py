@@ -593,7 +593,7 @@ mistakes(
 mistakes(
     "WHOLE_NUMBERS",
     "The result is right for floats, and wrong for the same numbers in an array of whole numbers.",
-    "np.empty_like(x) and np.zeros_like(x) make an array of whole numbers where x is one, and cut off every fraction. np.zeros(n) makes an array of floats.",
+    "Start from floats: np.asarray(x, dtype=float) of each array that comes in. np.empty_like(x) and np.zeros_like(x) make an array of whole numbers where x is one, and cut off every fraction.",
     kind="fact",
 ).body(
     "energy_error",
@@ -880,7 +880,7 @@ mistakes(
 mistakes(
     "TRAINS_ON_TOO_LITTLE",
     "A model is not fitted to all the runs outside its fold.",
-    "Pass every run outside the fold to fit. Tell runs apart by their place in the list, not by a key or by their length.",
+    "Pass every run outside the fold to fit, also those that come later in the list. If you tell runs apart by a key or by their length, use their place in the list instead.",
     kind="fact",
 ).body(
     "cross_validate",
@@ -1074,6 +1074,12 @@ mistakes(
     """,
     of="best_shift",
     also=("LAG_OF_PARTS", ""),
+)
+mistakes(
+    "LAG_OF_EVEN_RUNS",
+    "The lag is about the shift with the smallest mean of the runs' own mean squares.",
+    "Add up the squares of all runs, then divide by the number of all their samples that overlap. A mean of mean squares counts a short run as much as a long one.",
+    kind="fact",
 ).program(
     "validate",
     """
@@ -1083,7 +1089,70 @@ mistakes(
         def misfit(pairs, shifts):
             return np.mean([_pooled([pair], shifts) for pair in pairs], axis=0)
     """,
-    also=("LAG_MEAN_OF_RUNS", "LAG_OF_PARTS"),
+    also=("LAG_MEAN_OF_RUNS", "LAG_OF_PARTS", "LAG_NOT_BEST"),
+)
+mistakes(
+    "LAG_NOT_NEGATIVE",
+    "Here the simulation is early, but the lag is not negative.",
+    "If your shifts begin at zero, let them begin at -0.19 s. A negative lag is that of a simulation that is early.",
+    kind="fact",
+)
+mistakes(
+    "ABOUT_THE_NUMBER",
+    "The interval is as wide as with the squares of x_i minus the number, not minus the mean of the x_i.",
+    "Subtract the mean of the numbers with one run left out: error = sqrt((n - 1)/n * sum((x_i - mean(x_i))**2)).",
+    kind="consequence",
+).program(
+    "validate",
+    """
+        def interval_of_each(pairs):
+            n = len(pairs)
+            intervals = {}
+            without = [measures(pairs[:i] + pairs[i + 1 :]) for i in range(n)]
+            for key, value in measures(pairs).items():
+                values = np.array([left[key] for left in without])
+                half = T95[n - 2] * math.sqrt((n - 1) / n * np.sum((values - value) ** 2))
+                intervals[key] = (value - half, value + half)
+            return intervals
+    """,
+)
+mistakes(
+    "FEW_DIGITS",
+    "Here the first digits are right, and the later ones are not.",
+    "Use float64, numpy's default. Do not round, and add no small number.",
+    kind="consequence",
+)
+mistakes(
+    "PEAK_NOT_LARGEST",
+    "The peak is that of a curve through the samples, or a percentile of them.",
+    "A peak is the largest sample, not a point of a curve through it nor a percentile.",
+    kind="consequence",
+).body(
+    "contact_force_error",
+    """
+        peak = lambda f: np.percentile(f, 99)
+        impulse = lambda f: np.sum(f) * dt
+        return {
+            "peak": float((peak(f_sim) - peak(f_real)) / peak(f_real)),
+            "impulse": float((impulse(f_sim) - impulse(f_real)) / impulse(f_real)),
+        }
+    """,
+)
+mistakes(
+    "BEGINNING_REPEATED",
+    "After its whole blocks, every resample of a short trial repeats its own beginning.",
+    "If N is no multiple of block, draw one more block, and cut the resample off at N samples. np.resize repeats the beginning.",
+    kind="fact",
+).body(
+    "block_bootstrap_ci",
+    """
+        n = len(e)
+        values = []
+        for _ in range(n_boot):
+            starts = rng.integers(0, n - block + 1, max(1, n // block))
+            values.append(statistic(np.resize(np.concatenate([e[s : s + block] for s in starts]), n)))
+        return tuple(float(end) for end in np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
 )
 mistakes(
     "LAG_IN_SAMPLES",
@@ -1853,7 +1922,7 @@ mistakes(
 mistakes(
     "NEARLY_INSIDE",
     "Values just outside of their intervals are counted.",
-    "Compare without a tolerance: (lo <= y) & (y <= hi).",
+    "Compare without a tolerance, and do not round before: (lo <= y) & (y <= hi).",
 )
 mistakes(
     "EITHER_END",
@@ -1989,13 +2058,13 @@ mistakes(
     "LAGS_OF_SINGLE_RUNS",
     "The interval of the lag is as wide as the lags of single runs make it.",
     "Leave out one run at a time, and search for the best shift of all the others together.",
-    kind="consequence",
+    kind="fact",
 )
 mistakes(
     "LAG_OF_PARTS",
     "The lag is close enough, but its interval is not.",
     "Leave out one run at a time, and search for the best shift of all the others together, early or late. It has the smallest mean square of the samples that overlap, not the smallest sum. Then fit the parabola.",
-    kind="consequence",
+    kind="fact",
 )
 mistakes(
     "INTERVALS_SCALED",

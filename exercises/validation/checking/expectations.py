@@ -41,7 +41,10 @@ def expect_rmse(submission, e):
         input={"e": e},
         message="The root mean square error is wrong.",
         help="Square all the errors, average the squares, then take the root.",
-        diagnose=lambda: probes.of_whole(submission, "rmse", [e], lambda x: _near(x, right)),
+        diagnose=lambda: (
+            probes.of_whole(submission, "rmse", [e], lambda x: _near(x, right))
+            or probes.of_digits(inspected.value, right)
+        ),
     )
     expect_left_alone(inspected, [e], ["e"])
 
@@ -66,8 +69,11 @@ def expect_bias_variance(submission, e):
             message=f"The {name} is wrong.",
             help="The bias is the mean; the variance is the mean square of what is left after subtracting "
             "it.",
-            diagnose=lambda: probes.of_whole(
-                submission, "bias_variance", [e], lambda pair: _near(pair, (np.mean(e), np.var(e)))
+            diagnose=lambda actual=actual, expected=expected: (
+                probes.of_whole(
+                    submission, "bias_variance", [e], lambda pair: _near(pair, (np.mean(e), np.var(e)))
+                )
+                or probes.of_digits(actual, expected)
             ),
         )
     expect_left_alone(inspected, [e], ["e"])
@@ -182,10 +188,12 @@ def expect_normalised(submission, task, err, covariance, names):
         quantity=task,
         input={names[0]: err, names[1]: covariance},
         message="The normalised squared errors are wrong.",
-        help=f"For each row: solve {names[1]} w = {names[0]} for w, then sum {names[0]} * w.",
+        help=f"For each row: solve {names[1]} w = {names[0]} for w, then sum {names[0]} * w."
+        + (" np.squeeze removes the axis of a single component, too." if err.shape[1] == 1 else ""),
         diagnose=lambda: (
             probes.of_rows(rows, expected)
             or probes.of_whole(submission, task, [err, covariance], lambda rows: _near(rows, expected))
+            or probes.of_digits(rows, expected)
         ),
     )
     expect_left_alone(inspected, [err, covariance], names)
@@ -260,6 +268,13 @@ def pulse(t, start, length, peak, rise=0.5):
     return peak * np.sin(np.pi * phase) ** 2
 
 
+#: How each force becomes one number.
+_REDUCED = {
+    "peak": "The peak of a force is its largest sample, not a point of a curve through it nor a percentile.",
+    "impulse": "Integrate each force by itself, and all of it.",
+}
+
+
 def expect_forces(submission, pairs):
     """contact_force_error agrees with the definition on these pulses, (f_sim, f_real, dt) each."""
     for f_sim, f_real, dt in pairs:
@@ -275,8 +290,7 @@ def expect_forces(submission, pairs):
                 quantity=key,
                 input={"peaks": [np.max(f_sim), np.max(f_real)], "dt": dt, "samples": len(f_sim)},
                 message=f"The relative error of the {key} is wrong.",
-                help="Reduce each record by itself, and all of it, to one number. Then divide their "
-                "difference by the real one.",
+                help=f"{_REDUCED[key]} Then divide the difference of the two numbers by the real one.",
                 diagnose=functools.partial(probes.of_force, key, number, f_sim, f_real, dt),
             )
         expect_left_alone(inspected, [f_sim, f_real], ["f_sim", "f_real"])

@@ -7,6 +7,7 @@ Which known wrong formula it is, ``hypotheses.json`` tells. ``probes_verdict.py`
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 import statistics
@@ -48,6 +49,12 @@ def of_whole(submission, task, args, fits):
 # -- metrics --------------------------------------------------------------------------------------------
 
 
+def of_digits(values, right):
+    """Whether numbers are these but for their later digits."""
+    values, right = np.asarray(values, dtype=float), np.asarray(right, dtype=float)
+    return named("FEW_DIGITS") if np.allclose(values, right, rtol=1e-6, atol=0.0) else None
+
+
 def of_offset(submission, e):
     """Why a variance is wrong where the mean is much larger than the scatter: it may be right elsewhere."""
     e = e - np.mean(e)
@@ -86,6 +93,7 @@ def of_force(key, value, f_sim, f_real, dt):
             ("PEAK_OF_ERROR", np.max(np.abs(f_sim - f_real)) / real),
             ("PEAK_AT_SAME_TIME", f_sim[np.argmax(f_real)] / real - 1),
             ("PEAK_AT_SAME_TIME", sim / f_real[np.argmax(f_sim)] - 1),
+            *(("PEAK_NOT_LARGEST", of(f_sim) / of(f_real) - 1) for of in _OTHER_PEAKS),
         ],
         "impulse": [
             ("IMPULSE_OF_ABSOLUTE", np.sum(np.abs(f_sim - f_real)) / real),
@@ -112,6 +120,15 @@ def of_force(key, value, f_sim, f_real, dt):
     codes = {code for code, wrong in looks if math.isclose(value, wrong, rel_tol=2e-3)}
     return named(codes.pop()) if len(codes) == 1 else None
 
+
+def _vertex(f):
+    """The highest point of the parabola through the largest sample and its neighbours."""
+    a, b, c = np.asarray(f[(i := int(np.clip(np.argmax(f), 1, len(f) - 2))) - 1 : i + 2], dtype=float)
+    return b + (a - c) ** 2 / (8 * (2 * b - a - c)) if 2 * b > a + c else b
+
+
+#: What is taken for a peak.
+_OTHER_PEAKS = (_vertex, *(functools.partial(np.percentile, q=q) for q in (90, 95, 98, 99, 99.5)))
 
 #: dof and runs, 40 degrees of freedom in all.
 _FEWER = ((5, 8), (8, 5))
@@ -219,6 +236,7 @@ def of_resamples(found):
         ("DRAWN_ONCE", len(drawn) > 1 and all(np.array_equal(samples, drawn[0]) for samples in drawn)),
         # Five hundred blocks, drawn anywhere, leave out no more than an error at an end of the series.
         ("PART_OF_SERIES", len(drawn) > _BOOT / 2 and len(np.unique(np.concatenate(drawn))) < 0.8 * n),
+        ("BEGINNING_REPEATED", len(drawn) > _BOOT / 2 and all(map(_ends_as_it_begins, drawn))),
         ("IID_BOOTSTRAP", length < 1.5),
         ("BLOCK_IGNORED", not _BLOCK / BLOCK_FACTOR <= length <= _BLOCK * BLOCK_FACTOR),
         # A basic interval asks about the series itself, once or where it is needed.
@@ -238,6 +256,11 @@ def _repeated_ends(drawn, e):
     twice = np.concatenate([np.empty(0), *(samples[1:][np.diff(samples) == 0] for samples in drawn)])
     ends = int(np.sum(np.isin(twice, (e[0], e[-1]))))
     return 2 * ends - len(twice)
+
+
+def _ends_as_it_begins(samples):
+    """Whether what is left after the whole blocks is the beginning once more, which chance hardly does."""
+    return np.array_equal(samples[-(_N % _BLOCK) :], samples[: _N % _BLOCK])
 
 
 def _length_of_blocks(drawn):

@@ -7,7 +7,7 @@ itself, and the lag, which a search finds to a share of a sample.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -32,6 +32,9 @@ class Facts:
         means: of each measure, the mean of what it is in each run alone.
         averages: means of the runs' own lags, each with half the width that its interval would have.
         alone: half the width of the lag's interval, with each run alone in the place of all but one.
+        even: the lag with the smallest mean of the runs' own mean squares, and half the width that its
+            interval would have.
+        about: half the widths of the intervals, with the number in the place of the mean of all but one.
     """
 
     used: list[str]
@@ -41,6 +44,8 @@ class Facts:
     means: dict[str, float]
     averages: list[list[float]]
     alone: float
+    even: list[float] = field(default_factory=list)
+    about: dict[str, float] = field(default_factory=dict)
 
     @property
     def dt(self):
@@ -180,6 +185,7 @@ def of_interval(key, ends, right):
         t = _T95[n - 2]
         looks = [
             ("ZERO_WIDTH", 0.0),
+            ("ABOUT_THE_NUMBER", right.about.get(key, -right.half(key)) / right.half(key)),
             *(("JACKKNIFE_FACTOR", x / (n - 1)) for x in (math.sqrt(n), 1.0)),
             *(("JACKKNIFE_FACTOR", x) for x in (math.sqrt(n / (n - 1)), 1 / math.sqrt(n - 1), math.sqrt(n))),
             *(
@@ -211,9 +217,19 @@ def of_lag(value, half, right):
         ("LAG_AT_THE_END", abs(value) >= 0.19),  # no lag is larger than 0.2 s
         ("LAG_WHOLE_SAMPLES", abs(value - late) < 1.01 * dt and _whole(value, right)),
     ]
-    means = any(abs(value - m) <= 0.06 * dt and abs(half - h) <= 0.2 * dt for m, h in right.averages)
-    looks.append(("LAG_MEAN_OF_RUNS", means))
+    looks += [
+        ("LAG_OF_EVEN_RUNS", _about(value, half, [right.even], dt)),
+        ("LAG_MEAN_OF_RUNS", _about(value, half, right.averages, dt)),
+        ("LAG_NOT_NEGATIVE", late < -0.6 * dt and value >= 0),
+    ]
     return named(next((code for code, fits in looks if fits), "LAG_NOT_BEST"))
+
+
+def _about(value, half, known, dt):
+    """Whether a lag, and half the width of its interval, are about one of these pairs."""
+    return any(
+        abs(value - pair[0]) <= 0.06 * dt and abs(half - pair[1]) <= 0.2 * dt for pair in known if pair
+    )
 
 
 def _whole(value, right):
@@ -230,6 +246,8 @@ def of_lag_interval(value, half, right):
         return named("ZERO_WIDTH")
     if _whole(value, right):
         return named("LAG_WHOLE_SAMPLES")
+    if _about(value, half, [right.even], right.dt):
+        return named("LAG_OF_EVEN_RUNS")
     if right.alone and abs(half / right.alone - 1) < 0.03:
         return named("LAGS_OF_SINGLE_RUNS")
     return named("LAG_OF_PARTS")

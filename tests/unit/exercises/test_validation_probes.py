@@ -393,3 +393,42 @@ def test_a_variance_that_is_right_near_zero_is_told_from_one_in_single_precision
         solution = Fake()
         solution.set("bias_variance", lambda e, variance=variance: (np.mean(e), variance(e)))
         assert code(probes.of_offset(solution, e)) == expected
+
+
+def test_a_lag_is_told_by_the_runs_that_count_alike_and_by_its_sign():
+    _, right = three_runs((-0.02, -0.08, -0.05))
+    lag, half = right.even
+    assert abs(lag - right.numbers["lag_s"]) > 1e-5
+    assert code(verdict.of_lag_interval(lag, half, right)) == "LAG_OF_EVEN_RUNS"
+    assert code(verdict.of_lag_interval(lag, 3 * half, right)) == "LAG_OF_PARTS"
+    assert code(verdict.of_lag(0.0, 0.0, right)) == "LAG_NOT_NEGATIVE"
+    assert code(verdict.of_lag(-0.02, 0.0, right)) == "LAG_NOT_BEST"
+
+
+@pytest.mark.parametrize("size", [np.resize, lambda row, n: np.append(row, ITSELF[: n - len(row)])])
+def test_a_resample_that_is_filled_up_by_its_own_beginning_is_told_from_others(size):
+    asked = [size(row[:240], 250) for row in blocks(12)]
+    expected = "BEGINNING_REPEATED" if size is np.resize else None
+    assert probes.of_resamples(resampled(asked)) == expected
+    assert probes.of_resamples(resampled(blocks(12))) is None
+
+
+def test_a_number_that_has_its_first_digits_is_told_from_one_that_has_none():
+    assert code(probes.of_digits(1.6249696, 1.62496964)) == "FEW_DIGITS"
+    assert probes.of_digits(1.625, 1.62496964) is None
+    assert probes.of_digits(math.nan, 1.62496964) is None
+
+
+@pytest.mark.parametrize("of", [lambda f: np.percentile(f, 95), probes._vertex])
+def test_a_peak_that_is_no_sample_is_told(of):
+    t = 0.001 * np.arange(61)
+    sim, real = shared.pulse(t, 0.017, 0.016, 88.0, 0.6), shared.pulse(t, 0.012, 0.019, 80.0, 0.4)
+    assert code(probes.of_force("peak", of(sim) / of(real) - 1, sim, real, 0.001)) == "PEAK_NOT_LARGEST"
+
+
+def test_the_width_by_squares_about_the_number_is_told():
+    _, right = three_runs((0.02, 0.05, 0.08), offset=(0.0, -0.03, 0.01))
+    ends = {
+        key: (number - right.about[key], number + right.about[key]) for key, number in right.numbers.items()
+    }
+    assert code(verdict.of_interval("rmse", ends, right)) == "ABOUT_THE_NUMBER"

@@ -1,6 +1,7 @@
 """The results of a comparison in sentences, each made only from its rows."""
 
 import math
+import statistics
 from collections.abc import Iterable, Sequence
 
 from course.engines.registry import ENGINES
@@ -162,10 +163,7 @@ def slope(points: Sequence[tuple[float, float]], *, single: bool) -> float | Non
     used = [(math.log(dt), math.log(abs(error))) for dt, error in points if abs(error) > floor]
     if len(used) < 3:
         return None
-    mean_x = sum(x for x, _ in used) / len(used)
-    mean_y = sum(y for _, y in used) / len(used)
-    top = sum((x - mean_x) * (y - mean_y) for x, y in used)
-    return top / sum((x - mean_x) ** 2 for x, _ in used)
+    return statistics.linear_regression(*zip(*used, strict=True)).slope
 
 
 def _list(names: Sequence[str]) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 import msgspec
 
-from course.engines.results import Comparison, Reference, Row, Setting
+from course.engines.results import Comparison, Machine, Reference, Row, Setting
 from course.engines.scenarios import DT
 
 FORMAT_VERSION = 1
@@ -17,14 +17,11 @@ _RATES = ("steps_per_second", "slowest", "fastest", "pymunk_steps_per_second")
 @functools.cache
 def load() -> Reference:
     """The reference; without rows where it is missing or from another version of the course."""
-    from course.engines.results import Machine
-
     path = files("course").joinpath("engines", "reference.json")
     try:
-        found = msgspec.json.decode(path.read_bytes(), type=Reference)
+        return msgspec.json.decode(path.read_bytes(), type=Reference)
     except (OSError, msgspec.DecodeError):
         return Reference(format_version=FORMAT_VERSION, measured="", machine=Machine("", "", 0, ""), rows=())
-    return found
 
 
 def row(engine: str, scenario: str, setting: Setting, dt: float = DT) -> Row:

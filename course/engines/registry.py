@@ -2,6 +2,7 @@
 
 import importlib.metadata
 from dataclasses import dataclass
+from importlib import import_module
 from typing import cast
 
 from course.engines.base import Adapter
@@ -134,6 +135,4 @@ def load(engine_id: str) -> Adapter:
     Raises:
         ImportError: it is not installed, or a library that it needs is not.
     """
-    from importlib import import_module
-
     return cast("Adapter", import_module(f"course.engines.adapters.{get(engine_id).id}").ADAPTER)

@@ -168,23 +168,19 @@ def _phases(dt: float, quick: bool) -> Iterator[float]:
     return (dt * (k + 0.5) / count for k in range(count))
 
 
-def _mean(samples: list[float], details: list[dict[str, Any]]) -> Measured:
-    """The mean over the phases, the single values, and further details."""
-    return statistics.fmean(samples), {"samples": samples, **_together(details)}
-
-
-def _together(details: list[dict[str, Any]]) -> dict[str, Any]:
-    """The details of several runs as those of one: the worst where that is a number, else the first run's."""
-    return {
-        name: _WORST[name](one[name] for one in details) if name in _WORST else details[0][name]
-        for name in details[0]
+def _one_of(middle: Callable[[list[float]], float], runs: list[Measured]) -> Measured:
+    """Several runs as one: the middle of their values, and each; of details the worst, or the first run's."""
+    samples, details = [value for value, _ in runs], [more for _, more in runs]
+    worst = {
+        name: _WORST[name](one[name] for one in details) if name in _WORST else first
+        for name, first in details[0].items()
     }
+    return middle(samples), {"samples": samples, **worst}
 
 
 def clash(build: Build, dt: float, quick: bool) -> Measured:
     """By how many per cent an elastic collision changes the kinetic energy; the mean over phases."""
-    found = [_clash(build, dt, late) for late in _phases(dt, quick)]
-    return _mean([value for value, _ in found], [details for _, details in found])
+    return _one_of(statistics.fmean, [_clash(build, dt, late) for late in _phases(dt, quick)])
 
 
 def _clash(build: Build, dt: float, late: float) -> Measured:
@@ -212,7 +208,7 @@ def small_drop(build: Build, dt: float, quick: bool) -> Measured:
 
 def _rebounds(build: Build, dt: float, quick: bool, height: float, unit: float) -> Measured:
     found = [_rebound(build, dt, height, early) for early in _phases(dt, quick)]
-    return _mean([unit * value for value, _ in found], [details for _, details in found])
+    return _one_of(statistics.fmean, [(unit * value, details) for value, details in found])
 
 
 def _rebound(build: Build, dt: float, height: float, early: float, restitution: float = 0.5) -> Measured:
@@ -298,9 +294,7 @@ def _slip_force(build: Build, dt: float, direction: float, rounds: int) -> float
 
 def _moved(build: Build, scenes: list[Scene], seconds: float) -> Measured:
     """The largest movement of any body that should stand still, mm; the median over the starts."""
-    found = [_movement(build, scene, seconds) for scene in scenes]
-    samples = [value for value, _ in found]
-    return statistics.median(samples), {"samples": samples, **_together([details for _, details in found])}
+    return _one_of(statistics.median, [_movement(build, scene, seconds) for scene in scenes])
 
 
 def _movement(build: Build, scene: Scene, seconds: float) -> Measured:

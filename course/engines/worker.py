@@ -22,6 +22,9 @@ from course.engines.base import (
     Tuning,
     World,
 )
+from course.engines.base import tuning as tuning_of
+from course.engines.registry import load
+from course.engines.scenarios import boxes_scene, get
 from course.errors import InternalError
 
 
@@ -49,8 +52,6 @@ class EngineServer:
             return {"status": "failed", "message": f"{type(error).__name__}: {error}"}
 
     def _do(self, job: Mapping[str, Any]) -> dict[str, Any]:
-        from course.engines.scenarios import get
-
         if job["do"] == "chunk":
             return self._chunk(job["steps"])
         scenario = get(job["scenario"])
@@ -66,8 +67,6 @@ class EngineServer:
             return self._adapter(scene, tuning.options)
 
         if job["do"] == "boxes":
-            from course.engines.scenarios import boxes_scene
-
             self._boxes = build(boxes_scene(job["dt"]))
             self._boxes.step(round(0.25 / job["dt"]))
             return {"status": "ok", "contacts": self._boxes.contacts()[0], **known}
@@ -96,10 +95,7 @@ def main(arguments: list[str]) -> int:
         replies.flush()
 
     try:
-        from course.engines import base
-        from course.engines.registry import load
-
-        desk = EngineServer(load(arguments[0]), functools.partial(base.tuning, arguments[0]))
+        desk = EngineServer(load(arguments[0]), functools.partial(tuning_of, arguments[0]))
     except Exception as error:  # noqa: BLE001 - an extension module may raise anything when it cannot load
         say({"status": "unavailable", "message": f"{type(error).__name__}: {error}"})
         return 0

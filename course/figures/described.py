@@ -4,7 +4,7 @@
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -70,7 +70,7 @@ class Plot:
     panels: tuple[Panel, ...]
     description: str = ""
     columns: int = 1
-    height_in: float = field(default=0.0)
+    height_in: float = 0.0
 
 
 # ---

@@ -117,8 +117,7 @@ def _key(left: Axes, middle: Axes, right: Axes) -> None:
 # ---
 # Figures of a comparison of engines: how errors shrink with the step, and what accuracy costs.
 #
-# ``render`` serves ``course engines compare --plot``; ``steps`` and ``speed`` draw the reference, for
-# lessons.
+# ``render`` serves ``course engines compare --plot``; ``speed`` draws the reference, for a lesson.
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,17 +163,12 @@ def render(rows: Sequence[Row], kind: str) -> dict[str, bytes]:
     Returns:
         By name: "steps" needs a ladder of steps, "speed" the boxes and the stack.
     """
-
     usable = [row for row in rows if row.ok]
-    made: dict[str, bytes] = {}
-    for name, enough, draw in (
+    kinds = (
         ("steps", any(_ladders(usable, test) for test in _TESTS), _steps),
         ("speed", bool(_costs(usable)), _speed),
-    ):
-        if not enough:
-            continue
-        made[name] = file_of(partial(draw, usable), kind)
-    return made
+    )
+    return {name: file_of(partial(draw, usable), kind) for name, enough, draw in kinds if enough}
 
 
 # -- error against step ----------------------------------------------------------------------------------
@@ -382,15 +376,7 @@ def _speed(rows: Sequence[Row]) -> Figure:
 
 
 def _legend_speed(axes: Axes) -> None:
-    from matplotlib.lines import Line2D
-
     grey = PALETTE["grey"]
-    handles = [
-        Line2D(
-            [], [], linestyle="none", marker="o", color=grey, markerfacecolor="white", label="as it comes"
-        ),
-        Line2D(
-            [], [], linestyle="none", marker="D", markersize=4.5, color=grey, label="well set for a stack"
-        ),
-    ]
-    axes.legend(handles=handles, loc="lower right")
+    axes.plot([], [], "o", color=grey, markerfacecolor="white", label="as it comes")
+    axes.plot([], [], "D", color=grey, label="well set for a stack")
+    axes.legend(loc="lower right")

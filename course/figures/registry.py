@@ -57,9 +57,6 @@ FIGURES: dict[str, tuple[str, str]] = {
     "summary-two-questions": ("robots", "two_questions"),
 }
 
-#: Figures are 6.5 in wide, the text width of a printed page; this makes 1170 pixels of it.
-SCREEN_DPI = 180
-
 
 def figure_ids() -> tuple[str, ...]:
     return tuple(sorted(FIGURES))
@@ -85,27 +82,16 @@ def build(figure_id: str) -> Figure:
         return builder()
 
 
-def png(figure_id: str, *, dpi: int = SCREEN_DPI) -> bytes:
-    """A figure as a PNG file.
+def png(figure_id: str) -> bytes:
+    """A figure as a PNG file."""
+    from course.figures.style import file_of
 
-    Args:
-        dpi: pixels per inch; a figure is 6.5 in wide.
-    """
-    from io import BytesIO
-
-    from course.figures.style import house_style
-
-    figure = build(figure_id)
-    out = BytesIO()
-    with house_style():
-        # Without the name of the writing program the file depends on the picture alone.
-        figure.savefig(out, format="png", dpi=dpi, metadata={"Software": None})
-    return out.getvalue()
+    return file_of(lambda: build(figure_id), "png")
 
 
-def save(figure_id: str, folder: Path, *, dpi: int = SCREEN_DPI) -> Path:
+def save(figure_id: str, folder: Path) -> Path:
     """Write a figure to ``folder/<id>.png``, making the folder; an older picture of that name is replaced."""
-    picture = png(figure_id, dpi=dpi)
+    picture = png(figure_id)
     path = folder / f"{figure_id}.png"
     try:
         folder.mkdir(parents=True, exist_ok=True)

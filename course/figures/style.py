@@ -29,6 +29,7 @@ PALETTE = {
     "grey": "#6B6B6B",
 }
 
+#: Of a figure of page width, 6.5 in, this makes 1170 pixels.
 _FILE_DPI = 180
 #: Nothing in a file but the picture: no dates, no random ids.
 _METADATA: dict[str, dict[str, Any]] = {

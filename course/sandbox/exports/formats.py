@@ -17,7 +17,7 @@ from typing import assert_never
 from xml.etree import ElementTree as ET
 
 from course.errors import UsageError
-from course.sandbox.scene.loading import Chosen
+from course.sandbox.scene.loading import Chosen, surface_of
 from course.sandbox.scene.model import Joint, Part, layout
 
 # ---
@@ -52,18 +52,8 @@ def checked_parts(chosen: Chosen, target: str) -> tuple[Part, ...]:
 
 def gravity_of(chosen: Chosen) -> tuple[float, float]:
     """Gravity in the plane, in m/s², with the setting if there is one."""
-    gx, gy = chosen.scene.gravity
-    size = math.hypot(gx, gy)
-    wanted = chosen.settings.get("gravity", size)
-    return (gx * wanted / size, gy * wanted / size) if size else (0.0, -wanted)
-
-
-def surface_of(chosen: Chosen, part: Part) -> tuple[float, float]:
-    """Restitution and friction of a body, with the settings if there are any."""
-    if part.fixed:
-        return part.restitution, part.friction
-    settings = chosen.settings
-    return settings.get("restitution", part.restitution), settings.get("friction", part.friction)
+    scene = chosen.scene
+    return scene.pull(chosen.settings.get("gravity", math.hypot(*scene.gravity)))
 
 
 def moment_3d(part: Part) -> tuple[float, float, float]:
@@ -407,10 +397,9 @@ def _add_link(model: ET.Element, chosen: Chosen, part: Part) -> None:
             _text(ode, "mu", number(friction))
             _text(ode, "mu2", number(friction))
         else:
-            colour = " ".join(f"{int(part.colour[i : i + 2], 16) / 255:.3f}" for i in (1, 3, 5)) + " 1"
             material = ET.SubElement(element, "material")
-            _text(material, "ambient", colour)
-            _text(material, "diffuse", colour)
+            for light in ("ambient", "diffuse"):
+                _text(material, light, _rgba(part.colour))
 
 
 def _add_geometry(geometry: ET.Element, part: Part) -> None:

@@ -340,7 +340,6 @@ def _versions() -> dict[str, str]:
 
 _PAPER = "#ffffff"
 _INK = "#222222"
-_FAINT = "#c9ccd1"
 _MOST_FRAMES = 3000
 #: Of the frames of a GIF of a run, unpacked.
 _GIF_BYTES = 700_000_000

@@ -336,13 +336,9 @@ def sentences(events: Iterable[Event], most: int = 40) -> Iterator[str]:
     last: dict[tuple[str, str], float] = {}
     told = left = 0
     for event in events:
-        if event.kind == "contact":
-            pair = (event.a, event.b)
-            since = event.t - last.get(pair, -1.0)
-            last[pair] = event.t
-            if event.minor or since < _PATIENCE:
-                left += not event.minor
-                continue
+        if event.kind == "contact" and not worth_telling(event, last):
+            left += not event.minor
+            continue
         if told >= most:
             left += 1
             continue
@@ -350,6 +346,19 @@ def sentences(events: Iterable[Event], most: int = 40) -> Iterator[str]:
         yield sentence(event)
     if left:
         yield f"{left} more event{'s' if left > 1 else ''} happened; --csv and --json have every one."
+
+
+def worth_telling(contact: Event, last: dict[tuple[str, str], float]) -> bool:
+    """Whether a contact is hard enough, and its pair did not touch a moment ago.
+
+    Args:
+        last: when each pair touched last, in s; this contact is noted in it.
+    """
+    pair = (contact.a, contact.b)
+    since = contact.t - last.get(pair, -1.0)
+    last[pair] = contact.t
+    # Time that runs backwards is a world that was reset.
+    return not (contact.minor or 0.0 <= since < _PATIENCE)
 
 
 def account(receipt: Receipt) -> list[str]:

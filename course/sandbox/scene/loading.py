@@ -15,8 +15,8 @@ from course.catalog.locate import content
 from course.catalog.reading import BLANK, Document, read_document, read_text
 from course.errors import ContentError, NotFoundError, UsageError
 from course.sandbox.scene.expression import evaluate, fill, used
-from course.sandbox.scene.model import Prediction, Scene, layout
-from course.sandbox.scene.rules import SETTINGS, check_scene, checked, number
+from course.sandbox.scene.model import Part, Prediction, Scene, layout
+from course.sandbox.scene.rules import FIELDS, SETTINGS, check_scene, checked, number
 
 #: The program's own scenes.
 FOLDER = Path(__file__).parents[1] / "scenes"
@@ -42,12 +42,6 @@ class Chosen(msgspec.Struct, frozen=True, kw_only=True):
     settings: dict[str, float]
     path: Path
     own: bool = False
-
-
-def as_it_is(scene: Scene) -> Chosen:
-    """A scene with nothing changed."""
-    defaults = {parameter.name: parameter.default for parameter in scene.parameter}
-    return Chosen(scene=scene, parameters=defaults, settings={}, path=Path(f"{scene.id}.toml"))
 
 
 def scene_ids() -> tuple[str, ...]:
@@ -113,8 +107,7 @@ def choose(name: str, settings: Mapping[str, object] | None = None) -> Chosen:
         scene = read_scene(path)
     else:
         raise _unknown(name)
-    scene, parameters, rest = _put_in(scene, dict(settings or {}))
-    return Chosen(scene=scene, parameters=parameters, settings=rest, path=path, own=own)
+    return _put_in(scene, dict(settings or {}), path, own=own)
 
 
 def values_of(chosen: Chosen) -> dict[str, float]:
@@ -134,27 +127,23 @@ def values_of(chosen: Chosen) -> dict[str, float]:
             values["right"] = chosen.settings.get("right", part.wheels.right)
     for part in parts:
         name = part.name.replace("-", "_")
-        own = {
-            "x": part.x,
-            "y": part.y,
-            "vx": part.vx,
-            "vy": part.vy,
-            "mass": part.mass,
-            "radius": part.radius,
-        }
-        own["restitution"] = part.restitution
-        own["friction"] = part.friction
-        if not part.fixed:
-            own["restitution"] = chosen.settings.get("restitution", part.restitution)
-            own["friction"] = chosen.settings.get("friction", part.friction)
+        own = {field: getattr(part, field) for field in FIELDS}
+        own["restitution"], own["friction"] = surface_of(chosen, part)
         values |= {f"{name}.{field}": value for field, value in own.items()}
     return values
 
 
+def surface_of(chosen: Chosen, part: Part) -> tuple[float, float]:
+    """Restitution and friction of a body, with the settings if there are any."""
+    if part.fixed:
+        return part.restitution, part.friction
+    settings = chosen.settings
+    return settings.get("restitution", part.restitution), settings.get("friction", part.friction)
+
+
 def unchanged(scene: Scene) -> Chosen:
     """One of the course's scenes, unchanged."""
-    ready, parameters, _ = _put_in(scene, {})
-    return Chosen(scene=ready, parameters=parameters, settings={}, path=scene_path(scene.id))
+    return _put_in(scene, {}, scene_path(scene.id))
 
 
 def unsaid(scene: Scene) -> Iterator[str]:
@@ -169,8 +158,7 @@ def unsaid(scene: Scene) -> Iterator[str]:
         if name not in {"iterations", "walls"} and (name in values_of(usual) or name not in {"left", "right"})
     }
     for name, (low, high) in tried.items():
-        ready, parameters, rest = _put_in(scene, {name: low + 0.37 * (high - low)})
-        other = Chosen(scene=ready, parameters=parameters, settings=rest, path=usual.path)
+        other = _put_in(scene, {name: low + 0.37 * (high - low)}, usual.path)
         before, now = (compare(asked, 0.0, values_of(one), None) for one in (usual, other))
         if now.theory != before.theory and (now.question, now.why) == (before.question, before.why):
             yield name
@@ -232,10 +220,10 @@ def _check_formulas(document: Document[Scene]) -> None:
     named = {name.rpartition(".")[2] for text in asked for name in used(text)}
     for settings in _ends(scene, named):
         try:
-            ready, parameters, rest = _put_in(scene, dict(settings))
+            chosen = _put_in(scene, dict(settings), document.path)
         except UsageError:
             continue  # that end is out of reach; a user who asks for it is told so
-        values = values_of(Chosen(scene=ready, parameters=parameters, settings=rest, path=document.path))
+        values = values_of(chosen)
         for where, text in texts.items():
             if where == _THEORY and settings:
                 continue  # it may end where a range does, and then there is nothing to compare
@@ -286,7 +274,7 @@ def _unknown(name: str) -> NotFoundError:
     return NotFoundError(f"There is no scene called {name[:80]!r}.", help=fix, code="scene_not_found")
 
 
-def _put_in(scene: Scene, settings: dict[str, object]) -> tuple[Scene, dict[str, float], dict[str, float]]:
+def _put_in(scene: Scene, settings: dict[str, object], path: Path, *, own: bool = False) -> Chosen:
     """The scene with its parameters put in; the other settings go to the world."""
     parameters = {parameter.name: parameter for parameter in scene.parameter}
     seed = settings.pop("seed", scene.seed)
@@ -319,7 +307,8 @@ def _put_in(scene: Scene, settings: dict[str, object]) -> tuple[Scene, dict[str,
         ready = msgspec.convert(raw, Scene)
     except msgspec.ValidationError as error:
         raise UsageError(f"The parameters do not fit the scene: {error}.", code="bad_parameter") from error
-    return ready, values, {name: checked(name, value) for name, value in rest.items()}
+    checked_rest = {name: checked(name, value) for name, value in rest.items()}
+    return Chosen(scene=ready, parameters=values, settings=checked_rest, path=path, own=own)
 
 
 def _set_in(raw: dict[str, Any], place: str, value: float) -> None:

@@ -297,6 +297,12 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         """Materials by name."""
         return {material.name: material for material in self.material}
 
+    def pull(self, size: float) -> tuple[float, float]:
+        """Gravity of this size in the scene's direction, in m/s²; downward where the scene has none."""
+        gx, gy = self.gravity
+        own = math.hypot(gx, gy)
+        return (gx * size / own, gy * size / own) if own else (0.0, -size)
+
 
 # ---
 # A scene in numbers: every body with its position, outline, mass and moment of inertia.
@@ -487,16 +493,20 @@ def _turned(x: float, y: float, angle: float) -> Vector:
 
 def signed_area(points: Sequence[Vector]) -> float:
     """Area of a polygon in m², positive if its corners run counter-clockwise."""
-    ends = [*points[1:], *points[:1]]
-    return sum(x0 * y1 - x1 * y0 for (x0, y0), (x1, y1) in zip(points, ends, strict=True)) / 2
+    return sum(cross for *_, cross in _sides(points)) / 2
+
+
+def _sides(points: Sequence[Vector]) -> list[tuple[float, float, float, float, float]]:
+    """Each side of a polygon: where it begins, where it ends, and the cross product of the two."""
+    pairs = zip(points, [*points[1:], *points[:1]], strict=True)
+    return [(x0, y0, x1, y1, x0 * y1 - x1 * y0) for (x0, y0), (x1, y1) in pairs]
 
 
 def _centroid(points: Sequence[Vector]) -> Vector:
-    ends = [*points[1:], *points[:1]]
-    crosses = [x0 * y1 - x1 * y0 for (x0, y0), (x1, y1) in zip(points, ends, strict=True)]
-    six = 3 * sum(crosses)
-    x = sum((x0 + x1) * c for (x0, _), (x1, _), c in zip(points, ends, crosses, strict=True)) / six
-    y = sum((y0 + y1) * c for (_, y0), (_, y1), c in zip(points, ends, crosses, strict=True)) / six
+    sides = _sides(points)
+    six = 3 * sum(cross for *_, cross in sides)
+    x = sum((x0 + x1) * cross for x0, _, x1, _, cross in sides) / six
+    y = sum((y0 + y1) * cross for _, y0, _, y1, cross in sides) / six
     return x, y
 
 
@@ -508,10 +518,8 @@ def _moment(body: Body, outline: Sequence[Vector], mass: float) -> float:
     """About the centre of mass. Source: any table of moments; the polygon's is the sum over its triangles."""
     if body.shape == "circle":
         return mass * (body.radius or 0.0) ** 2 / 2
-    ends = [*outline[1:], *outline[:1]]
     top = bottom = 0.0
-    for (x0, y0), (x1, y1) in zip(outline, ends, strict=True):
-        cross = x0 * y1 - x1 * y0
+    for x0, y0, x1, y1, cross in _sides(outline):
         top += cross * (x0 * x0 + x0 * x1 + x1 * x1 + y0 * y0 + y0 * y1 + y1 * y1)
         bottom += cross
     return mass * top / (6 * bottom)

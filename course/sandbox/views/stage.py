@@ -205,7 +205,8 @@ class Stage:
         count = len(self.recording.inputs)
         result = getattr(self.world, what)(*arguments)
         if what == "reset":
-            self.tape = self._fresh_tape()
+            self.tape.end()
+            self.tape = Tape(self.world, self.recording)
             self.experiment.again()
             self.narrator.forget()
             self.anew += 1
@@ -257,8 +258,7 @@ class Stage:
 
     def look(self, t: float | None) -> None:
         """Look at a time of this run; None or its end is the present. Time stands meanwhile."""
-        if self._work is not None:
-            raise UsageError("One moment: an earlier one is being made again.", code="busy")
+        self._must_be_idle()
         if t is None:
             self.present()
             return
@@ -364,11 +364,7 @@ class Stage:
 
     def hear(self) -> None:
         """Take in what happened since the last time."""
-        self.heard = self.world.drain_events()
-        self.experiment.take(self.heard)
-        for event in self.heard:
-            if event.kind == "contact" and not event.minor:
-                self.tape.mark(event.t)
+        self.heard = _heard(self.world, self.experiment, self.tape)
         try:
             self.experiment.passed()
         except CourseError as error:  # the comparison stands, it only could not be kept
@@ -407,9 +403,12 @@ class Stage:
 
     # -- any moment again ------------------------------------------------------------------------
 
-    def _must_be_now(self) -> None:
+    def _must_be_idle(self) -> None:
         if self._work is not None:
             raise UsageError("One moment: an earlier one is being made again.", code="busy")
+
+    def _must_be_now(self) -> None:
+        self._must_be_idle()
         if self.at is not None:
             raise UsageError(
                 f"You look at {self.at:.2f} s. Go on from here, or back to now, and then change it.",
@@ -438,8 +437,7 @@ class Stage:
         del stack[:-_UNDOS]
 
     def _jump(self, stack: list[Moment], other: list[Moment], which: str) -> None:
-        if self._work is not None:
-            raise UsageError("One moment: an earlier one is being made again.", code="busy")
+        self._must_be_idle()
         self.present()
         if self.world.held:
             self.act("release")
@@ -470,7 +468,11 @@ class Stage:
             world.on_input.append(lambda _, what, __: experiment.felt(what))
 
         known, index = max(
-            ((tape, tape.shared(there.recording, there.count, there.t - _TOLD)) for tape in self._tapes()),
+            (
+                (tape, tape.shared(there.recording, there.count, there.t - _TOLD))
+                for tape in (self.tape, self.ghost)
+                if tape is not None
+            ),
             key=lambda pair: pair[0].times[pair[1]],
         )
         known_until = known.ticks[index] if index else 0
@@ -489,7 +491,8 @@ class Stage:
                 left = experiment.left()
                 ended = share == 1.0 or world.ticks == known_until or (left is not None and left <= 1e-9)
                 if ended or len(tape) != frames:
-                    self._retell(made)
+                    made["narrator"].tell(_heard(world, experiment, tape), world.t)
+                    experiment.passed()
                     frames = len(tape)
                 if skipping and world.ticks == known_until:
                     world.resume(known.sums[index])
@@ -508,7 +511,7 @@ class Stage:
                 self.ghost = self.tape
             self.chosen, self.world, self.recording = there.chosen, world, made["recording"]
             self.tape, self.experiment, self.narrator = made["tape"], made["experiment"], made["narrator"]
-            self.experiment.keep_with(self.keep)
+            self.experiment.keep = self.keep
             world.on_input = [made["recording"]._note]
             world.paused, world.speed = paused, old.speed
             self.present()
@@ -522,17 +525,6 @@ class Stage:
         undos, redos = stacks if stacks else (self._undos[:-1], list(self._redos))
         self._work = _Work(steps(), done, says, stage={"undos": undos, "redos": redos})
         self._work_on(BUDGET)
-
-    @staticmethod
-    def _retell(made: dict[str, Any]) -> None:
-        world, experiment = made["world"], made["experiment"]
-        events = world.drain_events()
-        experiment.take(events)
-        for event in events:
-            if event.kind == "contact" and not event.minor:
-                made["tape"].mark(event.t)
-        experiment.passed()
-        made["narrator"].tell(events, world.t)
 
     def _work_on(self, budget: float) -> None:
         work, began = self._work, self.clock()
@@ -550,12 +542,15 @@ class Stage:
         while self._work is not None:
             self._work_on(math.inf)
 
-    def _tapes(self) -> list[Tape]:
-        return [self.tape, *([self.ghost] if self.ghost else [])]
 
-    def _fresh_tape(self) -> Tape:
-        self.tape.end()
-        return Tape(self.world, self.recording)
+def _heard(world: World, experiment: Experiment, tape: Tape) -> list[Event]:
+    """The events since the last time, known to the experiment and marked on the tape."""
+    events = world.drain_events()
+    experiment.take(events)
+    for event in events:
+        if event.kind == "contact" and not event.minor:
+            tape.mark(event.t)
+    return events
 
 
 def _in_words(what: str, arguments: tuple[Any, ...]) -> str:

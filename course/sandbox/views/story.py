@@ -9,15 +9,13 @@ from typing import Any
 import msgspec
 
 from course.errors import UsageError
-from course.sandbox.runs.running import Probes, sentence
+from course.sandbox.runs.running import Probes, sentence, worth_telling
 from course.sandbox.scene.loading import Chosen, Comparison, compare, question, values_of, with_settings
 from course.sandbox.world.accounts import Event
 from course.sandbox.world.world import World
 
 #: Sentences that a view gets when it opens in the middle of a run.
 _KEPT = 60
-#: A pair that touches again within this time, in s, is not reported again.
-_PATIENCE = 0.05
 #: Contacts and stops that are reported at once, and per second of real time; a reader cannot follow more.
 _BURST, _RATE = 10.0, 4.0
 #: Events kept for the probes of one run.
@@ -55,7 +53,7 @@ class Narrator:
         self._then = now
         lines: list[dict[str, Any]] = []
         for event in events:
-            if event.kind == "contact" and self._again(event):
+            if event.kind == "contact" and not worth_telling(event, self._last):
                 continue
             if event.kind == "input":  # a body that is carried is put elsewhere in every frame
                 same, self._done = self._done == (event.text, event.t), (event.text, event.t)
@@ -70,14 +68,6 @@ class Narrator:
             lines.append(_line(event))
         self._told.extend(lines)
         return lines
-
-    def _again(self, event: Event) -> bool:
-        """Whether a contact is too soft, or its pair was reported a moment ago."""
-        pair = (event.a, event.b)
-        since = event.t - self._last.get(pair, -1.0)
-        self._last[pair] = event.t
-        # Time that runs backwards is a world that was reset.
-        return event.minor or 0.0 <= since < _PATIENCE
 
     def _may(self) -> bool:
         if self._free < 1.0:
@@ -115,7 +105,7 @@ class Experiment:
         guess: float | None,
         keep: Callable[[Comparison], None] | None,
     ) -> None:
-        self._world, self._chosen, self._keep = world, chosen, keep
+        self._world, self._chosen, self.keep = world, chosen, keep
         self._listeners = tuple(world.on_block)
         self._probes: Probes | None = None
         self._events: list[Event] = []
@@ -147,19 +137,11 @@ class Experiment:
         if self.stage != "none":
             self._begin()
 
-    def touch(self) -> None:
-        """The user changed the run: there is nothing to compare with."""
-        if self.stage in {"ask", "run"}:
-            self.stage = "touched"
-
     def felt(self, what: str) -> None:
         """Something was done to the world. Settings may change before the first step: theory knows them."""
-        if what not in {"reset", "drag", "release"} and not (what == "set" and self._world.steps == 0):
-            self.touch()
-
-    def keep_with(self, keep: Callable[[Comparison], None] | None) -> None:
-        """Call this with comparisons from now on."""
-        self._keep = keep
+        changed = what not in {"reset", "drag", "release"} and not (what == "set" and self._world.steps == 0)
+        if changed and self.stage in {"ask", "run"}:
+            self.stage = "touched"
 
     def take(self, events: Sequence[Event]) -> None:
         """Hand events to the probes."""
@@ -188,8 +170,8 @@ class Experiment:
         self.stage = "done"
         self._events = []
         self._world.on_block[:] = self._listeners
-        if self._keep is not None and self.guess is not None:
-            self._keep(comparison)
+        if self.keep is not None and self.guess is not None:
+            self.keep(comparison)
         return True
 
     def _now(self) -> Chosen:

@@ -451,10 +451,6 @@ class Space:
     def body(self, name: str) -> pymunk.Body:
         return self._bodies[self._by_name[name]][1]
 
-    def names(self) -> list[str]:
-        """All bodies, in the order they were added."""
-        return list(self._by_name)
-
     def part(self, name: str) -> Part:
         return self._bodies[self._by_name[name]][0]
 

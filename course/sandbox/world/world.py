@@ -190,10 +190,7 @@ class World:
         self.version += 1
 
     def _gravity(self) -> tuple[float, float]:
-        gx, gy = self.scene.gravity
-        size = math.hypot(gx, gy)
-        wanted = self.settings["gravity"]
-        return (0.0, -wanted) if size == 0.0 else (gx * wanted / size, gy * wanted / size)
+        return self.scene.pull(self.settings["gravity"])
 
     # -- what views read -------------------------------------------------------------------------
 
@@ -448,8 +445,7 @@ class World:
             raise UsageError(
                 f"{str(shape)[:20]!r} cannot be spawned; circle and box can.", code="bad_parameter"
             )
-        if len(self._space.parts) >= MAX_BODIES:
-            raise UsageError(f"There are {MAX_BODIES} bodies; that is enough.", code="too_many_bodies")
+        self._must_have_room()
         if not height / 1000 <= size <= height:
             raise UsageError(f"size must be from {height / 1000:g} to {height:g} m.", code="bad_parameter")
         x, y = self._place(x, y)
@@ -537,8 +533,7 @@ class World:
             UsageError: there is no such body, no room beside it, or there are too many.
         """
         self._movable(name)
-        if len(self._space.parts) >= MAX_BODIES:
-            raise UsageError(f"There are {MAX_BODIES} bodies; that is enough.", code="too_many_bodies")
+        self._must_have_room()
         self._settle()
         made = f"new-{self._spawned + 1}"
         if not self._space.copy(name, made):
@@ -575,6 +570,10 @@ class World:
     def _movable(self, name: str) -> None:
         if not self.moves(name):
             raise UsageError(f"There is no {str(name)[:60]!r} that moves.", code="bad_parameter")
+
+    def _must_have_room(self) -> None:
+        if len(self._space.parts) >= MAX_BODIES:
+            raise UsageError(f"There are {MAX_BODIES} bodies; that is enough.", code="too_many_bodies")
 
     def _wall(self) -> None:
         """Put walls around what is shown, or take them away, as the settings say."""

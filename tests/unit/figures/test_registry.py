@@ -117,19 +117,19 @@ def test_methods_differ_in_more_than_colour_and_their_names_are_legible_on_white
 
 
 def test_a_picture_is_the_same_bytes_twice() -> None:
-    assert registry.png("integrators-stability", dpi=40) == registry.png("integrators-stability", dpi=40)
+    assert registry.png("integrators-stability") == registry.png("integrators-stability")
 
 
 def test_a_readers_own_settings_do_not_reach_a_figure() -> None:
     import matplotlib as mpl
 
-    before = registry.png("integrators-stability", dpi=40)
+    before = registry.png("integrators-stability")
     with mpl.rc_context({"font.size": 20.0, "axes.facecolor": "red"}):
-        assert registry.png("integrators-stability", dpi=40) == before
+        assert registry.png("integrators-stability") == before
 
 
 def test_a_figure_is_written_into_a_folder_that_is_made_for_it(tmp_path: Path) -> None:
-    path = registry.save("integrators-stability", tmp_path / "new" / "figures", dpi=40)
+    path = registry.save("integrators-stability", tmp_path / "new" / "figures")
     assert path == tmp_path / "new" / "figures" / "integrators-stability.png"
     assert path.read_bytes().startswith(b"\x89PNG")
 
@@ -137,7 +137,7 @@ def test_a_figure_is_written_into_a_folder_that_is_made_for_it(tmp_path: Path) -
 def test_a_folder_that_cannot_be_written_to_is_a_usage_error(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way", encoding="utf-8")
     with pytest.raises(UsageError, match="cannot be written"):
-        registry.save("integrators-stability", tmp_path / "file", dpi=40)
+        registry.save("integrators-stability", tmp_path / "file")
 
 
 def test_an_unknown_figure_is_not_found() -> None:

@@ -36,8 +36,6 @@ class QuestionOverlay(Overlay[float]):
     Dismissed with the guess, or None to run without one.
     """
 
-    DEFAULT_CSS = "Ask #wrong { height: auto; }"
-
     def __init__(self, question: str, unit: str, *, calm: bool) -> None:
         super().__init__()
         self._question, self._unit, self._calm = question, unit, calm

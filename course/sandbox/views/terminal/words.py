@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
+from itertools import zip_longest
 
 import numpy as np
 from rich.color import Color
@@ -338,14 +339,10 @@ class Lines(Widget):
 
     def show(self, lines: Sequence[Line]) -> None:
         """Replace the lines."""
-        before, self._lines = self._lines, list(lines)
+        pairs = enumerate(zip_longest(self._lines, lines))
         width, height = self.size
-        most = max(len(before), len(self._lines))
-        changed = [
-            row
-            for row in range(min(most, height))
-            if row >= len(before) or row >= len(self._lines) or before[row] != self._lines[row]
-        ]
+        changed = [row for row, (before, now) in pairs if row < height and before != now]
+        self._lines = list(lines)
         if changed:
             self.refresh(*(Region(0, row, width, 1) for row in changed))
 

@@ -166,11 +166,6 @@ def _packed(numbers: Floats | Frame) -> bytes:
         return numbers.astype("<f4").tobytes()
 
 
-def finite(value: float | None) -> float | None:
-    """A number as JSON can carry it."""
-    return value if value is not None and math.isfinite(value) else None
-
-
 #: Pages that may look at one world at a time.
 MAX_PAGES = 8
 _FPS = 60.0
@@ -625,11 +620,6 @@ class Session:
     def _introduction(self) -> dict[str, Any]:
         stage = self.stage
         scene, world = stage.chosen.scene, stage.world
-        offered = {
-            key: setting
-            for key, setting in SETTINGS.items()
-            if key in world.settings or key not in {"left", "right"}
-        }
         asked = scene.prediction
         return {
             "type": "scene",
@@ -643,8 +633,12 @@ class Session:
             "view": scene.view,
             "duration": scene.duration,
             "above": scene.floor is not None or not any(scene.gravity),
-            "parameters": [msgspec.to_builtins(one) for one in scene.parameter],
-            "knobs": [msgspec.to_builtins(setting) for setting in offered.values()],
+            "parameters": scene.parameter,
+            "knobs": [
+                setting
+                for key, setting in SETTINGS.items()
+                if key in world.settings or key not in {"left", "right"}
+            ],
             "numbers": [
                 {"name": name, "unit": unit, "low": low, "high": high}
                 for name, (unit, low, high) in NUMBERS.items()
@@ -665,7 +659,7 @@ def _body(part: Part) -> dict[str, Any]:
         "radius": part.radius,
         "fixed": part.fixed,
         "colour": part.colour,
-        "mass": finite(part.mass),
+        "mass": part.mass,
         "restitution": part.restitution,
         "friction": part.friction,
         "track": part.wheels.track if part.wheels else 0.0,

@@ -1,6 +1,6 @@
 """The view in a browser: a page on this machine, and the world behind it.
 
-Nothing here needs the packages of the extra ``web`` before ``play`` is called.
+It needs the packages of the extra ``web``: whoever imports it has asked for them.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ import secrets
 import socket
 from collections.abc import AsyncIterator, Awaitable, Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import anyio
+import uvicorn
 from starlette.applications import Starlette
 from starlette.datastructures import MutableHeaders
 from starlette.requests import Request
@@ -28,11 +28,7 @@ from course.errors import UsageError
 from course.extras import require
 from course.sandbox.scene.loading import Chosen
 from course.sandbox.views.stage import Desk
-from course.sandbox.views.web.session import SCRIPTS, Page, Session
-
-if TYPE_CHECKING:
-    import uvicorn
-
+from course.sandbox.views.web.session import MAX_REQUEST, SCRIPTS, Page, Session
 
 #: This machine alone.
 _LOOPBACK = "127.0.0.1"
@@ -65,10 +61,6 @@ def play(
         UsageError: the port is taken.
     """
     require("web")
-    import uvicorn
-
-    from course.sandbox.views.web.session import Session
-
     desk = desk or Desk()
     stage = None if chosen is None else desk.stage(chosen, guess=guess)
     session = Session(stage, desk)
@@ -95,10 +87,6 @@ def play(
 
 def _configured(app: ASGIApp) -> uvicorn.Config:
     """A server for one user: it says nothing, and takes no message larger than what is answered."""
-    import uvicorn
-
-    from course.sandbox.views.web.session import MAX_REQUEST
-
     return uvicorn.Config(
         app,
         log_config=None,

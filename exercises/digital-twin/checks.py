@@ -26,7 +26,7 @@ _SPREAD_SOURCE = "the README's"
 @pytest.mark.task("encoder")
 @pytest.mark.points(3)
 def test_encoder_counts(submission):
-    """An encoder counts whole steps, over several turns and on both sides of zero"""
+    """encoder over several turns, on both sides of zero: the counts"""
     far = sensors.angles_beside_counts(np.linspace(-51000, 51000, 20), 64)
     theta = np.concatenate([np.linspace(-9.0, 9.0, 401) + 0.001, far])
     sensors.expect_counts(submission, submission.call("encoder", theta, 64), theta, 64)
@@ -35,7 +35,7 @@ def test_encoder_counts(submission):
 @pytest.mark.task("encoder")
 @pytest.mark.points(0)
 def test_encoder_keeps(submission):
-    """The encoder leaves its angles as they are"""
+    """encoder: the counts, and its argument"""
     theta = np.linspace(-2.0, 2.0, 21) + 0.001
     bundles.expect_clean(submission, "encoder", (theta, 64), ("theta", None))
 
@@ -43,7 +43,7 @@ def test_encoder_keeps(submission):
 @pytest.mark.task("imu")
 @pytest.mark.points(3)
 def test_imu_white_noise(submission):
-    """White noise has the strength that its density gives, at two sampling rates"""
+    """imu at two sampling rates: the strength of the white noise"""
     calls = [
         (np.zeros(4000), dt, 0.002, 0.0, 0.1, np.random.default_rng(seed))
         for seed, dt in enumerate((0.01, 0.09))
@@ -54,7 +54,7 @@ def test_imu_white_noise(submission):
 @pytest.mark.task("imu")
 @pytest.mark.points(2)
 def test_imu_bias(submission):
-    """The bias starts at bias0 each time, is in the measured rate, and takes steps of the right size"""
+    """imu: the first bias, its steps, and its place in the measured rate"""
     n, dt, walk = 4000, 0.04, 0.01
     true = np.linspace(1.0, -1.0, n)
     given = {"dt": dt, "noise_density": 0.0, "bias_random_walk": walk, "samples": n}
@@ -106,7 +106,7 @@ def _expect_bias(submission, measured, bias, true, step, given):
 @pytest.mark.task("imu")
 @pytest.mark.points(0)
 def test_imu_draws(submission):
-    """Noise and bias come from the generator that is passed in, and are independent of each other"""
+    """imu: where noise and bias come from, and whether they go together"""
     sensors.expect_gyroscope_draws(submission, 5, 0.02)
     sensors.expect_walk(submission, 20000, 0.02, 0.01, 0.3, np.random.default_rng(6))
 
@@ -114,7 +114,7 @@ def test_imu_draws(submission):
 @pytest.mark.task("imu")
 @pytest.mark.points(0)
 def test_imu_keeps(submission):
-    """The true rate is left as it is, and is in the measured one unchanged"""
+    """imu: the true rate, as an argument and in the measured rate"""
     true = 2.0 * np.sin(np.linspace(0, 6, 40))
     sensors.expect_rate_kept(submission, true, 0.05, -0.2, np.random.default_rng(7))
 
@@ -133,14 +133,14 @@ def _recordings():
 @pytest.mark.task("fit_noise")
 @pytest.mark.points(4)
 def test_fit_noise_recordings(submission):
-    """From eight recordings at rest, fit_noise finds the numbers they were made with"""
+    """fit_noise on eight recordings at rest"""
     sensors.expect_fits(submission, _recordings())
 
 
 @pytest.mark.task("fit_noise")
 @pytest.mark.points(0)
 def test_fit_noise_short(submission):
-    """A short recording is enough for the noise density, and is left as it is"""
+    """fit_noise on a short recording: the noise density, and its argument"""
     still = scenes.recording(np.random.default_rng(3), 2000, 0.02, 0.002, 0.003, -0.5)
     sensors.expect_density_of_short(submission, still, 0.02, 0.002)
 
@@ -148,7 +148,7 @@ def test_fit_noise_short(submission):
 @pytest.mark.task("lidar")
 @pytest.mark.points(5)
 def test_lidar_room(submission):
-    """In a room with a door, each beam measures the distance to its wall, and the door reads r_max"""
+    """lidar in a room with a door"""
     angles = np.linspace(-3.1, 3.1, 47)
     poses = ((2.0, 1.7, 0.0), (2.0, 1.7, 0.35), (4.6, 3.1, -2.2))
     calls = [(np.array(pose), scenes.ROOM, angles, 3.5, 0.0, np.random.default_rng(1)) for pose in poses]
@@ -170,7 +170,7 @@ def test_lidar_room(submission):
 @pytest.mark.task("lidar")
 @pytest.mark.points(0)
 def test_lidar_nearest(submission):
-    """Of several walls the nearest counts; walls behind the robot or beside the beam do not"""
+    """lidar with several walls, some behind the robot or beside the beam"""
     across = ((2.0, 1.0), (1.0, 0.2), (3.5, 2.0), (-1.0, 3.0))  # at x, from -y to y
     walls = [[[x, -y], [x, y]] for x, y in across]
     # To the left a long wall before a short one, whose middle and ends are all nearer than those of the long.
@@ -197,7 +197,7 @@ def test_lidar_nearest(submission):
 @pytest.mark.task("lidar")
 @pytest.mark.points(0)
 def test_lidar_noise_on_hits(submission):
-    """Noise of std sigma is on hits only, from the generator passed in; nothing is below zero"""
+    """lidar with noise: hits, beams without a hit, and readings near zero"""
     sensors.expect_scan_noise(submission, 7.0, 0.05, np.random.default_rng(9))
     sensors.expect_scan_draws(submission, 11)
 
@@ -205,7 +205,7 @@ def test_lidar_noise_on_hits(submission):
 @pytest.mark.task("lidar")
 @pytest.mark.points(0)
 def test_lidar_keeps(submission):
-    """The scanner leaves pose, walls and angles as they are"""
+    """lidar: the readings, and its arguments"""
     call = (
         np.array([2.0, 1.7, 0.35]),
         scenes.ROOM,
@@ -220,7 +220,7 @@ def test_lidar_keeps(submission):
 @pytest.mark.task("motor_step")
 @pytest.mark.points(4)
 def test_motor_response(submission):
-    """A motor approaches its command as 1 - exp(-t/tau), in fine steps and in coarse ones"""
+    """motor_step after a command, in fine steps and in coarse ones"""
     dts = [0.05] * 8 + [0.4] * 3 + [5.0] * 3
     commands = [6.0] * 11 + [25.0, -25.0, 0.3]  # the last three: too large both ways, and swallowed
     actuators.expect_motor(
@@ -235,7 +235,7 @@ def test_motor_response(submission):
 @pytest.mark.task("motor_step")
 @pytest.mark.points(0)
 def test_motor_limits(submission):
-    """Up to the limit of the dead band nothing happens, and a motor beyond u_max slows down gradually"""
+    """motor_step at the limit of the dead band, and beyond u_max"""
     commands = (0.5, -0.5, 4.0, 0.52, -0.52)
     message = "In a series of commands from a speed beyond u_max, the speed of the motor is wrong."
     for sign in (1.0, -1.0):
@@ -247,7 +247,7 @@ def test_motor_limits(submission):
 @pytest.mark.task("backlash")
 @pytest.mark.points(3)
 def test_backlash_there_and_back(submission):
-    """There and back, the output starts late, stays half the gap behind, and rests before it returns"""
+    """backlash there and back: the output at each step"""
     inputs = [0.0, 0.3, 1.0, 2.0, 3.0, 2.6, 2.0, 1.0, 0.0, 0.5, 1.5, 1.50001, 1.5001]
     outputs = [0.0, 0.0, 0.5, 1.5, 2.5, 2.5, 2.5, 1.5, 0.5, 0.5, 1.0, 1.00001, 1.0001]
     expect = actuators.expect_play
@@ -257,7 +257,7 @@ def test_backlash_there_and_back(submission):
 @pytest.mark.task("backlash")
 @pytest.mark.points(0)
 def test_backlash_of_two(submission):
-    """Of two gears that are called in turn, each continues from its own state"""
+    """backlash of two gears that are called in turn"""
     inputs = [0.0, 5.0, 1.0, 5.4, 2.0, 4.0, 1.8, 4.2]
     states = [0.2, 4.9, 0.2, 4.9, 0.5, 5.0, 1.5, 4.5]
     outputs = [0.2, 4.9, 0.5, 4.9, 1.5, 4.5, 1.5, 4.5]
@@ -269,7 +269,7 @@ def test_backlash_of_two(submission):
 @pytest.mark.task("delay_line")
 @pytest.mark.points(3)
 def test_delay_between_samples(submission):
-    """A delay that is not a whole number of samples is interpolated, and the output before it is zero"""
+    """delay_line with a delay that is not a whole number of samples"""
     x = np.array([2.0, 3.0, 1.0, 5.0, 4.0, 4.0, 0.0, 2.0])
     expected = [0.0, 0.0, 0.0, 2.75, 1.5, 4.0, 4.25, 4.0]
     actuators.expect_delayed(
@@ -280,7 +280,7 @@ def test_delay_between_samples(submission):
 @pytest.mark.task("delay_line")
 @pytest.mark.points(0)
 def test_delay_none_and_all(submission):
-    """Without latency the output is a copy; with a latency longer than the signal it is all zeros"""
+    """delay_line without latency, and with one longer than the signal"""
     x = np.array([2.0, -3.0, 1.0, 5.0])
     actuators.expect_new_signal(submission, x, 0.1)
     actuators.expect_delayed(
@@ -291,7 +291,7 @@ def test_delay_none_and_all(submission):
 @pytest.mark.task("diff_drive_step")
 @pytest.mark.points(4)
 def test_drive_known_arcs(submission):
-    """Straight ahead, on the spot, and a quarter of a circle to the left"""
+    """diff_drive_step straight ahead, on the spot, and on a quarter of a circle"""
     quarter = math.pi / 2
     cases = (
         ((1.0, 2.0, 0.0), (0.5, 0.5, 0.4, 2.0), (2.0, 2.0, 0.0)),
@@ -308,7 +308,7 @@ def test_drive_known_arcs(submission):
 @pytest.mark.task("diff_drive_step")
 @pytest.mark.points(0)
 def test_drive_ever_slower(submission):
-    """Slower and slower turns approach a straight line, and the old pose is left as it is"""
+    """diff_drive_step with slower and slower turns: the pose, and its argument"""
     actuators.expect_slow_turns(submission, np.random.default_rng(12))
     pose, wheels = np.array([1.0, 2.0, 0.5]), (0.3, 0.5, 0.4, 1.0)
     value = bundles.expect_clean(submission, "diff_drive_step", (pose, *wheels), ("pose", *[None] * 4))
@@ -318,7 +318,7 @@ def test_drive_ever_slower(submission):
 @pytest.mark.task("sync")
 @pytest.mark.points(4)
 def test_sync_follows(submission):
-    """A twin that is measured ten times a second keeps up when the friction of the cart jumps"""
+    """sync ten times a second, with a jump in the friction of the cart"""
     cart, rng = scenes.Cart(((0.0, 0.5), (8.0, 0.8)), v=1.0), np.random.default_rng(4)
     twins.expect_follows(
         submission,
@@ -333,7 +333,7 @@ def test_sync_follows(submission):
 @pytest.mark.task("sync")
 @pytest.mark.points(1)
 def test_sync_backwards(submission):
-    """A twin keeps up with a cart that rolls backwards"""
+    """sync with a cart that rolls backwards"""
     message = "With a cart that rolls backwards, the twin's position is further off than the README allows."
     twins.expect_keeps_up(submission, np.random.default_rng(5), sign=-1.0, late=0.0, message=message)
 
@@ -341,7 +341,7 @@ def test_sync_backwards(submission):
 @pytest.mark.task("sync")
 @pytest.mark.points(1)
 def test_sync_some_late(submission):
-    """A twin keeps up even when one measurement in three comes late"""
+    """sync with one measurement in three late"""
     message = "With some measurements late, the twin's position is further off than the README allows."
     twins.expect_keeps_up(submission, np.random.default_rng(6), sign=1.0, late=0.33, message=message)
 
@@ -350,21 +350,21 @@ def test_sync_some_late(submission):
 @pytest.mark.points(0)
 @pytest.mark.requires("sync_follows")  # a twin that never changes passes this one as well
 def test_sync_keeps(submission):
-    """The old twin is unchanged, the same call gives the same twin again, and the memory stays small"""
+    """sync called twice: its arguments, its result, and the size of the memory"""
     twins.expect_twin_contract(submission, np.random.default_rng(7))
 
 
 @pytest.mark.task("sync")
 @pytest.mark.points(0)
 def test_sync_in_a_loop(submission):
-    """A cart that is driven with the friction the twin has learned gets back to its speed"""
+    """sync in a loop: the speed of a cart driven with the friction learned"""
     twins.expect_sync_closes_loop(submission, np.random.default_rng(8))
 
 
 @pytest.mark.task("command")
 @pytest.mark.points(3)
 def test_command_balances(submission):
-    """At the target speed, the drive balances the twin's friction"""
+    """command at the target speed: the drive against the friction"""
     cases = [(0.5, 1.0), (0.8, 1.0), (0.8, 0.4), (0.6, -0.7), (0.8, 0.0)]
     twins.expect_drives(submission, cases)
 
@@ -372,5 +372,5 @@ def test_command_balances(submission):
 @pytest.mark.task("command")
 @pytest.mark.points(0)
 def test_command_in_a_loop(submission):
-    """Driven by command, carts whose friction jumps reach their speed and return to it, in both directions"""
+    """command in a loop, both ways, with jumps in friction: the speed of the cart"""
     twins.expect_command_closes_loop(submission, np.random.default_rng(9))

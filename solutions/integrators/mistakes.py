@@ -662,6 +662,7 @@ mistakes(
     "HISTORIES_SWAPPED",
     "The positions and the velocities that integrate returns have changed places.",
     "Return (t, q, v): the positions before the velocities, each in its own array.",
+    true_too=("INITIAL_STATE_WRONG",),
 ).program(
     "integrate",
     """

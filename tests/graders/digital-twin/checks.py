@@ -25,7 +25,7 @@ rays = kit.sibling(__file__, "rays")
 @pytest.mark.task("encoder")
 @pytest.mark.points(3)
 def test_encoder_turns(submission, rng):
-    """An encoder of another resolution counts over many turns both ways"""
+    """encoder of another resolution, over many turns both ways"""
     per_turn = int(rng.integers(7, 500))
     theta = sensors.angles_between_counts(rng, 600, 10 * per_turn, per_turn)
     # More counts than sixteen bits hold, and angles that single precision does not tell apart.
@@ -41,7 +41,7 @@ def test_encoder_turns(submission, rng):
 @pytest.mark.task("encoder")
 @pytest.mark.points(2)
 def test_encoder_inputs(submission, rng):
-    """The encoder leaves its angles alone, over a few turns and both ways"""
+    """encoder over a few turns, both ways: the counts, and its argument"""
     theta = sensors.angles_between_counts(rng, 300, 70, 48)
     value = bundles.expect_clean(submission, "encoder", (theta, 48), ("theta", None))
     sensors.expect_counts(submission, value, theta, 48)
@@ -53,7 +53,7 @@ def test_encoder_inputs(submission, rng):
 @pytest.mark.task("imu")
 @pytest.mark.points(2)
 def test_imu_white(submission, rng):
-    """At other densities and sampling rates, white noise has the strength that its density gives"""
+    """imu at other densities and sampling rates: the strength of the white noise"""
     calls = [
         (np.zeros(20000), dt, 10 ** rng.uniform(-3.5, -2.0), 0.0, float(rng.normal()), rng)
         for dt in (rng.uniform(0.002, 0.006), rng.uniform(0.05, 0.5))
@@ -65,7 +65,7 @@ def test_imu_white(submission, rng):
 @pytest.mark.task("imu")
 @pytest.mark.points(2)
 def test_imu_walk(submission, rng):
-    """Over one sample and over ten, the bias wanders with the square root of time"""
+    """imu: how far the bias wanders over one sample and over ten"""
     dt, walk = rng.uniform(0.004, 0.05), 0.01 * rng.uniform(0.5, 2.0)
     bias0 = float(rng.normal())
     for rate, strength in ((dt, walk), (2 * dt, walk), (dt, 3 * walk)):
@@ -75,14 +75,14 @@ def test_imu_walk(submission, rng):
 @pytest.mark.task("imu")
 @pytest.mark.points(2)
 def test_imu_randomness(submission, rng):
-    """Noise and bias are independent, and both come from the generator that is passed in"""
+    """imu with other numbers: where noise and bias come from, and whether they go together"""
     sensors.expect_gyroscope_draws(submission, int(rng.integers(2**32)), rng.uniform(0.004, 0.05))
 
 
 @pytest.mark.task("imu")
 @pytest.mark.points(1)
 def test_imu_inputs(submission, rng):
-    """The true rate is left unchanged, and is in the measured rate exactly as it is"""
+    """imu with other rates: the true rate, as an argument and in the measured rate"""
     true, dt = 3.0 * np.sin(np.linspace(0, rng.uniform(5, 9), 50)), rng.uniform(0.01, 0.1)
     sensors.expect_rate_kept(submission, true, dt, -0.1, rng)
 
@@ -93,14 +93,14 @@ def test_imu_inputs(submission, rng):
 @pytest.mark.task("fit_noise")
 @pytest.mark.points(5)
 def test_fit_noise_unknown(submission, rng):
-    """Gyroscopes of other kinds and other sampling rates are identified from their recordings"""
+    """fit_noise on gyroscopes of other kinds, at other sampling rates"""
     sensors.expect_fits(submission, sensors.recordings(rng, 12, lambda: sensors.unknown_gyroscope(rng)))
 
 
 @pytest.mark.task("fit_noise")
 @pytest.mark.points(1)
 def test_fit_noise_inputs(submission, rng):
-    """fit_noise leaves its recording alone"""
+    """fit_noise: its numbers, and its argument"""
     still = scenes.recording(rng, 2000, 0.02, 0.002, 0.003, 0.5)
     for factor, dt in ((1.0, 0.02), (1.0, 0.08), (3.0, 0.02)):  # as long, at another rate, of another kind
         sensors.expect_density_of_short(submission, factor * still, dt, factor * 0.002 * (dt / 0.02) ** 0.5)
@@ -112,14 +112,14 @@ def test_fit_noise_inputs(submission, rng):
 @pytest.mark.task("lidar")
 @pytest.mark.points(3)
 def test_lidar_walls(submission, rng):
-    """In a crooked hall with free-standing walls, every beam finds its nearest wall or none"""
+    """lidar in a crooked hall with free-standing walls"""
     parts.expect_hall(submission, rng)
 
 
 @pytest.mark.task("lidar")
 @pytest.mark.points(3)
 def test_lidar_noise(submission, rng):
-    """Hits have noise of std sigma from the given generator, and no reading is negative; others are r_max"""
+    """lidar with noise in another scene: hits and other beams"""
     sensors.expect_scan_noise(submission, rng.uniform(6.0, 9.0), rng.uniform(0.02, 0.08), rng)
     sensors.expect_scan_draws(submission, int(rng.integers(2**32)))
 
@@ -127,7 +127,7 @@ def test_lidar_noise(submission, rng):
 @pytest.mark.task("lidar")
 @pytest.mark.points(1)
 def test_lidar_inputs(submission, rng):
-    """The scanner leaves pose, walls and angles alone"""
+    """lidar in another scene: the readings, and its arguments"""
     call = (rng.uniform(-1, 1, 3), rays.hall(rng), rng.uniform(-3, 3, 12), 5.0, 0.0, rng)
     value = bundles.expect_clean(submission, "lidar", call, ("pose", "segments", "angles", *[None] * 3))
     parts.expect_ranges(submission, value, *call[:4], "A distance is wrong.")
@@ -141,7 +141,7 @@ _MOTOR = "The speed of an unknown motor is not what its command, limits and lag 
 @pytest.mark.task("motor_step")
 @pytest.mark.points(4)
 def test_motor_unknown(submission, rng):
-    """An unknown motor follows commands large and small, both ways, at steps short and long"""
+    """motor_step of an unknown motor: commands large and small, both ways"""
     tau, u_max, dead = rng.uniform(0.05, 1.0), rng.uniform(5, 20), rng.uniform(0.5, 1.5)
     edges = [factor * dead for factor in (0.5, -0.7, 1.0, -1.0, 1.05, -1.05)]
     commands = rng.permutation([*rng.uniform(-1, 1, 6) * u_max, 2 * u_max, -3 * u_max, *edges])
@@ -156,7 +156,7 @@ def test_motor_unknown(submission, rng):
 @pytest.mark.task("motor_step")
 @pytest.mark.points(2)
 def test_motor_overspeed(submission, rng):
-    """A motor that spins faster than the largest command, either way, slows down gradually"""
+    """motor_step from a speed above the largest command, either way"""
     tau, u_max = rng.uniform(0.1, 1.0), rng.uniform(5, 20)
     for sign in (1.0, -1.0):
         calls = [(sign * u, 0.3 * tau, tau, u_max, 0.5) for u in (u_max, 0.2, -2 * u_max)]
@@ -169,7 +169,7 @@ def test_motor_overspeed(submission, rng):
 @pytest.mark.task("backlash")
 @pytest.mark.points(5)
 def test_backlash_swings(submission, rng):
-    """At any speed the output is half the gap behind each way, and stays at rest for small ones"""
+    """backlash at any speed, with large swings and small ones"""
     parts.expect_swings(submission, rng)
 
 
@@ -179,7 +179,7 @@ def test_backlash_swings(submission, rng):
 @pytest.mark.task("delay_line")
 @pytest.mark.points(3)
 def test_delay_fractions(submission, rng):
-    """Any latency, short or long, delays any signal by that much"""
+    """delay_line with latencies short and long"""
     cases = []
     for samples in (rng.uniform(0.1, 0.9), rng.uniform(1.1, 6.9), rng.uniform(7.5, 15.5)):
         x, dt = rng.normal(1.0, 1.0, 30), rng.uniform(0.002, 0.5)
@@ -193,7 +193,7 @@ def test_delay_fractions(submission, rng):
 @pytest.mark.task("delay_line")
 @pytest.mark.points(2)
 def test_delay_edges(submission, rng):
-    """No latency, whole samples, more latency than signal; and the output is a new array"""
+    """delay_line with no latency, whole samples, or more latency than signal: the output, and its argument"""
     x, dt = rng.normal(2.0, 1.0, 12), rng.uniform(0.01, 0.1)
     parts.expect_delays(submission, [(x, dt, 0.0), (x, dt, 3 * dt), (x, dt, 20.3 * dt)])
     actuators.expect_new_signal(submission, x, dt)
@@ -205,21 +205,21 @@ def test_delay_edges(submission, rng):
 @pytest.mark.task("diff_drive_step")
 @pytest.mark.points(2)
 def test_drive_tour(submission, rng):
-    """On a tour of many arcs, some backwards and some with many turns, each step is right"""
+    """diff_drive_step on a tour of many arcs"""
     parts.expect_tour(submission, rng)
 
 
 @pytest.mark.task("diff_drive_step")
 @pytest.mark.points(3)
 def test_drive_slow_turns(submission, rng):
-    """As the turn rate goes to zero, the arc becomes a straight line without a jump"""
+    """diff_drive_step as the turn rate goes to zero"""
     actuators.expect_slow_turns(submission, rng)
 
 
 @pytest.mark.task("diff_drive_step")
 @pytest.mark.points(1)
 def test_drive_inputs(submission, rng):
-    """A step leaves the old pose unchanged"""
+    """diff_drive_step: the new pose, and its argument"""
     pose, wheels = rng.uniform(1, 2, 3), (0.3, 0.5, 0.4, 1.0)
     value = bundles.expect_clean(submission, "diff_drive_step", (pose, *wheels), ("pose", *[None] * 4))
     actuators.expect_pose(submission, value, pose, wheels)
@@ -231,7 +231,7 @@ def test_drive_inputs(submission, rng):
 @pytest.mark.task("sync")
 @pytest.mark.points(3)
 def test_sync_late(submission, rng):
-    """Twins keep up, forwards and backwards, even when a third of the measurements come late"""
+    """sync both ways, with a third of the measurements late"""
     message = "With some measurements late, the twin's position is further off than the README allows."
     for sign in (1.0, -1.0):
         twins.expect_keeps_up(submission, rng, sign=sign, late=0.33, message=message)
@@ -240,7 +240,7 @@ def test_sync_late(submission, rng):
 @pytest.mark.task("sync")
 @pytest.mark.points(3)
 def test_sync_closes_loop(submission, rng):
-    """A cart driven with the friction the twin has learned gets back to its speed after a jump in friction"""
+    """sync in a loop after a jump in friction: the speed of the cart"""
     twins.expect_sync_closes_loop(submission, rng)
 
 
@@ -248,14 +248,14 @@ def test_sync_closes_loop(submission, rng):
 @pytest.mark.points(2)
 @pytest.mark.requires("sync_follows")  # a twin that never changes passes this one as well
 def test_sync_repeats(submission, rng):
-    """The same twin and measurement give the same result again, and the twin passed in is unchanged"""
+    """sync called twice: its result, and its arguments"""
     twins.expect_twin_contract(submission, rng)
 
 
 @pytest.mark.task("command")
 @pytest.mark.points(2)
 def test_command_unknown(submission, rng):
-    """For other frictions and speeds, forwards and backwards, the drive balances the friction"""
+    """command for other frictions and speeds, both ways"""
     speeds = rng.uniform(0.2, 2.0, 8) * np.tile([1.0, -1.0], 4)
     twins.expect_drives(submission, [(float(rng.uniform(0.1, 2.0)), float(speed)) for speed in speeds])
 
@@ -263,5 +263,5 @@ def test_command_unknown(submission, rng):
 @pytest.mark.task("command")
 @pytest.mark.points(3)
 def test_command_closes_loop(submission, rng):
-    """Driven by command, carts whose friction jumps reach their speed and return to it, in both directions"""
+    """command in a loop with other carts, both ways: the speed of the cart"""
     twins.expect_command_closes_loop(submission, rng)

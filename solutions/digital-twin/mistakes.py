@@ -1224,7 +1224,7 @@ mistakes(
 mistakes(
     "MEMORY_NOT_READ",
     "Emptying the memory changed neither of two calls, one with a new measurement and one with a late one.",
-    'Read in each call what the call before returned in "memory", such as the covariance of a Kalman filter; it is {} only at first. If nothing in it should matter here, look at the signs and sizes of the shares.',
+    'Read in each call what the call before returned in "memory", such as the covariance of a Kalman filter; it is {} only at first. If your code does, look at the signs and sizes of the shares, and at what limits them.',
 ).program(
     "sync",
     """

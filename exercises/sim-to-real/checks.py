@@ -17,7 +17,7 @@ named = words.named
 @pytest.mark.task("plan")
 @pytest.mark.points(4)
 def test_plan_complete(submission):
-    """The plan names at least three gaps from three sources, in words that can be executed"""
+    """The plan's gaps, sources and words"""
     plan, again = submission.call_each("plan", [(), ()])
     gaps = words.gaps_of(plan)
     for i, gap in enumerate(gaps):
@@ -52,7 +52,7 @@ def test_plan_complete(submission):
 @pytest.mark.task("plan")
 @pytest.mark.points(2)
 def test_plan_gaps_at_home(submission):
-    """Each gap is measured on three public carts, and its threshold can be met and means something"""
+    """Each gap on three public carts, and its threshold"""
     plan = submission.call("plan")
     seconds = words.budget_of(plan)
     for i, gap in enumerate(words.gaps_of(plan)):
@@ -63,7 +63,7 @@ def test_plan_gaps_at_home(submission):
 @pytest.mark.task("plan")
 @pytest.mark.points(4)
 def test_plan_box(submission):
-    """The randomisation box is as wide as the fleet, and at most one and a half times as wide"""
+    """The randomisation box beside the fleet"""
     box = words.box_of(kit.as_record(submission.call("plan"), words.PLAN_KEYS))
     for name in cart.NAMES:
         for fits, expected in (
@@ -83,7 +83,7 @@ def test_plan_box(submission):
 @pytest.mark.task("design_excitation")
 @pytest.mark.points(3)
 def test_excitation_obeys(submission):
-    """The excitation has the required length and stays within the bench's force"""
+    """The excitation's length and force"""
     # 100 * 8.2 is 819.9999999999999, and np.arange(0, 8.13, 0.01) has one command too many.
     # The last has the second one's length and less force.
     cases = [(20.0, 3.0), (12.5, 3.0), (8.2, 1.7), (8.13, 2.6), (12.5, 2.1)]
@@ -95,7 +95,7 @@ def test_excitation_obeys(submission):
 @pytest.mark.task("design_excitation")
 @pytest.mark.points(6)
 def test_excitation_shows(submission):
-    """Twenty seconds of the excitation could measure every parameter of the public cart"""
+    """What twenty seconds of the excitation show of the public cart"""
     value = submission.call("design_excitation", 20.0, 3.0, np.random.default_rng(8))
     u = probes.command_of(value, 20.0, 3.0)
     judge.expect_shows(u, [cart.PUBLIC])
@@ -105,7 +105,7 @@ def test_excitation_shows(submission):
 @pytest.mark.task("design_excitation")
 @pytest.mark.points(0)
 def test_excitation_shorter_and_weaker(submission):
-    """Fifteen seconds at less force could measure every parameter of three carts too"""
+    """What fifteen seconds at less force show of three carts"""
     case = 15.35, 2.4
     given = [(*case, np.random.default_rng(seed)) for seed in (9, 10, 11)]
     for value in submission.call_each("design_excitation", given):
@@ -115,7 +115,7 @@ def test_excitation_shorter_and_weaker(submission):
 @pytest.mark.task("identify")
 @pytest.mark.points(7)
 def test_identify_public(submission):
-    """identify finds mass, both frictions and lag of the public cart from a bench recording"""
+    """Mass, both frictions and lag of the public carts, from bench recordings"""
     recordings, carts = judge.public_recordings()
     # The heavier cart first: what is kept of the lighter one, whose recordings say more, shows afterwards.
     asked = [recordings[-1], recordings[-1], *recordings]
@@ -128,7 +128,7 @@ def test_identify_public(submission):
 @pytest.mark.task("identify")
 @pytest.mark.points(4)
 def test_identify_intervals(submission):
-    """Each interval contains its value, and is about as wide as its recording allows"""
+    """The intervals: their values and their widths"""
     recordings, carts = judge.public_recordings()
     both = [*recordings, *judge.weak_recordings()]
     values = probes.patient(lambda: submission.call_each("identify", both), "IDENTIFY_TOO_SLOW")
@@ -145,14 +145,14 @@ def test_identify_intervals(submission):
 @pytest.mark.task("tune")
 @pytest.mark.points(7)
 def test_tune_public(submission):
-    """With the gains from tune, a fleet of the public type settles almost as soon as any gains allow"""
+    """How soon a fleet of the public type settles with the gains from tune"""
     _expect_tuned(submission, cart.MATCHED, None, cart.PUBLIC_BEST_S, "the fleet settles later than it")
 
 
 @pytest.mark.task("tune")
 @pytest.mark.points(3)
 def test_tune_other_fleets(submission):
-    """For other boxes, one heavy and late, one light and prompt, tune finds the right gains"""
+    """The gains for other boxes, one heavy and late, one light and prompt"""
     for box, best in ((cart.LOADED, cart.LOADED_BEST_S), (cart.PROMPT, cart.PROMPT_BEST_S)):
         _expect_tuned(submission, box, box, best, "carts drawn from this box settle later than they")
 

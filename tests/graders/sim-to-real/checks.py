@@ -25,7 +25,7 @@ named = words.named
 @pytest.mark.task("plan")
 @pytest.mark.points(7)
 def test_plan_gaps_kept(submission):
-    """Each gap is measured as the plan says, and its threshold can be met and means something"""
+    """Each gap measured as the plan says, and its threshold"""
     plan = execution.plan(submission)
     gaps = words.gaps_of(plan)
     judge.expect_enough(gaps)
@@ -38,7 +38,7 @@ def test_plan_gaps_kept(submission):
 @pytest.mark.task("plan")
 @pytest.mark.points(5)
 def test_plan_executed(submission):
-    """Executed on three fleets, with the other parts correct, the plan keeps its promise"""
+    """The plan's promise on three fleets, with the other parts correct"""
     plan = kit.as_record(execution.plan(submission), words.PLAN_KEYS)
     box, threshold = words.box_of(plan), kit.as_number(plan["threshold"], "threshold")
     kit.expect_bounded(
@@ -66,7 +66,7 @@ def _of_promise(box, threshold):
 @pytest.mark.task("design_excitation")
 @pytest.mark.points(6)
 def test_excitation_shows_all(submission):
-    """The excitation shows every parameter of three unknown carts"""
+    """What the excitation shows of three unknown carts"""
     u, carts = execution.command(submission), reference.realities(submission.seed)
     judge.expect_shows(u, carts)
     judge.expect_fitted(u, carts)
@@ -75,7 +75,7 @@ def test_excitation_shows_all(submission):
 @pytest.mark.task("design_excitation")
 @pytest.mark.points(3)
 def test_excitation_other_bench(submission, rng):
-    """On a bench with other limits the excitation stays within them and still shows everything"""
+    """The excitation on a bench with other limits"""
     others = [(_uneven(rng, count), float(rng.uniform(1.7, 3.0))) for count in _COUNTS]
     (seconds, force), _ = others  # this length with two forces from the README's range, the larger one first
     others += [(seconds, max(force, 4.7 - force)), (seconds, min(force, 4.7 - force))]
@@ -103,7 +103,7 @@ def _uneven(rng, count):
 @pytest.mark.task("identify")
 @pytest.mark.points(11)
 def test_identify_accurate(submission):
-    """identify finds mass, both frictions and lag of three unknown carts, from two recordings each"""
+    """Mass, both frictions and lag of three unknown carts, from two recordings each"""
     estimates, carts = execution.bench(submission)
     recordings = reference.recordings(submission.seed)[:3]
     judge.expect_accurate(execution.means(estimates), carts[:3], recordings)
@@ -112,7 +112,7 @@ def test_identify_accurate(submission):
 @pytest.mark.task("identify")
 @pytest.mark.points(10)
 def test_identify_honest(submission):
-    """Intervals are as wide as recordings require, wider for weak ones; doubled, they contain the truth"""
+    """The intervals for strong and weak recordings, and the true values"""
     estimates, carts = execution.bench(submission)
     judge.expect_intervals(estimates, carts, reference.recordings(submission.seed))
     judge.expect_growth(estimates, execution.weak(submission), carts)
@@ -126,7 +126,7 @@ def test_identify_honest(submission):
 @pytest.mark.task("tune")
 @pytest.mark.points(11)
 def test_tune_executed(submission):
-    """The whole plan executed: three unknown fleets settle almost as soon as any gains allow"""
+    """The whole plan executed: how soon three unknown fleets settle"""
     box = execution.box(submission)
     asked = [(estimate, box) for estimate in execution.estimates(submission)]
     _expect_success(submission, asked, reference.success, "fleets that nobody has seen settle")
@@ -135,7 +135,7 @@ def test_tune_executed(submission):
 @pytest.mark.task("tune")
 @pytest.mark.points(7)
 def test_tune_other_boxes(submission):
-    """For other boxes, one for each of three carts, tune finds the right gains"""
+    """The gains for other boxes, one for each of three carts"""
     asked = [
         (cart.with_intervals(each, 0.7, 1.9), box)
         for each, box in zip(reference.realities(submission.seed), reference.OTHER_BOXES, strict=True)

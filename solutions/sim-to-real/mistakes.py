@@ -1233,6 +1233,7 @@ mistakes(
         mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
         return {"kp": float(kp[mean.argmin()]), "kd": float((kp * ratio)[mean.argmin()])}
     """,
+    also=("NO_CART_SETTLES",),
 )
 mistakes(
     "FACTORS_ADDED",

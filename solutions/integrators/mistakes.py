@@ -313,7 +313,7 @@ mistakes(
 mistakes(
     "EXTRA_EVALUATIONS",
     "accel is called more often than this method needs.",
-    "The Euler methods call accel once a step, Verlet once or twice, RK4 four times. Keep a value that you need twice in a variable: real forces are expensive to compute.",
+    "The Euler methods call accel once a step, Verlet once or twice, RK4 four times. If you need the same acceleration twice, keep it in a variable. If you iterate, or divide the step into shorter ones, it is another method.",
     kind="fact",
 ).program(
     "rk4_step",
@@ -1335,7 +1335,7 @@ mistakes(
 mistakes(
     "FEW_DIGITS",
     "A step is right to six digits or more, but not to all of them, as in single precision or after rounding.",
-    "Compute in Python's own floats (float64): no np.float32, and no round().",
+    "Compute in Python's own floats (float64): no np.float32, and no round(). A constant that is typed with few digits does the same: write 1/6, not 0.166667.",
 )
 mistakes(
     "VELOCITY_ALONE_WRONG",
@@ -1599,7 +1599,7 @@ mistakes(
 )
 mistakes(
     "SLOPE_NEARLY_RIGHT",
-    "The slope is right to three digits, but not to nine.",
+    "The slope is near the right one, but further off than rounding takes it.",
     "Is a number rounded, kept in float32, or is a small one added to the errors before the logarithm?",
     kind="consequence",
 )
@@ -1615,8 +1615,8 @@ mistakes(
 )
 mistakes(
     "TOLERANCE_TOO_TIGHT",
-    "Methods count as unstable whose spectral radius is one, or exceeds it by rounding only.",
-    "Use the tolerance of the README: unstable means above 1 + 1e-8.",
+    "A step of this map counts as unstable, although its spectral radius is at most 1 + 1e-8.",
+    "Compare max(abs(np.linalg.eigvals(M))) with 1 + 1e-8. A norm of M, or of a power of M, may be larger, and rounding takes the modulus a little above one.",
 )
 mistakes(
     "NO_ZERO",

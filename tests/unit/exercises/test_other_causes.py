@@ -64,7 +64,7 @@ TOLD = {
     "validation": {
         "coverage_ends_like_values": {"WHOLE_NUMBERS"},
         "bootstrap_backwards": {"IID_BOOTSTRAP"},
-        "bootstrap_repeats_one_block": {"PART_OF_SERIES"},
+        "bootstrap_repeats_one_block": {"BEGINNING_REPEATED", "PART_OF_SERIES"},
         "bootstrap_resamples_by_blocks": {"OTHER_NUMBER_OF_RESAMPLES"},
         "bootstrap_shuffles_each_resample": {"IID_BOOTSTRAP"},
         "energy_of_a_joule_at_least": {None},
@@ -80,7 +80,7 @@ TOLD = {
         "verdict_lists_what_both_have": {"OTHER_RUNS_LISTED", "WRONG_SIGN"},
         "verdict_pairs_what_is_left": {"MATCHED_BY_POSITION"},
         "verdict_part_of_an_id": {None},
-        "verdict_spread_about_the_number": {None},
+        "verdict_spread_about_the_number": {"ABOUT_THE_NUMBER"},
         "wrap_ten_turns": {None},
     },
 }

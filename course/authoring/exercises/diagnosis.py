@@ -310,6 +310,7 @@ def rows_of(
     catalog: Catalog,
     exercise: Exercise,
     *,
+    scopes: tuple[str, ...] = ("public", "full", "alone"),
     on_progress: Progress | None = None,
 ) -> dict[str, tuple[Reported, ...]]:
     """Try known wrong programs for every task: all with one mistake, then some with two.
@@ -332,7 +333,7 @@ def rows_of(
             seen[item[1]] += 1
             lots.append((hashlib.sha256(f"{task} {item[1]} {seen[item[1]]}".encode()).digest(), item))
         chosen += [as_one(exercise, item) for _, item in sorted(lots, key=lambda lot: lot[0])[: max(left, 0)]]
-    tried = {"public": chosen, "full": chosen, "alone": single}
+    tried = {scope: single if scope == "alone" else chosen for scope in scopes}
     rows: dict[str, tuple[Reported, ...]] = {}
     done, total = 0, sum(map(len, tried.values()))
     for scope, programs in tried.items():

@@ -12,6 +12,7 @@ import os
 import re
 import traceback
 from collections.abc import Callable, Mapping
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,10 @@ from course.scoring.verdict import Finding, Places
 Comparison = tuple[Any, Any, Any, str, str]
 
 
+#: Seconds that the submission being judged has used in this check; 0 where none is.
+CLOCK: ContextVar[Callable[[], float]] = ContextVar("CLOCK", default=float)
+
+
 class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for what it says
     """A check found something wrong; ``finding`` says what.
 
@@ -37,7 +42,7 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
         broke: where the probe raised, for the check's author; empty if it did not.
         comparison: along time, if there was one.
         looked: a search of the check's own for the mistake was made on these numbers.
-        search_s: seconds that the search took by the clock.
+        search_s: seconds of ``CLOCK`` that the search took.
     """
 
     def __init__(

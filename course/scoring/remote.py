@@ -268,7 +268,7 @@ class RemoteSubmission:
 
         All searches together have ``SEARCH_S``; what they take beyond that counts.
         """
-        free = min(seconds, self.used, self._search_left)
+        free = min(seconds, self._search_left)
         self._search_left -= free
         self._cpu_left += free
         self._wall_left += WALL * free

@@ -35,7 +35,15 @@ from course.scoring.checks.collected import (
     questions_path,
 )
 from course.scoring.explain.story import read_table
-from course.scoring.failures import ON_THE_MODEL, CheckFailed, Report, broke_at, finding_for, finding_of
+from course.scoring.failures import (
+    CLOCK,
+    ON_THE_MODEL,
+    CheckFailed,
+    Report,
+    broke_at,
+    finding_for,
+    finding_of,
+)
 from course.scoring.judging.explaining import Again, Explainer
 from course.scoring.judging.outcomes import (
     found,
@@ -275,6 +283,7 @@ class GradingSession:
         self.running = check.title
         hung = check.task in self._hung
         remote.begin_check(check.task, self._patience(check, hung))
+        CLOCK.set(lambda: remote.used)
         start = perf_counter()
         outcome = self._checks.run(check, remote)
         self.asked[check.id], self.took[check.id] = frozenset(remote.asked), remote.used

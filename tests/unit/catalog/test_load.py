@@ -128,6 +128,8 @@ def test_an_unknown_id_is_answered_with_the_nearest(
         (EXERCISE, "order = 1", "order = 1\npass_mark = 70", 7, "`pass_mark`", "0.70 for 70 %"),
         (EXERCISE, "order = 1", "order = 1\npass_mark = 0", 7, "`pass_mark`", "0.70 for 70 %"),
         (EXERCISE, "order = 1", "order = 1\npass_mark = nan", 7, "`pass_mark`", "0.70 for 70 %"),
+        (EXERCISE, "order = 1", "order = 1\ntime = 9", 7, "`time`", "how many times as long"),
+        (EXERCISE, "order = 1", "order = 1\ntime = nan", 7, "`time`", "how many times as long"),
         (EXERCISE, "order = 1", "order = 0", 6, "`order` must be 1 or more", "from 1"),
         (EXERCISE, '"doubling.py"', '"../doubling.py"', 4, "not a plain Python file name", "underscores"),
         (EXERCISE, '"doubling.py"', '"doubling.txt"', 4, "not a plain Python file name", "underscores"),

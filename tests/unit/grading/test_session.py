@@ -17,6 +17,7 @@ from course.errors import MissingCapabilityError
 from course.isolation.levels import Deadline
 from course.scoring import kit
 from course.scoring.checks.collected import Check
+from course.scoring.failures import CheckFailed
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.remote import RemoteSubmission
@@ -58,7 +59,7 @@ def test_a_search_for_the_cause_takes_no_time_from_later_checks_up_to_its_own(
         for _ in range(3):
             remote.begin_check("double")
             remote.call("double", 1.0)
-            remote.not_charged(10.0)
+            remote.not_charged(remote.used)
         return allowed[-3:]
 
     busy = b"""
@@ -71,6 +72,44 @@ def double(x):
     first, second, third = session.using(Submission({"doubling.py": solution + busy}), three_checks)
     assert first - second < 0.02  # it came back whole
     assert 0.02 < first - third < 0.1  # and of the next one half
+
+
+def test_what_a_search_asks_of_a_function_is_measured(
+    session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given_back: list[float] = []
+    monkeypatch.setattr(RemoteSubmission, "not_charged", lambda _, seconds: given_back.append(seconds))
+
+    def check(_: object, one: Check, submission: RemoteSubmission) -> BaseException | None:
+        """The first check of double: it asks once for itself, and once to find a cause."""
+        submission.call("double", 1.0)
+        try:
+            kit.fail("It is wrong.", diagnose=lambda: str(submission.call("double", 1.0)))
+        except CheckFailed as failed:
+            return failed
+
+    monkeypatch.setattr("course.scoring.judging.session.CollectedChecks.run", check)
+    busy = b"""
+import time
+def double(x):
+    end = time.process_time() + 0.05
+    while time.process_time() < end:
+        pass
+"""
+    session.grade(Submission({"doubling.py": solution + busy}), only=[session.checks[0].id])
+    assert len(given_back) == 1
+    assert 0.04 < given_back[0] < 0.09  # of one call, not of both
+
+
+def test_an_exercise_that_asks_for_twice_the_time_has_it(
+    catalog: Catalog, doubling: Exercise, solution: bytes
+) -> None:
+    hangs = solution + b"\ndef double(x):\n    while True:\n        pass\n"
+    twice = msgspec.structs.replace(doubling, time=2.0)
+    with GradingSession(twice, catalog, scope="full", terms=Terms(timeout=0.2)) as slower:
+        first = next(check for check in slower.checks if check.task == "double")
+        grade(slower, hangs)
+        assert 0.35 < slower.took[first.id] < 0.6
 
 
 def test_once_a_function_ran_out_of_time_its_further_checks_have_a_quarter(

@@ -17,7 +17,7 @@ bundles = kit.companion("validation", "bundles")
 @pytest.mark.task("rmse")
 @pytest.mark.points(2)
 def test_rmse_by_hand(submission):
-    """rmse is the root of the mean square, a constant error included"""
+    """rmse of a few errors, constant ones among them"""
     for e in ([2.0, 2.0, 2.0], [0.0, 0.0], [*[0.3, -0.2] * 9, 7.0], [3, -4, 0, 5]):
         shared.expect_rmse(submission, e)
 
@@ -25,7 +25,7 @@ def test_rmse_by_hand(submission):
 @pytest.mark.task("bias_variance")
 @pytest.mark.points(2)
 def test_bias_variance_by_hand(submission):
-    """Bias and variance of a few errors, too large or too small, the variance divided by N"""
+    """Bias and variance of a few errors, too large or too small"""
     shared.expect_bias_variance(submission, [0.5, -0.2, 0.9, 0.1, 1.7])
     shared.expect_bias_variance(submission, [-0.5, 0.2, -0.9, -0.1, -1.7])
     shared.expect_bias_variance(submission, [3, -4, 0, 6])
@@ -41,7 +41,7 @@ def test_bias_variance_large_mean(submission):
 @pytest.mark.task("wrap_angle")
 @pytest.mark.points(3)
 def test_wrap_angle_some(submission):
-    """Angles, some of them many turns away, come out between minus half a turn and half a turn"""
+    """Angles, some of them many turns away"""
     small = np.array([0.3, -0.3, 3.0, -3.0, 0.0, 1.8, -2.4, 1.0, -2.0])
     turns = np.array([0, 1, -1, 1, 0, -1, 1, 30, -20])
     whole = np.array([2, -3, 4, -5, 7, -40, 100])
@@ -83,7 +83,7 @@ def test_nis_by_hand(submission):
 @pytest.mark.task("consistency_band")
 @pytest.mark.points(4)
 def test_consistency_band_table(submission):
-    """The band agrees with a printed table of the chi-square distribution"""
+    """The band beside a printed table of the chi-square distribution"""
     for dof, count, alpha in ((2, 20, 0.05), (20, 1, 0.05), (2, 20, 0.1)):
         setting = dof, count, alpha
         shared.expect_band(
@@ -135,21 +135,21 @@ def test_coverage_counts(submission):
 @pytest.mark.task("block_bootstrap_ci")
 @pytest.mark.points(3)
 def test_bootstrap_width(submission):
-    """Intervals for the mean of correlated errors are about as wide as they must be"""
+    """How wide intervals for the mean of correlated errors are"""
     intervals.expect_width(submission, np.random.default_rng(2718), 1.0, 0.0)
 
 
 @pytest.mark.task("block_bootstrap_ci")
 @pytest.mark.points(1)
 def test_bootstrap_resamples(submission):
-    """24 resamples of 250 errors in blocks of 12: each as long as the series, which stays unchanged"""
+    """24 resamples of 250 errors in blocks of 12, and the series itself"""
     intervals.expect_resamples(submission, 3)
 
 
 @pytest.mark.task("block_bootstrap_ci")
 @pytest.mark.points(1)
 def test_bootstrap_chance(submission):
-    """The width depends on alpha, the given statistic is used, and all random numbers come from rng"""
+    """What alpha, the statistic and rng decide"""
     statistic = systems.AveragePolynomial([0.0, 0.0, 1.0])
     intervals.expect_level(submission, np.random.default_rng(161), statistic)
     intervals.expect_whole(submission)
@@ -183,7 +183,7 @@ def test_contact_force_late(submission):
 @pytest.mark.task("cross_validate")
 @pytest.mark.points(3)
 def test_cross_validate_folds(submission):
-    """Each fold is predicted by a model that has not seen it"""
+    """Six runs in three folds"""
     rng = np.random.default_rng(31)
     data = []
     for i in range(6):
@@ -195,7 +195,7 @@ def test_cross_validate_folds(submission):
 @pytest.mark.task("cross_validate")
 @pytest.mark.points(1)
 def test_cross_validate_lengths(submission):
-    """Folds of different sizes, with runs of different lengths, are scored by their samples"""
+    """Folds of different sizes, with runs of different lengths"""
     rng = np.random.default_rng(32)
     data = []
     for i, n in enumerate((8, 40, 15, 8, 25)):
@@ -209,7 +209,7 @@ def test_cross_validate_lengths(submission):
 @pytest.mark.task("validate")
 @pytest.mark.points(2)
 def test_validate_late(submission, draw):
-    """A simulation that is late or early is refused, with one lag for runs of different step and length"""
+    """A simulation that is late or early, of runs of different step and length"""
     spec = {"rmse_max": 0.1, "bias_max": 0.05, "lag_max_s": 0.02, "coverage_min": 0.9, "coverage_max": 1.1}
     (case, right), (far, lags) = bundles.public("validate_late", draw)
     shown = {"runs": "c + A sin(2 pi t); sim the same, late", "late": list(case.lates), "spec": spec}
@@ -228,7 +228,7 @@ def test_validate_late(submission, draw):
 @pytest.mark.task("validate")
 @pytest.mark.points(2)
 def test_validate_accepts(submission, draw):
-    """A good simulation is accepted on new runs, but not if only one run is left, or none"""
+    """A good simulation on new runs, on one run, and on none"""
     spec = {"rmse_max": 0.05, "bias_max": 0.02, "lag_max_s": 0.01, "coverage_min": 0.8, "coverage_max": 1.1}
     (case, right), *rest = bundles.public("validate_accepts", draw)
     shown = {"runs": "a, c, d: right but for noise of 0.03; ab: wrong", "calibrated_on": ["ab"], "spec": spec}
@@ -241,7 +241,7 @@ def test_validate_accepts(submission, draw):
 @pytest.mark.task("validate")
 @pytest.mark.points(2)
 def test_validate_margins_apart(submission, draw):
-    """Each measure is judged separately, and by its interval where the number alone would pass"""
+    """Each measure with its own margin, by its interval and not by its number"""
     ((case, right),) = bundles.public("validate_margins_apart", draw)
     bundles.expect_margins(submission, case, right)
     bundles.expect_edges(submission, np.random.default_rng(64) if draw is None else draw)

@@ -229,73 +229,25 @@ mistakes(
     "The first call of accel is right, but the second gets another time, position or velocity than in the classical method.",
     "The second slope belongs to t + h/2, and is reached with the first. With a1 = accel(t, q, v), call accel(t + h/2, q + h/2*v, v + h/2*a1).",
     kind="consequence",
-).body(
-    "rk4_step",
-    """
-        v1, a1 = v, accel(t, q, v)
-        v2 = v + h / 3 * a1
-        a2 = accel(t + h / 2, q + h / 3 * v1, v2)
-        v3 = v + h / 2 * a2
-        a3 = accel(t + h / 2, q + h / 2 * v2, v3)
-        v4 = v + h * a3
-        a4 = accel(t + h, q + h * v3, v4)
-        return q + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4), v + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
-    """,
-)
+).edit("rk4_step", {"q + h / 2 * dq1, v + h / 2 * dv1": "q + h / 3 * dq1, v + h / 3 * dv1"})
 mistakes(
     "THIRD_STAGE_ELSEWHERE",
     "The first two calls of accel are right, but the third gets another time, position or velocity than in the classical method.",
     "The third slope belongs to t + h/2, and is reached with the second. With v2 and a2, the velocity and the acceleration of the second call, call accel(t + h/2, q + h/2*v2, v + h/2*a2).",
     kind="consequence",
-).body(
-    "rk4_step",
-    """
-        v1, a1 = v, accel(t, q, v)
-        v2 = v + h / 2 * a1
-        a2 = accel(t + h / 2, q + h / 2 * v1, v2)
-        v3 = v2 + h / 2 * a2
-        a3 = accel(t + h / 2, q + h / 2 * v2, v3)
-        v4 = v + h * a3
-        a4 = accel(t + h, q + h * v3, v4)
-        return q + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4), v + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
-    """,
-)
+).edit("rk4_step", {"v + h / 2 * dv2": "v + h / 2 * dv1 + h / 2 * dv2"})
 mistakes(
     "FOURTH_STAGE_ELSEWHERE",
     "The first three calls of accel are right, but the fourth gets another time, position or velocity than in the classical method.",
     "The fourth slope belongs to t + h, and is reached with the third. With v3 and a3, the velocity and the acceleration of the third call, call accel(t + h, q + h*v3, v + h*a3).",
     kind="consequence",
-).body(
-    "rk4_step",
-    """
-        v1, a1 = v, accel(t, q, v)
-        v2 = v + h / 2 * a1
-        a2 = accel(t + h / 2, q + h / 2 * v1, v2)
-        v3 = v + h / 2 * a2
-        a3 = accel(t + h / 2, q + h / 2 * v2, v3)
-        v4 = v3 + h / 2 * a3
-        a4 = accel(t + h, q + h * v3, v4)
-        return q + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4), v + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
-    """,
-)
+).edit("rk4_step", {"v + h * dv3": "v + h / 2 * dv2 + h / 2 * dv3"})
 mistakes(
     "STAGES_PUT_TOGETHER_WRONG",
     "All four calls of accel get what they should, but their slopes are not put together as in the classical method, in position or in velocity.",
     "With v1 to v4, the velocities that accel was called with, and a1 to a4, what it returned: q + h/6*(v1 + 2*v2 + 2*v3 + v4) and v + h/6*(a1 + 2*a2 + 2*a3 + a4).",
     kind="consequence",
-).body(
-    "rk4_step",
-    """
-        v1, a1 = v, accel(t, q, v)
-        v2 = v + h / 2 * a1
-        a2 = accel(t + h / 2, q + h / 2 * v1, v2)
-        v3 = v + h / 2 * a2
-        a3 = accel(t + h / 2, q + h / 2 * v2, v3)
-        v4 = v + h * a3
-        a4 = accel(t + h, q + h * v3, v4)
-        return q + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4), v + h / 6 * (2 * a1 + a2 + a3 + 2 * a4)
-    """,
-)
+).edit("rk4_step", {"dv1 + 2 * dv2 + 2 * dv3 + dv4": "2 * dv1 + dv2 + dv3 + 2 * dv4"})
 mistakes(
     "STAGE_VELOCITY_IGNORED",
     "accel gets the velocity from the start of the step each time. Only a force that depends on velocity, such as damping, shows this: if another fails, too, there is a second mistake.",

@@ -1201,78 +1201,26 @@ mistakes(
     "Here and for four other questions, your gains do about as well as any on carts whose parameters all lie at an end of their range, and none between.",
     "Draw each factor anywhere between low and high: np.exp(rng.uniform(np.log(low), np.log(high), n)).",
     kind="consequence",
-).body(
-    "tune",
-    """
-        rng = np.random.default_rng(2)
-        box = {k: np.log(randomization[k]) for k in NAMES}
-        carts = {k: estimate[k][0] * np.exp(rng.choice(box[k], 300)) for k in NAMES}
-        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(2, 40, 20), np.linspace(0.2, 0.8, 13)))
-        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
-        kp, ratio = kp[mean.argmin()], ratio[mean.argmin()]
-        kp, ratio = (x.ravel() for x in np.meshgrid(kp * np.geomspace(0.85, 1.18, 5), ratio + np.linspace(-0.05, 0.05, 5)))
-        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
-        return {"kp": float(kp[mean.argmin()]), "kd": float((kp * ratio)[mean.argmin()])}
-    """,
-)
+).edit("tune", {"(rng.permutation(200) + 0.5) / 200": "rng.integers(0, 2, 200)"})
 mistakes(
     "FACTORS_DIVIDE",
     "Here and for four other questions, your gains do about as well as any on carts whose parameters are the estimate's values divided by factors from the box.",
     "Multiply: value * factor.",
     kind="consequence",
-).body(
-    "tune",
-    """
-        rng = np.random.default_rng(2)
-        box = {k: np.log(randomization[k]) for k in NAMES}
-        carts = {k: estimate[k][0] / np.exp(rng.uniform(*box[k], 300)) for k in NAMES}
-        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(2, 40, 20), np.linspace(0.2, 0.8, 13)))
-        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
-        kp, ratio = kp[mean.argmin()], ratio[mean.argmin()]
-        kp, ratio = (x.ravel() for x in np.meshgrid(kp * np.geomspace(0.85, 1.18, 5), ratio + np.linspace(-0.05, 0.05, 5)))
-        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
-        return {"kp": float(kp[mean.argmin()]), "kd": float((kp * ratio)[mean.argmin()])}
-    """,
-    also=("NO_CART_SETTLES",),
-)
+).edit("tune", {"estimate[name][0] * np.exp": "estimate[name][0] / np.exp"}, also=("NO_CART_SETTLES",))
 mistakes(
     "FACTORS_ADDED",
     "Here and for four other questions, your gains do about as well as any on carts whose parameters are the estimate's values times 1 + factor.",
     "The box has factors, not changes: value * factor.",
     kind="consequence",
-).body(
-    "tune",
-    """
-        rng = np.random.default_rng(2)
-        box = {k: np.log(randomization[k]) for k in NAMES}
-        carts = {k: estimate[k][0] * (1 + np.exp(rng.uniform(*box[k], 300))) for k in NAMES}
-        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(2, 40, 20), np.linspace(0.2, 0.8, 13)))
-        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
-        kp, ratio = kp[mean.argmin()], ratio[mean.argmin()]
-        kp, ratio = (x.ravel() for x in np.meshgrid(kp * np.geomspace(0.85, 1.18, 5), ratio + np.linspace(-0.05, 0.05, 5)))
-        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
-        return {"kp": float(kp[mean.argmin()]), "kd": float((kp * ratio)[mean.argmin()])}
-    """,
-)
+).edit("tune", {"np.exp(low + share * (high - low))": "(1 + np.exp(low + share * (high - low)))"})
 mistakes(
     "LAG_FOR_LATENCY",
     "Here and for four other questions, your gains do about as well as any on carts whose latency is tau + latency.",
     "rollout takes tau and latency: give it each as it is, times its factor.",
     kind="consequence",
-).body(
-    "tune",
-    """
-        rng = np.random.default_rng(2)
-        box = {k: np.log(randomization[k]) for k in NAMES}
-        carts = {k: estimate[k][0] * np.exp(rng.uniform(*box[k], 300)) for k in NAMES}
-        carts["latency"] *= 1 + estimate["tau"][0] / estimate["latency"][0]
-        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(2, 40, 20), np.linspace(0.2, 0.8, 13)))
-        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
-        kp, ratio = kp[mean.argmin()], ratio[mean.argmin()]
-        kp, ratio = (x.ravel() for x in np.meshgrid(kp * np.geomspace(0.85, 1.18, 5), ratio + np.linspace(-0.05, 0.05, 5)))
-        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
-        return {"kp": float(kp[mean.argmin()]), "kd": float((kp * ratio)[mean.argmin()])}
-    """,
+).edit(
+    "tune", {"few = {": 'carts["latency"] *= 1 + estimate["tau"][0] / estimate["latency"][0]\n    few = {'}
 )
 mistakes(
     "RANGE_NOT_READ",

@@ -157,7 +157,7 @@ def _expect_success(submission, asked, success, who):
         source="the README's",
         quantity="success: mean of best over own settling",
         message=f"With the gains from tune, {who} later than they could. "
-        "What follows is about the worst of the three.",
+        "The worst of the three is looked into.",
         help=judge.LEAST_MEAN,
         input={"success on each": shares},
         diagnose=lambda: probes.of_gains(

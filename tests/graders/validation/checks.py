@@ -29,7 +29,7 @@ cases = kit.sibling(__file__, "cases")
 @pytest.mark.task("rmse")
 @pytest.mark.points(2)
 def test_rmse_anything(submission, rng):
-    """rmse of errors of any number, size and mean, which stay unchanged"""
+    """rmse of errors of any number, size and mean, and its argument"""
     e = rng.uniform(-2, 2) + rng.uniform(0.1, 3) * rng.standard_normal(rng.integers(5, 60))
     shared.expect_rmse(submission, e)
     shared.expect_rmse(
@@ -41,7 +41,7 @@ def test_rmse_anything(submission, rng):
 @pytest.mark.task("bias_variance")
 @pytest.mark.points(2)
 def test_bias_variance_scatter(submission, rng):
-    """Bias and variance of scattered errors, which stay unchanged"""
+    """Bias and variance of scattered errors, and the argument"""
     e = rng.uniform(0.1, 3) * rng.standard_exponential(rng.integers(7, 40))
     for mean in (rng.uniform(0.2, 2), -rng.uniform(0.2, 2)):  # a bias without its sign shows in the second
         shared.expect_bias_variance(submission, e - np.mean(e) + mean)
@@ -51,7 +51,7 @@ def test_bias_variance_scatter(submission, rng):
 @pytest.mark.task("bias_variance")
 @pytest.mark.points(2)
 def test_bias_variance_offset(submission, rng):
-    """The variance is accurate where the mean is ten million times the scatter"""
+    """The variance where the mean is ten million times the scatter"""
     # At this size neighbouring floats are 2e-9 apart, so the errors themselves are exact enough.
     e = rng.uniform(1e7, 2e7) + rng.uniform(0.5, 1.5) * rng.standard_normal(200)
     shared.expect_large_mean(submission, e)
@@ -60,7 +60,7 @@ def test_bias_variance_offset(submission, rng):
 @pytest.mark.task("wrap_angle")
 @pytest.mark.points(4)
 def test_wrap_angle_many_turns(submission, rng):
-    """Angles many turns away in both directions, and half a turn itself; the argument stays unchanged"""
+    """Angles many turns away in both directions, half a turn itself, and the argument"""
     e = np.concatenate([rng.uniform(-600, 600, 40), rng.uniform(-3, 3, 10), [np.pi, -np.pi, 0.0]])
     for angles in (e, rng.integers(-600, 600, 20)):
         inspected = submission.call_inspect("wrap_angle", angles)
@@ -109,7 +109,7 @@ def test_nis_correlated(submission, rng):
 @pytest.mark.task("consistency_band")
 @pytest.mark.points(4)
 def test_consistency_band_sweep(submission, rng):
-    """The band is right for many dimensions, numbers of runs and levels"""
+    """The band for many dimensions, numbers of runs and levels"""
     settings = [
         (int(dof), int(max(count, math.ceil(20 / dof))), float(alpha))
         for dof, count, alpha in zip(
@@ -169,14 +169,14 @@ def test_coverage_edges(submission, rng):
 @pytest.mark.task("block_bootstrap_ci")
 @pytest.mark.points(4)
 def test_bootstrap_width_drawn(submission, rng):
-    """On new series, intervals for the mean are about as wide as they must be, and lie around it"""
+    """How wide intervals for the mean of new series are, and where they lie"""
     intervals.expect_width(submission, rng, float(rng.uniform(0.2, 4)), float(rng.uniform(-3, 3)))
 
 
 @pytest.mark.task("block_bootstrap_ci")
 @pytest.mark.points(2)
 def test_bootstrap_level(submission, rng):
-    """The width depends on alpha, the given statistic is used, and all random numbers come from rng"""
+    """What alpha, the statistic and rng decide, with other numbers"""
     statistic = systems.AveragePolynomial([0.0, 0.0, float(rng.uniform(0.5, 3))])
     intervals.expect_level(submission, rng, statistic)
 
@@ -184,7 +184,7 @@ def test_bootstrap_level(submission, rng):
 @pytest.mark.task("block_bootstrap_ci")
 @pytest.mark.points(3)
 def test_bootstrap_blocks(submission, rng):
-    """n_boot resamples, as long as the series, in blocks of the given length; the series stays unchanged"""
+    """The resamples: their number, their length and their blocks, and the series itself"""
     intervals.expect_resamples(submission, int(rng.integers(2**31)))
 
 
@@ -231,7 +231,7 @@ def test_contact_force_shifted(submission, rng):
 @pytest.mark.task("cross_validate")
 @pytest.mark.points(3)
 def test_cross_validate_leak(submission, rng):
-    """Fold by fold, a run is predicted by a model that has never seen it"""
+    """As many folds as runs"""
     count = int(rng.integers(4, 7))
     shared.expect_folds(submission, cases.pushed_runs(rng, [25] * count), count)
 
@@ -239,7 +239,7 @@ def test_cross_validate_leak(submission, rng):
 @pytest.mark.task("cross_validate")
 @pytest.mark.points(3)
 def test_cross_validate_uneven(submission, rng):
-    """Folds of different sizes, with runs of different lengths, are scored by their samples"""
+    """Folds of different sizes, with runs of different lengths, without ids"""
     # Of seven runs some are of one length, in different folds: the first of all has a twin in the last.
     lengths = rng.permutation([12, 20, 30, 45, 60, 80])[:5]
     runs = cases.pushed_runs(rng, [lengths[0], *lengths[1:], lengths[1], lengths[0]])
@@ -254,7 +254,7 @@ def test_cross_validate_uneven(submission, rng):
 @pytest.mark.task("validate")
 @pytest.mark.points(2)
 def test_validate_good(submission, rng):
-    """A good simulation of runs of different length and step is accepted; its arguments stay unchanged"""
+    """A good simulation of runs of different length and step, and the arguments"""
     recordings = cases.recordings(rng)
     cases.expect_verdict(submission, rng, recordings, twins.simulated(recordings))
 
@@ -262,7 +262,7 @@ def test_validate_good(submission, rng):
 @pytest.mark.task("validate")
 @pytest.mark.points(2)
 def test_validate_wrong_mass(submission, rng):
-    """A simulation with the wrong mass, or one that is always off to one side, is refused"""
+    """A simulation with the wrong mass, or one that is always off to one side"""
     recordings = cases.recordings(rng)
     mass = twins.MASS * float(rng.choice([rng.uniform(0.6, 0.75), rng.uniform(1.35, 1.7)]))
     cases.expect_refused(submission, rng, recordings, twins.simulated(recordings, mass=mass), mass)
@@ -273,7 +273,7 @@ def test_validate_wrong_mass(submission, rng):
 @pytest.mark.task("validate")
 @pytest.mark.points(2)
 def test_validate_lag(submission, rng):
-    """One lag for all runs is found to a fraction of a sample, late or early, equal in all runs or not"""
+    """The lag: to a fraction of a sample, late or early, equal in all runs or not"""
     recordings = cases.recordings(rng, count=3, dts=(0.02,))
     for sign in (1, -1):
         late = sign * 0.02 * (int(rng.integers(2, 4)) + float(rng.uniform(0.35, 0.65)))
@@ -293,7 +293,7 @@ def test_validate_lag(submission, rng):
 @pytest.mark.task("validate")
 @pytest.mark.points(2)
 def test_validate_margins(submission, rng):
-    """Each of the four intervals is compared with its own margin, and no number is enough by itself"""
+    """Each of the four intervals with its own margin"""
     case = bundles.apart(rng, int(rng.integers(3, 5)))
     bundles.expect_margins(submission, case, bundles.facts(case))
     bundles.expect_edges(submission, rng)
@@ -303,7 +303,7 @@ def test_validate_margins(submission, rng):
 @pytest.mark.task("validate")
 @pytest.mark.points(2)
 def test_validate_calibration(submission, rng):
-    """A simulation is judged by two or more runs on which it was not calibrated, or not at all"""
+    """Runs on which the simulation was calibrated, and what is left without them"""
     recordings = cases.recordings(rng, count=5)
     # Ids that begin alike: what a simulation was calibrated on is a matter of whole ids.
     recordings = [dataclasses.replace(run, id=f"run {10**i}") for i, run in enumerate(recordings)]

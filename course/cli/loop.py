@@ -485,6 +485,7 @@ class Watcher:
             self._ungradable(error, noticed)
             return False
         verdict = made.verdict
+        self._remember(verdict.state, verdict.score, verdict.max_score, verdict.passed, noticed)
         self._say_changes(verdict)
         self._made = made
         if self._focus not in self._failing():
@@ -494,7 +495,6 @@ class Watcher:
         if step != f"course watch {self.exercise.id}":
             self.console.next(step)
         self.last = reply_to(self.here.course, verdict, step, self._printed, curve_replies(made))
-        self._remember(verdict.state, verdict.score, verdict.max_score, verdict.passed, noticed)
         self._flush_warnings()
         return False
 
@@ -564,13 +564,13 @@ class Watcher:
                 status.stop()
 
     def _ungradable(self, error: UngradableError, noticed: float) -> None:
+        self._remember("ungradable", 0.0, 0.0, False, noticed)
         show_loading(self.console, self._printed, whole=self.verbose)
         self.console.line(error.message)
         if error.help:
             self.console.line(error.help)
         body = ErrorBody(code=error.code, message=error.message, help=error.help)
         self.last = ErrorReply(schema="course.check/1", exit_code=error.exit_code, error=body)
-        self._remember("ungradable", 0.0, 0.0, False, noticed)
         self._flush_warnings()
 
     def _remember(self, state: str, score: float, maximum: float, passed: bool, noticed: float) -> None:

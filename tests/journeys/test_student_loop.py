@@ -163,6 +163,8 @@ def test_a_check_while_a_watch_runs_loses_nothing(course, workspace):
         for number in range(3):
             module.write_text(RIGHT + f"# {number}\n" + f"a{number} = 1\n")
             assert course("check", cwd=workspace).returncode == 0
+        module.write_text(HALF)
+        watch.wait_for("Score 2")  # interrupted before that, it may have recorded a run that it has not told
         runs = watch.stop()["runs"]
     body = json.loads(course("progress", "--json", cwd=workspace).stdout)
     assert body["exercises"][0]["checks_run"] == len(runs) + 3

@@ -991,7 +991,7 @@ mistakes(
 mistakes(
     "LAUNCH_IGNORED",
     "A ball that starts on the floor and moves upwards does not fly.",
-    "Of balls that start on the floor, only one without speed rests. One that moves upwards flies, although it touches the floor.",
+    "A ball that starts on the floor with v0 > g h flies off, although it touches the floor.",
 ).program(
     "simulate_drop",
     """
@@ -1516,7 +1516,7 @@ mistakes(
 )
 mistakes(
     "FRICTION_ASKEW",
-    "Friction does not act along the slip. Along the normal all is right.",
+    "Here friction does not act along the slip, and along the normal all is right.",
     "vt is a vector, and so is friction: Jt times -vt / |vt| on b, in three dimensions as in two.",
     kind="consequence",
 )

@@ -232,7 +232,9 @@ class LinearStep(_Plain):
         q, p = np.asarray(q, dtype=float), np.asarray(v, dtype=float)
         if not (q.ndim and p.ndim):
             raise TypeError("This step takes arrays: q and v have the shape (d,), also for d = 1.")
-        pull = -float(np.ravel(accel(t, np.ones(q.shape), np.zeros(q.shape)))[0])
+        at_one = np.zeros(q.shape)
+        at_one.fill(1.0)
+        pull = -float(np.asarray(accel(t, at_one, np.zeros(q.shape))).item(0))
         if not pull > 0.0:
             raise ValueError("This step needs accel = -omega**2 * q; the accel it got does not pull back.")
         omega = math.sqrt(pull)

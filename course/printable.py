@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import re
 import shlex
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 _UNUSUAL = re.compile(r"[^ -~]")
 _UNUSUAL_IN_LINES = re.compile(r"[^\n\t -~]")
@@ -27,6 +27,17 @@ def command(*words: object) -> str:
 def counted(number: int, word: str) -> str:
     """A number and its noun, in the plural where it needs one: 1 step, 2,000 steps."""
     return f"{number:,} {word}{'' if number == 1 else 's'}"
+
+
+def meant(typed: str, names: Iterable[str], otherwise: str = "") -> str:
+    """ "Did you mean ...?" for names that begin with what was typed, or look like it; else ``otherwise``."""
+    import difflib
+
+    spelled = {name.lower().replace("_", "-"): name for name in names}
+    typed = typed.lower().replace("_", "-")
+    close = [name for name in spelled if typed and name.startswith(typed)]
+    close += [name for name in difflib.get_close_matches(typed, spelled) if name not in close]
+    return f"Did you mean {' or '.join(spelled[name] for name in close[:3])}?" if close else otherwise
 
 
 def some(listed: Sequence[str], most: int) -> str:

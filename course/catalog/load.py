@@ -6,7 +6,6 @@ is read once and kept. Facts that a type cannot express are checked in ``course.
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 import sys
@@ -31,6 +30,7 @@ from course.catalog.models import (
 from course.catalog.reading import Document, read_document, read_text, split_front_matter
 from course.errors import ContentError, NotFoundError
 from course.ids import SLUG, WARM_UPS, ExerciseId, LessonId
+from course.printable import meant
 
 # ---
 # Rules for a course file beyond the right keys and types.
@@ -442,12 +442,6 @@ def _declared_in(folder: Path) -> tuple[str, ...]:
 
 def _not_found(kind: str, wanted: str, known: Iterable[str], command: str) -> NotFoundError:
     names = list(known)
-    close = [name for name in names if wanted and name.startswith(wanted)]
-    close += [name for name in difflib.get_close_matches(wanted, names, n=3, cutoff=0.5) if name not in close]
-    if close:
-        fix = f"Did you mean {' or '.join(close[:3])}?"
-    elif names:
-        fix = f"`{command}` lists what there is."
-    else:
-        fix = f"This course has no {kind}s yet."
-    return NotFoundError(f"There is no {kind} called {wanted[:80]!r}.", help=fix, code=f"{kind}_not_found")
+    fix = f"`{command}` lists what there is." if names else f"This course has no {kind}s yet."
+    said = f"There is no {kind} called {wanted[:80]!r}."
+    return NotFoundError(said, help=meant(wanted, names, fix), code=f"{kind}_not_found")

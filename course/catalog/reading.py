@@ -6,7 +6,6 @@ the rest; msgspec's errors are put into plain words here.
 
 from __future__ import annotations
 
-import difflib
 import re
 import tomllib
 from bisect import bisect_left
@@ -20,6 +19,7 @@ import msgspec
 
 from course.catalog.models import FORMAT_VERSION
 from course.errors import ContentError, UsageError
+from course.printable import meant
 from course.strangers import read_bytes, toml
 
 # ---
@@ -306,8 +306,7 @@ def _unknown_key(
     raw: Document[Any], steps: tuple[str | int, ...], key: str, kind: type, *, hide: tuple[str, ...]
 ) -> NoReturn:
     known = [name for name in _keys_at(kind, steps) if steps or name not in hide]
-    close = difflib.get_close_matches(key, known, n=1)
-    fix = f"Did you mean `{close[0]}`?" if close else f"Known keys: {', '.join(known)}."
+    fix = meant(key, known, f"Known keys: {', '.join(known)}.")
     raw.fail((*steps, key), f"unknown key `{key}`.", fix=fix)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import hashlib
 import time
 from collections.abc import Mapping
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from course.catalog.models import Exercise
 from course.errors import CourseError, NotFoundError, UngradableError
-from course.printable import one_line
+from course.printable import meant, one_line
 from course.progress.history import fingerprint
 from course.scoring.verdict import CheckResult, Verdict
 
@@ -117,10 +116,9 @@ def attempt_in(session: GradingSession, submission: Submission, begin: float, on
 def _must_exist(wanted: str, known: list[str], exercise: Exercise) -> None:
     if wanted in known:
         return
-    close = difflib.get_close_matches(wanted, known, n=3)
     raise NotFoundError(
         f"{exercise.id} has no public check called {wanted!r}.",
-        help=f"Did you mean {' or '.join(close)}?" if close else f"There are: {', '.join(known)}.",
+        help=meant(wanted, known, f"There are: {', '.join(known)}."),
         code="check_not_found",
     )
 

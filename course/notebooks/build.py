@@ -20,7 +20,7 @@ from course.errors import NotFoundError
 from course.handed_in.notebook import SETUP, SOLUTION
 from course.notebooks.cells import Cell, code, document, markdown, opening
 from course.notebooks.lowering import Lowering
-from course.printable import counted
+from course.printable import counted, meant
 from course.reading.parts import with_tasks
 from course.scoring.judging.session import has_report
 from course.scoring.verdict import in_points
@@ -153,13 +153,10 @@ def _makers(catalog: Catalog, layout: Layout) -> Makers:
 
 
 def _unknown(wanted: str, known: Sequence[str]) -> NotFoundError:
-    import difflib
-
     names = list(dict.fromkeys(known))
-    close = difflib.get_close_matches(wanted, names, n=3, cutoff=0.5)
     return NotFoundError(
         f"There is no lesson and no exercise called {wanted[:80]!r}.",
-        help=f"Did you mean {' or '.join(close)}?" if close else f"There are: {', '.join(names)}.",
+        help=meant(wanted, names, f"There are: {', '.join(names)}."),
         code="notebook_not_found",
     )
 

@@ -12,7 +12,6 @@ TOML, or JSON of the same shape where the name ends in ``.json``::
 
 from __future__ import annotations
 
-import difflib
 import json
 import re
 import tomllib
@@ -23,7 +22,7 @@ from typing import Any, NoReturn
 
 from course.catalog.reading import LineMap, syntax_error_line
 from course.errors import UsageError
-from course.printable import counted
+from course.printable import counted, meant
 from course.quizzing.bank import Bank, PosedQuestion
 from course.strangers import read_bytes, toml
 
@@ -90,8 +89,7 @@ class AnswerFile:
                 f"Remove the line; asked: {', '.join(asked)}.",
                 "question_not_asked",
             )
-        close = difflib.get_close_matches(name, asked, n=1)
-        fix = f"Did you mean {close[0]}?" if close else f"The questions are {', '.join(asked)}."
+        fix = meant(name, asked, f"The questions are {', '.join(asked)}.")
         self.fail(name, f"there is no question {name[:60]!r}.", fix, "question_not_found")
 
     def _option(self, name: str, posed: PosedQuestion, bank: Bank, seed: int) -> str:

@@ -1,10 +1,10 @@
 """The list of simulations; each is imported when it is needed."""
 
-import difflib
 from importlib import import_module
 from typing import cast
 
 from course.errors import NotFoundError
+from course.printable import meant
 from course.simulations.base import Simulation
 
 #: The four that an introduction begins with, in their order.
@@ -34,11 +34,9 @@ def get(name: str) -> Simulation:
         NotFoundError: there is none; its help names the closest ids.
     """
     if name not in SIMULATIONS:
-        close = difflib.get_close_matches(name.lower().replace("_", "-"), SIMULATIONS, n=3, cutoff=0.5)
-        meant = f"Did you mean {' or '.join(close)}? " if close else ""
         raise NotFoundError(
             f"There is no simulation {name!r}.",
-            help=f"{meant}There are {', '.join(SIMULATIONS)}.",
+            help=f"{meant(name, SIMULATIONS)} There are {', '.join(SIMULATIONS)}.".lstrip(),
             code="simulation_not_found",
         )
     module = import_module(f"course.simulations.experiments.{SIMULATIONS[name]}")

@@ -7,7 +7,6 @@ print what is recorded is a different question, answered by running them: ``cour
 from __future__ import annotations
 
 import ast
-import difflib
 import re
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
@@ -28,6 +27,7 @@ from course.errors import ContentError, UsageError
 from course.figures import registry
 from course.figures.registry import figure_ids
 from course.ids import LessonId
+from course.printable import meant
 
 #: Code, output and drawings are never wrapped; this is what 60 columns leave beside a margin of two.
 MAX_COLUMNS = 58
@@ -169,8 +169,7 @@ def _twice(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
 def _unknown_figures(blocks: tuple[b.Block, ...], figures: Collection[str]) -> Iterator[Finding]:
     for block in b.walk_blocks(blocks):
         if isinstance(block, b.Figure) and block.id not in figures:
-            close = difflib.get_close_matches(block.id, figures, n=1)
-            fix = f"Did you mean {close[0]}? " if close else ""
+            fix = f"{meant(block.id, figures)} ".lstrip()
             fix += "A new one is entered in course/figures/registry.py: CONTRIBUTING.md, Add a figure."
             yield Finding(block.line, f"there is no figure {block.id}", fix)
 

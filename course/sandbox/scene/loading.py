@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 from collections.abc import Iterator, Mapping
@@ -14,6 +13,7 @@ import msgspec
 from course.catalog.locate import content
 from course.catalog.reading import BLANK, Document, read_document, read_text
 from course.errors import ContentError, NotFoundError, UsageError
+from course.printable import meant
 from course.sandbox.scene.expression import evaluate, fill, used
 from course.sandbox.scene.model import Part, Prediction, Scene, layout
 from course.sandbox.scene.rules import FIELDS, SETTINGS, check_scene, checked, number
@@ -268,9 +268,7 @@ def _read_own(path: Path) -> Scene:
 
 
 def _unknown(name: str) -> NotFoundError:
-    close = difflib.get_close_matches(name, scene_ids(), n=3, cutoff=0.5)
-    close = close or [known for known in scene_ids() if name and known.startswith(name)][:3]
-    fix = f"Did you mean {' or '.join(close)}?" if close else "`course sandbox list` shows them."
+    fix = meant(name, scene_ids(), "`course sandbox list` shows them.")
     return NotFoundError(f"There is no scene called {name[:80]!r}.", help=fix, code="scene_not_found")
 
 

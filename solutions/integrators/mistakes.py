@@ -1940,6 +1940,7 @@ _SEARCH = {
         ("STABILITY_BY_TRACE", lambda m: np.trace(m) / 2),
         ("EIGENVALUES_WITHOUT_MODULUS", lambda m: np.linalg.eigvals(m).real.max()),
         ("EIGENVALUES_WITHOUT_MODULUS", lambda m: abs(np.linalg.eigvals(m).real).max()),
+        ("EIGENVALUES_WITHOUT_MODULUS", lambda m: abs(np.linalg.eigvals(m).max())),
         ("SMALLEST_EIGENVALUE", lambda m: min(abs(np.linalg.eigvals(m)))),
         ("STABILITY_BY_ENTRY", lambda m: abs(m[0, 0])),
         ("STABILITY_BY_ENTRY", lambda m: np.abs(m).max()),

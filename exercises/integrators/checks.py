@@ -79,14 +79,14 @@ def test_semi_implicit_energy(submission, draw):
 @pytest.mark.task("velocity_verlet_step")
 @pytest.mark.points(6)
 def test_verlet_order(submission, draw):
-    """Velocity Verlet's error on a driven spring, at half the step and a quarter"""
+    """Velocity Verlet's error on a driven spring, at shorter and shorter steps"""
     _expect_order(submission, "velocity_verlet_step", [16, 32, 64], 0.1, draw)
 
 
 @pytest.mark.task("rk4_step")
 @pytest.mark.points(5)
 def test_rk4_order(submission, draw):
-    """RK4's error on a driven spring, at half the step and a quarter"""
+    """RK4's error on a driven spring, at shorter and shorter steps"""
     _expect_order(submission, "rk4_step", [8, 16, 32], 0.3, draw)
 
 
@@ -282,8 +282,8 @@ def test_observed_order_scattered(submission, draw):
             quantity="order",
             input={"hs": hs, "errors": errors},
             message="Through points that scatter, observed_order does not return the least-squares slope.",
-            help="It is one line by least squares through all points as they are: equal weights, each error "
-            "over its own step, nothing added, rounded or left out.",
+            help="It is one line by least squares through log error over log h, all points as they are: equal "
+            "weights, each error over its own step, nothing added, rounded or left out.",
             diagnose=lambda value=value, hs=hs, errors=errors: probes.of_order(submission, value, hs, errors),
         )
 

@@ -227,19 +227,19 @@ mistakes(
 mistakes(
     "SECOND_STAGE_ELSEWHERE",
     "The first call of accel is right, but the second gets another time, position or velocity than in the classical method.",
-    "The second slope belongs to t + h/2, and is reached with the first. With a1 = accel(t, q, v), call accel(t + h/2, q + h/2*v, v + h/2*a1).",
+    "In the classical method the second slope belongs to t + h/2, and is reached with the first: with a1 = accel(t, q, v), call accel(t + h/2, q + h/2*v, v + h/2*a1). Another method, such as the 3/8 rule, has calls of its own: compare with its table.",
     kind="consequence",
 ).edit("rk4_step", {"q + h / 2 * dq1, v + h / 2 * dv1": "q + h / 3 * dq1, v + h / 3 * dv1"})
 mistakes(
     "THIRD_STAGE_ELSEWHERE",
     "The first two calls of accel are right, but the third gets another time, position or velocity than in the classical method.",
-    "The third slope belongs to t + h/2, and is reached with the second. With v2 and a2, the velocity and the acceleration of the second call, call accel(t + h/2, q + h/2*v2, v + h/2*a2).",
+    "In the classical method the third slope belongs to t + h/2, and is reached with the second. With v2 and a2, the velocity and the acceleration of the second call, call accel(t + h/2, q + h/2*v2, v + h/2*a2). Another method, such as the 3/8 rule, has calls of its own: compare with its table.",
     kind="consequence",
 ).edit("rk4_step", {"v + h / 2 * dv2": "v + h / 2 * dv1 + h / 2 * dv2"})
 mistakes(
     "FOURTH_STAGE_ELSEWHERE",
     "The first three calls of accel are right, but the fourth gets another time, position or velocity than in the classical method.",
-    "The fourth slope belongs to t + h, and is reached with the third. With v3 and a3, the velocity and the acceleration of the third call, call accel(t + h, q + h*v3, v + h*a3).",
+    "In the classical method the fourth slope belongs to t + h, and is reached with the third. With v3 and a3, the velocity and the acceleration of the third call, call accel(t + h, q + h*v3, v + h*a3). Another method, such as the 3/8 rule, has calls of its own: compare with its table.",
     kind="consequence",
 ).edit("rk4_step", {"v + h * dv3": "v + h / 2 * dv2 + h / 2 * dv3"})
 mistakes(
@@ -1617,7 +1617,7 @@ mistakes(
 )
 mistakes(
     "SEARCH_IN_SECONDS",
-    "The search starts at a fixed h in seconds, such as 0.05 s, whatever omega is.",
+    "The search starts or ends at a fixed h in seconds, such as 0.05 s or 10 s, whatever omega is.",
     "Start at h = 0.05/omega, and end at 10/omega.",
 )
 mistakes(
@@ -1665,7 +1665,7 @@ def hypotheses():
     yield from (("observed_order", (code,), slope) for code, slope in _slopes())
     yield "max_stable_step", ("LIMIT_NEVER_SEEN",), lambda step, omega: math.inf
     in_seconds = {"probe": lambda z, omega: z, "unit": lambda z, omega: z}
-    for way in (in_seconds, {"start": lambda omega: omega}):
+    for way in (in_seconds, {"start": lambda omega: omega}, {"end": lambda omega: omega}):
         yield "max_stable_step", ("SEARCH_IN_SECONDS",), _search(**way)
 
 
@@ -1886,6 +1886,7 @@ def _search(
     dz=0.05,
     scales="both",
     start=lambda omega: 1.0,
+    end=lambda omega: 1.0,
     force=lambda omega: omega**2,
     probe=lambda z, omega: z / omega,
 ):
@@ -1917,7 +1918,7 @@ def _search(
         low = begin
         while stable(low + dz):
             low += dz
-            if low >= last:
+            if low >= last * end(omega):
                 return none if none is not None else unit(low, omega)
         high = low + dz
         for _ in range(20):

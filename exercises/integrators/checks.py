@@ -282,8 +282,8 @@ def test_observed_order_scattered(submission, draw):
             quantity="order",
             input={"hs": hs, "errors": errors},
             message="Through points that scatter, observed_order does not return the least-squares slope.",
-            help="It is one line by least squares through log error over log h, all points as they are: equal "
-            "weights, each error over its own step, nothing added, rounded or left out.",
+            help="It is one line by least squares through log error over log h, all points as they are: "
+            "equal weights, each error over its own step, nothing added, rounded or left out.",
             diagnose=lambda value=value, hs=hs, errors=errors: probes.of_order(submission, value, hs, errors),
         )
 

@@ -852,7 +852,7 @@ mistakes(
 mistakes(
     "CONTACTS_MISSED",
     "Some bodies that meet within the step get None.",
-    "Bodies that are apart meet where |dx + dv t|**2 = (ra + rb)**2 has a real root from 0 to dt; if they overlap and approach, it is 0.0. Compare each of your conditions for None with that.",
+    "Bodies that are apart meet where |dx + dv t|**2 = (ra + rb)**2 has a real root from 0 to dt; if they overlap and approach, it is 0.0. Compare each of your conditions for None with that, and the root itself: (-b - sqrt(b**2 - 4*a*c)) / (2*a), all of the denominator divided by.",
     kind="consequence",
 ).program(
     "time_of_impact",
@@ -1448,7 +1448,7 @@ mistakes(
 mistakes(
     "RESTITUTION_IGNORED",
     "The bodies part as if the restitution were one, or as if it were zero.",
-    "The impulse has the factor 1 + e: the 1 stops the approach, and the e sends them apart again. A ball leaves the floor with e times its speed.",
+    "The impulse has the factor 1 + e: the 1 stops the approach, and the e sends them apart again. A ball leaves the floor with e times its speed, and rests only if that speed, without its sign, is at most g h.",
     kind="consequence",
 )
 mistakes(
@@ -1655,7 +1655,7 @@ mistakes(
 )
 mistakes(
     "SOME_PAIRS_SPARED",
-    "Some bodies that approach keep their velocities; the other pairs are right.",
+    "Some bodies that approach keep their velocities; the other pairs that approach are right.",
     "Every pair with (va - vb) . n > 0 gets its impulse, however slow it is, whichever of the two moves, with friction or without.",
     kind="consequence",
 )
@@ -1686,7 +1686,7 @@ mistakes(
 mistakes(
     "FRICTION_IGNORED",
     "Your code applies no friction.",
-    "A second impulse acts across the normal, against the slip: at most mu J, and no more than it takes to stop the slip.",
+    "A second impulse acts across the normal, against the slip: at most mu J, and no more than it takes to stop the slip. If you have it, print J there: it is computed from the velocities before the impact, as the slip is.",
 )
 mistakes(
     "FRICTION_TAKES_THE_LARGER",

@@ -58,7 +58,7 @@ def test_wrap_angle_some(submission):
             units="rad",
             input={"e": angles},
             message="At least one angle does not come back as the one in [-pi, pi) that has its direction.",
-            help="Subtract as many whole turns as it takes, until every angle lies in [-pi, pi).",
+            help="Subtract from each angle as many whole turns as that one needs to lie in [-pi, pi).",
             diagnose=lambda angles=angles, right=right: probes.of_whole(
                 submission, "wrap_angle", [angles], lambda found: np.allclose(found, right, atol=1e-9)
             ),

@@ -222,7 +222,7 @@ mistakes(
 mistakes(
     "REMAINDER_SIGN",
     "Some angles come out outside the range: what is left of them has the sign of what is divided.",
-    "math.fmod, np.fmod, np.trunc and int() round towards zero. Use % or np.mod: (e + pi) % (2 pi) - pi.",
+    "int() and np.trunc round towards zero, and what math.fmod and np.fmod leave has the sign of what is divided. Use % or np.mod: (e + pi) % (2 pi) - pi.",
 ).edit(
     "wrap_angle",
     {"return (np.asarray(e, dtype=float) + np.pi) % (2 *": "return np.fmod(np.asarray(e) + np.pi, 2 *"},
@@ -635,7 +635,7 @@ mistakes(
 mistakes(
     "UNSIGNED",
     "The result has lost its sign.",
-    "Take no absolute value of the error: its sign says whether it is too large or too small. Only an energy is divided by abs(E[0]).",
+    "Take no absolute value of the error: its sign says whether it is too large or too small. In energy_error, the bars belong to E[0] alone: divide by abs(E[0]).",
 ).body(
     "energy_error",
     """
@@ -1679,6 +1679,17 @@ mistakes(
     """,
 )
 mistakes(
+    "BLOCKS_DRAWN_ONCE",
+    "In a short trial, no block is drawn twice for the same resample, though chance would.",
+    "Draw the starting points with replacement, as rng.integers does. rng.choice needs replace=True, its default.",
+    kind="fact",
+).edit(
+    "block_bootstrap_ci",
+    {
+        "rng.integers(0, n - block + 1, size=(n_boot, math.ceil(n / block)))": "np.array([rng.choice(n - block + 1, math.ceil(n / block), replace=False) for _ in range(n_boot)])"
+    },
+)
+mistakes(
     "MIDDLE_AND_HALF",
     "Values on an end are lost by rounding. That happens where the distance to the middle is compared with half the width.",
     "Compare with the ends themselves: (lo <= y) & (y <= hi).",
@@ -1841,7 +1852,7 @@ mistakes(
 mistakes(
     "ONE_COVARIANCE",
     "Your code uses one covariance for all rows.",
-    "Each row has its own covariance: err[i] belongs to P[i]. np.linalg.solve and np.linalg.inv accept the whole stack.",
+    "Each row has its own covariance: P[i] belongs to err[i], or S[i] to nu[i]. np.linalg.solve and np.linalg.inv accept the whole stack.",
 )
 mistakes(
     "ONE_SIZE_FOR_ALL",
@@ -1866,7 +1877,7 @@ mistakes(
 mistakes(
     "CHOLESKY_TRANSPOSED",
     "Your code uses the transpose of the Cholesky factor.",
-    "np.linalg.cholesky returns the lower triangle L with L L^T = P: solve L w = err for w, then sum w * w.",
+    "np.linalg.cholesky(P) returns the lower triangle L with L L^T = P: solve L w = err for w, then sum w * w. For nis, read S and nu.",
 )
 mistakes(
     "DETERMINANT_MISSING",
@@ -2075,7 +2086,7 @@ mistakes(
 mistakes(
     "ZERO_WIDTH",
     "The interval is a single point.",
-    "The interval reaches from the number minus t standard errors to the number plus t standard errors.",
+    "The interval reaches from the number minus t standard errors to the number plus t standard errors. Where that is so, see that the number is computed anew, the lag too, for each set with one run left out, and to a fraction of a sample.",
     kind="consequence",
 )
 mistakes(

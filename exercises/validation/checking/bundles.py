@@ -232,7 +232,7 @@ def _expect_intervals(report, right, shown):
     }
     words = {
         "help": "The number, and t times its standard error to either side; the error from the numbers with "
-        "one run left out, about their own mean.",
+        "one run left out, about their own mean. No end is cut off where a value could not be.",
         "input": shown,
     }
     for key in probes.NUMBERS:

@@ -189,7 +189,7 @@ def expect_normalised(submission, task, err, covariance, names):
         input={names[0]: err, names[1]: covariance},
         message="The normalised squared errors are wrong.",
         help=f"For each row: solve {names[1]} w = {names[0]} for w, then sum {names[0]} * w."
-        + (" np.squeeze removes the axis of a single component, too." if err.shape[1] == 1 else ""),
+        + (" np.squeeze would remove the axis of a single component, too." if err.shape[1] == 1 else ""),
         diagnose=lambda: (
             probes.of_rows(rows, expected)
             or probes.of_whole(submission, task, [err, covariance], lambda rows: _near(rows, expected))

@@ -239,6 +239,8 @@ def of_resamples(found):
         ("BEGINNING_REPEATED", len(drawn) > _BOOT / 2 and all(map(_ends_as_it_begins, drawn))),
         ("IID_BOOTSTRAP", length < 1.5),
         ("BLOCK_IGNORED", not _BLOCK / BLOCK_FACTOR <= length <= _BLOCK * BLOCK_FACTOR),
+        # In three of five resamples, a block begins where another one does.
+        ("BLOCKS_DRAWN_ONCE", len(drawn) >= _BOOT and not any(map(_begins_twice, drawn))),
         # A basic interval asks about the series itself, once or where it is needed.
         ("OTHER_NUMBER_OF_RESAMPLES", len(drawn) != _BOOT or len(found.asked) > _BOOT + 2),
     ]
@@ -263,12 +265,19 @@ def _ends_as_it_begins(samples):
     return np.array_equal(samples[-(_N % _BLOCK) :], samples[: _N % _BLOCK])
 
 
+def _first_ones(samples):
+    """With which errors the blocks begin; a circular block goes on at the start of the series."""
+    return samples[np.append(True, ~np.isin(np.diff(samples), (1, 1 - len(samples))))]
+
+
+def _begins_twice(samples):
+    begun = _first_ones(samples)
+    return len(np.unique(begun)) < len(begun)
+
+
 def _length_of_blocks(drawn):
     """How many neighbours follow each other in these resamples, on average."""
-    n = len(drawn[0])
-    steps = np.concatenate([np.diff(samples) for samples in drawn])
-    follows = (steps == 1) | (steps == 1 - n)  # a circular block goes on at the start
-    return n * len(drawn) / (np.sum(~follows) + len(drawn))
+    return len(drawn[0]) * len(drawn) / sum(len(_first_ones(samples)) for samples in drawn)
 
 
 def of_ends(found):

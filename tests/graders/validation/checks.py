@@ -70,7 +70,7 @@ def test_wrap_angle_many_turns(submission, rng):
         kit.expect_true(
             bool(np.all(np.abs(values) <= np.pi + 1e-9) and np.all(apart <= 1e-9)),
             "At least one angle is not wrapped, or its direction has changed.",
-            help="Subtract as many whole turns as it takes, until every angle lies in [-pi, pi).",
+            help="Subtract from each angle as many whole turns as that one needs to lie in [-pi, pi).",
             input={"e": angles},
             actual=values,
             diagnose=lambda angles=angles: shared.probes.of_whole(

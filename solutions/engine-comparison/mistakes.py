@@ -502,7 +502,7 @@ mistakes(
 mistakes(
     "TUNNEL_ONE_START",
     "The speed is too high, and most speeds were tried from one start only.",
-    "Try many starts, spread evenly over [-1 - v dt, -1]. A speed is safe only if none gets through.",
+    "Try many starts, spread evenly over [-1 - v dt, -1], in runs of 2 m + v dt. A speed is safe only if none gets through.",
     kind="consequence",
 ).body(
     "characterise",
@@ -968,6 +968,26 @@ mistakes(
     "engine_facts",
     """
         del _FACTS["mujoco"]
+    """,
+)
+mistakes(
+    "PAIR_TWICE_AND_MISSING",
+    "One entry is there more than once, and at least one other is not there.",
+    "Make one entry for each pair of engine and field. If you fill one dict again and again, make a new one for each entry.",
+    kind="fact",
+).program(
+    "engine_facts",
+    """
+        _separate = engine_facts
+
+
+        def engine_facts():
+            kept, listed = {}, []
+            for fact in _separate():
+                entry = kept.setdefault(fact["engine"], {})
+                entry.update(fact)
+                listed.append(entry)
+            return listed
     """,
 )
 mistakes(
@@ -1561,8 +1581,8 @@ mistakes(
 )
 mistakes(
     "STABLE_BY_NORM",
-    "The limits are those of a norm of the matrix, or of a matrix that is not on (q, v/omega): one of the two.",
-    "A stable step may enlarge the state once, so a norm says too little: take the largest modulus of the eigenvalues. If you do, see that the matrix is on (q, v/omega): start from (1, 0) and (0, omega), and divide both resulting velocities by omega.",
+    "The limits are those of a norm of the matrix, of eigvalsh, or of a matrix that is not on (q, v/omega): one of these.",
+    "Look at the largest modulus: max(abs(np.linalg.eigvals(M))). A stable step may enlarge the state once, so a norm says too little, and eigvalsh is for symmetric matrices alone. If you use eigvals, see that the matrix is on (q, v/omega): start from (1, 0) and (0, omega), and divide both resulting velocities by omega.",
 )
 mistakes(
     "TOLERANCE_TOO_LOOSE",
@@ -1648,19 +1668,19 @@ mistakes(
 mistakes(
     "TUNNEL_START_ELSEWHERE",
     "Most fast bodies do not start in [-1 - v dt, -1].",
-    "Start there, whatever the speed.",
+    "Start there, whatever the speed, from many places spread over it. Take n so large that n dt v is 2 m + v dt or more.",
     kind="consequence",
 )
 mistakes(
     "TUNNEL_RUNS_SHORT",
     "Most runs end before the body would have gone 2 m.",
-    "Take n so large that n dt v is 2 m + v dt or more.",
+    "Take n so large that n dt v is 2 m + v dt or more. For each speed, try many starts over all of [-1 - v dt, -1].",
     kind="consequence",
 )
 mistakes(
     "TUNNEL_STARTS_NARROW",
     "The starts for one speed often do not cover the way of a whole step.",
-    "Spread them over all of [-1 - v dt, -1].",
+    "Spread many of them evenly over all of [-1 - v dt, -1].",
     kind="consequence",
 )
 mistakes(
@@ -2085,6 +2105,7 @@ _STABLE = (
     ("SMALLEST_EIGENVALUE", _search(lambda m: min(abs(np.linalg.eigvals(m))))),
     ("STABLE_BY_NORM", _search(lambda m: np.linalg.norm(m, 2))),
     ("STABLE_BY_NORM", _search(lambda m: np.linalg.norm(m))),
+    ("STABLE_BY_NORM", _search(lambda m: abs(np.linalg.eigvalsh(m)).max())),
     ("TOLERANCE_TOO_TIGHT", _search(limit=1 - 1e-12)),
     ("TOLERANCE_TOO_LOOSE", _search(limit=1.01)),
     ("TOLERANCE_TOO_LOOSE", _search(limit=1.001)),

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import copy
 import itertools
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from course.scoring import kit
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 named = kit.words("engine-comparison")
 
@@ -21,7 +24,7 @@ def expect_choices(submission: Any, questions: list[tuple[Any, Any, Any]]) -> No
     answers = _answers(submission, questions)
     everything = list(zip(questions, answers, strict=True))
     for (reports, needs, expected), answer in everything:
-        given = {"requirements": needs, "reports, cut to what decides": _what_decides(reports, needs)}
+        given = _what_decides(reports, needs)
         if answer is not None and not (isinstance(answer, str) and answer in reports):
             kit.fail(
                 "choose_engine returns something that is neither one of the names nor None.",
@@ -52,6 +55,7 @@ def _answers(submission: Any, questions: list[tuple[Any, Any, Any]]) -> list[Any
 
     Raises:
         CheckFailed: it raises an exception first where a required value is missing or None.
+        StudentFailure: it raises one, in the call that was made last.
     """
     try:
         return list(submission.call_each(TASK, [(reports, needs) for reports, needs, _ in questions]))
@@ -60,7 +64,9 @@ def _answers(submission: Any, questions: list[tuple[Any, Any, Any]]) -> list[Any
             if not kit.attempt(lambda reports=reports, needs=needs: [submission.call(TASK, reports, needs)]):
                 if _answers_when_told(submission, reports, needs):
                     _expect_measured(failure, reports, needs)
+                submission.call(TASK, reports, needs)  # once more: a finding shows the arguments of the last
                 break
+        submission.asking = None  # alone, no question raises: there is no call to show
         raise
 
 
@@ -71,7 +77,7 @@ def _expect_measured(failure: kit.StudentFailure, reports: Any, needs: Any) -> N
         kit.fail(
             "Not every engine was measured in all that is required, and no answer comes.",
             diagnose=named("MISSING_RAISES"),
-            input={"requirements": needs, "reports, cut to what decides": _what_decides(reports, needs)},
+            input=_what_decides(reports, needs),
             actual=failure.type,
         )
 
@@ -86,10 +92,45 @@ def _answers_when_told(submission: Any, reports: Any, needs: Any) -> bool:
     return bool(kit.attempt(lambda: [submission.call(TASK, known, needs)]))
 
 
-def _what_decides(reports: Any, needs: Any) -> Any:
-    """Of each report the required keys and the cost: the answer depends on nothing else."""
+def _what_decides(reports: Any, needs: Any) -> dict[str, Any]:
+    """The input of a question. Of each report it has the required keys and the cost: the answer depends on
+    nothing else. Numbers about one key that differ in their last digits have all of them."""
     keys = [*dict.fromkeys(need["key"] for need in needs), "cost"]
-    return {name: {key: report[key] for key in keys if key in report} for name, report in reports.items()}
+    told = {
+        key: _told_apart(
+            [report[key] for report in reports.values() if key in report]
+            + [need["value"] for need in needs if need["key"] == key]
+        )
+        for key in keys
+    }
+    return {
+        "requirements": [
+            {name: told[need["key"]](value) if name == "value" else value for name, value in need.items()}
+            for need in needs
+        ],
+        "reports, cut to what decides": {
+            name: {key: told[key](report[key]) for key in keys if key in report}
+            for name, report in reports.items()
+        },
+    }
+
+
+def _told_apart(values: list[Any]) -> Callable[[Any], Any]:
+    """How to show each of these values: as it is, or with all its digits where another one that is not equal
+    has the same six."""
+    alike: dict[str, set[Any]] = {}
+    for value in filter(_is_number, values):
+        alike.setdefault(f"{value:.6g}", set()).add(value)
+    close = {text for text, found in alike.items() if len(found) > 1}
+    return lambda value: _in_full(value) if _is_number(value) and f"{value:.6g}" in close else value
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _in_full(value: float) -> str:
+    return str(value if isinstance(value, int) else float(value))
 
 
 def expect_untouched(submission: Any, reports: Any, needs: Any) -> None:

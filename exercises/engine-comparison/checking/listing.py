@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import collections
 import datetime
 import math
 import re
@@ -66,19 +67,14 @@ def expect_complete(listed: list[dict[str, Any]]) -> None:
                 help=f"The engines are {', '.join(ENGINES)}; the fields are {', '.join(FIELDS)}.",
                 actual=[engine, field],
             )
-    if len(listed) > 1 and all(str(entry) == str(listed[0]) for entry in listed):
-        kit.fail(
-            "All entries are the same.",
-            help="There are four engines and five fields: twenty entries, one for each pair.",
-            diagnose=named("ENTRIES_ALL_ONE"),
-            actual={"/".join(pairs[0]): len(pairs)},
-        )
+    _expect_different(listed)
     for pair in ((engine, field) for engine in ENGINES for field in FIELDS):
         if pairs.count(pair) != 1:
-            missing = pairs.count(pair) == 0
+            if pairs.count(pair) == 0:
+                expect_pair(listed, pair)
             kit.fail(
-                "The list is not complete." if missing else "The list has more than one entry for a pair.",
-                diagnose=named("PAIR_MISSING" if missing else "PAIR_TWICE"),
+                "The list has more than one entry for a pair.",
+                diagnose=named("PAIR_TWICE"),
                 expected="one entry",
                 actual={"/".join(pair): pairs.count(pair)},
             )
@@ -111,13 +107,43 @@ _USED_BY = "Give a list with at least one project that runs on this engine, by i
 _STEP = "Give the step in seconds, or None where the engine has none of its own."
 
 
+def _expect_different(listed: list[dict[str, Any]]) -> None:
+    """The entries are not all the same."""
+    if len(listed) > 1 and all(str(entry) == str(listed[0]) for entry in listed):
+        kit.fail(
+            "All entries are the same.",
+            help="There are four engines and five fields: twenty entries, one for each pair.",
+            diagnose=named("ENTRIES_ALL_ONE"),
+            actual={f"{listed[0]['engine']}/{listed[0]['field']}": len(listed)},
+        )
+
+
+def expect_pair(listed: list[dict[str, Any]], pair: tuple[str, str]) -> dict[str, Any]:
+    """The entry for an engine and a field, the first one where there are two.
+
+    Raises:
+        CheckFailed: there is none. Where another pair has more than one, that is told, too.
+    """
+    found = by_pair(listed)
+    if pair not in found:
+        _expect_different(listed)
+        again = len(found) < len(listed)
+        counts = collections.Counter((str(entry["engine"]), str(entry["field"])) for entry in listed)
+        most = max(counts, key=counts.__getitem__, default=pair)
+        kit.fail(
+            "An entry is missing.",
+            diagnose=named("PAIR_TWICE_AND_MISSING" if again else "PAIR_MISSING"),
+            expected="one entry",
+            actual={"/".join(pair): 0} | ({"/".join(most): counts[most]} if again else {}),
+        )
+    return found[pair]
+
+
 def expect_sources(listed: list[dict[str, Any]]) -> None:
     """Every entry names an address and a day; all twenty pairs are there."""
-    found = by_pair(listed)
-    if len(found) < len(ENGINES) * len(FIELDS):
-        pairs = ((engine, field) for engine in ENGINES for field in FIELDS)
-        missing = next(pair for pair in pairs if pair not in found)
-        kit.fail("The list is not complete.", diagnose=named("PAIR_MISSING"), actual={"/".join(missing): 0})
+    for engine in ENGINES:
+        for field in FIELDS:
+            expect_pair(listed, (engine, field))
     for entry in listed:
         about = {"engine": entry["engine"], "field": entry["field"]}
         source = kit.as_text(entry["source"], "a source")

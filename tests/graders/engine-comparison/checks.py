@@ -179,9 +179,9 @@ def test_choose_by_numbers_only(submission):
 @pytest.mark.points(2)
 def test_facts_licences(submission):
     """The licences, their SPDX names and their dates"""
-    entries = listing.by_pair(listing.entries(submission))
+    entries = listing.entries(submission)
     for engine in listing.ENGINES:
-        entry = _entry(entries, engine, "licence")
+        entry = listing.expect_pair(entries, (engine, "licence"))
         text = kit.as_text(entry["value"], "a licence")
         if not facts.right_licence(engine, text):
             kit.fail(
@@ -207,9 +207,9 @@ def test_facts_licences(submission):
 @pytest.mark.points(2)
 def test_facts_defaults(submission):
     """Default integrators and default steps"""
-    entries = listing.by_pair(listing.entries(submission))
+    entries = listing.entries(submission)
     for engine in listing.ENGINES:
-        entry = _entry(entries, engine, "default_integrator")
+        entry = listing.expect_pair(entries, (engine, "default_integrator"))
         integrator = kit.as_text(entry["value"], "a default integrator")
         if integrator != facts.INTEGRATOR:
             option = (engine, integrator) in {("mujoco", "rk4"), ("mujoco", "implicit_euler")}
@@ -223,7 +223,7 @@ def test_facts_defaults(submission):
                 expected=facts.INTEGRATOR,
                 actual=integrator,
             )
-        entry = _entry(entries, engine, "default_step_s")
+        entry = listing.expect_pair(entries, (engine, "default_step_s"))
         _expect_step(engine, entry["value"])
 
 
@@ -231,9 +231,9 @@ def test_facts_defaults(submission):
 @pytest.mark.points(2)
 def test_facts_users(submission):
     """The languages, and the projects in the lists of users"""
-    entries = listing.by_pair(listing.entries(submission))
+    entries = listing.entries(submission)
     for engine in listing.ENGINES:
-        language = kit.as_text(_entry(entries, engine, "language")["value"], "a language")
+        language = kit.as_text(listing.expect_pair(entries, (engine, "language"))["value"], "a language")
         if facts.plain(language) not in facts.LANGUAGES[engine]:
             kit.fail(
                 "A language is not the one the engine is written in.",
@@ -242,7 +242,9 @@ def test_facts_users(submission):
                 expected=sorted(facts.LANGUAGES[engine]),
                 actual=language,
             )
-        names = kit.as_list(_entry(entries, engine, "used_by")["value"], "the users of an engine")
+        names = kit.as_list(
+            listing.expect_pair(entries, (engine, "used_by"))["value"], "the users of an engine"
+        )
         names = [kit.as_text(name, "a user of an engine") for name in names]
         stale = engine == "ode" and any(map(facts.is_new_gazebo, names))
         if stale or not any(facts.right_user(engine, name) for name in names):
@@ -255,17 +257,6 @@ def test_facts_users(submission):
                 input={"engine": engine},
                 actual=names,
             )
-
-
-def _entry(entries, engine, field):
-    """The entry of a pair; without one there is nothing to look at."""
-    if (engine, field) not in entries:
-        kit.fail(
-            "The list is not complete.",
-            diagnose=named("PAIR_MISSING"),
-            actual=f"{engine}/{field}",
-        )
-    return entries[engine, field]
 
 
 def _of_licence(engine, text):

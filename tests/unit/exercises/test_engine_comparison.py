@@ -17,6 +17,7 @@ from course.catalog.load import Catalog
 from course.scoring import kit
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission
+from course.scoring.verdict import format_input
 
 ROOT = Path(__file__).resolve().parents[3]
 HIDDEN = str(ROOT / "tests/graders/engine-comparison/checks.py")
@@ -399,6 +400,15 @@ def _linear_damping(engine, dt):
 REAL_QUESTIONS = [*measured.QUESTIONS.values(), *choices.REAL]
 
 
+def test_a_value_that_is_a_small_whole_number_of_info_by_chance_is_not_shown_beside_it():
+    truth = {**boxes.TRUTH["anvil"], "friction_anisotropy": 1.0}
+    case = bench.Case("anvil", boxes.ANVIL, truth, report={**truth, "friction_anisotropy": 2.0})
+    assert boxes.ANVIL.mass == 2.0
+    with pytest.raises(kit.CheckFailed) as failed:
+        judging.expect_key([case], "friction_anisotropy", 0)
+    assert 2.0 not in failed.value.finding.input.values()
+
+
 class Chooser:
     """A submission whose ``choose_engine`` is the given function."""
 
@@ -406,6 +416,7 @@ class Chooser:
         self._function = function
 
     def call(self, _, *args):
+        self.asking = args
         try:
             return self._function(*args)
         except (KeyError, TypeError) as error:
@@ -469,6 +480,32 @@ def test_an_exception_where_a_value_is_missing_is_told_as_that(function, needs, 
         choosing.expect_choices(Chooser(function), told)
     found = failed.value.finding.diagnosis if isinstance(failed.value, kit.CheckFailed) else None
     assert found == code
+
+
+def test_an_exception_is_shown_with_the_arguments_of_the_call_that_raised():
+    told = ({"a": {"limit": None, "cost": 1.0}}, [measured.need("limit", "==", 0.0)])
+    chooser = Chooser(lambda reports, needs: needs["key"])
+    with pytest.raises(kit.StudentFailure):
+        choosing.expect_choices(chooser, [(*told, None)])
+    assert chooser.asking == told
+
+
+@pytest.mark.parametrize(
+    ("value", "costs", "shown"),
+    [
+        (0.6000000000000001, (1.0, 2.0), ["0.6000000000000001"]),
+        (0.6, (17.9157, 17.91570001), ["17.9157", "17.91570001"]),
+        (0.6, (2**53, 2**53 + 1), ["9007199254740992", "9007199254740993"]),
+    ],
+)
+def test_digits_that_decide_are_shown(value, costs, shown):
+    reports = {name: {"restitution": 0.6, "cost": cost} for name, cost in zip("ab", costs, strict=True)}
+    with pytest.raises(kit.CheckFailed) as failed:
+        choosing.expect_choices(
+            Chooser(lambda *_: "b"), [(reports, [measured.need("restitution", "==", value)], "a")]
+        )
+    told = format_input(failed.value.finding.input)
+    assert all(f": {digits}}}" in told for digits in shown)
 
 
 def test_an_exception_where_a_value_is_missing_is_told_as_that_by_the_check_of_arguments_too():
@@ -580,6 +617,25 @@ def test_the_reports_of_real_engines_are_the_measurements_that_ship():
 )
 def test_a_licence_is_right_if_every_choice_it_offers_is(engine, text, right):
     assert facts.right_licence(engine, text) is right
+
+
+@pytest.mark.parametrize(
+    ("appended", "code"),
+    [
+        (lambda e, f: ("ode", "licence"), "ENTRIES_ALL_ONE"),
+        (lambda e, f: (e, "used_by"), "PAIR_TWICE_AND_MISSING"),
+        (lambda e, f: (e, f if f != "used_by" else "uses"), "PAIR_MISSING"),
+    ],
+)
+def test_of_twenty_entries_it_is_told_whether_one_is_there_again(appended, code):
+    pairs = [appended(engine, field) for engine in listing.ENGINES for field in listing.FIELDS]
+    entries = [
+        {"engine": e, "field": f, "value": "MIT", "source": "https://ode.org", "as_of": "2026-01-02"}
+        for e, f in pairs
+    ]
+    with pytest.raises(kit.CheckFailed) as failed:
+        listing.expect_sources(entries)
+    assert failed.value.finding.diagnosis == code
 
 
 @pytest.mark.parametrize("bad", [None, 3, [1, [2]], np.zeros(3), {"a": 1}, 10**400, "", True])

@@ -857,6 +857,12 @@ mistakes(
     """,
 )
 mistakes(
+    "PAST_WITH_NEW_DRIVE",
+    "A late measurement leads to a clearly different speed where the drive has just been changed, although the new drive acts only from the twin's time on.",
+    'The speed at a time in the past, and on the way from there to twin["t"], comes from the drives that acted then. Keep them in "memory", beside the times from which they acted.',
+    kind="fact",
+).edit("sync", {"last[2], t - last[0]": 'twin["drive"], t - last[0]'})
+mistakes(
     "FORGETS_TO_DOUBT",
     "The twin learns the friction well at first but far less of a change later.",
     "Keep the shares from fading. In a Kalman filter, let the variance of the friction grow a little in every prediction (process noise), and correct the covariance after every measurement.",
@@ -1001,7 +1007,7 @@ mistakes(
 mistakes(
     "PUSHES_AWAY",
     "For one friction at least, a twin slower than its target speed gets a smaller drive than at that speed.",
-    'Add a share of target_speed - twin["speed"], not of twin["speed"] - target_speed. In friction * target_speed, the target speed counts, not that of the twin.',
+    'In friction * target_speed, the target speed counts, not that of the twin. If your code adds a correction, let it be a share of target_speed - twin["speed"], not of twin["speed"] - target_speed.',
 ).edit("command", {"* target_speed": '* target_speed + 1.5 * (twin["speed"] - target_speed)'})
 mistakes("STATE_KEPT").program(
     "command",
@@ -1021,6 +1027,34 @@ mistakes("STATE_KEPT").program(
         def motor_step(w, u, dt, tau, u_max, deadband):
             u = 0.0 if abs(u) <= deadband else min(max(u, -u_max), u_max)
             return w + _SHARES.setdefault(dt, -math.expm1(-dt / tau)) * (u - w)
+    """,
+)
+mistakes(
+    "GENERATOR_COPIED",
+    "Your code makes a deep copy of rng, the generator that is passed in. What it draws from a copy, it draws again in the next call with the same generator.",
+    "Draw from rng itself, which moves on with each number. It is the one argument that a call may change.",
+    kind="fact",
+).program(
+    "imu",
+    """
+        import copy
+
+        _moving_on = imu
+
+
+        def imu(true, dt, noise_density, bias_random_walk, bias0, rng):
+            return _moving_on(true, dt, noise_density, bias_random_walk, bias0, copy.deepcopy(rng))
+    """,
+).program(
+    "lidar",
+    """
+        import copy
+
+        _moving_on = lidar
+
+
+        def lidar(pose, segments, angles, r_max, sigma, rng):
+            return _moving_on(pose, segments, angles, r_max, sigma, copy.deepcopy(rng))
     """,
 )
 mistakes(
@@ -1223,8 +1257,8 @@ mistakes(
 ).edit("command", {"* target_speed": '* target_speed + 30.0 * (target_speed - twin["speed"])'})
 mistakes(
     "MEMORY_NOT_READ",
-    "Emptying the memory changed neither of two calls, one with a new measurement and one with a late one.",
-    'Read in each call what the call before returned in "memory", such as the covariance of a Kalman filter; it is {} only at first. If your code does, look at the signs and sizes of the shares, and at what limits them.',
+    "In two calls, one with a new measurement and one with a late one, emptying the memory changed neither position, speed nor friction.",
+    'If your code does not read "memory", let it read in each call what the call before returned there, such as the covariance of a Kalman filter. If it does, look at the signs and sizes of the shares, and at any limit of the friction.',
 ).program(
     "sync",
     """

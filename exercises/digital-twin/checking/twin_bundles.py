@@ -29,7 +29,7 @@ def _of_sync(submission, late, backwards, driven=False):
 
     driven: whether measurements may be late after another drive has begun
     """
-    refuted = set() if late else {"LATE_USED_AS_CURRENT", "TIME_RUNS_BACK"}
+    refuted = set() if late else {"LATE_USED_AS_CURRENT", "LATE_STATE_AS_CURRENT", "TIME_RUNS_BACK"}
     refuted |= set() if driven else {"PAST_WITH_NEW_DRIVE"}
     refuted |= set() if backwards else {"LEARNS_FORWARDS_ONLY"}
     return twins.of_sync(submission, refuted)

@@ -103,7 +103,9 @@ _APART = {
     "DRIVE_CHANGED": "drive",
     "LATE_USED_AS_CURRENT": "late",
     "PAST_WITH_NEW_DRIVE": "late",
+    "LATE_STATE_AS_CURRENT": "late",
     "SPEED_NOT_CORRECTED": "speed",
+    "SPEED_SHARE_OVER_DT": "speed",
     "SPEED_CORRECTED_BACKWARDS": "speed",
     "FRICTION_LEARNS_BACKWARDS": "friction",
     "LEARNS_FORWARDS_ONLY": "friction",
@@ -188,7 +190,8 @@ def _in_one_step(submission):
     # Where a twin without a surprise would be, as shares of the way; and where a late one has none.
     went = (_unsurprised(x0, ahead, expected) - x) / (expected - x)
     went_soon = (_unsurprised(rows[7, 1], rows[8, 1], soon) - x) / (soon - x)
-    now = abs(_unsurprised(x_late, rows[10, 1], x - 0.4 * v) - x) < 0.05 * abs(v)
+    unsurprised = _unsurprised(x_late, rows[10, 1], x - 0.4 * v)
+    now, then = (abs(unsurprised - place) < 0.05 * abs(v) for place in (x, x - 0.4 * v))
     seen = [z for _, z, _ in (*usual, *at_once)]
     believed = np.allclose(rows[[0, 1, 2, 3, 4, 5, 7, 8], 1], seen, rtol=0, atol=1e-9)
     # The drive acts from the twin's time on: what it is by now tells nothing of a moment 0.4 s ago.
@@ -212,10 +215,12 @@ def _in_one_step(submission):
         ("DRIVE_REMEMBERED", undriven),
         # As if it were new: by that share of the way back, or so, and not by twice as much.
         ("LATE_USED_AS_CURRENT", good and now and 0.02 < (x - x_late) / abs(v) < 0.64 * max(moved, 0.1)),
+        ("LATE_STATE_AS_CURRENT", good and then and abs(v) > 0.5 and abs(t_late - t) < 1e-9),
         ("PAST_WITH_NEW_DRIVE", good and now and late_apart),
         ("FRICTION_LEARNS_BACKWARDS", v > 0.2 and b_ahead - b0 > 1e-9),
         ("SPEED_NOT_CORRECTED", np.max(np.abs(rows[1:6, 2] - v0)) < 1e-9),
         ("SPEED_CORRECTED_BACKWARDS", v_ahead < v0),
+        ("SPEED_SHARE_OVER_DT", min(gains) > 0.12 and abs(gains[0] - gains[1]) < 0.05 * gains[1]),
     )
     return [code for code, seen in tests if seen]
 

@@ -291,12 +291,13 @@ def test_delay_none_and_all(submission):
 @pytest.mark.task("diff_drive_step")
 @pytest.mark.points(4)
 def test_drive_known_arcs(submission):
-    """diff_drive_step straight ahead, on the spot, and on a quarter of a circle"""
+    """diff_drive_step straight ahead, on the spot, and on quarters of a circle to either side"""
     quarter = math.pi / 2
     cases = (
         ((1.0, 2.0, 0.0), (0.5, 0.5, 0.4, 2.0), (2.0, 2.0, 0.0)),
         ((1.0, 2.0, 0.0), (-0.2, 0.2, 0.4, 1.5), (1.0, 2.0, 1.5)),
         ((0.0, 0.0, 0.0), (0.8 * quarter, 1.2 * quarter, 0.4, 1.0), (1.0, 1.0, quarter)),
+        ((0.0, 0.0, 0.0), (1.2 * quarter, 0.8 * quarter, 0.4, 1.0), (1.0, -1.0, -quarter)),
         ((0.0, 0.0, 3.0), (0.3, 0.3 + 0.4 * quarter, 0.4, 4.0), None),
     )
     calls = [(np.array(pose), *wheels) for pose, wheels, _ in cases]
@@ -344,6 +345,13 @@ def test_sync_some_late(submission):
     """sync with one measurement in three late"""
     message = "With some measurements late, the twin's position is further off than the README allows."
     twins.expect_keeps_up(submission, np.random.default_rng(6), sign=1.0, late=0.33, message=message)
+
+
+@pytest.mark.task("sync")
+@pytest.mark.points(0)
+def test_sync_new_drives(submission):
+    """sync with another drive every second, and one measurement in three late"""
+    twins.expect_follows_drives(submission, np.random.default_rng(10))
 
 
 @pytest.mark.task("sync")

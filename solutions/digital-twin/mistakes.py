@@ -857,6 +857,12 @@ mistakes(
     """,
 )
 mistakes(
+    "PAST_WITH_NEW_DRIVE",
+    "A late measurement leads to a clearly different speed where the drive has just been changed, although the new drive acts only from the twin's time on.",
+    'The speed at a time in the past, and on the way from there to twin["t"], comes from the drives that acted then. Keep them in "memory", beside the times from which they acted.',
+    kind="fact",
+).edit("sync", {"last[2], t - last[0]": 'twin["drive"], t - last[0]'})
+mistakes(
     "FORGETS_TO_DOUBT",
     "The twin learns the friction well at first but far less of a change later.",
     "Keep the shares from fading. In a Kalman filter, let the variance of the friction grow a little in every prediction (process noise), and correct the covariance after every measurement.",
@@ -1001,7 +1007,7 @@ mistakes(
 mistakes(
     "PUSHES_AWAY",
     "For one friction at least, a twin slower than its target speed gets a smaller drive than at that speed.",
-    'Add a share of target_speed - twin["speed"], not of twin["speed"] - target_speed. In friction * target_speed, the target speed counts, not that of the twin.',
+    'In friction * target_speed, the target speed counts, not that of the twin. If your code adds a correction, let it be a share of target_speed - twin["speed"], not of twin["speed"] - target_speed.',
 ).edit("command", {"* target_speed": '* target_speed + 1.5 * (twin["speed"] - target_speed)'})
 mistakes("STATE_KEPT").program(
     "command",
@@ -1021,6 +1027,34 @@ mistakes("STATE_KEPT").program(
         def motor_step(w, u, dt, tau, u_max, deadband):
             u = 0.0 if abs(u) <= deadband else min(max(u, -u_max), u_max)
             return w + _SHARES.setdefault(dt, -math.expm1(-dt / tau)) * (u - w)
+    """,
+)
+mistakes(
+    "GENERATOR_COPIED",
+    "Your code makes a deep copy of rng, the generator that is passed in. What it draws from a copy, it draws again in the next call with the same generator.",
+    "Draw from rng itself, which moves on with each number. It is the one argument that a call may change.",
+    kind="fact",
+).program(
+    "imu",
+    """
+        import copy
+
+        _moving_on = imu
+
+
+        def imu(true, dt, noise_density, bias_random_walk, bias0, rng):
+            return _moving_on(true, dt, noise_density, bias_random_walk, bias0, copy.deepcopy(rng))
+    """,
+).program(
+    "lidar",
+    """
+        import copy
+
+        _moving_on = lidar
+
+
+        def lidar(pose, segments, angles, r_max, sigma, rng):
+            return _moving_on(pose, segments, angles, r_max, sigma, copy.deepcopy(rng))
     """,
 )
 mistakes(
@@ -1223,8 +1257,8 @@ mistakes(
 ).edit("command", {"* target_speed": '* target_speed + 30.0 * (target_speed - twin["speed"])'})
 mistakes(
     "MEMORY_NOT_READ",
-    "Emptying the memory changed neither of two calls, one with a new measurement and one with a late one.",
-    'Read in each call what the call before returned in "memory", such as the covariance of a Kalman filter; it is {} only at first. If your code does, look at the signs and sizes of the shares, and at what limits them.',
+    "In two calls, one with a new measurement and one with a late one, emptying the memory changed neither position, speed nor friction.",
+    'If your code does not read "memory", let it read in each call what the call before returned there, such as the covariance of a Kalman filter. If it does, look at the signs and sizes of the shares, and at any limit of the friction.',
 ).program(
     "sync",
     """
@@ -1767,6 +1801,16 @@ mistakes(
     "Inside the dead band the command counts as 0, so the speed lags towards 0.",
 )
 mistakes(
+    "DEADBAND_OF_DIFFERENCE",
+    "The dead band is applied to the difference of command and speed: where it is small, the speed stays as it is.",
+    "The dead band belongs to the command alone: u counts as 0 where abs(u) <= deadband, whatever the speed is.",
+)
+mistakes(
+    "DEADBAND_OF_SPEED",
+    "The dead band is applied to the speed: a new speed within it becomes 0.",
+    "The dead band belongs to the command: u counts as 0 where abs(u) <= deadband. The speed lags towards it and is not cut.",
+)
+mistakes(
     "DEADBAND_REVERSED",
     "Small commands are followed, and large ones count as 0.",
     "A command counts as 0 where abs(u) <= deadband, and keeps its value otherwise.",
@@ -1841,6 +1885,16 @@ mistakes(
     "GAP_HALVED",
     "The play is half as wide as the gap.",
     "Half of the gap is on either side of the input, from x - gap/2 to x + gap/2.",
+)
+mistakes(
+    "BACKLASH_SIDE_OF_ZERO",
+    "Which edge of the gap pushes the output depends on the sign of x, and not on where the state is.",
+    "Compare x with the state, not with 0: a state below x - gap/2 is pushed up to it, and one above x + gap/2 down to that.",
+)
+mistakes(
+    "BACKLASH_NEVER_RESTS",
+    "The output is half a gap from the input after nearly every step: inside the gap it does not stay at rest.",
+    "Clip the state to [x - gap/2, x + gap/2]: between these limits the output stays where it is. Return it as the next state, too.",
 )
 mistakes(
     "BACKLASH_ONE_SIDED",
@@ -1929,6 +1983,12 @@ mistakes(
     "At the fraction p of the way from one sample to the next, the value is (1 - p) times the first plus p times the next.",
 )
 mistakes(
+    "DELAY_NOT_STRAIGHT",
+    "With a latency of two samples the output is right. With one of two and a half it is not on the straight line between two samples.",
+    "Use np.interp with left=0.0. If your code draws a curve through the samples, or shifts them by a Fourier transform, it gets other values between them.",
+    kind="fact",
+)
+mistakes(
     "DELAY_HALF_WAY",
     "Between two samples the output is always their mean.",
     "Interpolate along the straight line between them: the nearer sample gets the larger weight.",
@@ -1988,6 +2048,16 @@ mistakes(
     "CHORD_OF_WHOLE_TURN",
     "The chord is computed with the whole turn.",
     "Use half of the turn: sin(turn/2)/(turn/2).",
+)
+mistakes(
+    "CHORD_ON_ONE_SIDE",
+    "In turns to one side the displacement is as long as the arc, as on a straight line.",
+    "The chord is shorter than its arc in turns to either side. If your code asks whether a turn is slow, compare abs(turn); np.sinc(turn / (2 * pi)) needs no such question.",
+)
+mistakes(
+    "SERIES_OF_WHOLE_TURN",
+    "In slow turns, the length of the chord is that of 1 - turn²/6, where the whole turn stands for its half.",
+    "The factor is sin(turn/2)/(turn/2). Its series begins with 1 - turn²/24; np.sinc(turn / (2 * pi)) needs none.",
 )
 mistakes(
     "CHORD_INVERTED",
@@ -2104,6 +2174,17 @@ mistakes(
     "DRIVE_REMEMBERED",
     "A drive that was changed between two calls makes no difference to the prediction, although it does for a new twin.",
     'Take twin["drive"] from the twin that is passed in. It acts from the twin\'s time on, and the caller may change it.',
+)
+mistakes(
+    "SPEED_SHARE_OVER_DT",
+    "A surprise changes the speed by a share of it that is divided by the time since the last measurement.",
+    "Divided by 0.1 s, a share is ten times as large, and so is the noise that comes with it. About 0.3 of the surprise itself is enough for the speed.",
+    kind="fact",
+)
+mistakes(
+    "LATE_STATE_AS_CURRENT",
+    "After a late measurement, the position is about that of the earlier time, while `t` is the time before the call.",
+    'A state predicted at t_measured has to be predicted on to twin["t"] again before it is returned. You may also ignore late measurements.',
 )
 mistakes(
     "SPEED_CORRECTED_BACKWARDS",
@@ -2261,6 +2342,7 @@ _ALONE = {
     *("NOISE_FOR_BIAS", "BIAS_SUBTRACTED", "TRUE_RATE_MISSING", "BIAS0_ADDED_EACH_STEP"),
     *("BIAS_CONSTANT", "WHITE_NOISE_MISSING", "WALK_SQUARED", "DENSITY_SQUARED"),
     *("Y_MIRRORED", "SPEED_IS_DIFFERENCE", "HEADING_HALF_TURNED", "CHORD_TURNED_BACK", "TRACK_MULTIPLIED"),
+    *("CHORD_ON_ONE_SIDE", "SERIES_OF_WHOLE_TURN", "BACKLASH_SIDE_OF_ZERO"),
     *("SPEED_OF_ONE_WHEEL", "WAY_WITHOUT_DT", "TRACK_IGNORED", "HEADING_FORGOTTEN"),
 }
 

@@ -91,6 +91,19 @@ def _clipped_only_at_the_end(w, u, dt, tau, u_max, deadband):
     return _clip(w - math.expm1(-dt / tau) * (u - w), u_max)
 
 
+def _dead_about_the_speed(clipped):
+    def motor_step(w, u, dt, tau, u_max, deadband):
+        goal = _clip(u, u_max)
+        return w if abs((goal if clipped else u) - w) <= deadband else w - math.expm1(-dt / tau) * (goal - w)
+
+    return motor_step
+
+
+def _stopped_within(w, u, dt, tau, u_max, deadband):
+    w = w - math.expm1(-dt / tau) * (_clip(u, u_max) - w)
+    return w if abs(w) > deadband else 0.0
+
+
 # -- backlash -------------------------------------------------------------------------------------------
 
 
@@ -115,6 +128,7 @@ _PLAY = {
         ("BACKLASH_IS_DEAD_BAND", lambda x, s, h: 0.0 if abs(x) <= h else x),
         ("BACKLASH_SNAPS", lambda x, s, h: s if abs(x - s) <= h else x),
         ("BACKLASH_WRONG_EDGE", lambda x, s, h: s if abs(x - s) <= h else x + math.copysign(h, x - s)),
+        ("BACKLASH_SIDE_OF_ZERO", lambda x, s, h: s if abs(x - s) <= h else x - math.copysign(h, x)),
         ("BACKLASH_ONE_SIDED", lambda x, s, h: max(s, x - h)),
         ("BACKLASH_ONE_SIDED", lambda x, s, h: min(s, x + h)),
         ("BACKLASH_CLIPS_INPUT", lambda x, s, h: min(max(x, s - h), s + h)),
@@ -128,6 +142,17 @@ _PLAY = {
         ("OUTPUT_IS_NOT_STATE", lambda y, x, s: (x, y)),
     ),
 }
+
+
+def _behind(of, kept):
+    """Half a gap behind x, whichever way it went from ``of``; what is kept is the output or x."""
+
+    def backlash(x, gap, state):
+        y = x - math.copysign(gap / 2, x - state) if x != state else of(x, state)
+        return y, kept(y, x)
+
+    return backlash
+
 
 # -- delay ----------------------------------------------------------------------------------------------
 
@@ -243,6 +268,21 @@ def _arc(
     return diff_drive_step
 
 
+def _whole_turn_below(limit):
+    """The chord's factor by its series in turns below a limit, with the whole turn for its half."""
+    return lambda turn: 1 - turn**2 / 6 if abs(turn) < limit else np.sinc(turn / (2 * np.pi))
+
+
+def _straight_on_one_side(sign):
+    """Turns to one side by their chord, and those to the other as if the robot rolled straight."""
+
+    def diff_drive_step(pose, v_left, v_right, track, dt):
+        turns = sign * (v_right - v_left) > 0
+        return _arc(**({} if turns else _EULER))(pose, v_left, v_right, track, dt)
+
+    return diff_drive_step
+
+
 _DRIVE = {
     "speed": (
         ("SPEEDS_ADDED", lambda left, right: left + right),
@@ -266,6 +306,11 @@ _DRIVE = {
         ("SINC_WITHOUT_PI", np.sinc),
         ("SINC_WITHOUT_PI", lambda turn: np.sinc(turn / 2)),
         ("CHORD_OF_WHOLE_TURN", lambda turn: math.sin(turn) / turn if turn else 1.0),
+        ("CHORD_ON_ONE_SIDE", lambda turn: np.sinc(turn / (2 * np.pi)) if turn > 0 else 1.0),
+        ("CHORD_ON_ONE_SIDE", lambda turn: np.sinc(turn / (2 * np.pi)) if turn < 0 else 1.0),
+        ("SERIES_OF_WHOLE_TURN", _whole_turn_below(0.1)),
+        ("SERIES_OF_WHOLE_TURN", _whole_turn_below(0.02)),
+        ("SERIES_OF_WHOLE_TURN", _whole_turn_below(math.inf)),
         ("CHORD_INVERTED", lambda turn: 1 / np.sinc(turn / (2 * np.pi))),
         ("STRAIGHT_DIVIDES_BY_ZERO", lambda turn: math.sin(turn / 2) / (turn / 2) if turn else math.nan),
     ),
@@ -429,7 +474,16 @@ TERMS = {
 }
 #: Programs that are wrong in another way, with their codes.
 OTHERS = {
-    "motor_step": [(("CLIPS_SPEED_NOT_COMMAND",), _clipped_only_at_the_end)],
+    "motor_step": [
+        (("CLIPS_SPEED_NOT_COMMAND",), _clipped_only_at_the_end),
+        (("DEADBAND_OF_DIFFERENCE",), _dead_about_the_speed(clipped=True)),
+        (("DEADBAND_OF_DIFFERENCE",), _dead_about_the_speed(clipped=False)),
+        (("DEADBAND_OF_SPEED",), _stopped_within),
+    ],
+    "backlash": [
+        (("BACKLASH_NEVER_RESTS",), _behind(of=lambda x, state: x, kept=lambda y, x: x)),
+        (("BACKLASH_NEVER_RESTS",), _behind(of=lambda x, state: state, kept=lambda y, x: y)),
+    ],
     "delay_line": [
         *((("DELAY_WHOLE_SAMPLES",), _shifted(count)) for count in _COUNTS),
         *((("DELAY_WHOLE_SAMPLES", "DELAY_HOLDS_FIRST"), _held(count)) for count in _COUNTS),
@@ -441,5 +495,6 @@ OTHERS = {
     "diff_drive_step": [
         (("EULER_ODOMETRY",), _arc(**_EULER)),
         (("EULER_TURNS_FIRST",), _arc(**_TURNED_FIRST)),
+        *((("CHORD_ON_ONE_SIDE",), _straight_on_one_side(sign)) for sign in (1.0, -1.0)),
     ],
 }

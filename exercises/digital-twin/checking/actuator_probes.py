@@ -149,7 +149,17 @@ def of_delay(submission):
         return named("DELAY_SHARES_SWAPPED")
     first = [row[: round(late / dt + 0.4999)] for row, late in zip(rows, lates, strict=True)]
     held = all(np.all(part == x[0]) for part in first) and not np.all(rows[0] == x[0])
-    return named("DELAY_HOLDS_FIRST") if held else None
+    if held:
+        return named("DELAY_HOLDS_FIRST")
+    return named("DELAY_NOT_STRAIGHT") if _not_straight(submission, x, dt) else None
+
+
+def _not_straight(submission, x, dt):
+    """Whether all is right after two samples, and after two and a half nothing is between two of them."""
+    values = submission.call_each("delay_line", [(x, dt, samples * dt) for samples in (2.0, 2.5)])
+    whole, half = (kit.as_vector(value, len(x), "the delayed signal") for value in values)
+    straight = np.abs(half[3:] - (x[:-3] + x[1:-2]) / 2) < 1e-6
+    return bool(np.allclose(whole, [0.0, 0.0, *x[:-2]], rtol=0, atol=1e-9) and not np.any(straight))
 
 
 def _shift(row, x):

@@ -52,12 +52,14 @@ class Run:
         truth: t (s), x (m) and v (m/s) at the time of the twin after each, shape (n, 3).
         late: which of them arrived after a newer one, shape (n,).
         errors: how far each was off when it was taken, m, shape (n,).
+        drives: what drove the cart from the time on at which the twin is before each, m/s², shape (n,).
     """
 
     calls: list[tuple[float, float]]
     truth: np.ndarray
     late: np.ndarray
     errors: np.ndarray
+    drives: np.ndarray
 
 
 def moments(rng, seconds, start=0.0):
@@ -69,22 +71,27 @@ def moments(rng, seconds, start=0.0):
 def measured(cart, drive, times, rng, *, late=0.0, delay=(0.15, 0.45), sigma=SIGMA):
     """Roll the cart through ``times`` and measure at each.
 
+    drive: one for all the way, or that up to each of the times, m/s²; where another begins, the measurement
+        before it is not late, so that the twin is there in time
     late: share of the measurements that arrive later than they were taken, by ``delay`` (low, high) s.
 
     Returns:
         A ``Run``.
     """
     rows, arrivals = [], []
-    for t in times:
-        cart.roll(drive, t)
+    drives = np.broadcast_to(drive, len(times)).astype(float)
+    last = np.append(np.diff(drives) != 0.0, False)
+    for t, u, before_another in zip(times, drives, last, strict=True):
+        cart.roll(u, t)
         rows.append((t, cart.x, cart.v))
         lateness = rng.uniform(*delay) if rng.uniform() < late else 0.0
-        arrivals.append(t + lateness)
+        arrivals.append(t + (0.0 if before_another else lateness))
     order = np.argsort(arrivals, kind="stable")
     errors = sigma * rng.standard_normal(len(rows))
     calls = [(float(rows[i][1] + errors[i]), float(rows[i][0])) for i in order]
     newest = np.maximum.accumulate(order)  # the twin is at the latest time it has heard of
-    return Run(calls, np.array(rows)[newest], order < newest, errors[order])
+    acting = np.append(drives, drives[-1:])[np.append(0, newest[:-1] + 1)]
+    return Run(calls, np.array(rows)[newest], order < newest, errors[order], acting)
 
 
 def new_twin(friction, drive, *, speed=0.0, position=0.0, t=0.0, sigma=SIGMA):

@@ -198,6 +198,16 @@ def expect_rate_kept(submission, true, dt, bias0, rng):
     )
 
 
+def expect_no_copy(submission, task, *args):
+    """The function draws from the generator that it is given after these arguments, so that this moves on."""
+    kit.expect_true(
+        not sensors.copies_generator(submission, task, *args),
+        "The call makes a deep copy of its generator `rng`.",
+        help="Draw from rng itself: it moves on with each number. A copy starts again in the next call.",
+        diagnose=sensors.named("GENERATOR_COPIED"),
+    )
+
+
 def _most_alike(a, b):
     """The largest correlation of one with the other any number of samples later; with itself, after 0."""
     itself = a is b
@@ -229,6 +239,7 @@ def expect_gyroscope_draws(submission, seed, dt):
             help="Draw a standard normal number of its own from rng for each sample and for each step.",
             diagnose=lambda: sensors.of_randomness(submission) or sensors.of_imu(submission, bias_first=True),
         )
+    expect_no_copy(submission, "imu", np.zeros(8), dt, 0.01, 0.01, 0.0)
     white, steps = first
     sizes = ((white, 0.01 / math.sqrt(dt), "measured - bias"), (steps, 0.01 * math.sqrt(dt), "the steps"))
     for values, expected, name in sizes:
@@ -428,7 +439,8 @@ def expect_scan_noise(submission, r_max, sigma, rng):
     kit.expect_true(
         missed == 0.0 and abs(middle) < 0.5 * sigma,
         "Of one long wall, the readings do not scatter about its distances.",
-        help="Read the same wall with sigma = 0 first, then add the noise, which goes either way.",
+        help="Is this wall read as it is with sigma = 0? If so, look at the noise, which goes either way "
+        "alike; if not, look at the distances.",
         input=given,
         diagnose=ask,
     )
@@ -453,8 +465,8 @@ def expect_scan_noise(submission, r_max, sigma, rng):
         else "Very close to a wall, too few readings are 0.",
         help="A distance cannot be negative: apply np.maximum(..., 0.0) after the noise."
         if negative
-        else "Read the same wall with sigma = 0 first: it counts however near it is. What the noise makes "
-        "negative reads 0.",
+        else "What the noise makes negative reads 0: draw no number again, and leave none out. If this wall "
+        "is not seen with sigma = 0 either, let it count however near it is.",
         input=given,
         diagnose=ask,
     )
@@ -479,6 +491,7 @@ def expect_scan_draws(submission, seed):
         help="Draw from rng itself and from nothing else.",
         diagnose=lambda: scanners.of_scan_draws(submission),
     )
+    expect_no_copy(submission, "lidar", np.zeros(3), _WALL, beams, 9.0, 0.05)
     kit.expect_true(
         not np.any(np.all(first == others, axis=0)),
         "With four generators in different states, at least one reading of a hit is the same.",

@@ -303,6 +303,18 @@ def _carries_over(submission):
 SEEDS = (5, 5, 6)
 
 
+def copies_generator(submission, task, *args):
+    """Whether a function makes a deep copy of the generator, its last argument: of one that would notice."""
+    rng, copies = np.random.default_rng(SEEDS[0]), []
+    drawn = {
+        name: getattr(rng, name) for name in ("normal", "standard_normal", "random", "uniform", "integers")
+    }
+    # What comes of the call is no matter: a program may ask for more than this generator can do.
+    noticing = kit.black_box(**drawn, __deepcopy__=lambda *_: copies.append(task))
+    kit.attempt(lambda: submission.call(task, *args, noticing))
+    return bool(copies)
+
+
 def of_draws(draws):
     first, again, other = draws
     if max(np.ptp(first), np.ptp(other)) < 1e-9:

@@ -24,11 +24,26 @@ def _rms(values):
     return float(np.sqrt(np.mean(np.square(values)))) if len(values) else 0.0
 
 
-def _of_sync(submission, late, backwards):
-    """The mistake of ``sync`` in a check whose measurements may be late and whose cart may roll backwards."""
-    refuted = set() if late else {"LATE_USED_AS_CURRENT", "TIME_RUNS_BACK"}
+def _of_sync(submission, late, backwards, driven=False):
+    """The mistake of ``sync`` in a check whose measurements may be late and whose cart may roll backwards.
+
+    driven: whether measurements may be late after another drive has begun
+    """
+    refuted = set() if late else {"LATE_USED_AS_CURRENT", "LATE_STATE_AS_CURRENT", "TIME_RUNS_BACK"}
+    refuted |= set() if driven else {"PAST_WITH_NEW_DRIVE"}
     refuted |= set() if backwards else {"LEARNS_FORWARDS_ONLY"}
     return twins.of_sync(submission, refuted)
+
+
+def _along(submission, twin, run):
+    """The twins along a run, the first one before it; between two calls the caller may set another drive."""
+    starts = np.flatnonzero(np.append(True, np.diff(run.drives) != 0.0))
+    folded = [twin]
+    for start, stop in zip(starts, np.append(starts[1:], len(run.calls)), strict=True):
+        twin = kit.as_record(folded.pop(), scenes.KEYS, "the twin") | {"drive": float(run.drives[start])}
+        part = submission.fold("sync", twin, run.calls[start:stop], keep=scenes.SEEN)
+        folded += [{key: twin[key] for key in scenes.SEEN}, *part[1:]]
+    return folded
 
 
 def expect_follows(submission, twin, run, *, settled, frictions, message):
@@ -39,10 +54,10 @@ def expect_follows(submission, twin, run, *, settled, frictions, message):
     frictions: (from, to, right friction): the mean estimate between two times, s
     """
     calls, truth = run.calls, run.truth
-    folded = submission.fold("sync", twin, calls, keep=scenes.SEEN)
+    folded = _along(submission, twin, run)
     rows = twins.path(folded)[1:]
-    late = bool(np.any(run.late))
-    ask = lambda: _of_sync(submission, late, backwards=bool(np.any(truth[:, 2] < 0)))  # noqa: E731
+    late, driven = bool(np.any(run.late)), bool(np.ptp(run.drives) > 0)
+    ask = lambda: _of_sync(submission, late, bool(np.any(truth[:, 2] < 0)), late and driven)  # noqa: E731
     _expect_no_flight(rows, {"measurements": len(calls), "twin": twin}, ask)
     kit.expect_array(
         rows[:, 0],
@@ -69,8 +84,8 @@ def expect_follows(submission, twin, run, *, settled, frictions, message):
             units="m",
             input={"measurements": len(calls), "rms error of the measurements": sensor, "twin": twin},
             message=message,
-            help="Print the surprises. Are some far beyond sigma: was the position predicted for that time? "
-            "Are they all about sigma: how much of each does the position take?",
+            help="Print the surprises. Are some far beyond sigma: was the position predicted for that time, "
+            "with the drive of that time? Are they all about sigma: how much of each does the position take?",
             diagnose=ask,
         )
     with np.errstate(all="ignore"):
@@ -190,6 +205,34 @@ def expect_keeps_up(submission, rng, *, sign, late, message):
         settled=((5.0, 9.0), (15.0, 27.0)),
         frictions=((17.0, 27.0, after),),
         message=message,
+    )
+
+
+def expect_follows_drives(submission, rng):
+    """20 s, either way; from 5 s on the drive changes about once a second, while measurements come late."""
+    friction, sign, sigma = (
+        rng.uniform(0.4, 0.8),
+        rng.choice([-1.0, 1.0]),
+        rng.uniform(1.0, 1.5) * scenes.SIGMA,
+    )
+    speed = sign * rng.uniform(0.9, 1.3)
+    times, steady = scenes.moments(rng, 20.0), friction * speed
+    begins = np.arange(5.0, 20.0) + rng.uniform(-0.1, 0.1, 15)
+    pushes = sign * rng.uniform(1.2, 1.8, 15) * np.tile([-1.0, 1.0], 8)[:15]
+    drives = np.append(steady, steady + pushes)[np.searchsorted(begins, times)]
+    run = scenes.measured(
+        scenes.Cart(((0.0, friction),), v=speed), drives, times, rng, late=0.33, sigma=sigma
+    )
+    off = rng.uniform(-0.03, 0.03, 2)
+    guess = friction * rng.uniform(0.75, 1.33)
+    expect_follows(
+        submission,
+        new_twin(guess, steady, speed=speed + off[0], position=off[1], sigma=sigma),
+        run,
+        settled=((5.0, 20.0),),
+        frictions=((12.0, 20.0, friction),),
+        message="With a drive that changes while some measurements are late, the twin's position is further "
+        "off than the README allows.",
     )
 
 

@@ -102,7 +102,10 @@ _APART = {
     "DRIVE_NOT_USED": "drive",
     "DRIVE_CHANGED": "drive",
     "LATE_USED_AS_CURRENT": "late",
+    "PAST_WITH_NEW_DRIVE": "late",
+    "LATE_STATE_AS_CURRENT": "late",
     "SPEED_NOT_CORRECTED": "speed",
+    "SPEED_SHARE_OVER_DT": "speed",
     "SPEED_CORRECTED_BACKWARDS": "speed",
     "FRICTION_LEARNS_BACKWARDS": "friction",
     "LEARNS_FORWARDS_ONLY": "friction",
@@ -175,7 +178,8 @@ def _in_one_step(submission):
     at_once = [(warm, z, t + 0.1) for z in (soon, soon + _SURPRISE)]
     behind = [(warm, z, t - 0.4) for z in (x - 0.4 * v, x - 0.4 * v + _SURPRISE)]
     usual = [(warm, expected + n * _SURPRISE, t + 0.2) for n in (0, 1, 0, -5, 2, 5)]
-    twins = submission.call_each("sync", [*usual, (pushed, expected, t + 0.2), *at_once, *behind])
+    asked = [*usual, (pushed, expected, t + 0.2), *at_once, *behind, (pushed, *behind[0][1:])]
+    twins = submission.call_each("sync", asked)
     rows = states(twins)
     (t0, x0, v0, b0), (_, ahead, v_ahead, b_ahead) = rows[:2]
     (_, driven, v_driven, _), (t_late, x_late, _, _) = rows[6], rows[9]
@@ -186,9 +190,12 @@ def _in_one_step(submission):
     # Where a twin without a surprise would be, as shares of the way; and where a late one has none.
     went = (_unsurprised(x0, ahead, expected) - x) / (expected - x)
     went_soon = (_unsurprised(rows[7, 1], rows[8, 1], soon) - x) / (soon - x)
-    now = abs(_unsurprised(x_late, rows[10, 1], x - 0.4 * v) - x) < 0.05 * abs(v)
+    unsurprised = _unsurprised(x_late, rows[10, 1], x - 0.4 * v)
+    now, then = (abs(unsurprised - place) < 0.05 * abs(v) for place in (x, x - 0.4 * v))
     seen = [z for _, z, _ in (*usual, *at_once)]
     believed = np.allclose(rows[[0, 1, 2, 3, 4, 5, 7, 8], 1], seen, rtol=0, atol=1e-9)
+    # The drive acts from the twin's time on: what it is by now tells nothing of a moment 0.4 s ago.
+    late_apart = abs(rows[11, 2] - rows[9, 2]) > 0.5
     undriven = abs(v_driven - v0) < 0.05 and abs(driven - x0) < 1e-6
     tests = (
         ("GLOBAL_MEMORY", not same(twins[0], twins[2])),
@@ -208,9 +215,12 @@ def _in_one_step(submission):
         ("DRIVE_REMEMBERED", undriven),
         # As if it were new: by that share of the way back, or so, and not by twice as much.
         ("LATE_USED_AS_CURRENT", good and now and 0.02 < (x - x_late) / abs(v) < 0.64 * max(moved, 0.1)),
+        ("LATE_STATE_AS_CURRENT", good and then and abs(v) > 0.5 and abs(t_late - t) < 1e-9),
+        ("PAST_WITH_NEW_DRIVE", good and now and late_apart),
         ("FRICTION_LEARNS_BACKWARDS", v > 0.2 and b_ahead - b0 > 1e-9),
         ("SPEED_NOT_CORRECTED", np.max(np.abs(rows[1:6, 2] - v0)) < 1e-9),
         ("SPEED_CORRECTED_BACKWARDS", v_ahead < v0),
+        ("SPEED_SHARE_OVER_DT", min(gains) > 0.12 and abs(gains[0] - gains[1]) < 0.05 * gains[1]),
     )
     return [code for code, seen in tests if seen]
 
@@ -287,10 +297,12 @@ def _learning(submission):
         if constant or dropped:
             return ("SHARE_TOO_LARGE" if share < 1.02 else "SHARE_OVER_ONE") if constant else "MEMORY_DROPPED"
     learned_well = abs(float(np.mean(friction[-20:])) - 0.8) < 0.08  # at first
-    if (share > 0.6 or not learned_well) and _memory_unread(submission, twins[-1]):
+    slow = None if learned_well or friction.min() <= 0.35 else _too_slow(friction[-40:])
+    doubtful = (share > 0.6 or not learned_well) and slow != "FRICTION_LIMITED"
+    if doubtful and _memory_unread(submission, twins[-1]):
         return "MEMORY_NOT_READ"
     if not learned_well:
-        return _too_slow(friction[-40:]) if friction.min() > 0.35 else None
+        return slow
     twins, _ = _run(submission, 0.5, ((0.0, 0.5), (30.0, 0.8)), 42.0)
     return "FORGETS_TO_DOUBT" if np.mean(states(twins[-20:])[:, 3]) < 0.65 else None
 

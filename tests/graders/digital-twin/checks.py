@@ -229,12 +229,19 @@ def test_drive_inputs(submission, rng):
 
 
 @pytest.mark.task("sync")
-@pytest.mark.points(3)
+@pytest.mark.points(2)
 def test_sync_late(submission, rng):
     """sync both ways, with a third of the measurements late"""
     message = "With some measurements late, the twin's position is further off than the README allows."
     for sign in (1.0, -1.0):
         twins.expect_keeps_up(submission, rng, sign=sign, late=0.33, message=message)
+
+
+@pytest.mark.task("sync")
+@pytest.mark.points(1)
+def test_sync_driven(submission, rng):
+    """sync with a drive that changes every second or so, and a third of the measurements late"""
+    twins.expect_follows_drives(submission, rng)
 
 
 @pytest.mark.task("sync")

@@ -51,10 +51,12 @@ def expect_hall(submission, rng):
 
 
 def expect_tour(submission, rng):
-    """Thirty arcs one after the other; each step is compared with the arc from where the one before ended."""
+    """Thirty arcs one after the other; each step is compared with the arc from where the one before ended.
+
+    Twenty turn one way, many times round, and the last ten the other way.
+    """
     track = rng.uniform(0.2, 0.8)
-    rates = rng.choice([-1, 1], 30) * rng.uniform(0.2, 1.5, 30)
-    rates = np.abs(rates) if rng.uniform() < 0.5 else rates
+    rates = rng.choice([-1, 1]) * np.repeat([1.0, -1.0], [20, 10]) * rng.uniform(0.2, 1.5, 30)
     speeds, dts = rng.uniform(-0.8, 0.8, 30), rng.uniform(0.1, 2.0, 30)
     calls = [
         (float(v - rate * track / 2), float(v + rate * track / 2), track, float(dt))

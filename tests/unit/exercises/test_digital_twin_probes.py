@@ -164,7 +164,7 @@ def test_a_noise_that_is_not_finite_is_not_said_to_differ_with_the_same_generato
         return measured, bias
 
     with pytest.raises(kit.CheckFailed) as failed:
-        sensor_bundles.expect_gyroscope_draws(Fake("imu", imu), 5, 0.02)
+        sensor_bundles.expect_gyroscope_draws(LocalSubmission("", replaced={"imu": imu}), 5, 0.02)
     assert "a walk together, the std of " in failed.value.finding.message
 
 
@@ -385,6 +385,126 @@ def test_a_twin_that_passes_the_measurement_on_is_never_good_enough():
                 twin_bundles.expect_keeps_up(
                     Fake("sync", passes_on), np.random.default_rng(seed), sign=sign, late=late, message="it"
                 )
+
+
+def _late_under_new_drives(twin, z, t, replay):
+    """Constant shares; a late measurement is fitted in, and ``replay`` says which drive its past has."""
+    memory = twin["memory"]
+    rows = memory.get(
+        "rows", [[twin["t"], twin["position"], twin["speed"], twin["friction"], twin["drive"], 0.0]]
+    )
+    rows = [list(row) for row in rows]
+    rows[-1][4] = twin["drive"]
+    later = [row for row in rows if row[0] > t]
+    rows = rows[: len(rows) - len(later)]
+    for at, seen in [(t, z), *((row[0], row[5]) for row in later)] if rows else []:
+        old = rows[-1]
+        acted = replay(old[4], twin["drive"])
+        start = scenes.new_twin(old[3], acted, speed=old[2], position=old[1], t=old[0])
+        new = _by_constant_shares(start, seen, at)
+        on = next((row[4] for row in later if row[0] == at), old[4])
+        rows.append([at, new["position"], new["speed"], new["friction"], on, seen])
+    rows = (rows or later)[-20:]
+    now, x, v, b = rows[-1][:4]
+    return {**twin, "t": now, "position": x, "speed": v, "friction": b, "memory": {"rows": rows}}
+
+
+def _by_constant_shares(twin, z, t):
+    dt, v, b = t - twin["t"], twin["speed"], twin["friction"]
+    a = twin["drive"] - b * v
+    x, v = twin["position"] + dt * v + dt * dt / 2 * (a - dt / 3 * b * a), v + dt * a - dt * dt / 2 * b * a
+    s = z - x
+    return {"position": x + 0.3 * s, "speed": v + 0.3 * s, "friction": b - 0.15 * s * float(np.sign(v))}
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_past_is_that_of_the_drives_that_acted_then(seed):
+    def in_its_time(twin, z, t):
+        return _late_under_new_drives(twin, z, t, lambda then, today: then)
+
+    def of_today(twin, z, t):
+        return _late_under_new_drives(twin, z, t, lambda then, today: today)
+
+    twin_bundles.expect_follows_drives(Fake("sync", in_its_time), np.random.default_rng(seed))
+    with pytest.raises(kit.CheckFailed) as failed:
+        twin_bundles.expect_follows_drives(Fake("sync", of_today), np.random.default_rng(seed))
+    assert failed.value.guess.code == "PAST_WITH_NEW_DRIVE"
+    assert twins.of_sync(Fake("sync", in_its_time)) is None
+
+
+def test_another_drive_begins_where_the_twin_is_in_time():
+    times = 0.1 * np.arange(1, 101)
+    drives = np.where(times < 5.05, 0.5, 1.5)
+    cart = scenes.Cart(((0.0, 0.5),), v=1.0)
+    run = scenes.measured(cart, drives, times, np.random.default_rng(2), late=0.6)
+    begins = int(np.argmax(run.drives == 1.5))
+    assert run.truth[begins - 1, 0] == pytest.approx(5.0)
+    assert np.all(run.drives[:begins] == 0.5)
+    assert np.all(run.drives[begins:] == 1.5)
+    late_after = run.late[begins:] & (np.array([t for _, t in run.calls[begins:]]) < 5.0)
+    assert late_after.any()  # what was measured under the old drive comes under the new one
+    assert run.truth[-1, 2] > 2.5
+
+
+@pytest.mark.parametrize("task", ["imu", "lidar"])
+def test_a_generator_that_is_copied_is_noticed(task):
+    def copies(*args):
+        return getattr(right, task)(*args[:-1], copy.deepcopy(args[-1]))
+
+    def makes_a_generator_of_its_own(*args):
+        return getattr(right, task)(*args[:-1], np.random.default_rng(args[-1].integers(2**32)))
+
+    checks = {
+        "imu": lambda submission: sensor_bundles.expect_gyroscope_draws(submission, 5, 0.02),
+        "lidar": lambda submission: sensor_bundles.expect_scan_draws(submission, 5),
+    }
+    for function in (getattr(right, task), makes_a_generator_of_its_own):
+        checks[task](LocalSubmission("", replaced={task: function}))
+    with pytest.raises(kit.CheckFailed) as failed:
+        checks[task](LocalSubmission("", replaced={task: copies}))
+    assert failed.value.guess.code == "GENERATOR_COPIED"
+
+
+def test_a_tour_turns_to_either_side():
+    parts = kit.sibling(ROOT / "tests/graders/digital-twin/checks.py", "parts")
+
+    def chord_to_one_side(pose, v_left, v_right, track, dt):
+        right_turn = v_right < v_left
+        return (
+            right_way(pose, v_left, v_right, track, dt)
+            if right_turn
+            else _straight(pose, v_left, v_right, dt)
+        )
+
+    def _straight(pose, v_left, v_right, dt):
+        way = (v_left + v_right) / 2 * dt
+        return np.array([pose[0] + way * np.cos(pose[2]), pose[1] + way * np.sin(pose[2]), pose[2]])
+
+    right_way = right.diff_drive_step
+    for seed in range(8):
+        turns = []
+
+        def noted(pose, *wheels, turns=turns):
+            turns.append(wheels[1] - wheels[0])
+            return right_way(pose, *wheels)
+
+        parts.expect_tour(Fake("diff_drive_step", noted), np.random.default_rng(seed))
+        assert min(turns) < 0 < max(turns)
+        with pytest.raises(kit.CheckFailed):
+            parts.expect_tour(Fake("diff_drive_step", chord_to_one_side), np.random.default_rng(seed))
+
+
+def test_the_first_wrong_step_of_a_gear_has_a_number_and_no_time():
+    with pytest.raises(kit.CheckFailed) as failed:
+        actuator_bundles.expect_play(
+            Fake("backlash", lambda x, gap, state: (state, state)),
+            [0.0, 0.1, 3.0],
+            1.0,
+            [0.0] * 3,
+            [0.0, 0.0, 2.5],
+        )
+    assert failed.value.finding.first_divergence is None
+    assert failed.value.finding.input == {"step": 2, "x": 3.0, "gap": 1.0, "state": 0.0}
 
 
 def test_arcs_by_their_radius_and_by_the_chord_meet():

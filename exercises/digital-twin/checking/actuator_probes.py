@@ -155,11 +155,12 @@ def of_delay(submission):
 
 
 def _not_straight(submission, x, dt):
-    """Whether all is right after two samples, and after two and a half nothing is between two of them."""
+    """Whether all is right after two samples, and after two and a half nothing is one of them, or halfway."""
     values = submission.call_each("delay_line", [(x, dt, samples * dt) for samples in (2.0, 2.5)])
     whole, half = (kit.as_vector(value, len(x), "the delayed signal") for value in values)
-    straight = np.abs(half[3:] - (x[:-3] + x[1:-2]) / 2) < 1e-6
-    return bool(np.allclose(whole, [0.0, 0.0, *x[:-2]], rtol=0, atol=1e-9) and not np.any(straight))
+    before, after = x[:-3], x[1:-2]
+    known = [np.abs(half[3:] - line) < 1e-6 for line in ((before + after) / 2, before, after)]
+    return bool(np.allclose(whole, [0.0, 0.0, *x[:-2]], rtol=0, atol=1e-9) and not np.any(known))
 
 
 def _shift(row, x):

@@ -198,7 +198,7 @@ def _priced(**costs):
 @pytest.mark.task("choose_engine")
 @pytest.mark.points(2)
 def test_choose_nothing(submission, draw):
-    """Where None is returned, and where an engine"""
+    """The choice where no engine meets all requirements, and where one does"""
     reports = {
         "anvil": {**boxes.TRUTH["anvil"], "cost": 2.0, "noise_db": None},
         "balsa": {**boxes.TRUTH["balsa"], "cost": 1.0},

@@ -843,7 +843,7 @@ mistakes(
 )
 mistakes(
     "NOTHING_FITS",
-    "No engine meets the requirements, and your code does not return None.",
+    "An engine is returned where None belongs.",
     "Return None if no engine meets every requirement, or if there are no reports. A value that is nearly equal does not meet ==.",
     kind="consequence",
 ).program(

@@ -55,7 +55,7 @@ def expect_momentum(submission, task, calls):
         finding = _finding(
             task,
             args,
-            "An impact changes the total momentum, and no outside force acts.",
+            "The total momentum changes, although no outside force acts.",
             "What b gains, a loses.",
             diagnose,
         )
@@ -147,7 +147,7 @@ def expect_braking(submission, calls):
         finding, adds, brakes = (
             _finding(task, args, message, help_, diagnose)
             for message in (
-                "An impact with friction changes the total momentum.",
+                "The total momentum changes, although no outside force acts.",
                 "An impact with friction adds energy.",
                 "Friction does not brake the slip as it should.",
             )

@@ -104,6 +104,21 @@ def test_a_ball_that_falls_on_while_it_lies_on_the_floor_loses_points():
         bundles.expect_drop(scene, truth, (t, z, np.where(t == t[2], -0.1, v)), t_end, h, "wrong")
 
 
+@pytest.mark.parametrize("spoil", [math.nan, math.inf, 1e308, -1e308])
+def test_paths_that_blow_up_half_way_are_wrong_and_no_probe_stumbles_over_them(spoil):
+    ball, pair = paths.Drop(1.0, 0.0, 0.1, 0.7), paths.HeadOn((1.0, 2.0), (-1.0, 0.6), (2.0, -1.0), 0.5, 0.5)
+    bounces, meeting, t = motions.bounces(ball, 1.0, 0.01), motions.meeting(pair), 0.01 * np.arange(100)
+    fall, way = ball.at(t, bounces.times, bounces.speeds), pair.at(t, meeting.contact, meeting.after)
+    for expect, scene, truth, path in (
+        (bundles.expect_drop, ball, bounces, fall),
+        (bundles.expect_head_on, pair, meeting, way),
+    ):
+        blown = [np.concatenate([part[:50], np.full_like(part[50:], spoil)]) for part in path]
+        with pytest.raises(kit.CheckFailed) as failed:
+            expect(scene, truth, (t, *blown), 0.99, 0.01, "wrong")
+        assert not failed.value.broke
+
+
 def test_a_ball_that_settles_at_once_would_still_fly_by_a_rule_that_is_not_that_of_g_h():
     """By g times the rest of the step it would rest at its third contact or later."""
     rng = np.random.default_rng(5)

@@ -6,6 +6,7 @@ What known wrong programs are told is in ``solutions/validation/record.json``, w
 from __future__ import annotations
 
 import functools
+import math
 import re
 from pathlib import Path
 
@@ -23,6 +24,7 @@ probes = kit.companion("validation", "probes")
 shared = kit.companion("validation", "expectations")
 twins = kit.companion("validation", "twins")
 verdict = kit.companion("validation", "probes_verdict")
+bundles = kit.companion("validation", "bundles")
 report = kit.companion("validation", "report")
 formulas = kit.reference("validation", "formulas")
 
@@ -124,6 +126,31 @@ IN_FLOAT32 = LocalSubmission(
 def test_what_no_known_program_gives_is_told(find, code):
     found = find()
     assert (found and found.code) == code
+
+
+def test_of_two_mistakes_a_check_names_the_one_that_its_own_number_shows():
+    """A lag of -0.047 that should be 0.047 was once told of an interval of one sigma."""
+    wrong = NUMBERS | {"lag_s": 0.05, "runs_used": FACTS.used, "intervals": SWAPPED}
+    with pytest.raises(kit.CheckFailed) as failed:
+        bundles.expect_measures(wrong, None, FACTS, {})
+    assert failed.value.guess.code == "LAG_SIGN"
+    # None of these is said of checks that do not show it.
+    for code in ("LAG_SIGN", "WRONG_SIGN", "JACKKNIFE_FACTOR", "NOT_STUDENTS_T"):
+        assert kit.words("validation").kind(code) != "cause"
+
+
+(CASE, RIGHT), *_ = bundles.public("validate_margins_apart", None)
+
+
+@pytest.mark.parametrize("bad", [None, 3, "abc", [1, [2]], np.zeros(3), {"a": 1}, 10**400, [None], math.nan])
+@pytest.mark.parametrize("key", bundles.KEYS)
+def test_a_report_with_any_one_value_spoilt_fails_as_the_student_s(key, bad):
+    spoilt = SOLUTION.call("validate", CASE.sim, CASE.real, bundles.LENIENT) | {key: bad}
+    program = LocalSubmission("", replaced={"validate": lambda *_: spoilt})
+    for expect in (bundles.expect_report, bundles.expect_nothing):
+        with pytest.raises(kit.CheckFailed) as failed:
+            expect(program, CASE, bundles.LENIENT, RIGHT, {})
+        assert not failed.value.broke
 
 
 @functools.cache

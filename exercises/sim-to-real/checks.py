@@ -121,7 +121,7 @@ def test_identify_public(submission):
     asked = [recordings[-1], recordings[-1], *recordings]
     values = probes.patient(lambda: submission.call_each("identify", asked), "IDENTIFY_TOO_SLOW")
     first, second, *found = [probes.estimate_of(value) for value in values]
-    judge.expect_accurate(found, carts, recordings)
+    judge.expect_accurate(found, carts, recordings, submission)
     judge.expect_forgetful(first, second, found[-1])
 
 

@@ -980,6 +980,24 @@ mistakes(
             return found
     """,
 )
+mistakes(
+    "COMMAND_KEPT",
+    "Asked about the same speeds with another command, your code gives the same estimate.",
+    "Compute everything from the u of this call. If you keep impulses outside the function, by their tau say, later calls get those of an earlier command.",
+    kind="fact",
+).program(
+    "identify",
+    """
+        _impulse = motor_impulse
+        _made = {}
+
+
+        def motor_impulse(u, tau):
+            if (len(u), tau) not in _made:
+                _made[len(u), tau] = _impulse(u, tau)
+            return _made[len(u), tau]
+    """,
+)
 mistakes("RESULT_OVERWRITTEN").program(
     "plan",
     """

@@ -162,6 +162,20 @@ def of_values(estimates, truths, recordings=()):
     return found and named(found)
 
 
+def of_command_kept(submission, recordings):
+    """Whether the first recording gets the same estimate, to the last digit, with its command run backwards.
+
+    Impulses kept by tau from one call to the next do that. Asked first with the right command, so that what
+    is kept for the times near it is there.
+    """
+    if not len(recordings):
+        return None
+    t, u, y = recordings[0]
+    asked = [(t, u, y), (t, np.array(u[::-1]), y)]
+    found = kit.attempt(lambda: [estimate_of(each) for each in submission.call_each("identify", asked)])
+    return named("COMMAND_KEPT") if found and found[0] == found[1] else None
+
+
 def _differentiated(got, true, recordings):
     """Whether the masses are too small, and those that come of differentiating the speed, by either way.
 

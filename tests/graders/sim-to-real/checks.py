@@ -106,7 +106,7 @@ def test_identify_accurate(submission):
     """Mass, both frictions and lag of three unknown carts, from two recordings each"""
     estimates, carts = execution.bench(submission)
     recordings = reference.recordings(submission.seed)[:3]
-    judge.expect_accurate(execution.means(estimates), carts[:3], recordings)
+    judge.expect_accurate(execution.means(estimates), carts[:3], recordings, submission)
 
 
 @pytest.mark.task("identify")

@@ -195,9 +195,28 @@ def test_an_estimate_that_depends_on_the_calls_before_it_is_told_and_chance_is_n
     other = {name: [1.01 * number for number in entry] for name, entry in first.items()}
     judge.expect_forgetful(first, first, first)
     judge.expect_forgetful(first, other, other)  # two in a row differ: drawn anew
-    with pytest.raises(kit.CheckFailed) as failed:
-        judge.expect_forgetful(first, first, other)
-    assert failed.value.finding.diagnosis == "ESTIMATE_KEPT"
+    rounded = {name: [(1 + 1e-13) * number for number in entry] for name, entry in first.items()}
+    for second in first, rounded:
+        with pytest.raises(kit.CheckFailed) as failed:
+            judge.expect_forgetful(first, second, other)
+        assert failed.value.finding.diagnosis == "ESTIMATE_KEPT"
+
+
+def test_impulses_kept_of_an_earlier_command_are_told_and_a_right_program_is_not():
+    class Asked:
+        def __init__(self, identify):
+            self.identify = identify
+
+        def call_each(self, _, calls):
+            return [self.identify(*args) for args in calls]
+
+    recordings, _ = judge.public_recordings()
+    same = {k: list(v) for k, v in cart.with_intervals(cart.PUBLIC).items()}
+    reads = lambda t, u, y: {k: [x * (1 + abs(u[:100].sum())) for x in v] for k, v in same.items()}  # noqa: E731
+    kept = probes.of_command_kept(Asked(lambda *_: same), recordings)
+    assert kept.code == "COMMAND_KEPT"
+    assert probes.of_command_kept(Asked(reads), recordings) is None
+    assert probes.of_command_kept(Asked(lambda *_: same), ()) is None
 
 
 def test_what_is_exactly_at_a_limit_is_within_it():

@@ -844,7 +844,7 @@ mistakes(
 mistakes(
     "NOTHING_FITS",
     "An engine is returned where None belongs.",
-    "Return None if no engine meets every requirement, or if there are no reports. A value that is nearly equal does not meet ==.",
+    "A value that is nearly equal does not meet ==. Return None if no engine meets every requirement, or if there are no reports.",
     kind="consequence",
 ).program(
     "choose_engine",
@@ -1314,7 +1314,7 @@ mistakes(
 mistakes(
     "FORCE_UP_OR_DOWN",
     "In at least one run, a force along z acts on the body besides its weight.",
-    'The scene "floor" has gravity already. A push lies in the plane: (F cos a, F sin a, 0).',
+    'The scene "floor" has gravity already. A push lies in the plane: (F cos a, F sin a, 0). If a depth is wrong without that force, too, look at its sign: max(0, radius - z).',
     kind="fact",
 ).program(
     "characterise",
@@ -1491,7 +1491,7 @@ mistakes(
 )
 mistakes(
     "DAMPING_ROWS_COUNTED",
-    "The rate is too small by about one part in n. Perhaps rows are counted instead of steps.",
+    "The rate is too small by about one part in n, as where rows are counted for steps, or the last row is left out.",
     "Between n + 1 rows there are n steps: divide by n times h. The last row belongs to the time n h.",
 )
 mistakes(

@@ -145,7 +145,7 @@ def expect_untouched(submission: Any, reports: Any, needs: Any) -> None:
     # As text: what came back may hold anything, and not everything can be compared.
     if repr([*inspected.args_after]) != repr(given):
         kit.fail(
-            "The call changed the reports or the requirements it was given.",
+            "The reports or the requirements were changed by the call.",
             diagnose=named("MUTATES_INPUT"),
             input={"reports": given[0], "requirements": given[1]},
             actual=inspected.args_after,

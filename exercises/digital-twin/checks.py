@@ -270,7 +270,7 @@ def test_backlash_of_two(submission):
 @pytest.mark.points(3)
 def test_delay_between_samples(submission):
     """delay_line with a delay that is not a whole number of samples"""
-    x = np.array([2.0, 3.0, 1.0, 5.0, 4.0, 4.0, 0.0, 2.0])
+    x = np.array([2.0, 3.0, 1.0, 5.0, 4.0, 4.0, 0.0, 6.0])
     expected = [0.0, 0.0, 0.0, 2.75, 1.5, 4.0, 4.25, 4.0]
     actuators.expect_delayed(
         submission, submission.call("delay_line", x, 0.1, 0.225), x, 0.1, 0.225, expected

@@ -889,7 +889,7 @@ mistakes(
 ).edit("command", {'twin["friction"] * target_speed': 'target_speed / twin["friction"]'})
 mistakes(
     "BACKWARDS_NOT_DRIVEN",
-    "For a negative target speed, the drive has the wrong sign or is zero.",
+    "For a twin that moves at its negative target speed, the drive has the wrong sign or is zero.",
     "Friction opposes the motion in both directions: drive = friction * target_speed, with the sign of the target speed.",
 ).edit("command", {"* target_speed": "* abs(target_speed)"})
 mistakes(
@@ -2082,7 +2082,7 @@ mistakes(
 mistakes(
     "CHORD_WRONG_WAY",
     "In a turn that was tried, the displacement has the right length but the wrong direction.",
-    "The chord points along the heading half-way through the turn: use the cosine and the sine of heading + turn/2.",
+    "The chord points along the heading half-way through the turn: use the cosine and the sine of heading + turn/2, with the heading from before the step.",
 )
 mistakes(
     "CHORD_TURNED_BACK",
@@ -2172,7 +2172,7 @@ mistakes(
 )
 mistakes(
     "DRIVE_REMEMBERED",
-    "A drive that was changed between two calls makes no difference to the prediction, although it does for a new twin.",
+    "A drive that was changed between two calls makes no difference to the next prediction, although it does for a new twin.",
     'Take twin["drive"] from the twin that is passed in. It acts from the twin\'s time on, and the caller may change it.',
 )
 mistakes(

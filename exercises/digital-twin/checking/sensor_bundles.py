@@ -427,7 +427,7 @@ def expect_scan_noise(submission, r_max, sigma, rng):
     ask = lambda: scanners.of_straight_lidar(submission)  # noqa: E731
     kit.expect_true(
         bool(np.all(wide[~hits] == r_max)),
-        "A beam that hits nothing does not read r_max exactly.",
+        "A beam without a hit within r_max does not read r_max exactly.",
         help="Without a hit the reading is r_max itself: noise belongs to hits only.",
         input=given,
         diagnose=ask,

@@ -121,8 +121,8 @@ def expect_motor(submission, w, calls, message, source="rounding"):
         t=np.cumsum([dt for _, dt, *_ in calls]),
         input={"(u, dt, tau, u_max, deadband)": calls},
         message=message,
-        help="Apply to the command itself, in this order: dead band, saturation, then the exact lag, starting "
-        "from the present speed.",
+        help="Apply to the command itself, in this order: dead band, saturation, then the exact lag, "
+        "starting from the present speed.",
         diagnose=lambda: bundles.unless(
             refuted, lambda: actuators.of_motor(submission), lambda: actuators.of_speed_limit(submission)
         ),

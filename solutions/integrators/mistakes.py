@@ -1024,7 +1024,7 @@ mistakes("STATE_KEPT").program(
 mistakes(
     "LIMIT_TOO_EARLY",
     "Steps beyond the result are still stable, without a break.",
-    "Is 0.05/omega the first step that you look at, and is a step stable up to a spectral radius of 1 + 1e-8? If so, compare the matrix column by column: from (1, 0) and from (0, omega) at the same h, with velocities divided by omega.",
+    "Is 0.05/omega the first step that you look at, and is a step stable up to a spectral radius of 1 + 1e-8? If so, compare the matrix column by column: from (1, 0) and from (0, omega) at the same h, with velocities divided by omega. Its eigenvalues come from np.linalg.eigvals: eigvalsh is for symmetric matrices alone.",
     kind="consequence",
 ).body(
     "max_stable_step",

@@ -110,7 +110,8 @@ def expect_limit(submission, value, case, *, input, message):
         input=input,
         message=message,
         help="Walk up from 0.05/omega. At each step build the matrix on (q, v/omega) from two calls: no "
-        "eigenvalue may have a modulus above 1 + 1e-8.",
+        "eigenvalue may have a modulus above 1 + 1e-8. Then bisect between the last stable step and the "
+        "first unstable one.",
         diagnose=lambda: probes.of_stability(submission, value, step, omega, limit),
     )
 

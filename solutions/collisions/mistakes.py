@@ -1511,7 +1511,7 @@ mistakes(
 mistakes(
     "WALL_MOVED",
     "The wall's velocity changes.",
-    "An impulse changes the velocity of a wall by J / inf, which is 0.0: it goes on as before. If your code divides so, see in which order it returns the two.",
+    "An impulse changes the velocity of a wall by J / inf, which is 0.0: it goes on as before. If your code divides so, see in which order it returns the two, and that nothing else sets the velocity of a wall.",
     kind="consequence",
 )
 mistakes(

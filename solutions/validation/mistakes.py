@@ -1100,7 +1100,7 @@ mistakes(
 mistakes(
     "ABOUT_THE_NUMBER",
     "The interval is as wide as with the squares of x_i minus the number, not minus the mean of the x_i.",
-    "Subtract the mean of the numbers with one run left out: error = sqrt((n - 1)/n * sum((x_i - mean(x_i))**2)).",
+    "Subtract the mean of the numbers with one run left out: error = sqrt((n - 1)/n * sum((x_i - mean(x_i))**2)). If you do, see that each x_i leaves out one run and no more.",
     kind="consequence",
 ).program(
     "validate",
@@ -1604,7 +1604,7 @@ mistakes(
 mistakes(
     "PART_OF_SERIES",
     "In a short trial, more than a fifth of the series occurs in none of the resamples.",
-    "Draw a new start for every block of every resample, from 0 to N - block, both included.",
+    "Draw a new start for every block of every resample, from 0 to N - block, both included, and take every block from `e` as it was given.",
     kind="fact",
 ).body(
     "block_bootstrap_ci",
@@ -1675,6 +1675,25 @@ mistakes(
             starts = rng.integers(0, n, -(-n // block))
             places = np.minimum(starts[:, None] + np.arange(block), n - 1)
             values.append(statistic(e[places.ravel()[:n]]))
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
+    "BLOCKS_OF_OTHER_LENGTH",
+    "In a short trial nearly all blocks have the same length, and it is not `block`.",
+    "Take `block` samples from each start: e[s : s + block] ends before s + block, and np.arange(block) has `block` numbers.",
+    kind="fact",
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        values = []
+        for _ in range(n_boot):
+            parts = []
+            while sum(map(len, parts)) < len(e):
+                start = rng.integers(0, len(e) - block + 1)
+                parts.append(e[start : start + max(block - 1, 1)])
+            values.append(statistic(np.concatenate(parts)[: len(e)]))
         return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
     """,
 )

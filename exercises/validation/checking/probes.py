@@ -239,6 +239,7 @@ def of_resamples(found):
         ("BEGINNING_REPEATED", len(drawn) > _BOOT / 2 and all(map(_ends_as_it_begins, drawn))),
         ("IID_BOOTSTRAP", length < 1.5),
         ("BLOCK_IGNORED", not _BLOCK / BLOCK_FACTOR <= length <= _BLOCK * BLOCK_FACTOR),
+        ("BLOCKS_OF_OTHER_LENGTH", bool(drawn) and _usual_length(drawn) not in (None, _BLOCK)),
         # In three of five resamples, a block begins where another one does.
         ("BLOCKS_DRAWN_ONCE", len(drawn) >= _BOOT and not any(map(_begins_twice, drawn))),
         # A basic interval asks about the series itself, once or where it is needed.
@@ -265,19 +266,26 @@ def _ends_as_it_begins(samples):
     return np.array_equal(samples[-(_N % _BLOCK) :], samples[: _N % _BLOCK])
 
 
-def _first_ones(samples):
-    """With which errors the blocks begin; a circular block goes on at the start of the series."""
-    return samples[np.append(True, ~np.isin(np.diff(samples), (1, 1 - len(samples))))]
+def _beginnings(samples):
+    """Where blocks begin in a resample; a circular block goes on at the start of the series."""
+    return np.flatnonzero(np.append(True, ~np.isin(np.diff(samples), (1, 1 - len(samples)))))
 
 
 def _begins_twice(samples):
-    begun = _first_ones(samples)
+    begun = samples[_beginnings(samples)]
     return len(np.unique(begun)) < len(begun)
+
+
+def _usual_length(drawn):
+    """The length of four in five blocks, if they have one; the last block of a resample is cut off."""
+    lengths = np.concatenate([np.diff(_beginnings(samples)) for samples in drawn])
+    usual = int(np.median(lengths)) if len(lengths) else 0
+    return usual if np.mean(lengths == usual) > 0.8 else None
 
 
 def _length_of_blocks(drawn):
     """How many neighbours follow each other in these resamples, on average."""
-    return len(drawn[0]) * len(drawn) / sum(len(_first_ones(samples)) for samples in drawn)
+    return len(drawn[0]) * len(drawn) / sum(len(_beginnings(samples)) for samples in drawn)
 
 
 def of_ends(found):

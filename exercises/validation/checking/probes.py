@@ -279,8 +279,8 @@ def _begins_twice(samples):
 def _usual_length(drawn):
     """The length of four in five blocks, if they have one; the last block of a resample is cut off."""
     lengths = np.concatenate([np.diff(_beginnings(samples)) for samples in drawn])
-    usual = int(np.median(lengths)) if len(lengths) else 0
-    return usual if np.mean(lengths == usual) > 0.8 else None
+    usual = int(np.median([*lengths, 0, 0]))
+    return usual if np.sum(lengths == usual) > 0.8 * max(len(lengths), 1) else None
 
 
 def _length_of_blocks(drawn):

@@ -19,9 +19,11 @@ from typing import IO, TYPE_CHECKING, Any, assert_never, cast
 
 import msgspec
 
-from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
+from course.catalog.reading import Document, LineMap
+from course.errors import ContentError, IntegrityError, MissingCapabilityError, NotFoundError, UsageError
 from course.printable import one_line
 from course.sandbox.scene.model import Part, Scene
+from course.sandbox.scene.rules import check_scene
 from course.sandbox.world.engine import versions
 from course.sandbox.world.world import Snapshot, World
 from course.strangers import read_bytes
@@ -263,6 +265,12 @@ def replay(recorded: Replay) -> Difference:
         for name in sorted({*then, *here})
         if then.get(name) != here.get(name)
     }
+    try:
+        check_scene(Document(recorded.path, recorded.head.scene, LineMap("")))
+    except ContentError as error:
+        raise IntegrityError(
+            f"{recorded.path}:1 is damaged: in its scene, {error.problem}", code="damaged_recording"
+        ) from error
     world = World(recorded.head.scene, recorded.head.settings, receipt=False)
     inputs = list(recorded.inputs)[::-1]
     good = 0

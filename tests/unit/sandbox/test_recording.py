@@ -133,6 +133,16 @@ def test_what_a_recording_cannot_do_is_named_with_the_file_and_the_step(tmp_path
             replay(read(path))
 
 
+def test_a_scene_that_a_recording_spoilt_is_refused_with_its_place(tmp_path) -> None:
+    path = tmp_path / "run.jsonl"
+    head, _, rest = random_run(7, turns=4).partition(b"\n")
+    scene = json.loads(head)["scene"]
+    old = json.dumps(scene["material"][0]["name"]).encode()
+    path.write_bytes(head.replace(b'"name":' + old, b'"name":"stone"', 1) + b"\n" + rest)
+    with pytest.raises(IntegrityError, match=r"run\.jsonl:1 is damaged: in its scene, there is no material"):
+        replay(read(path))
+
+
 @settings(max_examples=60)
 @given(st.data())
 def test_bytes_changed_anywhere_never_crash_a_replay(tmp_path_factory, data) -> None:

@@ -30,7 +30,7 @@ def counted(number: int, word: str) -> str:
 
 
 def meant(typed: str, names: Iterable[str], otherwise: str = "") -> str:
-    """ "Did you mean ...?" for names that begin with what was typed, or look like it; else ``otherwise``."""
+    """Ask for a name that begins with what was typed, or looks like it; ``otherwise`` if there is none."""
     import difflib
 
     spelled = {name.lower().replace("_", "-"): name for name in names}

@@ -60,6 +60,7 @@ from course.scoring.explain.story import (
     read_table,
     table_path,
     tables_in,
+    words_in,
 )
 from course.scoring.judging.explaining import Explainer, answer_numbers, answers, tasks_asked
 from course.scoring.judging.session import GradingSession, Scope
@@ -105,6 +106,7 @@ def _write_table(folder: Path, table: Table) -> Path:
         text = "{" + ",\n".join(f'"{name}": {_lines(every[name])}' for name in kept) + "}"
     write_atomically(path, f"{text}\n".encode())
     forget_tables()
+    words_in(folder)  # for the probes that are loaded already
     return path
 
 

@@ -32,7 +32,7 @@ import pytest
 
 from course.catalog.locate import content
 from course.errors import ContentError
-from course.scoring.explain.story import Words, read_table, table_path
+from course.scoring.explain.story import Words, read_table, table_path, words_in
 from course.scoring.failures import place_of, reason_of
 from course.scoring.remote import RemoteSubmission
 from course.scoring.verdict import Visibility
@@ -91,8 +91,7 @@ def _known(value: Any) -> Any:
 
 def words(exercise_id: str) -> Words:
     """The diagnoses of an exercise by their codes."""
-    table = read_table(content().exercise_folder(exercise_id))
-    return Words(table.words if table else {})
+    return words_in(content().exercise_folder(exercise_id))
 
 
 def questions_path(exercise_id: str) -> Path:

@@ -315,6 +315,21 @@ def read_table(folder: Path) -> Table | None:
     )
 
 
+def words_in(folder: Path) -> Words:
+    """The words of the exercise in this folder, as its table is now.
+
+    Probes ask once, when they are imported, and keep what they get; so all who asked get the same object, and
+    it has the new words as soon as anybody asks after a table was written.
+    """
+    table = read_table(folder)
+    found = _given.setdefault(folder, Words({}))
+    found.entries = table.words if table else {}
+    return found
+
+
+_given: dict[Path, Words] = {}
+
+
 @cache
 def _own(path: Path) -> Table:
     return _decoded(path, Table)

@@ -59,6 +59,17 @@ def test_what_an_author_writes_is_built_and_right(halving: Path, capsys: pytest.
     assert "up to date" in capsys.readouterr().out
 
 
+def test_a_probe_that_was_loaded_before_knows_a_code_that_is_new(halving: Path, mini: Path) -> None:
+    """One command loads it with the questions, then writes the words, then grades with both."""
+    questions, hidden = halving / "questions.py", mini / "graders" / "halving" / "checks.py"
+    edit(questions, '"""Q."""', 'from course.scoring import kit\n\nNAMED = kit.words("halving")')
+    edit(hidden, "@pytest", 'named = kit.companion("halving", "questions").NAMED\n\n@pytest')
+    edit(hidden, 'diagnose="INTEGER_DIVISION"', 'diagnose=lambda: named("INTEGER_DIVISION")')
+    assert run(["author", "build", "halving", "--accept"]) == 0
+    record = json.loads((mini / "solutions/halving/record.json").read_text())
+    assert record["rows"]["alone"] == [["halve", ["INTEGER_DIVISION"], "INTEGER_DIVISION", 4]]
+
+
 def test_other_words_ask_for_a_build_and_for_no_other_record(halving: Path, mini: Path) -> None:
     assert run(["author", "build", "halving", "--accept"]) == 0
     edit(mistakes(mini), "Use / and not //.", "Divide with a single stroke.")

@@ -75,6 +75,8 @@ def pytest_configure(config: pytest.Config) -> None:
         tests, skipped = config.rootpath / "tests", set(config.getini("norecursedirs"))
         files = [path.relative_to(tests) for path in sorted(tests.rglob("test_*.py"))]
         files = [tests / path for path in files if not skipped & set(path.parts)]
+        left_out = [config.invocation_params.dir / path for path in config.getoption("ignore") or ()]
+        files = [path for path in files if not any(map(path.is_relative_to, left_out))]
         number = int(worker["workerid"].removeprefix("gw"))
         first = number * len(files) // worker["workercount"]
         config.args = [str(path) for path in files[first:] + files[:first]]
@@ -100,12 +102,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         items[:] = [item for item in items if item not in set(later)]
 
 
-#: All of the long tests within three weeks, one slice a day.
-_SLICES = 20
+#: All of the long tests within a month, one slice a day.
+_SLICES = 30
 
 
 def _slice(asked: str) -> tuple[int, int]:
-    """``today``, or ``3/20`` for one of as many."""
+    """``today``, or ``3/30`` for one of as many."""
     number, _, of = f"{time.gmtime().tm_yday % _SLICES}/{_SLICES}".partition("/")
     if asked != "today":
         number, _, of = asked.partition("/")

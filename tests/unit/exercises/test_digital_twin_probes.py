@@ -1,9 +1,10 @@
-"""The diagnosis of ``digital-twin``: what the probes see, and what the known wrong programs answer."""
+"""Probes of ``digital-twin`` on programs that are on no record, and what its checks stand on."""
 
 from __future__ import annotations
 
 import copy
 import importlib.util
+import inspect
 import math
 import re
 from pathlib import Path
@@ -13,8 +14,6 @@ import pytest
 
 from course.authoring.exercises.grading import LocalSubmission
 from course.scoring import kit
-from course.scoring.explain.fingerprint import fingerprint, read
-from course.scoring.explain.story import is_right, matching, read_table
 
 ROOT = Path(__file__).resolve().parents[3]
 SOLUTION = ROOT / "solutions" / "digital-twin"
@@ -22,8 +21,6 @@ spec = importlib.util.spec_from_file_location("digital_twin_solution", SOLUTION 
 right = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(right)
 
-questions = kit.companion("digital-twin", "questions")
-table = read_table(ROOT / "exercises" / "digital-twin")
 scanners = kit.companion("digital-twin", "lidar_probes")
 sensors = kit.companion("digital-twin", "sensor_probes")
 actuators = kit.companion("digital-twin", "actuator_probes")
@@ -57,69 +54,35 @@ class Fake:
         return states if keep is None else [{k: s[k] for k in keep} for s in states[:-1]] + states[-1:]
 
 
-def fits(task, wrong):
-    """Codes of the known programs that answer every question as this function does."""
-
-    def answer(args):
-        seeded = [
-            np.random.default_rng(int(a.integers(2**62))) if isinstance(a, np.random.Generator) else a
-            for a in copy.deepcopy(args)
-        ]
-        with np.errstate(all="ignore"):
-            return read(wrong(*seeded), questions.READ.get(task))
-
-    sums = fingerprint([answer(args) for args in questions.QUESTIONS[task]])
-    if is_right(table, task, sums):
-        return ["right"]
-    return [code for row in matching(table, task, sums) for code in row.codes]
+def changed(task, *changes, source=None):
+    """A right function with each (old, new) of its source exchanged."""
+    source = inspect.getsource(getattr(right, task)) if source is None else source
+    for old, new in changes:
+        assert old in source, old
+        source = source.replace(old, new)
+    space = dict(vars(right))
+    exec(source, space)
+    return space[task]
 
 
-def recognised(task, wrong, probe):
-    """Codes of what this function is told: by a known program that answers alike, or else by the probe."""
-    found = fits(task, wrong)
-    return found if found else [getattr(probe(Fake(task, wrong)), "code", None)]
+def shares(*changes):
+    """The same of the sync with constant shares."""
+    return changed("sync", *changes, source=(SOLUTION / "accepted/constant_shares.py").read_text("utf-8"))
 
 
-def imu(white=1.0, step=1.0, power=-0.5, step_power=0.5, add=1.0, seed=None):
-    """An imu with its factors, powers of dt and sign as given."""
-
-    def wrong(true, dt, density, walk, bias0, rng):
-        rng = rng if seed is None else np.random.default_rng(seed)
-        n = len(true)
-        steps = step * walk * dt**step_power * rng.standard_normal(n - 1)
-        bias = bias0 + np.concatenate(([0.0], np.cumsum(steps)))
-        return true + add * bias + white * density * dt**power * rng.standard_normal(n), bias
-
-    return wrong
-
-
-def moved(pose, segments, angles, r_max, sigma, rng):
-    return right.lidar((0.0, 0.0, pose[2]), segments, angles, r_max, sigma, rng)
-
-
-def parallel(pose, segments, angles, r_max, sigma, rng):
-    ranges = right.lidar(pose, segments, angles, r_max, sigma, rng)
-    across = [w for w in np.asarray(segments) if w[0][1] == w[1][1]]  # walls along x stop beams along x
-    return np.where((np.abs(angles) < 1e-9) & bool(across), 1.0, ranges)
-
-
-LIDAR = [
-    ("POSITION_IGNORED", moved),
-    ("PARALLEL_WALLS", parallel),
-    ("BEYOND_RANGE", lambda p, s, a, r, sig, rng: right.lidar(p, s, a, r + 2 * (len(s) == 1), sig, rng)),
-    ("NO_HIT_NOT_MAX", lambda *args: np.where(right.lidar(*args) == args[3], np.inf, right.lidar(*args))),
-    ("NO_HIT_NOT_MAX", lambda *args: np.where(right.lidar(*args) == args[3], 0.0, right.lidar(*args))),
-    ("LIDAR_NOISE_MISSING", lambda p, s, a, r, _sigma, rng: right.lidar(p, s, a, r, 0.0, rng)),
-    ("LIDAR_SIGMA_WRONG", lambda p, s, a, r, sigma, rng: right.lidar(p, s, a, r, sigma**2, rng)),
-]
-
-
-@pytest.mark.parametrize(("code", "wrong"), LIDAR[1:], ids=[f"{i}-{c}" for i, (c, _) in enumerate(LIDAR[1:])])
-def test_a_scanner_that_errs_is_told_its_mistake(code, wrong):
-    if code == "BEYOND_RANGE":  # without a hit it still says r_max
-        reach = wrong
-        wrong = lambda *args: np.where(reach(*args) > 6.5, args[3], reach(*args))  # noqa: E731
-    assert scanners.of_lidar(Fake("lidar", wrong)).code == code
+def told(task, function):
+    """The code that the probes of a task give a function."""
+    probe = {
+        "imu": sensors.of_imu,
+        "lidar": scanners.of_lidar,
+        "motor_step": actuators.of_motor,
+        "backlash": actuators.of_backlash,
+        "delay_line": actuators.of_delay,
+        "diff_drive_step": actuators.of_drive,
+        "sync": twins.of_sync,
+        "command": twins.of_command,
+    }[task]
+    return getattr(probe(Fake(task, function)), "code", None)
 
 
 @pytest.mark.parametrize("place", [lambda ends: ends, lambda ends: ends.mean(axis=1, keepdims=True)])
@@ -245,51 +208,6 @@ def test_walks_and_biases_are_told_what_is_known_of_them_and_no_more():
     assert sensors.of_bias0(biases + 1.0, cases) is None
 
 
-def drive(change):
-    """The right step with the turn, the chord's factor and the axes that ``change(turn, pose)`` gives."""
-
-    def wrong(pose, v_left, v_right, track, dt):
-        turn, factor, angle = change((v_right - v_left) / track * dt, pose[2])
-        way = (v_left + v_right) / 2 * dt * factor
-        return np.array([pose[0] + way * np.cos(angle), pose[1] + way * np.sin(angle), pose[2] + turn])
-
-    return wrong
-
-
-def chord(turn):
-    return np.sinc(turn / (2 * np.pi))
-
-
-STEPS = [
-    ("SINC_WITHOUT_PI", drive(lambda turn, h: (turn, np.sinc(turn / 2), h + turn / 2))),
-    ("TURN_IN_DEGREES", drive(lambda turn, h: (turn, chord(turn), np.radians(h + turn / 2)))),
-    ("DRIVE_SIN_COS_SWAPPED", drive(lambda turn, h: (turn, chord(turn), np.pi / 2 - h - turn / 2))),
-    ("DRIVE_SIN_COS_SWAPPED", drive(lambda turn, h: (turn, 1.0, np.pi / 2 - h))),
-    (
-        "SLOW_TURN_AS_STRAIGHT",
-        drive(lambda turn, h: (turn, 1.0, h) if abs(turn) < 0.01 else (turn, chord(turn), h + turn / 2)),
-    ),
-    ("STRAIGHT_WRONG", drive(lambda turn, h: (turn, 2.0 if turn == 0 else chord(turn), h + turn / 2))),
-    ("CHORD_WRONG_LENGTH", drive(lambda turn, h: (turn, np.cos(turn), h + turn / 2))),
-    ("CHORD_WRONG_WAY", drive(lambda turn, h: (turn, chord(turn), h + turn / 3))),
-    (None, drive(lambda turn, h: (turn, chord(turn) * (0.9 if 0 < turn < 0.5 else 1.0), h + turn / 2))),
-]
-
-
-@pytest.mark.parametrize(("code", "wrong"), STEPS, ids=[f"{i}-{c}" for i, (c, _) in enumerate(STEPS)])
-def test_slow_turns_are_blamed_only_where_an_ordinary_one_is_right(code, wrong):
-    assert code in recognised("diff_drive_step", wrong, actuators.of_drive)
-
-
-def shares(old="", new=""):
-    """The sync of constant shares, with ``new`` in place of ``old``."""
-    source = (SOLUTION / "accepted" / "constant_shares.py").read_text(encoding="utf-8")
-    assert old in source
-    space = dict(vars(right))
-    exec(source.replace(old, new), space)
-    return space["sync"]
-
-
 def test_a_right_twin_is_told_no_mistake():
     assert twins.of_sync(Fake()) is None
     assert twins.of_command(Fake()) is None
@@ -308,16 +226,6 @@ def test_a_command_that_remembers_is_told_nothing_of_single_calls():
     assert twins.of_command(Fake("command", summing)) is None
 
 
-def test_memory_that_grows_is_seen_before_it_is_too_large():
-    def keeps_all(twin, z, t):
-        out = shares()(twin, z, t)
-        return {**out, "memory": {"all": [*twin["memory"].get("all", []), z]}}
-
-    with pytest.raises(kit.CheckFailed) as failed:
-        twin_bundles.expect_twin_contract(Fake("sync", keeps_all), np.random.default_rng(7))
-    assert failed.value.guess.code == "MEMORY_GROWS"
-
-
 def test_a_twin_that_runs_away_by_and_by_is_no_twin_that_is_nan():
     def run(sync):
         with pytest.raises(kit.CheckFailed) as failed:
@@ -326,7 +234,7 @@ def test_a_twin_that_runs_away_by_and_by_is_no_twin_that_is_nan():
             )
         return failed.value
 
-    flown = run(shares("- b * v", "+ b * v"))
+    flown = run(shares(("- b * v", "+ b * v")))
     assert flown.guess.code == "FRICTION_SPEEDS_UP"
     assert "its `speed` is beyond" in flown.finding.message
     late = run(lambda twin, z, t: {**right.sync(twin, z, t), "t": 1e9})
@@ -385,51 +293,6 @@ def test_a_twin_that_passes_the_measurement_on_is_never_good_enough():
                 twin_bundles.expect_keeps_up(
                     Fake("sync", passes_on), np.random.default_rng(seed), sign=sign, late=late, message="it"
                 )
-
-
-def _late_under_new_drives(twin, z, t, replay):
-    """Constant shares; a late measurement is fitted in, and ``replay`` says which drive its past has."""
-    memory = twin["memory"]
-    rows = memory.get(
-        "rows", [[twin["t"], twin["position"], twin["speed"], twin["friction"], twin["drive"], 0.0]]
-    )
-    rows = [list(row) for row in rows]
-    rows[-1][4] = twin["drive"]
-    later = [row for row in rows if row[0] > t]
-    rows = rows[: len(rows) - len(later)]
-    for at, seen in [(t, z), *((row[0], row[5]) for row in later)] if rows else []:
-        old = rows[-1]
-        acted = replay(old[4], twin["drive"])
-        start = scenes.new_twin(old[3], acted, speed=old[2], position=old[1], t=old[0])
-        new = _by_constant_shares(start, seen, at)
-        on = next((row[4] for row in later if row[0] == at), old[4])
-        rows.append([at, new["position"], new["speed"], new["friction"], on, seen])
-    rows = (rows or later)[-20:]
-    now, x, v, b = rows[-1][:4]
-    return {**twin, "t": now, "position": x, "speed": v, "friction": b, "memory": {"rows": rows}}
-
-
-def _by_constant_shares(twin, z, t):
-    dt, v, b = t - twin["t"], twin["speed"], twin["friction"]
-    a = twin["drive"] - b * v
-    x, v = twin["position"] + dt * v + dt * dt / 2 * (a - dt / 3 * b * a), v + dt * a - dt * dt / 2 * b * a
-    s = z - x
-    return {"position": x + 0.3 * s, "speed": v + 0.3 * s, "friction": b - 0.15 * s * float(np.sign(v))}
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_the_past_is_that_of_the_drives_that_acted_then(seed):
-    def in_its_time(twin, z, t):
-        return _late_under_new_drives(twin, z, t, lambda then, today: then)
-
-    def of_today(twin, z, t):
-        return _late_under_new_drives(twin, z, t, lambda then, today: today)
-
-    twin_bundles.expect_follows_drives(Fake("sync", in_its_time), np.random.default_rng(seed))
-    with pytest.raises(kit.CheckFailed) as failed:
-        twin_bundles.expect_follows_drives(Fake("sync", of_today), np.random.default_rng(seed))
-    assert failed.value.guess.code == "PAST_WITH_NEW_DRIVE"
-    assert twins.of_sync(Fake("sync", in_its_time)) is None
 
 
 def test_another_drive_begins_where_the_twin_is_in_time():
@@ -626,3 +489,209 @@ def test_a_mistake_in_a_fit_is_named_alike_whatever_recordings_a_run_draws(seed)
     with pytest.raises(kit.CheckFailed) as failed:
         sensor_bundles.expect_fits(Fake("fit_noise", of_the_whole), sensor_bundles.recordings(rng, 8, make))
     assert failed.value.guess.code == "DRIFT_COUNTED_AS_NOISE"
+
+
+# -- a mistake with the effect of another is not told that one -----------------------------------------------
+
+
+STEPS, NOISE = "bias_random_walk * math.sqrt(dt)", "noise_density / math.sqrt(dt)"
+
+
+DRAWN = "rng.standard_normal(n - 1)"
+
+
+IMU = [
+    # The two strengths exchanged, or one of them used for both: the bias holds no white noise, and it moves.
+    (
+        "STRENGTHS_MIXED",
+        [(STEPS, "noise_density * math.sqrt(dt)"), (NOISE, "bias_random_walk / math.sqrt(dt)")],
+    ),
+    ("STRENGTHS_MIXED", [(NOISE, "bias_random_walk / math.sqrt(dt)")]),
+    ("STRENGTHS_MIXED", [(STEPS, "noise_density * math.sqrt(dt)")]),
+    ("STRENGTHS_MIXED", [(STEPS, "(noise_density + bias_random_walk) * math.sqrt(dt)")]),
+    # A number that is not random is no number that all samples share.
+    ("WHITE_NOISE_MISSING", [(NOISE + " * rng.standard_normal(n)", NOISE)]),
+    ("WHITE_NOISE_SHARED", [("rng.standard_normal(n)", "rng.standard_normal()")]),
+    ("BIAS_OUT_OF_STEP", [("(n), bias", "(n), np.full(n, bias0)")]),
+    ("BIAS_DRIFTS", [(DRAWN, "np.full(n - 1, rng.standard_normal())")]),
+    ("BIAS_STEPS_RELATED", [("np.cumsum(steps)", "np.cumsum(np.cumsum(steps))")]),
+    ("BIAS_STEPS_RELATED", [(DRAWN, "np.convolve(rng.standard_normal(n), (0.5, 0.5), 'valid')")]),
+    ("TRUE_RATE_MISSING", [("true + bias", "bias")]),
+    (None, [("true + bias", "dt * true + bias")]),
+    # Single precision is neither a step too many nor another bias.
+    (None, [("bias0 + np", "np.float32(bias0) + np")]),
+    (None, [("return true + bias", "return np.float32(true + bias)")]),
+    (None, [("bias0 + np", "2 * bias0 + np")]),
+]
+
+
+@pytest.mark.parametrize(("code", "changes"), IMU, ids=[f"{i}-{code}" for i, (code, _) in enumerate(IMU)])
+def test_a_gyroscope_is_told_no_other_mistake_of_the_same_effect(code, changes):
+    assert told("imu", changed("imu", *changes)) == code
+
+
+def test_a_bias_is_called_carried_over_only_if_it_starts_where_the_last_one_ended():
+    kept = {"last": 0.0}
+
+    def carrying(true, dt, density, walk, bias0, rng):
+        measured, bias = right.imu(true, dt, density, walk, kept["last"], rng)
+        kept["last"] = bias[-1]
+        return measured, bias
+
+    def fixed(true, dt, density, walk, bias0, rng):
+        return right.imu(true, dt, density, walk, 0.7, rng)
+
+    assert told("imu", carrying) == "BIAS_CARRIED_OVER"
+    assert told("imu", fixed) is None
+
+
+def test_densities_that_err_both_ways_and_densities_that_are_too_large_are_not_taken_for_each_other():
+    cases = sensor_bundles.recordings(np.random.default_rng(2), 8, lambda: (0.01, 0.002, 0.003, 0.05))
+    density, walk = np.full(8, 0.002), np.full(8, 0.003)
+
+    def code(found, beside=walk):
+        return sensors.of_density(found, cases, beside).code
+
+    assert code(1.5 * density) != "FIT_SWAPPED"  # though that is the walk's number
+    assert code(walk, density) == "FIT_SWAPPED"
+    assert code(density * np.tile([0.8, 1.2], 4)) == "DENSITY_SCATTERS"
+    small = walk * np.array([0.6, 0.5, 0.01, 0.02, 0.6, 0.05, 0.3, 0.01])
+    assert sensors.of_walk(small, cases, FITS).code == "WALK_TOO_SMALL"  # for all of them
+
+
+def test_a_scanner_that_ignores_one_coordinate_is_not_told_that_it_never_moves():
+    def sideways(pose, *rest):
+        return right.lidar((0.0, pose[1], pose[2]), *rest)
+
+    assert told("lidar", sideways) is None
+
+
+ACTUATORS = [
+    ("DEADBAND_WIDTH", "motor_step", [("abs(u) <= deadband", "abs(u) <= 0.8 * deadband")]),
+    ("DEADBAND_WIDTH", "motor_step", [("abs(u) <= deadband", "abs(u) <= 1.2 * deadband")]),
+    (None, "motor_step", []),
+    ("GAP_SCALED", "backlash", [("gap / 2", "gap / math.sqrt(2)")]),
+    ("GAP_SCALED", "backlash", [("gap / 2", "0.6 * gap")]),
+    ("BACKLASH_RATE_DEPENDENT", "backlash", [("return y, y", "y = 0.5 * (y + state); return y, y")]),
+    (None, "delay_line", [("np.interp(t - latency, t, x, left=0.0)", "np.where(t >= latency, x, 0.0)")]),
+]
+
+
+@pytest.mark.parametrize(("code", "task", "changes"), ACTUATORS)
+def test_an_actuator_is_told_no_other_mistake_of_the_same_effect(code, task, changes):
+    assert told(task, changed(task, *changes)) == code
+
+
+REST = '"t": t_measured'
+
+
+SYNC = [
+    (
+        "TIME_NOT_THE_LATEST",
+        [(REST, '"t": twin["t"] + 0.3 * dt')],
+    ),  # it lags behind, and does not stand still
+    ("TIME_NOT_ADVANCED", [(REST, '"t": twin["t"]')]),
+    ("SMALL_SURPRISES_IGNORED", [("z - x", "(z - x) * (abs(z - x) > 3 * twin['sigma'])")]),
+    ("NO_CORRECTION", [("x + 0.3 * surprise", "x")]),
+    ("PREDICTS_TOO_LITTLE", [("dt / n * v", "dt / n * v / 2")]),
+    ("STEP_FIXED", [("n = max", "dt = min(dt, 0.1); n = max")]),
+    ("FRICTION_LEARNS_BACKWARDS", [("b - 0.15", "b + 0.15")]),
+    ("LEARNS_FORWARDS_ONLY", [("* np.sign(v)", "")]),
+    ("SHARE_TOO_LARGE", [("x + 0.3", "x + 0.7")]),
+    ("SHARE_OVER_ONE", [("x + 0.3", "x + 1.5")]),
+]
+
+
+@pytest.mark.parametrize(("code", "changes"), SYNC, ids=[f"{i}-{code}" for i, (code, _) in enumerate(SYNC)])
+def test_a_twin_is_told_no_other_mistake_of_the_same_effect(code, changes):
+    assert told("sync", shares(*changes)) == code
+
+
+def test_a_history_that_only_late_measurements_read_is_read():
+    slow = shares(("b - 0.15", "b - 0.02"))
+
+    def with_history(twin, z, t):
+        past = [place for when, place in twin["memory"].get("past", []) if when <= t]
+        if t < twin["t"]:
+            moved = 0.1 * (z - past[-1]) if past else 0.0
+            return {**twin, "position": twin["position"] + moved}
+        found = slow(twin, z, t)
+        past = [*twin["memory"].get("past", []), (t, found["position"])][-10:]
+        return {**found, "memory": {"past": past}}
+
+    assert told("sync", with_history) == "FRICTION_LEARNS_SLOWLY"
+
+
+def failed(check, *args, **kwargs):
+    """The finding of a check that fails, and the code of what is said of it."""
+    with pytest.raises(kit.CheckFailed) as caught:
+        check(*args, **kwargs)
+    return caught.value.finding, getattr(caught.value.guess, "code", None)
+
+
+TURNLESS = ("heading + np.asarray(angles", "np.asarray(angles")
+
+
+def test_beams_that_do_not_turn_are_no_reason_at_a_heading_of_0():
+    """It was said beside a heading of 0, of a program whose noise was wrong as well."""
+    both = changed("lidar", TURNLESS, ("sigma * rng", "3 * sigma * rng"))
+    assert told("lidar", both) == "HEADING_IGNORED"
+    finding, code = failed(
+        sensor_bundles.expect_scan_noise, Fake("lidar", both), 7.0, 0.05, np.random.default_rng(9)
+    )
+    assert code == "SECOND_MISTAKE"
+    assert "std sigma" in finding.message
+
+
+def test_a_dead_band_is_no_reason_for_a_motor_beyond_its_limit():
+    def motor(w, u, dt, tau, u_max, deadband):
+        u = 0.0 if abs(u) <= 0.7 * deadband else min(max(u, -u_max), u_max)
+        return min(max(w, -u_max), u_max) + (1 - math.exp(-dt / tau)) * (u - min(max(w, -u_max), u_max))
+
+    assert told("motor_step", motor) == "DEADBAND_WIDTH"
+    calls = [(u, 0.1, 0.2, 10.0, 0.5) for u in (8.0, 0.45)]
+    finding, code = failed(actuator_bundles.expect_motor, Fake("motor_step", motor), 25.0, calls, "Wrong.")
+    assert code == "SECOND_MISTAKE"
+    assert "The speed is limited" in finding.message
+
+
+def test_learning_forwards_only_is_no_reason_while_a_cart_rolls_forwards():
+    one_way = shares((" * np.sign(v)", ""))
+    assert told("sync", one_way) == "LEARNS_FORWARDS_ONLY"
+    assert twins.of_sync(Fake("sync", one_way), {"LEARNS_FORWARDS_ONLY"}).code == "SECOND_MISTAKE"
+
+
+def test_two_mistakes_of_a_twin_are_both_told():
+    both = shares((" * np.sign(v)", ""), ('twin["drive"] - b * v', "-b * v"))
+    said = twins.of_sync(Fake("sync", both))
+    assert said.code == "DRIVE_NOT_USED"
+    assert said.looks_like.count("First:") == said.looks_like.count("Second:") == 1
+    assert "moves backwards" in said.looks_like
+
+
+@pytest.mark.parametrize(
+    ("share", "code"), [("0.15", None), ("0.5", None), ("3.0", "FRICTION_SHARE_TOO_LARGE")]
+)
+def test_a_friction_that_takes_more_than_a_surprise_is_told_so(share, code):
+    assert told("sync", shares(("- 0.15", f"- {share}"))) == code
+
+
+def test_counts_of_angles_in_single_precision_are_told_so():
+    theta = sensor_bundles.angles_beside_counts(np.linspace(-51000, 51000, 20), 64)
+
+    def counts(theta, per_turn):
+        return np.floor(np.float32(theta) * per_turn / (2 * math.pi)).astype(np.int64)
+
+    said = sensors.of_encoder(Fake("encoder", counts), counts(theta, 64), theta, 64)
+    assert said.code == "COUNTS_SINGLE_PRECISION"
+
+
+def test_noise_that_is_nan_is_not_asked_about_its_root():
+    def divided(true, dt, density, walk, bias0, rng):
+        measured, bias = right.imu(true, dt, density, walk, bias0, rng)
+        return measured + np.float64(walk) / np.float64(walk), bias
+
+    calls = [(np.zeros(50), 0.01, 0.002, 0.0, 0.1, np.random.default_rng(1))]
+    finding, code = failed(sensor_bundles.expect_white, Fake("imu", divided), calls, 0.06, "six")
+    assert code == "NOT_A_NUMBER"
+    assert "0/0" in finding.help

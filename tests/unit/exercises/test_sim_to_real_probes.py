@@ -92,14 +92,14 @@ def _with(**changes):
     return wrong
 
 
-class Tuner:
-    """A submission whose ``tune`` is this function."""
+class Answers:
+    """A submission that answers with this function."""
 
-    def __init__(self, tune):
-        self._tune = tune
+    def __init__(self, function):
+        self._function = function
 
     def call_each(self, _name, calls):
-        return [self._tune(*args) for args in calls]
+        return [self._function(*args) for args in calls]
 
 
 def _on_a_grid(estimate, box):
@@ -129,18 +129,8 @@ def _on_a_grid(estimate, box):
 def test_gains_that_stay_the_same_are_told_why_only_as_far_as_it_is_seen(code, tune):
     estimate, box = cart.with_intervals(cart.PUBLIC), cart.MATCHED
     gains = probes.gains_of(tune(estimate, box))
-    found = probes.of_gains(Tuner(tune), estimate, box, gains, lambda *pair: cart.public_success(*pair)[0])
+    found = probes.of_gains(Answers(tune), estimate, box, gains, lambda *pair: cart.public_success(*pair)[0])
     assert found.code == code
-
-
-class _Answers:
-    """A submission whose tune is this function."""
-
-    def __init__(self, tune):
-        self._tune = tune
-
-    def call_each(self, name, calls):
-        return [self._tune(*args) for args in calls]
 
 
 def test_gains_are_called_swapped_only_if_they_are_right_in_the_other_order_for_other_carts_too():
@@ -151,7 +141,7 @@ def test_gains_are_called_swapped_only_if_they_are_right_in_the_other_order_for_
     estimate = cart.with_intervals(cart.PUBLIC)
     success = lambda kp, kd: cart.public_success(kp, kd)[0]  # noqa: E731
     gains = probes.gains_of(clipped(estimate, cart.MATCHED))
-    found = probes.of_gains(_Answers(clipped), estimate, cart.MATCHED, gains, success)
+    found = probes.of_gains(Answers(clipped), estimate, cart.MATCHED, gains, success)
     assert getattr(found, "code", None) != "GAINS_SWAPPED"
 
 
@@ -203,20 +193,13 @@ def test_an_estimate_that_depends_on_the_calls_before_it_is_told_and_chance_is_n
 
 
 def test_impulses_kept_of_an_earlier_command_are_told_and_a_right_program_is_not():
-    class Asked:
-        def __init__(self, identify):
-            self.identify = identify
-
-        def call_each(self, _, calls):
-            return [self.identify(*args) for args in calls]
-
     recordings, _ = judge.public_recordings()
     same = {k: list(v) for k, v in cart.with_intervals(cart.PUBLIC).items()}
     reads = lambda t, u, y: {k: [x * (1 + abs(u[:100].sum())) for x in v] for k, v in same.items()}  # noqa: E731
-    kept = probes.of_command_kept(Asked(lambda *_: same), recordings)
+    kept = probes.of_command_kept(Answers(lambda *_: same), recordings)
     assert kept.code == "COMMAND_KEPT"
-    assert probes.of_command_kept(Asked(reads), recordings) is None
-    assert probes.of_command_kept(Asked(lambda *_: same), ()) is None
+    assert probes.of_command_kept(Answers(reads), recordings) is None
+    assert probes.of_command_kept(Answers(lambda *_: same), ()) is None
 
 
 def test_what_is_exactly_at_a_limit_is_within_it():

@@ -346,12 +346,14 @@ def new_scene(name: _NewId) -> int:
 def _report_new(catalog: Catalog, kind: str, name: str, files: tuple[Path, ...]) -> int:
     console = current()
     written = tuple(shown(path, catalog) for path in files)
-    console.heading(f"Wrote {kind} {name}.")
+    own = kind == "scene" and files[0].parent == Path.cwd()  # known by its file alone
+    root = catalog.content.root
+    elsewhere = "" if own or Path.cwd().is_relative_to(root) else f" in {root}"
+    console.heading(f"Wrote {kind} {name}{elsewhere}.")
     for path in written:
         console.line(path, indent=2)
     if kind == "lesson":
         console.note("Put its id into syllabus.toml, at the place where it is read.")
-    own = kind == "scene" and files[0].parent == Path.cwd()  # known by its file alone
     then = {
         # What the first writes, the second wants.
         "exercise": (f"author build {name} --accept", f"author check {name}"),

@@ -237,9 +237,13 @@ def test_a_new_warm_up_is_written_and_says_what_computes_its_table(
     assert "nothing is overwritten" in capsys.readouterr().err
 
 
-def test_a_new_lesson_says_where_to_list_it(mini: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_new_lesson_says_in_which_course_it_is_and_where_to_list_it(
+    mini: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(["author", "new", "lesson", "three-times"]) == 0
-    assert "syllabus.toml" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert f"Wrote lesson three-times in {mini}." in " ".join(out.split())
+    assert "syllabus.toml" in out
     assert (mini / "lessons" / "three-times.md").is_file()
 
 

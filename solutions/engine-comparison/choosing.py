@@ -141,6 +141,9 @@ METS = {
         _missing_equals_nothing,
     ),
     "INFINITE_TAKEN_FOR_MISSING": (_finite,),
+    "BOOLS_NOT_MEASURED": (
+        lambda report, need: not isinstance(report.get(need["key"]), bool) and meets(report, need),
+    ),
     "ZERO_TAKEN_FOR_MISSING": (lambda report, need: bool(report.get(need["key"])) and meets(report, need),),
     "STRICT_COMPARISON": (_strictly,),
     "EQUALITY_ROUGH": (_nearly, _within_rounding, _within_rounding_of_limits),
@@ -166,6 +169,11 @@ METS = {
 def _cheapest_first(reports, needs, met=meets):
     name = choose(reports, [])
     return name if name is not None and all(met(reports[name], need) for need in needs) else None
+
+
+def _all_or_none(reports, needs, met=meets):
+    every = all(met(report, need) for report in reports.values() for need in needs)
+    return choose(reports, []) if every else None
 
 
 def _most_met(reports, needs, met=meets):
@@ -244,6 +252,7 @@ def _all_that_fit(reports, needs, met=meets):
 CHOICES = {
     "REQUIREMENTS_IGNORED": (lambda reports, needs, met=meets: choose(reports, []),),
     "COST_BEFORE_REQUIREMENTS": (_cheapest_first,),
+    "ALL_MUST_FIT": (_all_or_none,),
     "COST_REVERSED": (lambda reports, needs, met=meets: choose(reports, needs, met=met, cost=-1.0),),
     "COST_IGNORED": (
         lambda reports, needs, met=meets: choose(reports, needs, met=met, cost=0.0),

@@ -14,8 +14,8 @@ mistakes = Mistakes()
 
 mistakes(
     "ORDER_AGAINST_UNDAMPED",
-    "The order is right for engines without damping and too low for the others. Is the engine compared with the exact spring, or the slope cut?",
-    "Compare the engine with itself: the same time with n, 2n and 4n steps. Round the slope.",
+    "The order is right for engines without damping and too low for the others, as with a comparison against the exact spring.",
+    "An engine with damping does not converge to the exact spring. Compare the engine with itself: the same time with n, 2n and 4n steps.",
     kind="consequence",
 ).body(
     "characterise",
@@ -330,8 +330,8 @@ mistakes(
 )
 mistakes(
     "DIAGONAL_COMPONENT",
-    "The ratio is off by a factor of 1.41. Perhaps one component of the diagonal force is reported, or the sum of both.",
-    "Push with (F cos 45°, F sin 45°, 0) and report F.",
+    "The ratio is too small by the square root of two, as if one component of the diagonal force were the force.",
+    "Push with (F cos 45°, F sin 45°, 0) and report F. A push of (F, F, 0) is the square root of two times as large as F.",
 ).program(
     "characterise",
     """
@@ -739,6 +739,11 @@ mistakes(
 
         return min(reports, key=lambda name: (-met(reports[name]), reports[name]["cost"]))
     """,
+)
+mistakes(
+    "ALL_MUST_FIT",
+    "Your code returns None as soon as one of the engines does not meet a requirement.",
+    "Leave that engine out, and go on with the next one.",
 )
 mistakes(
     "STRICT_COMPARISON",
@@ -1554,8 +1559,8 @@ mistakes(
 )
 mistakes(
     "TOLERANCE_TOO_TIGHT",
-    "Engines that keep area are called unstable too early. Perhaps rounding counts, or the matrix is not that of (q, v/omega).",
-    "Unstable means that an eigenvalue of one step's matrix on (q, v/omega) has a modulus above 1 + 1e-8.",
+    "Engines that keep area are called unstable too early.",
+    "Unstable means that an eigenvalue of one step's matrix on (q, v/omega) has a modulus above 1 + 1e-8. Stable steps of these engines have eigenvalues of modulus 1: with a limit of exactly 1, rounding decides. A run that stays bounded may still swing further than it started.",
     kind="consequence",
 )
 mistakes(
@@ -1588,6 +1593,11 @@ mistakes(
     "TOLERANCE_TOO_LOOSE",
     "Methods that grow a little in every step count as stable.",
     "Unstable means a modulus above 1 + 1e-8: a thousandth in each step is a factor of e after a thousand steps.",
+)
+mistakes(
+    "DIAGONAL_SUM",
+    "The ratio is too large by the square root of two, as if the two components of the diagonal force were added.",
+    "Push with (F cos 45°, F sin 45°, 0) and report F: components add up by their squares.",
 )
 mistakes(
     "ANISOTROPY_IS_DIFFERENCE",
@@ -1722,6 +1732,23 @@ mistakes(
     "Contact may behave differently with another step, so this key is defined at dt, which info() returns.",
 )
 mistakes(
+    "SETTLED_ELSEWHERE",
+    "Where this value is wrong, no body was put on the floor of that engine and left alone there; on another engine one was.",
+    "Let a body settle on each engine that is given. What is kept from one call to the next belongs to another engine.",
+    kind="fact",
+).program(
+    "characterise",
+    """
+        _settle, _AT_REST = _settled, {}
+
+
+        def _settled(engine, info):
+            if info["dt"] not in _AT_REST:
+                _AT_REST[info["dt"]] = _settle(engine, info)
+            return _AT_REST[info["dt"]]
+    """,
+)
+mistakes(
     "NEVER_CHOOSES",
     "Your code returns None, also where several engines fit.",
     "Return the name of the cheapest engine that fits. Does a return inside the loop come too early?",
@@ -1751,6 +1778,11 @@ mistakes(
     "LIMIT_NOT_SCALED",
     "The matrix is not that of (q, v/omega).",
     "Start from (1, 0) and (0, omega), and divide both resulting velocities by omega.",
+)
+mistakes(
+    "BOOLS_NOT_MEASURED",
+    "A value of True or False is treated as not measured.",
+    "Test `is None` alone, and leave the type of a value aside.",
 )
 mistakes(
     "EQUALITY_OF_TRUTH",
@@ -2159,7 +2191,7 @@ _FRICTION = (
     ("ANISOTROPY_ASSUMED", lambda engine, info: math.sqrt(2)),
     ("ANISOTROPY_INVERTED", _ratio(made=lambda d, s, _: s / d)),
     ("DIAGONAL_COMPONENT", _ratio(diagonal=(1.0, 1.0))),
-    ("DIAGONAL_COMPONENT", _of("friction_anisotropy", lambda ratio, _: ratio * math.sqrt(2))),
+    ("DIAGONAL_SUM", _of("friction_anisotropy", lambda ratio, _: ratio * math.sqrt(2))),
     ("ANISOTROPY_IS_DIFFERENCE", _ratio(made=lambda d, s, _: d / s - 1)),
     ("ANISOTROPY_IS_DIFFERENCE", _ratio(made=lambda d, s, _: d - s)),
     ("ANISOTROPY_IS_FORCE", _ratio(made=lambda d, s, _: d)),

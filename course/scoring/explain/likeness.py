@@ -221,7 +221,9 @@ def _of_arrays(a: Array, e: Array, given: Mapping[str, Any]) -> str:
 
 
 def _of_order(a: Array, e: Array) -> str:
-    """The right values in other places."""
+    """The right values in other places; of (-1, 1) for (1, -1), the signs say more."""
+    if _same(a, -e):
+        return ""
     if a.ndim == 2 and _same(a, e.T):
         return "Your matrix is the right one with rows and columns exchanged."
     if _same(a, e[::-1]) and len(e) > 1:

@@ -36,11 +36,25 @@ def of_key(key: str, cases: list[Any]) -> Any:
         probes = [("REPORT_WITHOUT_RUNS", _not_run), *_PROBES[key]]
         if key in probing.TOLERANCES:
             probes[1:1] = [("VALUE_KEPT", _kept), ("VALUE_ROUNDED", probing.rounded)]
+        if key in ("rest_penetration", "friction_anisotropy"):
+            probes.insert(1, ("SETTLED_ELSEWHERE", _settled_elsewhere))
         return next((named(code) for code, looks in probes if looks(key, cases)), None)
 
 
 def _not_run(_: str, cases: list[Any]) -> bool:
     return any(not case.runs for case in cases)
+
+
+def _settled_elsewhere(key: str, cases: list[Any]) -> bool:
+    """On each engine whose value is wrong no body was left alone on the floor, and on another one it was."""
+    wrong = [case for case in cases if not probing.right(key, case)]
+    return all(bench.all_noted(case) and not _left_alone(case) for case in wrong) and any(
+        map(_left_alone, cases)
+    )
+
+
+def _left_alone(case: Any) -> bool:
+    return any(n > 1 and not any(force) for _, (*_, n, force) in probing.runs([case], "floor"))
 
 
 def _kept(key: str, cases: list[Any]) -> bool:
@@ -312,6 +326,7 @@ _PROBES: dict[str, list[tuple[str, Probe]]] = {
         ("DAMPING_ASSUMED", lambda key, cases: all(case.measured(key) == 0 for case in cases)),
         ("DAMPING_OTHER_SCENE", _never_free),
         ("DAMPING_NOT_LOG", _by_own_time(lambda c, h, n: (1 - math.exp(-c * n * h)) / (n * h))),
+        ("DAMPING_NOT_LOG", _by_own_time(lambda c, h, n: (1 - math.exp(-c * n * h)) / (n * h), 0.0005)),
         ("DAMPING_NOT_LOG", _by_own_time(lambda c, h, n: 1 - math.exp(-c * n * h))),
         ("DAMPING_PER_STEP", _by_own_time(lambda c, h, n: c * h)),
         ("DAMPING_PER_STEP", _by_own_time(lambda c, h, n: c * h * n)),

@@ -72,6 +72,7 @@ def test_a_number_is_compared_with_the_right_one_and_with_what_went_in(
     ("actual", "expected", "said"),
     [
         ([4.0, 1.0], [1.0, 4.0], "The two are right, but exchanged."),
+        ([-1.0, 1.0], [1.0, -1.0], "Only the signs are wrong."),
         ([4.0, 2.0, 1.0], [1.0, 2.0, 4.0], "The values are right, in reverse order."),
         ([2.0, 4.0, 1.0], [1.0, 2.0, 4.0], "The values are right, in another order."),
         ([[1.0, 3.0], [2.0, 4.0]], [[1.0, 2.0], [3.0, 4.0]], "rows and columns exchanged"),

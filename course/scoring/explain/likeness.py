@@ -217,13 +217,12 @@ def _of_arrays(a: Array, e: Array, given: Mapping[str, Any]) -> str:
         return f"The first {a[where]:g} is at {list(where)}."
     if not np.isfinite(e).all() or _same(a, e) or a.size < 2:
         return ""
-    return _of_order(a, e) or _of_parts(a, e, given) or _of_all(a, e, given)
+    places = "" if _same(a, -e) else _of_order(a, e)  # of (-1, 1) for (1, -1), the signs say more
+    return places or _of_parts(a, e, given) or _of_all(a, e, given)
 
 
 def _of_order(a: Array, e: Array) -> str:
-    """The right values in other places; of (-1, 1) for (1, -1), the signs say more."""
-    if _same(a, -e):
-        return ""
+    """The right values in other places."""
     if a.ndim == 2 and _same(a, e.T):
         return "Your matrix is the right one with rows and columns exchanged."
     if _same(a, e[::-1]) and len(e) > 1:

@@ -932,7 +932,7 @@ mistakes(
 )
 mistakes(
     "LOWS_NOT_READ",
-    "The gains stay exactly as they are when the low ends of the box's ranges are moved, and they suit a cart at the high ends.",
+    "The gains stay exactly as they are when the low ends of the box's ranges are moved, and change with the high ends.",
     "Draw each parameter between value * low and value * high, and take the mean over all carts.",
 ).program(
     "tune",
@@ -1161,8 +1161,8 @@ mistakes(
 )
 mistakes(
     "INTERVAL_WITHOUT_WIDTH",
-    "The two ends of an interval are equal.",
-    "Refit every parameter with one block left out, the times too. A time that stays on its grid shows no spread: refine it in each refit.",
+    "The two ends of an interval are equal, and not in one recording alone.",
+    "Refit every parameter with one block left out, the times too. A time that stays on its grid shows no spread: refine it in each refit. If you do, let the last step be far smaller: the refits differ by less than it.",
     kind="fact",
 )
 
@@ -1197,8 +1197,8 @@ mistakes(
 )
 mistakes(
     "ONE_DRAW_FOR_ALL",
-    "Here and for four other questions, your gains do about as well as any on carts that are all large or all small at once: one random number sets all five parameters of a cart.",
-    "Draw a number of its own for each parameter: a generator that starts anew from the same seed gives the same numbers again.",
+    "Here and for four other questions, your gains suit carts that are all large or all small at once better than carts drawn one parameter at a time, as if one random number set all five parameters of a cart.",
+    "Draw a number of its own for each parameter: a generator that starts anew from the same seed gives the same numbers again. If you do, search more finely.",
     kind="consequence",
 ).body(
     "tune",
@@ -1216,26 +1216,26 @@ mistakes(
 )
 mistakes(
     "BOX_ENDS_ALONE",
-    "Here and for four other questions, your gains do about as well as any on carts whose parameters all lie at an end of their range, and none between.",
-    "Draw each factor anywhere between low and high: np.exp(rng.uniform(np.log(low), np.log(high), n)).",
+    "Here and for four other questions, your gains suit carts whose parameters all lie at an end of their range better than carts drawn from all of it.",
+    "Draw each factor anywhere between low and high: np.exp(rng.uniform(np.log(low), np.log(high), n)). If you do, search more finely.",
     kind="consequence",
 ).edit("tune", {"(rng.permutation(200) + 0.5) / 200": "rng.integers(0, 2, 200)"})
 mistakes(
     "FACTORS_DIVIDE",
-    "Here and for four other questions, your gains do about as well as any on carts whose parameters are the estimate's values divided by factors from the box.",
-    "Multiply: value * factor.",
+    "Here and for four other questions, your gains suit carts whose parameters are the estimate's values divided by factors from the box, and not those with the products.",
+    "Multiply: value * factor. If you do, search more finely.",
     kind="consequence",
 ).edit("tune", {"estimate[name][0] * np.exp": "estimate[name][0] / np.exp"}, also=("NO_CART_SETTLES",))
 mistakes(
     "FACTORS_ADDED",
-    "Here and for four other questions, your gains do about as well as any on carts whose parameters are the estimate's values times 1 + factor.",
-    "The box has factors, not changes: value * factor.",
+    "Here and for four other questions, your gains suit carts whose parameters are the estimate's values times 1 + factor, and not those of the box.",
+    "The box has factors, not changes: value * factor. If that is what you take, search more finely.",
     kind="consequence",
 ).edit("tune", {"np.exp(low + share * (high - low))": "(1 + np.exp(low + share * (high - low)))"})
 mistakes(
     "LAG_FOR_LATENCY",
-    "Here and for four other questions, your gains do about as well as any on carts whose latency is tau + latency.",
-    "rollout takes tau and latency: give it each as it is, times its factor.",
+    "Here and for four other questions, your gains suit carts whose latency is tau + latency better than those of the box.",
+    "rollout takes tau and latency: give it each as it is, times its factor. If you do, search more finely.",
     kind="consequence",
 ).edit(
     "tune", {"few = {": 'carts["latency"] *= 1 + estimate["tau"][0] / estimate["latency"][0]\n    few = {'}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+from collections import Counter
 
 import numpy as np
 
@@ -221,7 +222,14 @@ _UNITS = {"m": "kg", "b": "N s/m", "Fc": "N", "lag": "s"}
 
 
 def expect_intervals(estimates, carts, recordings=()):
-    """Low, value and high are in order, and the scored ones are narrow enough to say something."""
+    """Low, value and high are in order, and the scored ones are narrow enough to say something.
+
+    All refits of one recording may end at the same time, where the last step of the search is a quarter of a
+    millisecond: an interval without width counts where a second recording has one of the same parameter.
+    """
+    points = Counter(
+        name for estimate in estimates for name, (_, low, high) in estimate.items() if low == high
+    )
     for estimate in estimates:
         for name, (value, low, high) in estimate.items():
             kit.expect_true(
@@ -232,7 +240,7 @@ def expect_intervals(estimates, carts, recordings=()):
                 actual=[value, low, high],
             )
             kit.expect_true(
-                low < high,
+                low < high or points[name] < 2,
                 "An interval has no width.",
                 diagnose=named("INTERVAL_WITHOUT_WIDTH"),
                 input={"parameter": name},

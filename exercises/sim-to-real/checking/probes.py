@@ -443,6 +443,10 @@ def _unread(submission, estimate, box, gains):
     def lows(change):
         return estimate, {k: [change(*ends), ends[1]] for k, ends in box.items()}
 
+    def highs_read():
+        wider = {k: [low, low + 3 * (high - low)] for k, (low, high) in box.items()}
+        return same((estimate, wider)) == [False]
+
     def shifted(name, factor):
         return estimate, {**box, name: [factor * end for end in box[name]]}
 
@@ -459,7 +463,7 @@ def _unread(submission, estimate, box, gains):
         # The soonest or the slowest of all carts may be at one end, too: its gains are others.
         (
             "LOWS_NOT_READ",
-            kept[4] and not kept[2] and _is_best(*gains, estimate, corner),
+            kept[4] and not kept[2] and _is_best(*gains, estimate, corner) and highs_read(),
             [lows(lambda low, high: 0.9 * high)],
         ),
     )

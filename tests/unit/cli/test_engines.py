@@ -210,13 +210,6 @@ def test_no_line_is_wider_than_the_window(bare, monkeypatch, columns):
     assert {"2.84,", "reference"} <= {word for line in lines for word in line.split()}
 
 
-def test_help_has_every_option_of_the_contract(bare):
-    words = bare("engines", "compare", "--help").out
-    for option in ("--engine", "--scenario", "--dt", "--repeat", "--quick", "--fresh", "--plot", "--csv"):
-        assert option in words
-    assert "Example: course engines compare" in words
-
-
 def test_the_reference_is_never_the_best_ties_all_are_and_what_a_phase_could_change_makes_no_rank():
     rows = [row("pymunk", 0.26), row("ode", 0.24), row("dart", 0.3), row("physx", 0.25, origin="reference")]
     best = best_rows(rows)

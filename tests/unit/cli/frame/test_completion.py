@@ -90,6 +90,8 @@ def complete(typed, monkeypatch, capsys):
         ("course sim run free-fall --set hei", {"height="}),
         ("course schema chec", {"check", "check-all"}),
         ("course check --format g", {"github"}),
+        ("course reflect doubling --grades ", {"yes", "partly", "no"}),
+        ("course reflect doubling --grades yes,p", {"yes,partly"}),
         ("course init --with d", {"devcontainer"}),
         ("course init --with github,v", {"github,vscode"}),
     ],

@@ -105,30 +105,6 @@ def test_under_json_people_are_spoken_to_on_standard_error_and_a_second_object_i
         console.emit(Bare(schema="course.x/1", ok=True, exit_code=0))
 
 
-def test_quiet_drops_advice_and_keeps_results():
-    console, out, _ = _console(terminal=False, quiet=True)
-    console.note("advice")
-    console.line("result")
-    assert out.getvalue() == "result\n"
-
-
-def test_a_reader_that_goes_away_is_no_error():
-    class Gone(io.StringIO):
-        writes = 0
-
-        def write(self, text):
-            self.writes += 1
-            raise BrokenPipeError
-
-    gone = Gone()
-    console = Console(Settings(), stdout=gone, stderr=io.StringIO(), environ={})
-    console.line("one")
-    console.line("two")
-    console.error("three")
-    console.flush()
-    assert gone.writes == 1
-
-
 @pytest.mark.parametrize(
     ("answer", "agreed"),
     [("y\n", True), ("Yes\n", True), ("\n", False), ("", False), (io.StringIO("y\n"), False)],

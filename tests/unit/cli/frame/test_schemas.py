@@ -150,7 +150,7 @@ grade export out --format csv
 grade late out --clear
 grade assign out
 grade log out
-grade rerun out --dry-run --all
+grade rerun out --dry-run
 grade similar out
 grade salvage out --to new
 author check halving

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import json
+import os
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +14,7 @@ import pytest
 
 from course.cli.frame import registry
 from course.cli.frame.schemas import schema_of
+from tests.command_line import in_process
 
 MINI_COURSE = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
 make_command = registry._load
@@ -174,13 +176,22 @@ def unpacked():
         yield
 
 
+@pytest.fixture(scope="session")
+def begun(tmp_path_factory):
+    """A workspace of the miniature course with ``doubling`` started, to be copied."""
+    folder = tmp_path_factory.mktemp("begun")
+    environment = {**os.environ, "COURSE_CONTENT": str(MINI_COURSE), "COURSE_CACHE": str(folder / "cache")}
+    for words in (("init", folder / "work"), ("-C", folder / "work", "start", "doubling")):
+        assert in_process(*words, env=environment).returncode == 0
+    return folder / "work"
+
+
 @pytest.fixture
-def workspace(course, tmp_path, monkeypatch):
+def workspace(course, begun, tmp_path, monkeypatch):
     """A workspace with ``doubling`` started; the current folder."""
     root = tmp_path / "my course é"
-    assert course("init", str(root)).code == 0
+    shutil.copytree(begun, root)
     monkeypatch.chdir(root)
-    assert course("start", "doubling").code == 0
     return root
 
 

@@ -8,7 +8,6 @@ import json
 import re
 import shutil
 from pathlib import Path
-from types import SimpleNamespace
 
 import jsonschema
 import msgspec
@@ -20,11 +19,8 @@ from course.cli.frame.replies import (
     Envelope,
     ErrorBody,
     ErrorReply,
-    FileReply,
     NextStep,
-    Version,
     encode,
-    filled,
 )
 from course.cli.frame.schemas import reply_types, schema_of
 from course.cli.work.replies import Hint
@@ -235,16 +231,3 @@ def test_the_command_lists_and_prints(course):
     assert course("schema", "course.hint/1", "--json").json["document"] == schema_of("course.hint/1")
     missing = course("schema", "hin", "--json")
     assert (missing.code, missing.json["error"]["code"]) == (5, "schema_not_found")
-
-
-def test_a_reply_takes_what_is_given_and_the_rest_from_the_first_object_that_has_it():
-    first, second = SimpleNamespace(path="first"), SimpleNamespace(path="second", action="kept", other=1)
-    assert filled(FileReply, first, second) == FileReply("first", "kept")
-    assert filled(FileReply, first, second, action="made") == FileReply("first", "made")
-    with pytest.raises(TypeError, match="action"):
-        filled(FileReply, first)
-
-
-@pytest.mark.parametrize(("code", "ok"), [(0, True), (1, False), (130, False)])
-def test_a_reply_is_ok_where_its_exit_code_is_0(code, ok):
-    assert Version(exit_code=code, version="1", python="3").ok is ok

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import pytest
+
+from course.cli.setup import doctor
 from course.progress.store import Store
 
 
@@ -38,6 +41,13 @@ def test_progress_has_dates_and_scores(course, workspace, write):
     assert "score 4/4" in course("progress").out
 
 
+@pytest.fixture
+def unprobed(monkeypatch):
+    """A machine whose protection is known: to try it takes longer than the rest."""
+    monkeypatch.setattr(doctor, "protection", lambda: ("L3", (), ()))
+
+
+@pytest.mark.usefixtures("unprobed")
 def test_doctor_repairs_a_damaged_record_and_keeps_it(course, workspace):
     record = workspace / ".course" / "progress.sqlite"
     record.write_bytes(b"not a database, not at all, no" * 10)
@@ -57,6 +67,7 @@ def test_doctor_never_advises_switching_a_protection_off(course):
         assert phrase not in words
 
 
+@pytest.mark.usefixtures("unprobed")
 def test_doctor_names_the_command_for_what_is_missing(course, monkeypatch):
     import importlib.metadata
 
@@ -74,6 +85,7 @@ def test_doctor_names_the_command_for_what_is_missing(course, monkeypatch):
     assert ran.json["fixes"][0]["command"] == "pip install 'pymunk>=7.0' 'rich>=14'"
 
 
+@pytest.mark.usefixtures("unprobed")
 def test_a_missing_extra_is_offered_and_is_no_failure_nor_is_one_that_cannot_be_had(course, monkeypatch):
     wanted = [
         "numpy", "no-such-engine>=4; extra == 'engines'", "no-such-linter; extra == 'dev'",

@@ -14,6 +14,7 @@ import pytest
 
 from course.cli.frame import registry
 from course.cli.frame.schemas import schema_of
+from course.progress.store import Store
 from tests.command_line import in_process
 
 MINI_COURSE = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
@@ -109,6 +110,11 @@ class FakeSession:
             tolerance=Tolerance(rel=1e-9, source="closed form"),
             stdout="\x1b[31mprinted\n",
         )
+
+
+def record(workspace):
+    """What a workspace keeps of what was done."""
+    return Store(workspace / ".course" / "progress.sqlite")
 
 
 def files_in(root):

@@ -198,7 +198,7 @@ def test_repetitions_show_their_spread_only_where_there_is_one_and_several_runs_
     assert bare("engines", "compare", "--repeat", "0").code == 2
 
 
-@pytest.mark.parametrize("columns", [60, 80, 120])
+@pytest.mark.parametrize("columns", [60, 120])
 def test_no_line_is_wider_than_the_window(bare, monkeypatch, columns):
     monkeypatch.setenv("COLUMNS", str(columns))
     monkeypatch.setenv("FORCE_COLOR", "1")

@@ -35,17 +35,6 @@ def test_a_pipe_gets_one_fact_a_line_however_long_and_a_table_with_every_name():
     assert out.getvalue() == "  fail: " + "word " * 60 + "end\nId: one; Score: 3/4\nId: two\n"
 
 
-def test_a_terminal_gets_lines_that_fit_it(monkeypatch):
-    monkeypatch.setenv("COLUMNS", "60")
-    console, out, _ = _console(environ={"NO_COLOR": "1"})
-    console.item("fail", "word " * 60, style="red")
-    console.line("word " * 60, indent=4)
-    console.table(("Exercise", "State"), [("integrators", "every public check passes")])
-    lines = re.sub(r"\x1b\[[0-9;]*m", "", out.getvalue()).splitlines()
-    assert len(lines) > 8
-    assert max(map(len, lines)) <= 60
-
-
 @pytest.mark.parametrize(
     ("environ", "settings", "fancy"),
     [

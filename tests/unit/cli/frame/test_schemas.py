@@ -8,6 +8,7 @@ import json
 import re
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import jsonschema
 import msgspec
@@ -19,8 +20,10 @@ from course.cli.frame.replies import (
     Envelope,
     ErrorBody,
     ErrorReply,
+    FileReply,
     NextStep,
     encode,
+    filled,
 )
 from course.cli.frame.schemas import reply_types, schema_of
 from course.cli.work.replies import Hint
@@ -231,3 +234,11 @@ def test_the_command_lists_and_prints(course):
     assert course("schema", "course.hint/1", "--json").json["document"] == schema_of("course.hint/1")
     missing = course("schema", "hin", "--json")
     assert (missing.code, missing.json["error"]["code"]) == (5, "schema_not_found")
+
+
+def test_a_reply_takes_what_is_given_and_the_rest_from_the_first_object_that_has_it():
+    first, second = SimpleNamespace(path="first"), SimpleNamespace(path="second", action="kept", other=1)
+    assert filled(FileReply, first, second) == FileReply("first", "kept")
+    assert filled(FileReply, first, second, action="made") == FileReply("first", "made")
+    with pytest.raises(TypeError, match="action"):
+        filled(FileReply, first)

@@ -6,11 +6,12 @@ import pytest
 
 from course.cli.setup import doctor
 from course.progress.store import Store
+from tests.unit.cli.conftest import record
 
 
 def test_lesson_without_an_id_goes_on_to_the_next_unread_one(course, workspace):
     assert course("lesson", "--json").json["id"] == "twice-as-much"
-    Store(workspace / ".course" / "progress.sqlite").append("lesson", "twice-as-much")
+    record(workspace).append("lesson", "twice-as-much")
     assert course("lesson", "--json").json["id"] == "half-as-much"
     lessons = course("lessons", "--json").json["lessons"]
     assert [lesson["read_at"] is not None for lesson in lessons] == [True, False]

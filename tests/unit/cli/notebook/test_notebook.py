@@ -262,6 +262,7 @@ def test_open_shows_a_page_or_says_how_to_get_to_it(course, workspace, monkeypat
     assert shown.get(timeout=30) == lab.address if display else shown.empty()
 
 
+@pytest.mark.turns(2)
 @pytest.mark.parametrize("wanted", ["doubling", None])
 def test_open_prints_an_address_that_lets_one_in_and_leaves_what_is_there(
     course, workspace, monkeypatch, wanted

@@ -7,6 +7,7 @@ import json
 import os
 import shutil
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
 import jsonschema
@@ -19,6 +20,10 @@ from tests.command_line import in_process
 
 MINI_COURSE = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
 make_command = registry._load
+#: Asked without importing it, which takes longer than most tests.
+needs_jupyterlab = pytest.mark.skipif(
+    None in map(find_spec, ("jupyterlab", "ipykernel")), reason="`course open` needs the extra notebook"
+)
 
 
 @dataclass

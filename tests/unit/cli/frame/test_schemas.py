@@ -29,9 +29,9 @@ from course.cli.frame.schemas import reply_types, schema_of
 from course.cli.work.replies import Hint
 from course.handed_in import attempts
 from course.scoring.judging.session import GradingSession
+from tests.unit.cli.conftest import MINI_COURSE, needs_jupyterlab
 
 CLI = Path(package.__file__).parent / "cli"
-MINI_COURSE = Path(__file__).parents[3] / "fixtures" / "mini_course"
 
 
 def broken(document, reply):
@@ -181,10 +181,10 @@ def _stand_in_for_what_waits(monkeypatch):
     monkeypatch.setattr(server.Lab, "wait", lambda _: 0)
 
 
+@needs_jupyterlab
 @pytest.mark.usefixtures("sandboxes")
 def test_every_reply_of_every_command_keeps_its_schema(course, tmp_path, monkeypatch):
     """``course`` holds each of them against its schema; here is one of each kind."""
-    pytest.importorskip("jupyterlab", reason="`course open` needs the extra notebook")
     _stand_in_for_what_waits(monkeypatch)
     monkeypatch.setenv("COURSE_CACHE", str(tmp_path / "cache"))
     answered, failed = {}, []

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import functools
 import json
+import os
 import shutil
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
 import jsonschema
@@ -13,9 +15,15 @@ import pytest
 
 from course.cli.frame import registry
 from course.cli.frame.schemas import schema_of
+from course.progress.store import Store
+from tests.command_line import in_process
 
 MINI_COURSE = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
 make_command = registry._load
+#: Asked without importing it, which takes longer than most tests.
+needs_jupyterlab = pytest.mark.skipif(
+    None in map(find_spec, ("jupyterlab", "ipykernel")), reason="`course open` needs the extra notebook"
+)
 
 
 @dataclass
@@ -109,6 +117,11 @@ class FakeSession:
         )
 
 
+def record(workspace):
+    """What a workspace keeps of what was done."""
+    return Store(workspace / ".course" / "progress.sqlite")
+
+
 def files_in(root):
     """Every file in a folder, with what it holds."""
     return {path: path.read_bytes() for path in root.rglob("*") if path.is_file()}
@@ -174,13 +187,22 @@ def unpacked():
         yield
 
 
+@pytest.fixture(scope="session")
+def begun(tmp_path_factory):
+    """A workspace of the miniature course with ``doubling`` started, to be copied."""
+    folder = tmp_path_factory.mktemp("begun")
+    environment = {**os.environ, "COURSE_CONTENT": str(MINI_COURSE), "COURSE_CACHE": str(folder / "cache")}
+    for words in (("init", folder / "work"), ("-C", folder / "work", "start", "doubling")):
+        assert in_process(*words, env=environment).returncode == 0
+    return folder / "work"
+
+
 @pytest.fixture
-def workspace(course, tmp_path, monkeypatch):
+def workspace(course, begun, tmp_path, monkeypatch):
     """A workspace with ``doubling`` started; the current folder."""
     root = tmp_path / "my course é"
-    assert course("init", str(root)).code == 0
+    shutil.copytree(begun, root)
     monkeypatch.chdir(root)
-    assert course("start", "doubling").code == 0
     return root
 
 

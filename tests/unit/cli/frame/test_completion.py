@@ -90,6 +90,8 @@ def complete(typed, monkeypatch, capsys):
         ("course sim run free-fall --set hei", {"height="}),
         ("course schema chec", {"check", "check-all"}),
         ("course check --format g", {"github"}),
+        ("course reflect doubling --grades ", {"yes", "partly", "no"}),
+        ("course reflect doubling --grades yes,p", {"yes,partly"}),
         ("course init --with d", {"devcontainer"}),
         ("course init --with github,v", {"github,vscode"}),
     ],
@@ -126,10 +128,10 @@ def test_each_shell_gets_its_own_script_and_an_unknown_one_is_named_with_them(co
 
 def test_zsh_is_answered_in_its_own_form():
     """What zsh's script asks with, in a process of its own, as it does."""
-    asked = {**os.environ, "_COURSE_COMPLETE": "complete_zsh", "_TYPER_COMPLETE_ARGS": "course schema chec"}
+    asked = {**os.environ, "_COURSE_COMPLETE": "complete_zsh", "_TYPER_COMPLETE_ARGS": "course hi"}
     ran = as_process(env=asked)
     assert ran.stdout.startswith("_arguments")
-    assert "check-all" in ran.stdout
+    assert "hint" in ran.stdout
 
 
 def test_completion_is_written_where_the_shell_looks_as_help_says(course, tmp_path, monkeypatch):

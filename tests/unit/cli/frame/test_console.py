@@ -35,17 +35,6 @@ def test_a_pipe_gets_one_fact_a_line_however_long_and_a_table_with_every_name():
     assert out.getvalue() == "  fail: " + "word " * 60 + "end\nId: one; Score: 3/4\nId: two\n"
 
 
-def test_a_terminal_gets_lines_that_fit_it(monkeypatch):
-    monkeypatch.setenv("COLUMNS", "60")
-    console, out, _ = _console(environ={"NO_COLOR": "1"})
-    console.item("fail", "word " * 60, style="red")
-    console.line("word " * 60, indent=4)
-    console.table(("Exercise", "State"), [("integrators", "every public check passes")])
-    lines = re.sub(r"\x1b\[[0-9;]*m", "", out.getvalue()).splitlines()
-    assert len(lines) > 8
-    assert max(map(len, lines)) <= 60
-
-
 @pytest.mark.parametrize(
     ("environ", "settings", "fancy"),
     [
@@ -103,30 +92,6 @@ def test_under_json_people_are_spoken_to_on_standard_error_and_a_second_object_i
     assert json.loads(out.getvalue()) == {"schema": "course.x/1", "ok": True, "exit_code": 0}
     with pytest.raises(InternalError):
         console.emit(Bare(schema="course.x/1", ok=True, exit_code=0))
-
-
-def test_quiet_drops_advice_and_keeps_results():
-    console, out, _ = _console(terminal=False, quiet=True)
-    console.note("advice")
-    console.line("result")
-    assert out.getvalue() == "result\n"
-
-
-def test_a_reader_that_goes_away_is_no_error():
-    class Gone(io.StringIO):
-        writes = 0
-
-        def write(self, text):
-            self.writes += 1
-            raise BrokenPipeError
-
-    gone = Gone()
-    console = Console(Settings(), stdout=gone, stderr=io.StringIO(), environ={})
-    console.line("one")
-    console.line("two")
-    console.error("three")
-    console.flush()
-    assert gone.writes == 1
 
 
 @pytest.mark.parametrize(

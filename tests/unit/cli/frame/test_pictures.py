@@ -12,7 +12,7 @@ from matplotlib.image import imread
 from PIL import Image
 from rich.console import Console
 
-from course.cli.frame.pictures import InlinePicture, picture
+from course.cli.frame.pictures import picture
 from course.figures.described import Panel, Plot, Series
 from course.figures.plots import draw, render
 from course.figures.terminal import in_cells
@@ -155,13 +155,6 @@ def test_where_nothing_can_be_seen_nothing_is_drawn(given):
         raise AssertionError("drawn for nobody")
 
     assert picture(terminal(**given), {}, never, 60) is None
-
-
-@pytest.mark.parametrize(
-    ("environ", "sent"), [({"TERM": "xterm-kitty"}, True), ({"KONSOLE_VERSION": "210801"}, False)]
-)
-def test_a_protocol_that_the_terminal_knows_wins_over_half_blocks(environ, sent):
-    assert isinstance(picture(terminal(), environ, make, 60), InlinePicture) is sent
 
 
 @pytest.fixture

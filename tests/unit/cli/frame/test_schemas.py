@@ -22,7 +22,6 @@ from course.cli.frame.replies import (
     ErrorReply,
     FileReply,
     NextStep,
-    Version,
     encode,
     filled,
 )
@@ -30,9 +29,9 @@ from course.cli.frame.schemas import reply_types, schema_of
 from course.cli.work.replies import Hint
 from course.handed_in import attempts
 from course.scoring.judging.session import GradingSession
+from tests.unit.cli.conftest import MINI_COURSE, needs_jupyterlab
 
 CLI = Path(package.__file__).parent / "cli"
-MINI_COURSE = Path(__file__).parents[3] / "fixtures" / "mini_course"
 
 
 def broken(document, reply):
@@ -150,7 +149,7 @@ grade export out --format csv
 grade late out --clear
 grade assign out
 grade log out
-grade rerun out --dry-run --all
+grade rerun out --dry-run
 grade similar out
 grade salvage out --to new
 author check halving
@@ -182,10 +181,10 @@ def _stand_in_for_what_waits(monkeypatch):
     monkeypatch.setattr(server.Lab, "wait", lambda _: 0)
 
 
+@needs_jupyterlab
 @pytest.mark.usefixtures("sandboxes")
 def test_every_reply_of_every_command_keeps_its_schema(course, tmp_path, monkeypatch):
     """``course`` holds each of them against its schema; here is one of each kind."""
-    pytest.importorskip("jupyterlab", reason="`course open` needs the extra notebook")
     _stand_in_for_what_waits(monkeypatch)
     monkeypatch.setenv("COURSE_CACHE", str(tmp_path / "cache"))
     answered, failed = {}, []
@@ -243,8 +242,3 @@ def test_a_reply_takes_what_is_given_and_the_rest_from_the_first_object_that_has
     assert filled(FileReply, first, second, action="made") == FileReply("first", "made")
     with pytest.raises(TypeError, match="action"):
         filled(FileReply, first)
-
-
-@pytest.mark.parametrize(("code", "ok"), [(0, True), (1, False), (130, False)])
-def test_a_reply_is_ok_where_its_exit_code_is_0(code, ok):
-    assert Version(exit_code=code, version="1", python="3").ok is ok

@@ -10,10 +10,10 @@ import pytest
 
 from course.cli.frame.console import Console
 from course.grading.running import batch
+from tests.unit.cli.grade.test_grade_settling import SOURCE
 from tests.unit.grading.conftest import MINI
 from tests.unit.grading.running.test_run import right
 
-SOURCE = "def double(x):\n    return 2 * x\n\ndef doublings(x, n):\n    return x\n"
 RUN = ("grade", "run", "class", "--out", "out", "--exercise", "doubling")
 WAYS = {
     "resume": (*RUN, "--resume"),

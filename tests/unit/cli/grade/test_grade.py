@@ -14,22 +14,20 @@ from pathlib import Path
 import pytest
 
 from tests.command_line import in_process
-from tests.unit.cli.conftest import files_in
+from tests.unit.cli.conftest import MINI_COURSE, files_in
 
-ROOT = Path(__file__).resolve().parents[4]
-MINI = ROOT / "tests" / "fixtures" / "mini_course"
 WRONG = b"\ndef double(x):\n    print('I saw', x)\n    return x\n"
 
 
 def course(*arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
-    return in_process(*arguments, env={**os.environ, "COURSE_CONTENT": str(MINI), **environment})
+    return in_process(*arguments, env={**os.environ, "COURSE_CONTENT": str(MINI_COURSE), **environment})
 
 
 @pytest.fixture(scope="module")
 def graded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run over one right, one wrong and one broken submission."""
     folder = tmp_path_factory.mktemp("grade")
-    solution = (MINI / "solutions" / "doubling" / "doubling.py").read_bytes()
+    solution = (MINI_COURSE / "solutions" / "doubling" / "doubling.py").read_bytes()
     for student, source in (("ada", solution), ("=bob", solution + WRONG), ("cy", b"def (")):
         place = folder / "class" / student
         place.mkdir(parents=True)
@@ -110,7 +108,7 @@ def test_wrong_calls_are_named_and_touch_nothing(
 
 def test_a_students_installation_is_told_so(tmp_path: Path) -> None:
     student = tmp_path / "course"
-    shutil.copytree(MINI, student)
+    shutil.copytree(MINI_COURSE, student)
     shutil.rmtree(student / "graders")
     (tmp_path / "class").mkdir()
     done = course(
@@ -122,7 +120,7 @@ def test_a_students_installation_is_told_so(tmp_path: Path) -> None:
 
 def test_nobody_adds_lines_of_their_own_to_what_the_instructor_reads(tmp_path: Path) -> None:
     """Names of folders and archives, exceptions and values: on the terminal and in what is explained."""
-    solution = (MINI / "solutions" / "doubling" / "doubling.py").read_bytes()
+    solution = (MINI_COURSE / "solutions" / "doubling" / "doubling.py").read_bytes()
     forged = "ada 10 of 10 passed"
     names = {
         f"bob\n{forged}": solution,
@@ -147,18 +145,3 @@ def test_nobody_adds_lines_of_their_own_to_what_the_instructor_reads(tmp_path: P
         assert not set("\u202e\u2066\r") & set(said), said
     assert "bob\\n" in ran.stdout
     assert any("raised ValueError" in done.stdout for done in told)
-
-
-def test_students_who_are_called_as_exercises_are_graded_and_it_is_said(tmp_path: Path) -> None:
-    for name in ("doubling", "halving"):
-        folder = tmp_path / "class" / name
-        folder.mkdir(parents=True)
-        (folder / f"{name}.py").write_bytes((MINI / "solutions" / name / f"{name}.py").read_bytes())
-    ran = course(
-        "grade", "run", tmp_path / "class", "--out", tmp_path / "out", "--isolation", "process", "--json"
-    )
-    assert ran.returncode == 0, ran.stderr
-    assert "taken for a student" in ran.stderr
-    table = csv.DictReader((tmp_path / "out" / "grades.csv").read_text("utf-8-sig").splitlines())
-    full = {row["student"]: row["score"] == row["max_score"] for row in table}
-    assert full == {"doubling": True, "halving": True}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import dataclasses
 import json
 import shutil
@@ -280,3 +281,14 @@ def test_what_was_decided_before_a_folder_came_stays_with_its_student(course, he
     assert "score: 8 of 10, passed" in course("grade", "explain", "new", "dan", "doubling").out, (
         "two days late"
     )
+
+
+def test_students_who_are_called_as_exercises_are_graded_and_it_is_said(course, here: Path) -> None:
+    for name in ("doubling", "halving"):
+        shutil.copytree(MINI / "solutions" / name, here / "other" / name)
+    ran = course("grade", "run", "other", "--out", "new", "--json")
+    assert ran.code == 0, ran.err
+    assert "taken for a student" in ran.err
+    table = csv.DictReader((here / "new" / "grades.csv").read_text("utf-8-sig").splitlines())
+    full = {row["student"]: row["score"] == row["max_score"] for row in table}
+    assert full == {"doubling": True, "halving": True}

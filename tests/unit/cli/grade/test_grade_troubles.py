@@ -94,6 +94,16 @@ def test_a_gradebook_that_cannot_be_read_is_said_to_be_so_and_left_as_it_is(
     assert files_in(out.parent) == before
 
 
+@pytest.fixture
+def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A command that waits for a locked gradebook gives up soon."""
+    connect = sqlite3.connect
+    monkeypatch.setattr(
+        sqlite3, "connect", lambda *given, **more: connect(*given, **more | {"timeout": 0.05})
+    )
+
+
+@pytest.mark.usefixtures("impatient")
 @pytest.mark.parametrize("words", WRITING + READING, ids=" ".join)
 def test_while_a_run_writes_every_other_command_is_told_and_the_run_goes_on(course, out: Path, words) -> None:
     with Gradebook(out / "gradebook.sqlite", writing=True) as book:
@@ -109,6 +119,7 @@ def test_while_a_run_writes_every_other_command_is_told_and_the_run_goes_on(cour
         assert len(list(book.results())) == 31
 
 
+@pytest.mark.usefixtures("impatient")
 def test_the_gradebook_is_held_until_the_last_page_is_written(
     course, out: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

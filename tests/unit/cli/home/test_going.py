@@ -9,13 +9,9 @@ import pytest
 from course.catalog.load import Catalog
 from course.cli.frame.console import Console
 from course.progress.quiz import DONE, START
-from course.progress.store import Store
 from course.reading.parts import read_script
 from course.reading.record import InProgress, Place
-
-
-def record(workspace):
-    return Store(workspace / ".course" / "progress.sqlite")
+from tests.unit.cli.conftest import record
 
 
 @pytest.fixture

@@ -8,9 +8,8 @@ from types import SimpleNamespace
 import pytest
 
 from course.cli.frame.here import load_catalog
-from course.progress.store import Store
 from course.reading.parts import read_script
-from tests.unit.cli.conftest import MINI_COURSE
+from tests.unit.cli.conftest import MINI_COURSE, record
 
 ASKED = "## Once\n\n> **Predict.** What is twice five?\n\n> **Answer.** Ten.\n"
 
@@ -28,9 +27,7 @@ def asking(course, workspace, monkeypatch, tmp_path_factory):
 
 
 def say(workspace, question, **data):
-    Store(workspace / ".course" / "progress.sqlite").append(
-        "prediction", "twice-as-much", {"key": question.key, "number": 1, **data}
-    )
+    record(workspace).append("prediction", "twice-as-much", {"key": question.key, "number": 1, **data})
 
 
 def test_a_wrong_prediction_is_shown_with_its_section_to_read_again(asking, workspace):
@@ -87,7 +84,7 @@ def test_a_mistake_is_seen_then_mended_and_its_section_goes_with_it(course, work
 
 
 def test_an_exception_is_named_among_the_mistakes(course, workspace):
-    store = Store(workspace / ".course" / "progress.sqlite")
+    store = record(workspace)
     check = {"id": "a", "task": "double", "status": "error", "diagnosis": "RAISED"}
     for more in ({}, {"raised": "NameError: name 'v1v2' is not defined"}):
         store.append("check", "doubling", {"state": "graded", "checks": [check | more]})

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import pytest
+
+from course.cli.setup import doctor
 from course.progress.store import Store
+from tests.unit.cli.conftest import record
 
 
 def test_lesson_without_an_id_goes_on_to_the_next_unread_one(course, workspace):
     assert course("lesson", "--json").json["id"] == "twice-as-much"
-    Store(workspace / ".course" / "progress.sqlite").append("lesson", "twice-as-much")
+    record(workspace).append("lesson", "twice-as-much")
     assert course("lesson", "--json").json["id"] == "half-as-much"
     lessons = course("lessons", "--json").json["lessons"]
     assert [lesson["read_at"] is not None for lesson in lessons] == [True, False]
@@ -38,6 +42,13 @@ def test_progress_has_dates_and_scores(course, workspace, write):
     assert "score 4/4" in course("progress").out
 
 
+@pytest.fixture
+def unprobed(monkeypatch):
+    """A machine whose protection is known: to try it takes longer than the rest."""
+    monkeypatch.setattr(doctor, "protection", lambda: ("L3", (), ()))
+
+
+@pytest.mark.usefixtures("unprobed")
 def test_doctor_repairs_a_damaged_record_and_keeps_it(course, workspace):
     record = workspace / ".course" / "progress.sqlite"
     record.write_bytes(b"not a database, not at all, no" * 10)
@@ -57,18 +68,7 @@ def test_doctor_never_advises_switching_a_protection_off(course):
         assert phrase not in words
 
 
-def test_doctor_says_what_no_command_can_install_here(course, monkeypatch):
-    from course import extras
-
-    line = "pybullet>=3.2.7; python_version < '3.0' and extra == 'bullet'"
-    monkeypatch.setattr(extras, "_lines", lambda: [line])
-    ran = course("doctor", "--json")
-    (sentence,) = ran.json["unserved"]
-    assert sentence.startswith("Optional (bullet): pybullet has no wheel for Python 3.")
-    assert sentence in ran.err
-    assert not ran.json["fixes"]
-
-
+@pytest.mark.usefixtures("unprobed")
 def test_doctor_names_the_command_for_what_is_missing(course, monkeypatch):
     import importlib.metadata
 
@@ -86,10 +86,17 @@ def test_doctor_names_the_command_for_what_is_missing(course, monkeypatch):
     assert ran.json["fixes"][0]["command"] == "pip install 'pymunk>=7.0' 'rich>=14'"
 
 
-def test_a_missing_extra_is_offered_and_is_no_failure(course, monkeypatch):
-    wanted = ["numpy", "no-such-engine>=4; extra == 'engines'", "no-such-linter; extra == 'dev'"]
+@pytest.mark.usefixtures("unprobed")
+def test_a_missing_extra_is_offered_and_is_no_failure_nor_is_one_that_cannot_be_had(course, monkeypatch):
+    wanted = [
+        "numpy", "no-such-engine>=4; extra == 'engines'", "no-such-linter; extra == 'dev'",
+        "pybullet>=3.2.7; python_version < '3.0' and extra == 'bullet'",
+    ]  # fmt: skip
     monkeypatch.setattr("course.extras._lines", lambda: wanted)
     ran = course("doctor", "--json")
     assert ran.code == 0
     assert [fix["command"] for fix in ran.json["fixes"]] == ["pip install 'no-such-engine>=4'"]
     assert {package["group"] for package in ran.json["packages"]} == {"", "engines"}
+    (sentence,) = ran.json["unserved"]
+    assert sentence.startswith("Optional (bullet): pybullet has no wheel for Python 3.")
+    assert sentence in ran.err

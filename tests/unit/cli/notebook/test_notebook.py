@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from course.cli.work import chosen as handing_in
+from tests.unit.cli.conftest import needs_jupyterlab
 
 GOOD = "def double(x):\n    'RIGHT'"
 OTHER = "def doublings(x, n):\n    'RIGHT'"
@@ -220,10 +221,9 @@ def test_open_and_executed_say_in_one_sentence_what_is_missing(course, workspace
     assert course("notebook", "build").code == 0
 
 
+@needs_jupyterlab
 def test_open_leaves_it_to_the_course_whether_a_browser_is_opened(course, workspace, monkeypatch):
     """JupyterLab by itself starts one in the terminal where there is no display."""
-    pytest.importorskip("jupyterlab")
-    pytest.importorskip("ipykernel")
     import subprocess
 
     said = []
@@ -240,10 +240,9 @@ def test_open_leaves_it_to_the_course_whether_a_browser_is_opened(course, worksp
     assert "--no-browser" in said
 
 
+@needs_jupyterlab
 @pytest.mark.parametrize("display", ["", ":0"])
 def test_open_shows_a_page_or_says_how_to_get_to_it(course, workspace, monkeypatch, display):
-    pytest.importorskip("jupyterlab")
-    pytest.importorskip("ipykernel")
     from course import browser
     from course.notebooks import server
 
@@ -262,12 +261,13 @@ def test_open_shows_a_page_or_says_how_to_get_to_it(course, workspace, monkeypat
     assert shown.get(timeout=30) == lab.address if display else shown.empty()
 
 
+@needs_jupyterlab
+@pytest.mark.turns(2)
 @pytest.mark.parametrize("wanted", ["doubling", None])
 def test_open_prints_an_address_that_lets_one_in_and_leaves_what_is_there(
     course, workspace, monkeypatch, wanted
 ):
     """The server is asked while the command waits for it to end."""
-    pytest.importorskip("jupyterlab")
     from course.notebooks.server import Lab
 
     path = workspace / "doubling" / "doubling.ipynb"
@@ -304,9 +304,8 @@ def test_open_prints_an_address_that_lets_one_in_and_leaves_what_is_there(
         urllib.request.urlopen(ran.json["address"])
 
 
+@needs_jupyterlab
 def test_a_jupyterlab_that_does_not_start_is_quoted(course, workspace, monkeypatch, tmp_path):
-    pytest.importorskip("jupyterlab")
-    pytest.importorskip("ipykernel")
     from course.notebooks import server
 
     stand_in = tmp_path / "python"

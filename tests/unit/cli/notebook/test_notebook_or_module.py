@@ -12,8 +12,8 @@ from course.cli.frame.console import Console, Settings
 from course.cli.frame.here import Here
 from course.cli.loop import Watcher
 from course.handed_in import attempts as sessions
-from course.progress.store import Store
 from course.progress.workspace import Workspace
+from tests.unit.cli.conftest import record
 from tests.unit.cli.notebook.test_notebook import GOOD, OTHER, write_into
 
 WRONG = "def double(x):\n    'wrong'"
@@ -104,7 +104,7 @@ def test_what_was_checked_in_a_notebook_needs_no_start(course, workspace, write)
     write("RIGHT", "RIGHT")
     course("check", "doubling")
     for lesson in ("twice-as-much", "half-as-much"):
-        Store(workspace / ".course" / "progress.sqlite").append("lesson", lesson)
+        record(workspace).append("lesson", lesson)
     course("notebook", "build", "halving")
     assert course("progress", "--json").json["next"]["command"] == "course start halving"
     write_into(workspace / "halving" / "halving.ipynb", "def halve(x):\n    'wrong'")

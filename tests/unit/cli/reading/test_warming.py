@@ -14,8 +14,7 @@ from course.cli.frame.here import Here
 from course.cli.home.advice import after_report
 from course.grading.intake.downloads import class_list
 from course.grading.intake.students import read_student
-from course.progress.store import Store
-from tests.unit.cli.conftest import MINI_COURSE
+from tests.unit.cli.conftest import MINI_COURSE, record
 
 
 @pytest.fixture
@@ -52,7 +51,7 @@ def write(workspace: Path, name: str, first: str, second: str) -> None:
 def test_what_is_next_calls_it_a_small_task(warm, tmp_path, monkeypatch):
     warm("init", str(tmp_path / "fresh"))
     monkeypatch.chdir(tmp_path / "fresh")
-    Store(tmp_path / "fresh" / ".course" / "progress.sqlite").append("lesson", "twice-as-much")
+    record(tmp_path / "fresh").append("lesson", "twice-as-much")
     assert warm("next", "--json").json["next"]["command"] == "course warmup adding"
     warm("warmup", "adding")
     body = warm("next", "--json").json
@@ -162,7 +161,7 @@ def test_they_are_handed_in_only_when_asked_for(warm, workspace, tmp_path_factor
 
 def test_what_follows_a_report_is_no_check_that_sends_back_to_it(warm, workspace):
     """And after a warm-up comes the next one, also of a lesson that is half read."""
-    store = Store(workspace / ".course" / "progress.sqlite")
+    store = record(workspace)
     store.append("bookmark", "twice-as-much", {"block": 1, "part": 0.0, "words": ""})
 
     def step() -> str:

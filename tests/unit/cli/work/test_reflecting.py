@@ -105,10 +105,3 @@ def test_the_chapters_exercises_one_and_three_have_a_question(exercise_id):
     rubric = catalog.rubric(exercise)
     assert exercise.number in {1, 3}
     assert len(rubric.points) >= 3
-
-
-def test_the_next_grade_of_a_list_is_completed():
-    from course.cli.frame.completion import grade_lists
-
-    assert grade_lists("") == ["yes", "partly", "no"]
-    assert grade_lists("yes,p") == ["yes,partly"]

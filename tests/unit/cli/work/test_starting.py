@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from course.progress.store import Store
-from tests.unit.cli.conftest import files_in
+from tests.unit.cli.conftest import files_in, record
 
 
 def test_the_dashboard_outside_of_a_workspace_says_how_to_begin(course):
@@ -15,7 +14,7 @@ def test_the_dashboard_outside_of_a_workspace_says_how_to_begin(course):
 
 
 def test_the_dashboard_names_the_next_step(course, workspace, write):
-    Store(workspace / ".course" / "progress.sqlite").append("lesson", "twice-as-much")
+    record(workspace).append("lesson", "twice-as-much")
     assert "Next: course check doubling" in course().out
     write("RIGHT", "RIGHT")
     course("check")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -55,15 +54,6 @@ def history(store: Store) -> progress.QuizHistory:
 # -- the record of progress ------------------------------------------------------------------------------
 
 
-def test_an_attempt_is_told_by_its_events(tmp_path: Path, bank: Bank) -> None:
-    store = Store(tmp_path / "p.sqlite")
-    take(store, bank, "one", 5, wrong=1)
-    (told,) = history(store).attempts
-    assert (told.seed, told.score, told.total, told.passed) == (5, 1, 2, False)
-    assert told.right == {"sums": False, "colours": True}
-    assert history(store).open is None
-
-
 def test_the_newest_attempt_goes_on_until_it_is_finished(tmp_path: Path, bank: Bank) -> None:
     store = Store(tmp_path / "p.sqlite")
     take(store, bank, "one", 5, finish=False)
@@ -103,15 +93,6 @@ def test_of_one_seed_the_first_attempt_counts_and_of_those_the_best(tmp_path: Pa
     assert best is not None
     assert best.id == "three"
     assert [record["seed"] for record in progress.records(history(store))] == [5, 6, 7]
-
-
-def test_what_travels_is_what_the_grading_run_scores(tmp_path: Path, bank: Bank) -> None:
-    store = Store(tmp_path / "p.sqlite")
-    take(store, bank, "one", 5, wrong=1)
-    take(store, bank, "two", 6)
-    score = score_record(bank, json.loads(json.dumps(progress.records(history(store)))))
-    assert score is not None
-    assert (score.seed, score.result.score, score.attempts, score.repeated) == (6, 2, 2, 0)
 
 
 def test_of_too_many_attempts_the_best_travel(

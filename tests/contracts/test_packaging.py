@@ -103,13 +103,12 @@ def source(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def _build(source: Path, out: Path, kind: str) -> Path:
-    """Build offline with the backend that is installed; ``kind`` is "wheel", "sdist" or "editable"."""
-    return _built(source, out, kind)[0]
+def _build(source: Path, out: Path, kind: str) -> tuple[Path, str]:
+    """Build offline with the backend that is installed; the archive, and what the builder said.
 
-
-def _built(source: Path, out: Path, kind: str) -> tuple[Path, str]:
-    """The archive, and what the builder said."""
+    Args:
+        kind: "wheel", "sdist" or "editable".
+    """
     code = f"import hatchling.build as b, sys; print(b.build_{kind}(sys.argv[1]))"
     done = subprocess.run(
         [sys.executable, "-c", code, str(out)], cwd=source, capture_output=True, text=True, check=False
@@ -119,13 +118,14 @@ def _built(source: Path, out: Path, kind: str) -> tuple[Path, str]:
 
 
 @pytest.fixture(scope="module")
-def wheel(source: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return _build(source, tmp_path_factory.mktemp("wheel"), "wheel")
+def built(source: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[Path, str]]:
+    """By kind, what is handed out and what the builder said."""
+    return {kind: _build(source, tmp_path_factory.mktemp(kind), kind) for kind in ("wheel", "sdist")}
 
 
 @pytest.fixture(scope="module")
-def sdist(source: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return _build(source, tmp_path_factory.mktemp("sdist"), "sdist")
+def wheel(built: dict[str, tuple[Path, str]]) -> Path:
+    return built["wheel"][0]
 
 
 def _names(archive: Path) -> list[str]:
@@ -147,18 +147,13 @@ def _student_files(folder: str) -> set[str]:
 
 
 @pytest.mark.parametrize("kind", ["wheel", "sdist"])
-def test_nothing_of_the_instructors_is_inside(kind: str, request: pytest.FixtureRequest) -> None:
-    names = _names(request.getfixturevalue(kind))
-    assert [name for name in names if "trap" in name] == []
+def test_only_what_has_a_role_for_students_is_inside_and_what_has_none_is_named(
+    built: dict[str, tuple[Path, str]], kind: str
+) -> None:
+    archive, said = built[kind]
+    names = _names(archive)
     assert [name for name in names if FORBIDDEN & set(name.split("/"))] == []
-
-
-@pytest.mark.parametrize("kind", ["wheel", "sdist"])
-def test_what_has_no_role_is_left_out_and_named(source: Path, kind: str, tmp_path: Path) -> None:
-    archive, said = _built(source, tmp_path, kind)
-    assert not [
-        name for name in _names(archive) if "trap" in name or name.endswith("integrators/rubric.toml")
-    ]
+    assert [name for name in names if "trap" in name or name.endswith("integrators/rubric.toml")] == []
     named = {line.rpartition(" role: ")[2].strip("'\"") for line in said.splitlines() if " role: " in line}
     folders = {"exercises/integrators/solutions-trap/integrators.py": "exercises/integrators/solutions-trap"}
     assert {folders.get(trap, trap) for trap in PLANTED} <= named
@@ -167,7 +162,7 @@ def test_what_has_no_role_is_left_out_and_named(source: Path, kind: str, tmp_pat
 
 
 def test_a_checkout_has_no_file_without_a_role(tmp_path: Path) -> None:
-    assert " role: " not in _built(ROOT, tmp_path, "wheel")[1]
+    assert " role: " not in _build(ROOT, tmp_path, "wheel")[1]
 
 
 def test_git_has_no_say_in_what_is_inside(source: Path, wheel: Path, tmp_path: Path) -> None:
@@ -179,7 +174,7 @@ def test_git_has_no_say_in_what_is_inside(source: Path, wheel: Path, tmp_path: P
         [*git, "add", "-f", "exercises/integrators/trap.md", "course/trap.env"], cwd=copy, check=True
     )
     (copy / ".gitignore").write_text("*.toml\n*.py\n")
-    assert sorted(_names(_build(copy, tmp_path, "wheel"))) == sorted(_names(wheel))
+    assert sorted(_names(_build(copy, tmp_path, "wheel")[0])) == sorted(_names(wheel))
 
 
 def test_no_line_of_a_solution_or_grader_is_inside_the_wheel(wheel: Path) -> None:
@@ -227,12 +222,14 @@ def test_the_wheel_installs_one_package_and_nothing_beside_it(wheel: Path) -> No
     assert metadata.endswith(".dist-info")
 
 
-def test_the_source_archive_builds_the_same_wheel(sdist: Path, wheel: Path, tmp_path: Path) -> None:
-    with tarfile.open(sdist) as tar:
+def test_the_source_archive_builds_the_same_wheel(
+    built: dict[str, tuple[Path, str]], wheel: Path, tmp_path: Path
+) -> None:
+    with tarfile.open(built["sdist"][0]) as tar:
         tar.extraction_filter = getattr(tarfile, "data_filter", None)  # from 3.11.4 on
         tar.extractall(tmp_path)
     (folder,) = tmp_path.iterdir()
-    again = _build(folder, tmp_path, "wheel")
+    again, _ = _build(folder, tmp_path, "wheel")
     assert sorted(_names(again)) == sorted(_names(wheel))
 
 
@@ -285,7 +282,7 @@ def test_an_unpacked_wheel_finds_its_content_and_is_a_students(wheel: Path, tmp_
 
 def test_an_editable_installation_reads_the_checkout(source: Path, tmp_path: Path) -> None:
     site = tmp_path / "site"
-    with zipfile.ZipFile(_build(source, tmp_path, "editable")) as archive:
+    with zipfile.ZipFile(_build(source, tmp_path, "editable")[0]) as archive:
         archive.extractall(site)
     assert list(site.glob("*.pth")), "an editable wheel points at the checkout"
     said = json.loads(_ask(tmp_path, _FIRST.format(site=str(site)) + _ASK))

@@ -6,8 +6,6 @@ import re
 import tomllib
 from pathlib import Path
 
-import pytest
-
 from course.catalog.load import Catalog
 from course.cli.author.pictures import PICTURES
 from course.cli.frame.app import run
@@ -55,13 +53,3 @@ def test_what_the_readme_counts_is_so():
 def test_the_links_of_the_readme_lead_somewhere():
     for target in re.findall(r"\]\(([^)#:]+)\)", README):
         assert (ROOT / target).exists(), target
-
-
-@pytest.mark.parametrize("command", re.findall(r"^course ([a-z-]+(?: [a-z]+)?)", README, flags=re.MULTILINE))
-def test_a_command_of_the_readme_exists(command, capsys):
-    first, _, second = command.partition(" ")
-    from course.cli.frame.registry import COMMANDS
-
-    assert first in COMMANDS
-    if second and COMMANDS[first].is_group:
-        assert run([first, second, "--help"]) == 0, capsys.readouterr().err

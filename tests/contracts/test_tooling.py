@@ -70,8 +70,6 @@ class Others(importlib.machinery.PathFinder):
 
 sys.meta_path[sys.meta_path.index(importlib.machinery.PathFinder)] = Others
 import pytest
-
-from tests.turns import of_other_days
 sys.exit(pytest.main(["--collect-only", "-q", "-n0", "-p", "no:cacheprovider", "tests"]))
 """
 

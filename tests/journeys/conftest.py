@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import pytest
 
+from course.catalog.models import Exercise
 from tests.command_line import in_process
 
 if TYPE_CHECKING:
@@ -30,6 +31,11 @@ ROOT = Path(__file__).resolve().parents[2]
 ALL = os.environ.get("COURSE_JOURNEYS") == "all"
 #: What a command may need of this machine, and nothing that says which course is meant.
 _KEPT = ("PATH", "LANG", "TMPDIR", "SSL_CERT_FILE", "COURSE_REQUIRE_LEVEL")
+
+
+def model(exercise: Exercise) -> str:
+    """The model solution of an exercise."""
+    return (ROOT / "solutions" / exercise.place / exercise.module).read_text("utf-8")
 
 
 def in_turn(cases: Sequence[T], each: int = 1) -> list[T]:

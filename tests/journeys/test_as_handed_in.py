@@ -16,7 +16,7 @@ from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.notebooks.build import exercise_cells
 from course.notebooks.cells import document
-from tests.journeys.conftest import ROOT, Way
+from tests.journeys.conftest import Way, model
 from tests.journeys.test_notebook import public
 
 CATALOG = Catalog()
@@ -79,10 +79,6 @@ LEFT = (
 PLACES = ("above", "between", "below")
 #: Students, who each hand in every exercise: more than a hundred files.
 STUDENTS = 18
-
-
-def model(exercise: Exercise) -> str:
-    return (ROOT / "solutions" / exercise.id / exercise.module).read_text("utf-8")
 
 
 def in_a_file(exercise: Exercise, left: str, place: str) -> str:

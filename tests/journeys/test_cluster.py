@@ -29,13 +29,10 @@ from course.grading.running.snapshot import Snapshot, frozen
 from course.scoring.graders import grader_version
 from course.scoring.judging.submission import Terms
 from tests.journeys.processes import below, left_running
+from tests.journeys.test_class_resume import MINI, ROOT, make_class
 from tests.unit.grading.made import read_class
 from tests.unit.grading.running.test_snapshot import judged_by_the_snapshot
 
-ROOT = Path(__file__).resolve().parents[2]
-MINI = ROOT / "tests" / "fixtures" / "mini_course"
-SOLUTION = (MINI / "solutions" / "doubling" / "doubling.py").read_bytes()
-WRONG = b"\ndef double(x):\n    return x\n"
 POISON = b"# whoever grades this dies\n"
 
 pytestmark = [
@@ -49,14 +46,6 @@ pytestmark = [
     pytest.mark.filterwarnings("default::ResourceWarning"),
     pytest.mark.filterwarnings("default::pytest.PytestUnraisableExceptionWarning"),
 ]
-
-
-def make_class(folder: Path, students: int) -> None:
-    """Every third student is wrong about one function."""
-    for number in range(students):
-        place = folder / f"student-{number:03}"
-        place.mkdir(parents=True)
-        (place / "doubling.py").write_bytes(SOLUTION + WRONG * (number % 3 == 0) + b"# %d\n" % number)
 
 
 def scores(out: Path) -> dict[str, Any]:
@@ -132,7 +121,7 @@ def test_a_submission_that_kills_dask_workers_takes_nobody_with_it(tmp_path: Pat
         return answer
 
     make_class(tmp_path / "class", 12)
-    with (tmp_path / "class" / "student-004" / "doubling.py").open("ab") as file:
+    with (tmp_path / "class" / "student-0004" / "doubling.py").open("ab") as file:
         file.write(POISON)
     doubling = catalog.exercise("doubling")
     entries = read_class(tmp_path / "class", [doubling], required=True)
@@ -144,7 +133,7 @@ def test_a_submission_that_kills_dask_workers_takes_nobody_with_it(tmp_path: Pat
         graded = grade_on(workers, entries, terms, graders.version, graders=snapshot.packed)
         found = {one.entry.student: one.verdict for one in graded}
     assert len(found) == 12
-    poisoned = found.pop("student-004")
+    poisoned = found.pop("student-0004")
     assert (poisoned.state, poisoned.error and poisoned.error.code) == ("grader_error", "worker_died")
     assert {verdict.state for verdict in found.values()} == {"graded"}
 

@@ -43,35 +43,28 @@ def typing(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "line", ["x = x + h * v", "x += h*v", "    x = h * v + x  # the old v", "        x += v * h"]
-)
-def test_a_right_line_fixes_the_mistake_in_any_spelling(typing, line):
-    said = typing(line)
-    assert ASKS in said
-    assert f"+ {line.strip()}\n" in said
-    assert "All 2 public checks pass" in said
-    assert "7.32 times its initial value" in said
-    assert "Not yet" not in said
-
-
-@pytest.mark.parametrize(
-    ("line", "finding"),
+    ("line", "finding", "right"),
     [
-        ("x = x + h *", "invalid syntax"),
-        ("x = x + v_next * h", "semi-implicit Euler"),
-        ("x + h * v", "The position never changes"),
-        ("x = x + h * w", "It raises NameError: name 'w' is not defined"),
-        ("while True: pass", "when the time was up"),
-        ("x = x + h * v\udcff", "is not Python source"),
+        ("x = x + h *", "invalid syntax", "x = x + h * v"),
+        ("x = x + v_next * h", "semi-implicit Euler", "x += h*v"),
+        ("x + h * v", "The position never changes", "    x = h * v + x  # the old v"),
+        ("x = x + h * w", "It raises NameError: name 'w' is not defined", "        x += v * h"),
+        ("while True: pass", "when the time was up", "x += h * v"),
+        ("x = x + h * v\udcff", "is not Python source", "x += h * v"),
     ],
 )
-def test_a_wrong_line_is_told_its_own_finding_and_asked_for_again(typing, line, finding, monkeypatch):
+def test_a_wrong_line_is_told_its_own_finding_and_a_right_one_in_any_spelling_fixes_the_mistake(
+    typing, line, finding, right, monkeypatch
+):
     monkeypatch.setattr(models, "QUICK", 0.02)  # what hangs is waited for
-    said = typing(line, "x += h * v")
-    before, _, after = said.partition("Not yet. ")
+    before, _, after = typing(line, right).partition("Not yet. ")
     assert ASKS in before
-    assert finding in after.partition("Type the line again")[0].replace("\n", " ")
-    assert "+ x += h * v" in after
+    told, _, after = after.partition("Type the line again")
+    assert finding in told.replace("\n", " ")
+    assert "Not yet" not in after
+    assert f"+ {right.strip()}\n" in after
+    assert "All 2 public checks pass" in after
+    assert "7.32 times its initial value" in after
 
 
 def test_after_the_last_wrong_line_the_answer_is_shown(typing):
@@ -88,13 +81,7 @@ def test_an_unchanged_line_is_not_checked_and_costs_no_try(typing):
     assert "+ x += h * v" in said
 
 
-def test_enter_alone_shows_the_answer(typing):
-    said = typing("")
-    assert "+ x = x + h * v\n" in said
-    assert "3. What the mistake hid" in said
-
-
-@pytest.mark.parametrize("lines", [["q"], ["x = 1", "q"], []])
+@pytest.mark.parametrize("lines", [["x = 1", "q"], []])
 def test_q_and_the_end_of_the_input_leave(typing, lines):
     said = typing(*lines)
     assert ASKS in said
@@ -108,9 +95,12 @@ def test_it_asks_only_where_a_person_reads_and_answers(typing, how):
     assert "All 2 public checks pass" in said
 
 
-def test_what_is_typed_is_run_in_the_sandbox_only(typing):
-    assert "Not yet" in typing("import os; os.environ['COURSE_TYPED'] = 'x'", "")
+def test_what_is_typed_is_run_in_the_sandbox_only_and_enter_alone_shows_the_answer(typing):
+    said = typing("import os; os.environ['COURSE_TYPED'] = 'x'", "")
     assert "COURSE_TYPED" not in os.environ
+    assert "Not yet" in said
+    assert "+ x = x + h * v\n" in said
+    assert "3. What the mistake hid" in said
 
 
 @needs_tmux

@@ -24,7 +24,7 @@ from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.notebooks.build import exercise_cells
 from course.notebooks.cells import document
-from tests.journeys.conftest import ALL, ROOT, Way, in_turn
+from tests.journeys.conftest import ALL, ROOT, Way, in_turn, model
 
 CATALOG = Catalog()
 EXERCISES = CATALOG.exercises()
@@ -47,10 +47,6 @@ class Absent:
             raise ModuleNotFoundError(f"No module named {name!r} in the container", name=name)
 sys.meta_path.insert(0, Absent())
 """
-
-
-def model(exercise: Exercise) -> str:
-    return (SOLUTIONS / exercise.id / exercise.module).read_text("utf-8")
 
 
 def wrong(exercise: Exercise) -> str:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from course.catalog.load import Catalog
-from tests.journeys.conftest import ROOT, Way, in_turn
+from tests.journeys.conftest import Way, in_turn, model
 from tests.journeys.processes import left_running
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads the process table of Linux")
@@ -33,11 +33,10 @@ def {EXERCISE.task[0].id}(*_):
 @pytest.fixture
 def started(tmp_path: Path) -> tuple[Path, Path]:
     """A class, and a roster with one more."""
-    model = (ROOT / "solutions" / EXERCISE.id / EXERCISE.module).read_text("utf-8")
     for number, name in enumerate(STUDENTS):
         place = tmp_path / "class" / name / EXERCISE.id
         place.mkdir(parents=True)
-        text = f"{model}\n# {number}\n{ENDLESS if number > 1 else ''}"
+        text = f"{model(EXERCISE)}\n# {number}\n{ENDLESS if number > 1 else ''}"
         (place / EXERCISE.module).write_text(text, "utf-8")
     rows = [f"{name},{number},{number}" for number, name in enumerate([*STUDENTS, "gone"], 1)]
     (tmp_path / "roster.csv").write_text("\n".join(["student,canvas_id,moodle_key", *rows, ""]), "utf-8")

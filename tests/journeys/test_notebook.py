@@ -20,17 +20,13 @@ import pytest
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.notebooks.build import pieces
-from tests.journeys.conftest import ROOT, Way, in_turn
+from tests.journeys.conftest import Way, in_turn, model
 
 CATALOG = Catalog()
 EXERCISES = CATALOG.exercises()
 INTEGRATORS = CATALOG.exercise("integrators")
 NO_KERNEL = [name for name in ("jupyter_client", "ipykernel") if find_spec(name) is None]
 with_kernel = pytest.mark.skipif(bool(NO_KERNEL), reason=f"the extra notebook is not installed: {NO_KERNEL}")
-
-
-def model(exercise: Exercise) -> str:
-    return (ROOT / "solutions" / exercise.id / exercise.module).read_text("utf-8")
 
 
 def fill(path: Path, exercise: Exercise) -> None:

@@ -133,6 +133,27 @@ class Sandbox:
             self.page.mouse.up()
         pytest.fail(f"{name} cannot be caught")
 
+    def stand_at_the_start(self) -> None:
+        """Pause, and take everything back to where it began."""
+        self.page.keyboard.press("Space")
+        self.page.keyboard.press("r")
+        self.until(lambda: self.status["paused"] and self.frame[2] == 0)
+
+    def drag(self, start: tuple[float, float], *way: tuple[float, float]) -> None:
+        """Draw the mouse through places of the world."""
+        self.page.mouse.move(*self.pixel(*start))
+        self.page.mouse.down()
+        for place in way:
+            self.page.mouse.move(*self.pixel(*place), steps=4)
+        self.page.mouse.up()
+
+    def guess(self, number: str) -> None:
+        """Predict, and wait for the answers."""
+        self.page.keyboard.press("p")
+        self.page.get_by_label("Your guess").fill(number)
+        self.page.keyboard.press("Enter")
+        self.page.locator(".answers").wait_for(timeout=30_000)
+
     def colours(self) -> int:
         """How many different colours the picture of the world has."""
         return self.page.evaluate(_COLOURS)
@@ -195,26 +216,16 @@ def test_a_body_is_dragged_and_thrown_with_the_mouse(sandbox) -> None:
 
 def test_while_time_stands_a_drag_places_and_a_drag_of_the_arrows_tip_aims(sandbox) -> None:
     at = sandbox("restitution-row")
-    at.page.keyboard.press("Space")
-    at.page.keyboard.press("r")
-    at.until(lambda: at.status["paused"] and at.frame[2] == 0)
+    at.stand_at_the_start()
     x, y, *_ = at.body("ball-3")
     box = at.page.locator("canvas.world").bounding_box()
-
-    def drag(start: tuple[float, float], *way: tuple[float, float]) -> None:
-        at.page.mouse.move(*at.pixel(*start))
-        at.page.mouse.down()
-        for place in way:
-            at.page.mouse.move(*at.pixel(*place), steps=3)
-        at.page.mouse.up()
-
-    drag((x, y), (x + 0.2, y + 0.3))
+    at.drag((x, y), (x + 0.2, y + 0.3))
     at.until(lambda: at.body("ball-3")[:2] == pytest.approx((x + 0.2, y + 0.3), abs=0.02))
     assert at.page.locator("canvas.world").bounding_box() == box, "no card ever resizes the stage"
     x, y, *_ = at.body("ball-3")
     scale = at.pixel(1, 0)[0] - at.pixel(0, 0)[0]
     radius = next(body["radius"] for body in at.bodies if body["name"] == "ball-3")
-    drag((x + radius + 14 / scale, y), (x + 0.5, y + 0.25))
+    at.drag((x + radius + 14 / scale, y), (x + 0.5, y + 0.25))
     at.until(lambda: at.body("ball-3")[3] != 0)
     assert at.body("ball-3")[3:] == pytest.approx((1.0, 0.5), abs=0.05)
     assert at.status["paused"]
@@ -226,14 +237,9 @@ def test_while_time_stands_a_drag_places_and_a_drag_of_the_arrows_tip_aims(sandb
 
 def test_two_balls_of_the_cradle_are_set_aside_and_let_go(sandbox) -> None:
     at = sandbox("newtons-cradle")
-    at.page.keyboard.press("Space")
-    at.page.keyboard.press("r")
-    at.until(lambda: at.status["paused"] and at.frame[2] == 0)
+    at.stand_at_the_start()
     for name, place in (("ball-1", (-1.1, 0.3)), ("ball-2", (-0.9, 0.3))):
-        at.page.mouse.move(*at.pixel(*at.body(name)[:2]))
-        at.page.mouse.down()
-        at.page.mouse.move(*at.pixel(*place), steps=8)
-        at.page.mouse.up()
+        at.drag(at.body(name)[:2], place)
         at.page.wait_for_timeout(200)
     at.page.keyboard.press("Space")
     at.until(lambda: at.body("ball-4")[0] > 0.35 and at.body("ball-5")[0] > 0.55)
@@ -415,10 +421,7 @@ def test_a_guess_is_set_beside_theory_and_simulation(sandbox) -> None:
 
 def test_a_reload_changes_nothing(sandbox) -> None:
     at = sandbox("head-on")
-    at.page.keyboard.press("p")
-    at.page.get_by_label("Your guess").fill("2")
-    at.page.keyboard.press("Enter")
-    at.page.locator(".answers").wait_for(timeout=30_000)
+    at.guess("2")
     at.page.get_by_role("button", name="Pause").click()
     at.until(lambda: at.status["paused"])
     at.page.wait_for_timeout(100)
@@ -487,9 +490,7 @@ def test_every_scene_is_drawn_dragged_set_and_reloaded(sandbox, scene: str, tmp_
     at = sandbox(scene)
     page, speed = at.page, at.page.locator("label.speed input")
     at.until(lambda: at.colours() >= 3 and at.frame[2] > 0)
-    page.keyboard.press("Space")
-    page.keyboard.press("r")
-    at.until(lambda: at.status["paused"] and at.frame[2] == 0)
+    at.stand_at_the_start()
     assert at.status["stage"] == "ask"
 
     # Time stands still: a drag says where it shall be.
@@ -593,10 +594,7 @@ def test_everything_has_a_name_and_can_be_read(sandbox, scheme: str) -> None:
     at.page.keyboard.press("Enter")
     assert at.page.evaluate(_BASICS) == []
     at.page.keyboard.press("Escape")
-    at.page.keyboard.press("p")
-    at.page.get_by_label("Your guess").fill("1")
-    at.page.keyboard.press("Enter")
-    at.page.locator(".answers").wait_for(timeout=30_000)
+    at.guess("1")
     assert at.page.evaluate(_BASICS) == []
     paper = at.page.evaluate("getComputedStyle(document.querySelector('.sandbox')).backgroundColor")
     assert paper == {"light": "rgb(255, 255, 255)", "dark": "rgb(20, 23, 27)"}[scheme]

@@ -18,9 +18,30 @@ from course.catalog.load import Catalog
 from course.catalog.locate import content
 from course.catalog.models import Exercise
 from course.errors import ContentError
+from course.scoring.checks import collected
+from course.scoring.explain.story import forget_tables
 from course.scoring.verdict import CheckResult, Status, Verdict, Visibility
 
 MINI = Path(__file__).parents[2] / "fixtures" / "mini_course"
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    """Replace the first ``old`` in a file of the course; it must be there."""
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    forget()
+
+
+def forget() -> None:
+    """What was read of checks and tables before is read anew."""
+    collected._load.cache_clear()
+    forget_tables()
+
+
+def line_of(path: Path, text: str) -> int:
+    """The line of a file that holds a text."""
+    return next(n for n, line in enumerate(path.read_text().split("\n"), start=1) if text in line)
 
 
 @pytest.fixture

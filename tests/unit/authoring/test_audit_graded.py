@@ -8,19 +8,7 @@ from course.authoring.audit import audit
 from course.authoring.exercises.grading import grade_sources
 from course.authoring.exercises.mutants import run_mutants
 from course.catalog.load import Catalog
-
-
-def edit(path: Path, old: str, new: str) -> None:
-    text = path.read_text(encoding="utf-8")
-    assert old in text
-    path.write_text(text.replace(old, new, 1), encoding="utf-8")
-
-
-def test_the_miniature_course_is_right(mini: Path) -> None:
-    report = audit(Catalog())
-    assert [f"{p.where} {p.message}" for p in report.problems] == []
-    assert report.graded == 22
-    assert report.isolation in {"L1", "L2", "L3"}
+from tests.unit.authoring.conftest import edit
 
 
 def test_a_wrong_solution_is_found_at_its_function(mini: Path) -> None:
@@ -45,21 +33,6 @@ def test_a_stub_that_cannot_be_loaded_is_found(mini: Path) -> None:
     )
     found = [p.message for p in audit(Catalog(), "halving").problems if p.code == "stub"]
     assert any("left out. It uses a package that is not there." in message for message in found)
-
-
-def test_a_mutant_that_is_right_is_found(mini: Path) -> None:
-    edit(mini / "solutions/halving/mistakes.py", '"x // 2"', '"0.5 * x"')
-    (problem,) = audit(Catalog(), "halving").problems
-    assert "mutant halve.INTEGER_DIVISION survives" in problem.message
-    assert problem.where == "solutions/halving/mistakes.py:7"
-
-
-def test_a_mutant_that_breaks_two_tasks_is_found(mini: Path) -> None:
-    both = "def double(x):\n    return x * x\n\n\ndef doublings(x, n):\n    return [x]\n"
-    path = mini / "solutions/doubling/mistakes.py"
-    edit(path, '.edit("double", {"2.0 * x": "x * x"})', f'.program("double", {both!r})')
-    problems = audit(Catalog(), "doubling").problems
-    assert any("fails check doublings_length of task doublings" in p.message for p in problems)
 
 
 def test_a_check_that_breaks_is_not_the_solutions_fault(mini: Path) -> None:

@@ -144,8 +144,9 @@ def test_a_verdict_that_should_be_another_is_reported(
     oracle: Any, run: Callable[..., AuditReport], name: str, change: Change, where: str, code: str, says: str
 ) -> None:
     oracle.changes[name] = change
-    found = [p for p in run().problems if p.where == where and p.code == code]
-    assert found, [f"{p.where} {p.code} {p.message}" for p in run().problems]
+    problems = run().problems
+    found = [p for p in problems if p.where == where and p.code == code]
+    assert found, [f"{p.where} {p.code} {p.message}" for p in problems]
     assert says in found[0].message
     assert found[0].fix
 

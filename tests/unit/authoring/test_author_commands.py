@@ -11,8 +11,10 @@ import pytest
 
 from course.authoring.scaffold import new_exercise
 from course.catalog.load import Catalog
+from course.catalog.pack import read_pack
 from course.cli.frame.app import run
 from course.sandbox.scene.loading import FOLDER, scene_ids
+from tests.unit.authoring.conftest import edit
 
 
 def answer(capsys: pytest.CaptureFixture[str], *line: str) -> tuple[int, dict[str, Any]]:
@@ -34,7 +36,7 @@ BUILD = "Run `course author build halving`."
 
 def test_a_problem_is_shown_with_place_and_fix(mini: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = mini / "exercises" / "halving" / "exercise.toml"
-    path.write_text(path.read_text().replace("hidden_checks = 1", "hidden_checks = 4"))
+    edit(path, "hidden_checks = 1", "hidden_checks = 4")
     assert run(["author", "check", "halving"]) == 1
     out = capsys.readouterr().out.split("\n")
     place = out.index("exercises/halving/exercise.toml:8")
@@ -172,33 +174,17 @@ def test_nothing_is_left_of_content_that_could_not_be_written(
     assert {path for path in mini.rglob("*") if path.is_file()} == before
 
 
-def test_a_broken_syllabus_is_reported_and_not_a_crash(
+def test_mutants_are_listed_and_one_that_survives_exits_with_one(
     mini: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (mini / "lessons" / "syllabus.toml").write_text("format_version = 9\n")
-    code, body = answer(capsys, "author", "check")
-    assert code == 1
-    assert body["problems"][0]["file"] == "lessons/syllabus.toml"
-    assert body["problems"][0]["line"] == 1
-
-
-def test_mutants_are_listed_with_what_their_authors_read(
-    mini: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert run(["author", "mutants", "halving"]) == 0
-    out = capsys.readouterr().out
-    assert "halving: halve.INTEGER_DIVISION: breaks halve, loses 1 point" in out
-    assert "reads: Half of an odd number has lost its fraction." in out
     code, body = answer(capsys, "author", "mutants")
     assert (code, body["schema"], len(body["mutants"])) == (0, "course.author-mutants/1", 12)
     assert body["mutants"][0]["diagnosis"] == "SQUARES_INSTEAD"
-
-
-def test_a_surviving_mutant_exits_with_one(mini: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = mini / "solutions" / "halving" / "mistakes.py"
-    path.write_text(path.read_text().replace('"x // 2"', '"0.5 * x"'))
+    edit(mini / "solutions" / "halving" / "mistakes.py", '"x // 2"', '"0.5 * x"')
     assert run(["author", "mutants", "halving"]) == 1
     out = capsys.readouterr().out
+    assert "halving: halve.INTEGER_DIVISION.2: breaks halve, loses 1 point" in out
+    assert "reads: Half of an odd number has lost its fraction." in out
     assert "survives: every check passes" in out
     assert "4 mutants: 1 not caught" in out
 
@@ -216,24 +202,25 @@ def test_what_follows_from_an_exercise_is_written_and_named(
     assert "up to date" in capsys.readouterr().out
 
 
-def test_a_new_exercise_is_written_and_listed(mini: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    code, body = answer(capsys, "author", "new", "exercise", "tripling")
-    assert (code, body["schema"], body["kind"]) == (0, "course.author-new/1", "exercise")
-    assert "exercises/tripling/exercise.toml" in body["files"]
-    assert all((mini / name).is_file() for name in body["files"])
-    assert run(["author", "new", "exercise", "tripling"]) == 2
-    assert "nothing is overwritten" in capsys.readouterr().err
-
-
-def test_a_new_warm_up_is_written_and_says_what_computes_its_table(
-    mini: Path, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize(
+    ("line", "kind", "file"),
+    [
+        (["exercise", "tripling"], "exercise", "exercises/tripling/exercise.toml"),
+        (
+            ["warmup", "tripling", "--lesson", "half-as-much"],
+            "warm-up",
+            "solutions/warm-ups/tripling/mistakes.py",
+        ),
+    ],
+)
+def test_what_is_new_is_written_and_listed(
+    mini: Path, capsys: pytest.CaptureFixture[str], line: list[str], kind: str, file: str
 ) -> None:
-    command = ["author", "new", "warmup", "tripling", "--lesson", "half-as-much"]
-    code, body = answer(capsys, *command)
-    assert (code, body["kind"]) == (0, "warm-up")
-    assert "solutions/warm-ups/tripling/mistakes.py" in body["files"]
+    code, body = answer(capsys, "author", "new", *line)
+    assert (code, body["schema"], body["kind"]) == (0, "course.author-new/1", kind)
+    assert file in body["files"]
     assert all((mini / name).is_file() for name in body["files"])
-    assert run(command) == 2
+    assert run(["author", "new", *line]) == 2
     assert "nothing is overwritten" in capsys.readouterr().err
 
 
@@ -247,12 +234,20 @@ def test_a_new_lesson_says_in_which_course_it_is_and_where_to_list_it(
     assert (mini / "lessons" / "three-times.md").is_file()
 
 
-def test_a_pack_is_written(mini: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_pack_holds_the_solutions_and_their_prose(
+    mini: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     output = tmp_path / "s.coursepack"
-    code, body = answer(capsys, "author", "pack", "--solutions", "doubling", "halving", "-o", str(output))
+    line = ["author", "pack", "--solutions", "doubling", "halving", "doubling", "-o", str(output)]
+    code, body = answer(capsys, *line)
     assert (code, body["schema"]) == (0, "course.author-pack/1")
     assert body["solutions"] == {"doubling": ["README.md", "doubling.py"], "halving": ["halving.py"]}
-    assert output.is_file()
+    read = read_pack(output)
+    assert (read.course_id, read.course_version) == ("mini", "0.1.0")
+    for name, files in body["solutions"].items():
+        folder = mini / "solutions" / name
+        assert read.solutions[name] == {file: (folder / file).read_bytes() for file in files}
+    assert [path.name for path in tmp_path.iterdir() if path.is_file()] == ["s.coursepack"]
 
 
 @pytest.mark.parametrize(
@@ -271,23 +266,21 @@ def test_a_wrong_line_has_its_exit_code(
     assert (got, body["exit_code"], body["error"]["code"]) == (code, code, name)
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        ["author", "check"],
-        ["author", "mutants"],
-        ["author", "new", "exercise", "thirds"],
-        ["author", "new", "lesson", "thirds"],
-        ["author", "pack", "--solutions", "doubling", "-o", "x"],
-    ],
-)
+@pytest.mark.parametrize("folder", ["solutions", "graders"])
 def test_a_student_is_told_that_it_needs_a_checkout(
-    mini: Path, capsys: pytest.CaptureFixture[str], line: list[str]
+    mini: Path, capsys: pytest.CaptureFixture[str], folder: str
 ) -> None:
-    (mini / "solutions").rename(mini / "gone")
-    got, body = answer(capsys, *line)
-    assert (got, body["error"]["code"]) == (4, "needs_checkout")
-    assert "checkout" in body["error"]["help"]
+    (mini / folder).rename(mini / "gone")
+    for line in (
+        ["check"],
+        ["mutants"],
+        ["new", "exercise", "thirds"],
+        ["new", "lesson", "thirds"],
+        ["pack", "--solutions", "doubling", "-o", "x"],
+    ):
+        got, body = answer(capsys, "author", *line)
+        assert (got, body["error"]["code"]) == (4, "needs_checkout"), line
+        assert "checkout" in body["error"]["help"]
 
 
 def test_every_author_command_has_a_help_page_with_an_example(capsys: pytest.CaptureFixture[str]) -> None:

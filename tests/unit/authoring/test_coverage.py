@@ -101,21 +101,21 @@ def test_lines_of_the_chapter_that_belong_to_no_part_are_counted(table: Path) ->
 
 
 @pytest.mark.parametrize(
-    "words", [("sim", "run", "free-fall"), ("sim", "run", "--all"), ("quiz", "take"), ("check",), ("author",)]
+    ("words", "there"),
+    [
+        (("sim", "run", "free-fall"), True),
+        (("sim", "run", "--all"), True),
+        (("quiz", "take"), True),
+        (("check",), True),
+        (("author",), True),
+        ((), False),
+        (("reflect", "sim-to-real"), True),
+        (("reflect", "integrators"), False),  # asks for no prose
+        (("reflect", "none"), False),
+    ],
 )
-def test_commands_are_known_with_their_groups(words: tuple[str, ...]) -> None:
-    assert is_command(words)
-
-
-@pytest.mark.parametrize(
-    ("exercise", "there"), [("sim-to-real", True), ("integrators", False), ("none", False)]
-)
-def test_reflecting_is_for_exercises_that_ask_for_prose(exercise: str, there: bool) -> None:
-    assert is_command(("reflect", exercise)) is there
-
-
-def test_no_words_are_no_command() -> None:
-    assert not is_command(())
+def test_commands_are_known_with_their_groups(words: tuple[str, ...], there: bool) -> None:
+    assert is_command(words) is there
 
 
 def test_a_course_without_a_table_says_where_to_look(mini: Path) -> None:

@@ -15,8 +15,8 @@ from course.authoring.scaffold import Function, new_warm_up
 from course.catalog.load import Catalog
 from course.cli.frame.app import run
 from course.errors import ContentError, UsageError
-from course.scoring.checks import collected
-from course.scoring.explain.story import forget_tables, read_table, table_path
+from course.scoring.explain.story import read_table, table_path
+from tests.unit.authoring.conftest import edit, forget
 
 WORDS = {
     "exercise.toml": [
@@ -60,14 +60,6 @@ def mistakes(mini: Path) -> Path:
     return mini / "solutions/warm-ups/tripling/mistakes.py"
 
 
-def edit(path: Path, old: str, new: str) -> None:
-    text = path.read_text()
-    assert old in text
-    path.write_text(text.replace(old, new, 1))
-    collected._load.cache_clear()
-    forget_tables()
-
-
 def fill(path: Path, words: list[str]) -> None:
     text = path.read_text()
     for word in words:
@@ -77,13 +69,14 @@ def fill(path: Path, words: list[str]) -> None:
 
 def rebuilt() -> None:
     catalog = Catalog()
-    collected._load.cache_clear()
+    forget()
     build(catalog, catalog.exercise("tripling"))
-    forget_tables()
+    forget()
 
 
 def problems() -> list[str]:
-    return [f"{problem.message}" for problem in audit(Catalog(), "tripling").problems]
+    """What the audit says by reading alone."""
+    return [one.message for one in audit(Catalog(), "tripling", grade=lambda _: ()).problems]
 
 
 def test_a_new_warm_up_passes_the_audit_once_its_blanks_are_filled(tripling: Path) -> None:
@@ -155,7 +148,7 @@ def test_a_table_that_is_missing_is_named_and_made(
     table = table_path(tripling)
     before = table.read_bytes()
     table.unlink()
-    forget_tables()
+    forget()
     assert problems() == ["it has nothing on tripling."]
     assert run(["author", "build", "tripling"]) == 0
     assert "Wrote exercises/warm-ups/diagnoses.json" in capsys.readouterr().out

@@ -7,8 +7,6 @@ from pathlib import Path
 import pytest
 
 from course.catalog.load import Catalog
-from course.catalog.models import Exercise, Syllabus
-from course.catalog.reading import read_document
 from course.errors import ContentError, NotFoundError
 
 EXERCISE = "exercises/doubling/exercise.toml"
@@ -37,10 +35,6 @@ def refused(mini: Path, file: str) -> ContentError:
     return caught.value
 
 
-def test_the_course_introduces_itself(catalog: Catalog) -> None:
-    assert (catalog.course_id, catalog.title, catalog.version) == ("mini", "A miniature course", "0.1.0")
-
-
 def test_a_course_without_a_version_has_the_packages(mini: Path) -> None:
     from course import __version__
 
@@ -57,13 +51,6 @@ def test_lessons_come_in_the_order_of_the_syllabus(catalog: Catalog, mini: Path)
 def test_exercises_come_in_their_order(mini: Path) -> None:
     edit(mini / EXERCISE, "order = 1", "order = 9")
     assert [exercise.id for exercise in Catalog().exercises()] == ["halving", "doubling"]
-
-
-def test_an_exercise_knows_its_files(catalog: Catalog, mini: Path) -> None:
-    exercise = catalog.exercise("doubling")
-    assert exercise.stub_path == mini.resolve() / "exercises" / "doubling" / "doubling.py"
-    assert exercise.max_points == 10
-    assert exercise.task_called("double").hints[0] == "What is a number added to itself?"
 
 
 def test_listing_ids_opens_nothing_but_the_syllabus(mini: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -243,9 +230,3 @@ def test_windows_line_ends_are_read(mini: Path) -> None:
 def test_a_folder_without_an_exercise_is_not_one(mini: Path) -> None:
     (mini / "exercises" / "__pycache__").mkdir()
     assert Catalog().exercise_ids() == ("doubling", "halving")
-
-
-def test_any_toml_file_with_a_format_can_be_read_into_a_type(mini: Path) -> None:
-    assert read_document(mini / EXERCISE, Exercise).value.task[0].id == "double"
-    with pytest.raises(ContentError, match="unknown key `module`"):
-        read_document(mini / EXERCISE, Syllabus)

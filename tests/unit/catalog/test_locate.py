@@ -43,28 +43,9 @@ def test_an_installation_without_content_says_so(tmp_path: Path) -> None:
         locate._installed(_package(tmp_path))
 
 
-def test_the_environment_selects_another_course(mini: Path) -> None:
-    found = locate.content()
-    assert found.exercises == mini.resolve() / "exercises"
-    assert found.graders == mini.resolve() / "graders"
-    assert found.is_checkout
-
-
-def test_a_selected_course_may_be_a_students(mini: Path) -> None:
-    (mini / "graders").rename(mini / "kept-elsewhere")
-    assert not locate.content().is_checkout
-
-
 @pytest.mark.parametrize("missing", ["exercises", "lessons"])
 def test_a_selected_folder_that_is_no_course_is_refused(mini: Path, missing: str) -> None:
     (mini / missing).rename(mini / "gone")
     with pytest.raises(UsageError, match="holds no course") as caught:
         locate.content()
     assert caught.value.code == "no_such_content"
-
-
-def test_this_repository_is_a_checkout(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv("COURSE_CONTENT", raising=False)
-    found = locate.content()
-    assert found.is_checkout
-    assert found.root == Path(__file__).parents[3]

@@ -188,9 +188,11 @@ def test_a_check_needs_no_ipython(here: Workspace, form: str) -> None:
     assert len(table.checks) == 2
     (attempt,) = attempts(here)
     assert attempt["passed"]
-    wrong = check("doubling", "double", source=["def double(x):\n    return x + 1"])
-    assert not wrong.passed
-    assert attempts(here)[1]["only"] == "double"
+
+
+def test_a_wrong_function_does_not_pass_without_ipython(here: Workspace) -> None:
+    assert not check("doubling", "double", source=["def double(x):\n    return x + 1"]).passed
+    assert [attempt["only"] for attempt in attempts(here)] == ["double"]
 
 
 def test_a_check_without_ipython_and_without_a_source_says_what_to_give(

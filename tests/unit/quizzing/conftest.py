@@ -110,16 +110,20 @@ option = [
 """
 
 
-@pytest.fixture
-def quiz(tmp_path: Path) -> Path:
-    """A folder with the two questions."""
-    folder = tmp_path / "quiz"
-    folder.mkdir()
+def _written(folder: Path) -> Path:
+    folder.mkdir(exist_ok=True)
     (folder / "sums.toml").write_text(SUM, encoding="utf-8")
     (folder / "colours.toml").write_text(COLOURS, encoding="utf-8")
     return folder
 
 
 @pytest.fixture
-def bank(quiz: Path) -> Bank:
-    return Bank(read_questions(quiz))
+def quiz(tmp_path: Path) -> Path:
+    """A folder with the two questions."""
+    return _written(tmp_path / "quiz")
+
+
+@pytest.fixture(scope="session")
+def bank(tmp_path_factory: pytest.TempPathFactory) -> Bank:
+    """The bank of both, from files that nobody changes."""
+    return Bank(read_questions(_written(tmp_path_factory.mktemp("quiz"))))

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from course.errors import UsageError
@@ -110,14 +110,13 @@ def test_a_file_that_cannot_be_read_says_why(tmp_path: Path, bank: Bank) -> None
     assert "larger than" in refused(tmp_path / "big.toml", bank).message
 
 
-@settings(max_examples=200)
 @given(
     text=st.text(max_size=60)
     | st.text('{}[]":,=\n ansuwermcolos1_', max_size=80).map(lambda tail: f"seed = 1\n[answers]\n{tail}"),
     suffix=st.sampled_from([".toml", ".json"]),
 )
 def test_no_file_does_more_than_be_refused(tmp_path_factory, text: str, suffix: str) -> None:
-    path = tmp_path_factory.mktemp("fuzz") / f"answers{suffix}"
+    path = tmp_path_factory.getbasetemp() / f"answers{suffix}"
     path.write_bytes(text.encode("utf-8", "surrogatepass"))
     try:
         answers = read_answers(path).answers

@@ -2,43 +2,20 @@
 
 from __future__ import annotations
 
-import math
 import random
 from fractions import Fraction
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from course.errors import UsageError
-from course.quizzing.bank import MAX_SEED, Bank, check_seed, fresh_seed, mark, mark_sentence, needed
+from course.quizzing.bank import MAX_SEED, Bank, fresh_seed, mark, needed
 
 
-@pytest.mark.parametrize(("right", "passes"), [(3, False), (4, True), (5, True)])
-def test_of_five_four_are_needed(right: int, passes: bool) -> None:
-    assert (right >= needed(5)) is passes
-
-
-@given(st.integers(1, 10_000))
-def test_the_mark_is_the_smallest_number_that_reaches_seventy_per_cent(total: int) -> None:
-    least = needed(total)
-    assert Fraction(least, total) >= Fraction(7, 10) > Fraction(least - 1, total)
-    assert 0 < least <= total
-
-
-def test_seven_of_ten_are_enough() -> None:
+def test_the_mark_is_the_smallest_number_that_reaches_seventy_per_cent() -> None:
     """In floats 0.7 times 10 is exact, and 0.7 times 30 is not: it must still be 21."""
-    assert [needed(total) for total in (10, 20, 30)] == [7, 14, 21]
-
-
-def test_the_mark_is_said_as_it_is() -> None:
-    assert mark_sentence(5) == "You pass with 4 right answers out of 5"
-    assert mark_sentence(10) == "You pass with 7 right answers out of 10"
-
-
-def test_guessing_rarely_passes() -> None:
-    chance = sum(math.comb(5, k) * 0.25**k * 0.75 ** (5 - k) for k in range(needed(5), 6))
-    assert round(100 * chance, 1) == 1.6
+    for total in range(1, 101):
+        least = needed(total)
+        assert Fraction(least, total) >= Fraction(7, 10) > Fraction(least - 1, total)
+        assert 0 < least <= total
 
 
 def test_an_attempt_is_scored(bank: Bank) -> None:
@@ -91,9 +68,3 @@ def test_a_retake_repeats_as_little_as_it_can(bank: Bank) -> None:
 
 def test_a_seed_for_questions_that_went_is_drawn_all_the_same(bank: Bank) -> None:
     assert fresh_seed(bank, {"gone": 3}, lambda: 77) == 77
-
-
-@pytest.mark.parametrize("seed", [-1, MAX_SEED + 1])
-def test_a_seed_out_of_range_is_refused(seed: int) -> None:
-    with pytest.raises(UsageError, match="is not a seed"):
-        check_seed(seed)

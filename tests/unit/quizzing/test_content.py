@@ -1,9 +1,10 @@
-"""The course's own questions, over a thousand seeds, and their numbers against the physics."""
+"""The course's own questions, and their numbers against the physics."""
 
 from __future__ import annotations
 
 import re
 from collections import Counter
+from functools import cache
 
 import numpy as np
 import pytest
@@ -14,19 +15,12 @@ from course.catalog.load import Catalog
 from course.physics import integrators as steppers
 from course.physics.contact.models import Constraint, drop
 from course.physics.systems import FreeFall, Oscillator
-from course.quizzing.bank import Bank, PosedQuestion, mark, pose_case, same_answer
-
-SEEDS = range(1000)
+from course.quizzing.bank import Bank, pose_case
 
 
 @pytest.fixture(scope="module")
 def bank() -> Bank:
     return Bank.of(Catalog())
-
-
-@pytest.fixture(scope="module")
-def posed(bank: Bank) -> list[tuple[PosedQuestion, ...]]:
-    return [bank.pose(seed) for seed in SEEDS]
 
 
 def cases(bank: Bank, question: str, variant: str):
@@ -53,46 +47,13 @@ def test_the_audit_finds_nothing(bank: Bank) -> None:
     assert findings.sorted() == ()
 
 
-def test_no_two_options_are_equal_in_a_thousand_seeds(posed: list[tuple[PosedQuestion, ...]]) -> None:
-    for questions in posed:
-        for question in questions:
-            texts = [choice.text for choice in question.choices]
-            assert not any(same_answer(a, b) for i, a in enumerate(texts) for b in texts[:i])
-
-
-def test_the_key_is_never_ambiguous_in_a_thousand_seeds(posed: list[tuple[PosedQuestion, ...]]) -> None:
-    for questions in posed:
-        assert all(sum(choice.right for choice in question.choices) == 1 for question in questions)
-        assert mark(questions, {q.question: q.key.letter for q in questions}).score == len(questions)
-        assert mark(questions, {q.question: q.key.id for q in questions}).score == len(questions)
-
-
-def test_every_variant_and_every_place_is_reached_in_a_thousand_seeds(
-    bank: Bank, posed: list[tuple[PosedQuestion, ...]]
-) -> None:
-    reached = Counter((q.question, q.variant) for questions in posed for q in questions)
+def test_every_variant_is_reached_in_a_thousand_seeds(bank: Bank) -> None:
     for document in bank.documents:
         question = document.value
+        reached = Counter(bank.variant(question.id, seed) for seed in range(1000))
         assert len(question.variant) >= 4
         for variant in question.variant:
-            assert reached[question.id, variant.id] > 0.6 * 1000 / len(question.variant)
-    places = Counter((q.question, q.key.letter) for questions in posed for q in questions)
-    assert all(200 < places[name, letter] < 300 for name in bank.ids for letter in "abcd")
-
-
-def test_every_case_of_numbers_is_reached_by_some_seed(bank: Bank) -> None:
-    """Three thousand seeds: the largest variant has 36 cases and a fifth of the seeds."""
-    prompts = {q.prompt for seed in range(3000) for q in bank.pose(seed, only=["numerical-integration"])}
-    possible = {
-        posed.prompt
-        for document in bank.documents
-        if document.value.id == "numerical-integration"
-        for variant in document.value.variant
-        for posed in cases(bank, "numerical-integration", variant.id)
-    }
-    assert prompts == possible
-    (document,) = [entry for entry in bank.documents if entry.value.id == "numerical-integration"]
-    assert len(possible) == sum(variant.cases for variant in document.value.variant)
+            assert reached[variant.id] > 0.6 * 1000 / len(question.variant)
 
 
 def test_every_option_is_explained_and_every_wrong_one_has_its_belief(bank: Bank) -> None:
@@ -204,6 +165,7 @@ def test_the_stiff_contact_blows_up_just_above_the_limit(bank: Bank) -> None:
 
 
 def test_the_finer_verlet_error_falls_as_the_method_does(bank: Bank) -> None:
+    @cache
     def error(h: float) -> float:
         path = steppers.trajectory(
             steppers.VelocityVerlet(), Oscillator(omega=1.0), steppers.State.at_rest([1.0]), h, round(6.0 / h)
@@ -250,7 +212,7 @@ def test_the_sliding_box_stops_where_friction_says(bank: Bank) -> None:
 def test_the_twin_falls_behind_by_what_it_has_not_computed(bank: Bank) -> None:
     for shown in cases(bank, "digital-twin", "falling-behind"):
         factor, _, minutes = numbers(shown.prompt)
-        simulated = sum(0.001 * factor for _ in range(round(minutes * 60_000)))
+        simulated = round(minutes * 60_000) * 0.001 * factor
         assert numbers(shown.key.text)[0] == pytest.approx(minutes * 60 - simulated, abs=1e-3)
 
 

@@ -27,14 +27,6 @@ def line_of(quiz: Path, text: str, name: str = "sums.toml") -> int:
     return (quiz / name).read_text(encoding="utf-8").split("\n").index(text) + 1
 
 
-def test_questions_come_in_their_order(quiz: Path) -> None:
-    assert [document.value.id for document in read_questions(quiz)] == ["sums", "colours"]
-
-
-def test_a_course_without_a_quiz_has_no_questions(tmp_path: Path) -> None:
-    assert read_questions(tmp_path / "nothing") == ()
-
-
 @pytest.mark.parametrize(
     ("old", "new", "problem"),
     [
@@ -71,6 +63,7 @@ def test_a_course_without_a_quiz_has_no_questions(tmp_path: Path) -> None:
         ("What is {a} and {b}?", "What is {a} and {c}?", "{c} names no number"),
         ("What is {a} and {b}?", "What is {a} and {?", "a brace stands alone"),
         ('text = "{next} in all"', 'text = "Many"', "number next is used nowhere"),
+        ("values = [3.0, 4.5]", f"values = {[*range(200)]}", "600 cases"),
     ],
 )
 def test_a_mistake_is_named(quiz: Path, old: str, new: str, problem: str) -> None:
@@ -87,8 +80,3 @@ def test_a_missing_option_is_counted(quiz: Path) -> None:
     error = broken(quiz, old, "", "colours.toml")
     assert "variant grass has 3 options" in error.message
     assert error.line == line_of(quiz, "[[variant]]", "colours.toml")
-
-
-def test_too_many_cases_are_refused(quiz: Path) -> None:
-    values = ", ".join(str(number) for number in range(200))
-    assert "600 cases" in broken(quiz, "values = [3.0, 4.5]", f"values = [{values}]").message

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from datetime import date, datetime, timedelta
+from datetime import datetime, timedelta
 
 import pytest
 from hypothesis import given
@@ -17,53 +17,25 @@ def on(days: float, right: bool) -> tuple[datetime, bool]:
     return START + timedelta(days=days), right
 
 
-def day(days: int) -> date:
-    return START.date() + timedelta(days=days)
-
-
-def test_what_was_never_missed_is_not_reviewed() -> None:
-    assert due_after("q", []) is None
-    assert due_after("q", [on(0, True), on(5, True)]) is None
-
-
-def test_what_was_missed_is_due_after_two_days() -> None:
-    due = due_after("q", [on(0, False)])
-    assert due is not None
-    assert (due.question, due.on, due.rounds) == ("q", day(2), 0)
-
-
-def test_the_time_of_day_does_not_matter() -> None:
-    """Missed in the evening, it is due from the morning of its day."""
-    late = START.replace(hour=23, minute=50)
-    due = due_after("q", [(late, False), (late.replace(hour=0, minute=5) + timedelta(days=2), True)])
-    assert due is not None
-    assert (due.on, due.rounds) == (day(4), 1)
-
-
-def test_three_right_answers_with_even_gaps_are_enough() -> None:
-    answers = [on(0, False), on(2, True), on(4, True)]
-    due = due_after("q", answers)
-    assert due is not None
-    assert (due.on, due.rounds) == (day(6), 2)
-    assert due_after("q", [*answers, on(6, True)]) is None
-
-
-def test_a_right_answer_before_its_day_changes_nothing() -> None:
-    due = due_after("q", [on(0, False), on(0.01, True), on(1, True), on(1.1, True)])
-    assert due is not None
-    assert (due.on, due.rounds) == (day(2), 0)
-
-
-def test_a_wrong_answer_starts_again_on_whatever_day() -> None:
-    due = due_after("q", [on(0, False), on(2, True), on(3, False)])
-    assert due is not None
-    assert (due.on, due.rounds) == (day(5), 0)
-
-
-def test_a_late_review_moves_the_next_one() -> None:
-    due = due_after("q", [on(0, False), on(9, True)])
-    assert due is not None
-    assert (due.on, due.rounds) == (day(11), 1)
+@pytest.mark.parametrize(
+    ("answers", "due", "rounds"),
+    [
+        ([on(0, False)], 2, 0),
+        ([on(0, False), on(2, True), on(4, True)], 6, 2),
+        ([on(0, False), on(0.01, True), on(1, True), on(1.1, True)], 2, 0),
+        ([on(0, False), on(2, True), on(3, False)], 5, 0),
+        ([on(0, False), on(9, True)], 11, 1),
+        # Missed in the evening, it is due from the morning of its day.
+        ([on(0.49, False), on(2 - 0.49, True)], 4, 1),
+    ],
+    ids=["missed", "in time", "before its day", "wrong again", "late", "other times of day"],
+)
+def test_what_was_missed_is_due_two_days_after_it_counted_last(
+    answers: list[tuple[datetime, bool]], due: int, rounds: int
+) -> None:
+    found = due_after("q", answers)
+    assert found is not None
+    assert (found.question, found.on, found.rounds) == ("q", START.date() + timedelta(days=due), rounds)
 
 
 def test_the_soonest_comes_first_and_gone_questions_are_passed_over() -> None:

@@ -74,21 +74,6 @@ def test_verlet_drops_to_first_order_under_damping_as_its_docstring_says(stepper
     assert measured_order(stepper, *DISSIPATIVE[0]) == pytest.approx(1.0, abs=0.15)
 
 
-def test_explicit_euler_multiplies_the_energy_of_a_spring_by_one_plus_z_squared():
-    system, h = systems.Oscillator(2.0), 0.05
-    path = trajectory(ExplicitEuler(), system, State.of([1.0], [0.6]), h, 10)
-    e = energy(system, path.q, path.v)
-    assert e[1:] / e[:-1] == pytest.approx(1 + (2.0 * h) ** 2)
-
-
-def test_rk4_loses_the_energy_of_a_spring_at_the_rate_of_its_stability_polynomial():
-    z = 0.8
-    system = systems.Oscillator(2.0)
-    path = trajectory(RK4(), system, State.of([1.0], [0.6]), z / 2.0, 5)
-    e = energy(system, path.q, path.v)
-    assert 1 - e[1:] / e[:-1] == pytest.approx(z**6 / 72 - z**8 / 576)
-
-
 @pytest.mark.parametrize(("position_first", "worst"), [(False, 0.310), (True, 0.517)])
 def test_semi_implicit_eulers_energy_swing_from_a_moving_start_depends_on_its_form(position_first, worst):
     system, h = systems.Oscillator(2.0), 0.25

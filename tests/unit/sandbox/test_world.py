@@ -248,7 +248,7 @@ def test_a_world_without_a_receipt_says_so() -> None:
 # -- hands -----------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=12)  # of four scenes with eighteen bodies, other ones each time
+@settings(max_examples=12)  # of four scenes with seventeen bodies, others each time
 @given(data=st.data(), aside=st.tuples(st.floats(-0.4, 0.4), st.floats(-0.4, 0.4)))
 def test_holding_a_body_still_costs_nothing(data, aside) -> None:
     """Whatever answers the hand: a rod, the floor. Else the hand books what they undo in the same step."""

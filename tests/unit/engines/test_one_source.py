@@ -79,11 +79,6 @@ def _row(engine: str, scenario: str, setting=TUNED):
     return reference.row(engine, scenario, setting)
 
 
-def _rests_mm() -> float:
-    gaps, _ = drop(SoftConvex(), 0.0, 0.0, h=0.01, n=300)
-    return -1000 * gaps[-1]
-
-
 _LESSON, _CONTACT, _QUIZ, _DOCS = PAGES[0], PAGES[1], PAGES[2], PAGES[6]
 
 #: What is no number of an engine: the sizes of a test, said where the test is set, and ways of speaking.

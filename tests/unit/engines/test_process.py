@@ -84,14 +84,13 @@ def test_a_program_that_is_not_there_is_unavailable():
 
 @pytest.mark.skipif(os.name != "posix", reason="kills by signal")
 def test_a_process_killed_from_outside_is_a_crash_and_the_next_question_starts_another():
-    with EngineProcess("pymunk") as process:
-        question = {"do": "options", "scenario": "stack", "setting": "tuned"}
-        assert process.ask(question, 30)["status"] == "ok"
+    with engine("", READY + '[print(\'{"status": "ok"}\', flush=True) for _ in sys.stdin]') as process:
+        assert process.ask(JOB, 30)["status"] == "ok"
         first = process.pid
         os.kill(first, signal.SIGKILL)
-        reply = process.ask(question, 30)
+        reply = process.ask(JOB, 30)
         assert (reply["status"], reply["message"]) == ("crash", "It was ended by SIGKILL.")
-        assert process.ask(question, 30)["status"] == "ok"
+        assert process.ask(JOB, 30)["status"] == "ok"
         assert process.pid not in (None, first)
 
 

@@ -11,7 +11,6 @@ import pytest
 
 from course import extras
 from course.engines import reference
-from course.engines import registry as module
 from course.engines.registry import ENGINES, availability, get
 from course.engines.results import this_machine
 from course.engines.scenarios import SCENARIOS
@@ -77,12 +76,6 @@ def test_an_unknown_engine_is_not_found():
     with pytest.raises(NotFoundError) as caught:
         get("newton")
     assert "mujoco" in caught.value.help
-
-
-def test_loading_goes_through_the_table():
-    from course.engines.adapters.pymunk import ADAPTER
-
-    assert module.load("pymunk") is ADAPTER
 
 
 def test_the_reference_holds_every_engine_in_every_scenario():

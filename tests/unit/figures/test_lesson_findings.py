@@ -6,26 +6,10 @@ import numpy as np
 import pytest
 
 from course.engines import reference
-from course.engines.registry import ENGINES
 from course.figures import contact, engines, robots, sim_to_real
 from course.figures.style import house_style
 from course.physics.contact.models import Constraint
 from course.physics.dynamics import TwoLinkArm
-
-
-def test_the_title_of_the_settings_counts_errors_that_are_there() -> None:
-    few, many = engines.mended()
-    assert 0 < few <= many
-    large = [
-        (engine, test)
-        for engine in ENGINES
-        for test in engines.TESTS
-        if engines.error(engine, test, "default").mean > engines.LARGE
-    ]
-    assert len(large) == many
-    with house_style():
-        figure = engines.settings()
-    assert f"Of {many} errors above 10 %, {few} are gone" in figure.get_suptitle()
 
 
 def test_every_error_is_drawn_inside_its_panel() -> None:
@@ -52,14 +36,6 @@ def test_a_bounce_depends_on_its_phase() -> None:
     assert contact.rebounds(Constraint(0.5, erp=0.2)).max() > 0.45
 
 
-def test_measuring_keeps_a_copy_close_and_learning_the_friction_closer() -> None:
-    run = sim_to_real.followed()
-    end = {name: float(np.sqrt(np.mean(run[name][-200:] ** 2))) for name in ("model", "state", "learning")}
-    assert end["learning"] < 0.01 < end["state"] < 0.05
-    assert end["model"] > 10.0
-    assert run["friction"][-1] == pytest.approx(0.8, rel=0.02)
-
-
 def test_the_twin_brings_the_robot_back_to_its_speed() -> None:
     speeds = sim_to_real.driven()
     assert speeds["fixed"][-1] == pytest.approx(0.5 / 0.8, rel=1e-3)
@@ -71,30 +47,12 @@ def test_the_learning_copy_finds_the_friction_whatever_the_noise(seed: int) -> N
     assert sim_to_real.followed(seed=seed)["friction"][-1] == pytest.approx(0.8, rel=0.05)
 
 
-def test_the_best_gain_of_a_perfect_simulation_never_settles_and_the_matched_one_nearly_does_best() -> None:
-    on_real = {
-        world: float(sim_to_real.settles(gain, *sim_to_real.REAL)[0, 0])
-        for world, gain in sim_to_real.chosen_gains().items()
-    }
-    assert on_real["perfect"] == pytest.approx(3.0)
-    assert on_real["real"] < on_real["matched"] < 0.4
-    assert 1.0 < on_real["wide"] < 3.0
-
-
 def test_a_late_integrator_is_unstable_beyond_half_pi_over_its_delay() -> None:
     delay = 0.1
     limit = np.pi / 2 / delay
     below, above = sim_to_real.settles([0.75 * limit, 1.1 * limit], delay, 1.0)[:, 0]
     assert below < 3.0
     assert above == pytest.approx(3.0)
-
-
-def test_the_two_questions_have_different_worst_mistakes() -> None:
-    stop, bounce = robots.budgets().values()
-    assert max(stop, key=lambda name: stop[name]) == "delay of 50 ms left out"
-    assert max(bounce, key=lambda name: bounce[name]) == "step of 10 ms"
-    assert bounce["delay of 50 ms left out"] == bounce["friction 10 % too high"] == 0.0
-    assert list(stop) == list(robots.MISTAKES) == list(bounce)
 
 
 def test_the_wall_feels_the_mass_that_a_newton_at_the_hand_accelerates() -> None:

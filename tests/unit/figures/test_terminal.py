@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import subprocess
 import sys
@@ -10,25 +11,32 @@ import numpy as np
 import pytest
 
 from course.figures.registry import build
-from course.figures.terminal import in_cells, terminal_figure
+from course.figures.terminal import in_cells
 
 #: Quick to draw, and of every kind: several panels, logarithmic axes, maps, bars.
 FIGURES = ["integrators-energy", "integrators-phase", "contact-stacks", "sim-free-fall", "engines-settings"]
+ROWS = 17
+
+
+@functools.cache
+def drawn(name, columns):
+    """A figure, and what it is in so many cells: drawn once for all tests that look at it."""
+    page = build(name)
+    return page, in_cells(lambda: page, columns, ROWS)
 
 
 @pytest.mark.turns(4)
-@pytest.mark.parametrize("columns", [38, 78])
+@pytest.mark.parametrize("columns", [38, 76])
 @pytest.mark.parametrize("name", FIGURES)
 def test_words_lie_inside_and_never_on_each_other(name, columns):
-    rows = 18
-    figure = terminal_figure(name, columns, rows)
-    assert figure.pixels.shape == (2 * rows, columns, 3)
+    _, figure = drawn(name, columns)
+    assert figure.pixels.shape == (2 * ROWS, columns, 3)
     taken = set()
     for label in figure.labels:
         cells = {(label.row, label.column + at) for at in range(len(label.text))}
         assert not cells & taken, label
         taken |= cells
-        assert 0 <= label.row < rows
+        assert 0 <= label.row < ROWS
         assert label.column >= 0
         assert label.column + len(label.text) <= columns
         assert not set("$\\{}") & set(label.text)
@@ -37,10 +45,8 @@ def test_words_lie_inside_and_never_on_each_other(name, columns):
 @pytest.mark.turns(4)
 @pytest.mark.parametrize("name", FIGURES)
 def test_the_finding_heads_it_and_both_axes_have_numbers(name):
-    page = build(name)
-    figure = in_cells(lambda: page, 78, 20)
-    finding = page.get_suptitle()
-    assert figure.labels[0].text[:20] == finding.splitlines()[0][:20]
+    page, figure = drawn(name, 76)
+    assert figure.labels[0].text[:20] == page.get_suptitle().splitlines()[0][:20]
     numbers = [label for label in figure.labels if any(char.isdigit() for char in label.text)]
     assert len(numbers) >= 4
 
@@ -55,7 +61,7 @@ def test_every_word_can_be_read_on_what_is_drawn_under_it(name):
         linear = np.where(share <= 0.03928, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
         return linear @ [0.2126, 0.7152, 0.0722]
 
-    figure = terminal_figure(name, 76, 17)
+    _, figure = drawn(name, 76)
     for label in figure.labels:
         for at, letter in enumerate(label.text):
             under = figure.pixels[2 * label.row : 2 * label.row + 2, label.column + at].mean(axis=0)
@@ -66,24 +72,24 @@ def test_every_word_can_be_read_on_what_is_drawn_under_it(name):
 @pytest.mark.turns(4)
 @pytest.mark.parametrize("name", ["engines-speed", "integrators-order", "twins-following"])
 def test_no_axis_loses_its_name_on_a_small_screen(name):
-    page = build(name)
+    page, figure = drawn(name, 76)
     names = [label for axes in page.axes for label in (axes.get_xlabel(), axes.get_ylabel()) if label]
     assert names
-    shown = {label.text for label in in_cells(lambda: page, 76, 17).labels}
+    shown = {label.text for label in figure.labels}
     for words in names:
         assert words.split(" (")[0].split("$")[0] in " ".join(shown), words
 
 
 def test_curves_are_seen_without_letters():
     """At least one pixel in fifty is neither paper nor a shade of grey."""
-    pixels = terminal_figure("integrators-energy", 78, 20).pixels.astype(int)
+    pixels = drawn("integrators-energy", 76)[1].pixels.astype(int)
     coloured = np.ptp(pixels, axis=2) > 60
     assert coloured.mean() > 0.02
 
 
 def test_the_drawing_process_answers_each_request_on_a_line():
     asked = [
-        {"id": 1, "figure": "integrators-energy", "columns": 40, "rows": 10},
+        {"id": 1, "figure": "sim-free-fall", "columns": 40, "rows": 10},
         {"id": 2, "figure": "no-such-figure", "columns": 40, "rows": 10},
     ]
     done = subprocess.run(

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import strategies as st
 
 from course.physics.body import Body
 from course.physics.state import RigidBodyState
-
-vectors = st.lists(st.floats(-5, 5), min_size=3, max_size=3).map(np.array)
 
 
 def test_forces_and_torques_add_up_until_they_are_cleared() -> None:
@@ -27,22 +25,20 @@ def test_forces_and_torques_add_up_until_they_are_cleared() -> None:
     assert not body.torque.any()
 
 
-@pytest.mark.parametrize("mass", [0.0, -1.0, math.nan])
-def test_a_mass_that_is_not_positive_is_refused(mass: float) -> None:
-    with pytest.raises(ValueError, match="mass must be positive"):
-        Body(mass, RigidBodyState.of(np.zeros(3)))
-
-
-def test_moments_that_no_body_has_are_refused() -> None:
-    with pytest.raises(ValueError, match="No body has the moments"):
-        Body(1.0, RigidBodyState.of(np.zeros(3)), inertia=[1.0, 1.0, 2.1])
-    with pytest.raises(ValueError, match="must be positive"):
-        Body(1.0, RigidBodyState.of(np.zeros(3)), inertia=[1.0, 1.0, -2.0])
-
-
-def test_a_negative_radius_is_refused() -> None:
-    with pytest.raises(ValueError, match="radius"):
-        Body(1.0, RigidBodyState.of(np.zeros(3)), radius=-1.0)
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"mass": 0.0}, "mass must be positive"),
+        ({"mass": -1.0}, "mass must be positive"),
+        ({"mass": math.nan}, "mass must be positive"),
+        ({"inertia": [1.0, 1.0, 2.1]}, "No body has the moments"),
+        ({"inertia": [1.0, 1.0, -2.0]}, "must be positive"),
+        ({"radius": -1.0}, "radius"),
+    ],
+)
+def test_a_body_that_cannot_be_is_refused(options: dict[str, Any], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        Body(**{"mass": 1.0, "state": RigidBodyState.of(np.zeros(3)), **options})
 
 
 def test_a_point_mass_never_turns_and_has_no_energy_of_rotation() -> None:

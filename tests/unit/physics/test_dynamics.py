@@ -27,12 +27,6 @@ def test_inverse_dynamics_undoes_forward_dynamics(
     np.testing.assert_allclose(back, torque, atol=1e-10 * scale)
 
 
-@given(arms, pairs, pairs)
-def test_without_acceleration_the_torques_are_the_bias(arm: TwoLinkArm, q: np.ndarray, v: np.ndarray) -> None:
-    bias = arm.bias(q, v)
-    np.testing.assert_allclose(arm.inverse(q, v, np.zeros(2)), bias, atol=1e-10 * (1 + np.abs(bias).max()))
-
-
 @given(arms, pairs)
 def test_the_mass_matrix_is_symmetric_and_positive(arm: TwoLinkArm, q: np.ndarray) -> None:
     m = arm.mass_matrix(q)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import threading
 import time
+import zipfile
 
 import pytest
 
@@ -27,20 +29,21 @@ CELLS = [
 ]
 
 
-CHANGED: dict[str, str] = {}
+@pytest.fixture(scope="module")
+def changed():
+    """What cells were changed to."""
+    return {}
 
 
 @pytest.fixture
-def sources():
-    """What cells were changed to, for one test."""
-    CHANGED.clear()
-    yield CHANGED
-    CHANGED.clear()
+def sources(changed):
+    yield changed
+    changed.clear()
 
 
 @pytest.fixture(scope="module")
-def runner():
-    made = CellRunner(CELLS, lambda one: CHANGED.get(one.key, one.source))
+def runner(changed):
+    made = CellRunner(CELLS, lambda one: changed.get(one.key, one.source))
     yield made
     made.close()
 
@@ -99,9 +102,6 @@ def test_an_earlier_cell_that_fails_is_named(runner, sources):
 
 def test_no_more_of_the_course_than_is_imported_is_handed_over():
     book = textbook_for(["from course.physics.body import Body"])
-    import io
-    import zipfile
-
     names = set(zipfile.ZipFile(io.BytesIO(book.data)).namelist())
     assert {"course/physics/body.py", "course/physics/rotation.py"} <= names
     assert not {name for name in names if not name.startswith(("course/physics/", "course/__init__"))}
@@ -110,13 +110,13 @@ def test_no_more_of_the_course_than_is_imported_is_handed_over():
     assert textbook_for(["from course.physics.body import Body"]).data == book.data
 
 
-@pytest.mark.parametrize("name", ["engines", "forward-inverse-kinematic"])
-def test_cells_of_lessons_print_here_what_the_lesson_records(name):
+@pytest.mark.parametrize(("name", "cells"), [("engines", 3), ("forward-inverse-kinematic", 5)])
+def test_cells_of_lessons_print_here_what_the_lesson_records(name, cells):
     """One lesson reads a file of the package, the other imports a module that draws."""
     script = read_script(Catalog().lesson(name))
     runner = CellRunner(script.cells, lambda one: one.source)
     try:
-        for one in script.shown_cells[:3] if name == "engines" else script.shown_cells:
+        for one in script.shown_cells[:cells]:
             gave = runner.run(one)
             assert (gave.printed, gave.error) == (one.output or "", ""), one.number
     finally:

@@ -71,14 +71,6 @@ def test_a_bullet_tunnels_unless_half_the_wall_is_thicker_than_a_jump(step, told
     assert (world.state()[world._space.index["bullet"], 0] < 2.2) == holds
 
 
-@pytest.mark.parametrize("step", [0.02, 0.01, 0.001])
-def test_free_fall_falls_short_by_half_a_steps_worth(step: float) -> None:
-    chosen = choose("free-fall", {"step": step})
-    world = World(chosen.scene, chosen.settings)
-    world.run_until(1.0)
-    assert float(world.state()[0, 1]) + 9.81 / 2 == pytest.approx(9.81 * step / 2, rel=1e-9)
-
-
 def test_a_robot_turns_as_its_wheels_say_and_slips_beyond_its_grip() -> None:
     chosen = choose("robot-boxes", {"left": 0.3, "right": 0.3})
     world = World(chosen.scene, chosen.settings)

@@ -70,13 +70,6 @@ def test_there_are_at_least_twelve_scenes_in_an_order_without_gaps() -> None:
     assert {scene.id for scene in found} == set(scene_ids())
 
 
-@pytest.mark.parametrize("name", sorted(set(scene_ids()) - {"galton-board"}))
-def test_theory_and_simulation_agree_as_closely_as_each_scene_says(name: str) -> None:
-    comparison = run(choose(name)).comparison
-    assert comparison is not None
-    assert comparison.agree, f"{comparison.theory} {comparison.simulation}"
-
-
 @pytest.mark.parametrize("scene", scenes(), ids=lambda scene: scene.id)
 def test_every_scene_teaches_asks_and_shows_what_it_holds(scene) -> None:
     assert scene.note.strip()

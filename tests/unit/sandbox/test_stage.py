@@ -81,7 +81,7 @@ def test_going_on_from_any_moment_gives_the_same_states_to_the_last_bit(name: st
 def test_undo_and_redo_through_random_acts_return_to_the_same_bytes(name: str) -> None:
     chance, stage = random.Random(1), make(name)
     stage.world.paused = True
-    states = played(stage, chance, 20)
+    states = played(stage, chance, 12)
     taken_back_and_given_again(stage, states)
     for _ in states[1:]:
         stage.undo()

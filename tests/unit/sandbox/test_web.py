@@ -21,7 +21,6 @@ from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
 from course.errors import MissingCapabilityError, UsageError
-from course.extras import PARTS, require
 from course.sandbox.runs.tape import HEAD
 from course.sandbox.scene.loading import choose
 from course.sandbox.views.stage import Stage
@@ -83,15 +82,12 @@ HOST = ("host", f"127.0.0.1:{PORT}")
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_every_file_is_served_to_whoever_has_the_token(client, name: str) -> None:
+def test_every_file_is_served_to_whoever_has_the_token_and_loads_nothing_from_elsewhere(
+    client, name: str
+) -> None:
     got = client.get(f"/{TOKEN}/{name}")
     assert got.status_code == 200
     assert got.content == (STATIC / (name or "index.html")).read_bytes()
-
-
-@pytest.mark.parametrize("name", FILES)
-def test_nothing_from_elsewhere_is_ever_loaded(client, name: str) -> None:
-    got = client.get(f"/{TOKEN}/{name}")
     rules = dict(rule.split(" ", 1) for rule in got.headers["content-security-policy"].split("; "))
     assert rules["default-src"] == "'none'"
     assert rules["script-src"] == rules["style-src"] == rules["img-src"] == "'self'"
@@ -344,22 +340,13 @@ def test_too_many_pages_are_sent_away() -> None:
 
 
 def test_without_the_extra_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     chosen = choose("head-on")
-    with pytest.raises(MissingCapabilityError) as caught:
-        web.play(chosen, say=print)
-    assert "starlette, uvicorn and websockets" in caught.value.message
-    for name in PARTS["web"].packages:
-        assert f"'{name}" in caught.value.help
-    assert "pip install" in caught.value.help
-
-
-def test_the_requirements_are_those_of_the_courses_metadata(monkeypatch: pytest.MonkeyPatch) -> None:
     lines = ["numpy>=2", 'starlette>=7.5; extra == "web"', 'uvicorn<9,>=8; extra == "web"']
     monkeypatch.setattr("importlib.metadata.requires", lambda name: lines)
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     with pytest.raises(MissingCapabilityError) as caught:
-        require("web")
+        web.play(chosen, say=print)
+    assert "starlette, uvicorn and websockets" in caught.value.message
     assert caught.value.help.endswith("pip install 'starlette>=7.5' 'uvicorn<9,>=8' 'websockets'")
 
 

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -42,11 +43,12 @@ def make(name: str = "restitution-row", clock: Clock | None = None, **more) -> t
 
 def told(page: Page) -> list[dict]:
     """Every text a page was sent."""
-    messages = []
-    while (data := page.take()) is not None:
-        if isinstance(data, str):
-            messages.append(json.loads(data))
-    return messages
+    return [json.loads(data) for data in iter(page.take, None) if isinstance(data, str)]
+
+
+def frames(page: Page) -> list[np.ndarray]:
+    """Every array of numbers a page was sent, the first of which says what they are."""
+    return [np.frombuffer(data, "<f4") for data in iter(page.take, None) if isinstance(data, bytes)]
 
 
 def of(messages: list[dict], kind: str) -> list[dict]:
@@ -181,10 +183,8 @@ def test_a_world_that_is_too_much_work_runs_slower_and_says_so() -> None:
         made.tick(1 / 60)
     # A frame asks for 16,667 steps; about six looks at the clock fit into its time.
     assert made.stage.world.ticks < 40 * 200
-    data = page.take()
-    while not isinstance(data, bytes) or np.frombuffer(data, "<f4")[0] != 1:
-        data = page.take()
-    assert np.frombuffer(data, "<f4")[3] < 0.2
+    frame = next(one for one in frames(page) if one[0] == 1)
+    assert frame[3] < 0.2
 
 
 def test_a_run_too_short_to_be_seen_starts_in_slow_motion() -> None:
@@ -198,13 +198,8 @@ def test_of_frames_that_a_slow_page_did_not_fetch_only_the_newest_is_kept() -> N
     send(made, page, "guess", value=None)
     told(page)
     watch(made, 0.5)
-    frames = []
-    while (data := page.take()) is not None:
-        if isinstance(data, bytes):
-            frames.append(np.frombuffer(data, "<f4"))
-    frames = [one for one in frames if one[0] == 1]
-    assert len(frames) == 1
-    assert frames[0][2] == pytest.approx(made.stage.world.t)
+    (frame,) = [one for one in frames(page) if one[0] == 1]
+    assert frame[2] == pytest.approx(made.stage.world.t)
 
 
 def test_a_page_that_never_reads_is_let_go() -> None:
@@ -223,9 +218,7 @@ def test_after_a_reload_a_page_knows_what_happened_before() -> None:
     send(made, page, "set", key="restitution", value=0.5)
     made.leave(page)
     again = made.join()
-    data = []
-    while (item := again.take()) is not None:
-        data.append(item)
+    data = list(iter(again.take, None))
     scene = json.loads(data[0])
     assert scene["status"]["settings"]["restitution"] == 0.5
     assert scene["status"]["guess"] == 2
@@ -319,14 +312,6 @@ def test_a_comparison_that_cannot_be_kept_is_still_shown() -> None:
 # -- the time line, hands and the gallery --------------------------------------------------------------------
 
 
-def frames(page: Page) -> list[np.ndarray]:
-    numbers = []
-    while (data := page.take()) is not None:
-        if isinstance(data, bytes):
-            numbers.append(np.frombuffer(data, "<f4"))
-    return numbers
-
-
 def test_a_page_looks_at_the_past_and_goes_on_from_it() -> None:
     made, page = make("newtons-cradle")
     watch(made, 1.5)
@@ -348,9 +333,7 @@ def test_a_page_looks_at_the_past_and_goes_on_from_it() -> None:
     assert made.stage.world.t == pytest.approx(0.5, abs=0.02)
     send(made, page, "ghost", on=True)
     made.tick(1 / 60)
-    data = []
-    while (item := page.take()) is not None:
-        data.append(item)
+    data = list(iter(page.take, None))
     ghosts = [json.loads(one) for one in data if isinstance(one, str) and '"world":1' in one]
     shown = [np.frombuffer(one, "<f4") for one in data if isinstance(one, bytes)]
     assert [one[1] for one in shown if one[0] == 1 and one[21] == 1] == [ghosts[0]["version"]]
@@ -384,9 +367,7 @@ def test_the_gallery_shows_every_scene_with_a_loop_and_opens_any_in_place() -> N
     send(made, page, "scenes")
     for _ in range(20):
         made.tick(1 / 60)
-    data = []
-    while (item := page.take()) is not None:
-        data.append(item)
+    data = list(iter(page.take, None))
     listed = next(json.loads(one) for one in data if isinstance(one, str) and '"scenes"' in one)
     assert [one["id"] for one in listed["scenes"] if one["played"]] == ["incline"]
     cards = [json.loads(one)["id"] for one in data if isinstance(one, str) and '"card"' in one]
@@ -401,36 +382,23 @@ def test_the_gallery_shows_every_scene_with_a_loop_and_opens_any_in_place() -> N
     assert "There is no scene" in of(told(page), "error")[-1]["message"]
 
 
-def test_a_parameter_and_an_own_copy_are_requests() -> None:
-    saved = {}
-
+def test_a_parameter_and_an_own_copy_are_requests(tmp_path: Path) -> None:
     def save(name: str, data: bytes) -> str:
-        saved[name] = data
-        path = tmp / name
-        path.write_bytes(data)
-        return str(path)
+        (tmp_path / name).write_bytes(data)
+        return str(tmp_path / name)
 
-    import tempfile
-    from pathlib import Path
-
-    with tempfile.TemporaryDirectory() as folder:
-        tmp = Path(folder)
-        made, page = make("newtons-cradle", desk=Desk(save=save))
-        send(made, page, "parameter", key="angle", value=45)
-        send(made, page, "parameter", key="colour", value=45)
-        send(made, page, "parameter", key="angle", value=450)
-        assert [one["message"][:20] for one in of(told(page), "error")] == [
-            "This scene has no 'c",
-            "angle must be from 1",
-        ]
-        send(made, page, "mine")
-        scene = of(told(page), "scene")[-1]
-        assert (scene["id"], scene["own"], scene["status"]["parameters"]["angle"]) == (
-            "my-newtons-cradle",
-            True,
-            45,
-        )
-        assert choose(str(tmp / "my-newtons-cradle.toml")).parameters["angle"] == 45
+    made, page = make("newtons-cradle", desk=Desk(save=save))
+    send(made, page, "parameter", key="angle", value=45)
+    send(made, page, "parameter", key="colour", value=45)
+    send(made, page, "parameter", key="angle", value=450)
+    no_such, too_large = (one["message"] for one in of(told(page), "error"))
+    assert no_such.startswith("This scene has no 'c")
+    assert too_large.startswith("angle must be from 1")
+    send(made, page, "mine")
+    scene = of(told(page), "scene")[-1]
+    assert (scene["id"], scene["own"]) == ("my-newtons-cradle", True)
+    assert scene["status"]["parameters"]["angle"] == 45
+    assert choose(str(tmp_path / "my-newtons-cradle.toml")).parameters["angle"] == 45
 
 
 @pytest.mark.parametrize(("kind", "begins"), [("gif", b"GIF89a"), ("png", b"\x89PNG")])
@@ -442,9 +410,7 @@ def test_a_film_of_this_run_comes_as_a_file(kind: str, begins: bytes) -> None:
     send(made, page, "open", id="incline")  # which is not what is filmed
     made._film[1].wait(60)
     made.tick(0)
-    data = []
-    while (item := page.take()) is not None:
-        data.append(item)
+    data = list(iter(page.take, None))
     files = [one[4:] for one in data if isinstance(one, bytes) and np.frombuffer(one[:4], "<f4")[0] == 6]
     assert [one[: len(begins)] for one in files] == [begins]
     assert any('"head-on.' in one for one in data if isinstance(one, str))
@@ -490,38 +456,13 @@ NUMBERS = st.one_of(
 )
 VALUES = st.one_of(NUMBERS, st.text(max_size=20), st.booleans(), st.none(), st.lists(NUMBERS, max_size=3))
 NAMES = [
-    "x",
-    "y",
-    "vx",
-    "vy",
-    "reach",
-    "name",
-    "shape",
-    "key",
-    "value",
-    "on",
-    "kind",
-    "t",
-    "way",
-    "id",
+    *("x", "y", "vx", "vy", "reach", "name", "shape", "key", "value", "on", "kind", "t", "way", "id"),
     "extra",
 ]
 DOES = [
-    "grab",
-    "drag",
-    "release",
-    "throw",
-    "push",
-    "spawn",
-    "set",
-    "pause",
-    "speed",
-    "step",
-    "reset",
-    "guess",
-    "watch",
+    *("grab", "drag", "release", "throw", "push", "spawn", "set", "pause", "speed", "step", "reset", "guess"),
     *("place", "aim", "change", "remove", "copy", "stop", "undo", "redo", "look", "play", "go", "cancel"),
-    *("scenes", "open", "parameter", "mine", "trace", "ghost"),
+    *("watch", "scenes", "open", "parameter", "mine", "trace", "ghost"),
 ]
 WORDS = st.sampled_from(
     ["circle", "box", "gravity", "restitution", "step", "iterations", "left", "ball-1", "floor"]
@@ -557,24 +498,18 @@ ANYTHING = st.one_of(SHAPED, NEARLY, st.text(max_size=60), st.binary(max_size=60
 @given(messages=st.lists(ANYTHING, max_size=12))
 def test_whatever_arrives_the_world_lives_on(messages: list[str | bytes]) -> None:
     made, page = make("head-on")
+
+    def state() -> tuple:
+        world = made.stage.world
+        return world.ticks, dict(world.settings), world.state_hash(), world.held
+
     for message in messages:
         told(page)
-        before = (
-            made.stage.world.ticks,
-            dict(made.stage.world.settings),
-            made.stage.world.state_hash(),
-            made.stage.world.held,
-        )
+        before = state()
         made.receive(page, message)
         errors = of(told(page), "error")
         if errors:
-            # What is answered with an error has changed nothing.
-            assert (
-                made.stage.world.ticks,
-                dict(made.stage.world.settings),
-                made.stage.world.state_hash(),
-                made.stage.world.held,
-            ) == before
+            assert state() == before, "what is answered with an error has changed nothing"
             assert len(errors[0]["message"]) < 400
         made.tick(1 / 60)
     assert not page.lost

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from course.simulations.base import Result, Row, run
-from course.simulations.registry import CHAPTER, SIMULATIONS, get
+from course.simulations.registry import SIMULATIONS, get
 
 LONGEST_HEADLINE = 74
 
@@ -36,8 +36,9 @@ def test_a_simulation_asks_runs_measures_and_finds(name: str) -> None:
 @pytest.mark.turns(4)
 @pytest.mark.parametrize("name", SIMULATIONS)
 def test_a_simulation_repeats_bit_for_bit(name: str) -> None:
-    one, two = result(name), run(get(name), ())
-    assert one.rows == two.rows
+    short = ("duration=1",) if get(name).parameter("duration") else ()
+    one, two = result(name, *short), run(get(name), short)
+    assert repr(one.rows) == repr(two.rows)  # some are NaN, which equals nothing
     assert all(
         np.array_equal(a.values, b.values, equal_nan=True)
         for a, b in zip(one.columns, two.columns, strict=True)
@@ -52,10 +53,6 @@ def test_a_row_without_theory_has_no_error_and_neither_has_what_did_not_happen()
 
 
 # -- the introduction --------------------------------------------------------------------------------------
-
-
-def test_the_introduction_has_its_four_in_order() -> None:
-    assert CHAPTER == ("free-fall", "projectile", "collision", "integrators")
 
 
 def test_a_fall_from_ten_metres_takes_1_428_s() -> None:
@@ -108,7 +105,7 @@ def test_a_throw_into_the_ground_is_over_at_once() -> None:
 
 def test_air_is_missing_from_the_model_whatever_the_step() -> None:
     pairs = ["drag=0.02", "method=rk4"]  # of order 4 with a force that depends on the speed; Verlet is not
-    coarse, fine = (result("projectile", *pairs, f"step={h}").rows[4] for h in (0.02, 0.001))
+    coarse, fine = (result("projectile", *pairs, f"step={h}").rows[4] for h in (0.02, 0.004))
     assert coarse.simulated == pytest.approx(fine.simulated, rel=1e-4)
     assert fine.error is not None
     assert fine.error < -4.0
@@ -217,7 +214,7 @@ def test_a_billionth_of_a_radian_grows_past_one_in_ten_seconds() -> None:
     out = result("chaos")
     assert out.row("separation passes 1e-3 rad").simulated == pytest.approx(7.3, abs=0.05)
     assert out.row("separation passes 1 rad").simulated == pytest.approx(10.0, abs=0.1)
-    half = result("chaos", "step=0.0025")
+    half = result("chaos", "step=0.0025", "duration=11")
     assert half.row("separation passes 1 rad").simulated == pytest.approx(10.0, abs=0.1)
 
 

@@ -6,29 +6,19 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from course.handed_in.attempts import Attempt
 from course.progress.history import mistakes_of
 from course.progress.store import Event
-from course.scoring.verdict import CheckResult, Verdict
+from tests.unit.progress.test_evidence import failed, recorded
 
 START = datetime(2026, 11, 22, 10, tzinfo=UTC)
 
 
 def run(minute: int, *checks: tuple[str, str, str | None], subject: str = "integrators") -> Event:
-    """An event as ``course check`` writes it: (id, status, diagnosis) of each check of one function."""
-    results = tuple(
-        CheckResult(
-            id=name, title=name, task="step", status=status, visibility="public", points=0, max_points=1,
-            diagnosis=diagnosis,
-        )
-        for name, status, diagnosis in checks
-    )  # fmt: skip
-    verdict = Verdict(
-        exercise=subject, scope="public", state="graded", score=0, max_score=1, passed=False, checks=results,
-        isolation="L3",
-    )  # fmt: skip
-    data = Attempt(None, b"", verdict, 0.1).data("1")
-    return Event(minute, START + timedelta(minutes=minute), "check", subject, data)
+    """(id, status, diagnosis) of each check of one function."""
+    results = [
+        failed(id=name, task="step", status=status, diagnosis=diagnosis) for name, status, diagnosis in checks
+    ]
+    return Event(minute, START + timedelta(minutes=minute), "check", subject, recorded(*results))
 
 
 def test_a_mistake_has_its_first_and_last_run_and_the_one_that_mended_it():

@@ -42,6 +42,7 @@ HINTS = {
     "a hint, and code changed since": ([_check(FIRST), _hint(FIRST), _check(SECOND)], True),
     "other code, but before the last hint": ([_check(SECOND), _check(FIRST), _hint(FIRST)], False),
     "a check that passed": ([_check(FIRST, status="pass")], False),
+    "a check that passed, and the stub again": ([_check(FIRST, status="pass"), _check(STUB)], False),
     "a file that could not run": ([_check(FIRST, state="ungradable", checks=[])], False),
 }
 

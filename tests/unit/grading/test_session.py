@@ -105,20 +105,11 @@ def test_what_a_search_asks_of_a_function_is_measured(
     assert 0.04 < given_back[0] < both[0] - 0.04
 
 
-def test_an_exercise_that_asks_for_twice_the_time_has_it(
-    catalog: Catalog, doubling: Exercise, solution: bytes
-) -> None:
-    twice = msgspec.structs.replace(doubling, time=2.0)
-    with GradingSession(twice, catalog, scope="full", terms=Terms(timeout=0.2)) as slower:
-        first = next(check for check in slower.checks if check.task == "double")
-        grade(slower, solution + HANGS)
-        assert slower.took[first.id] > 0.35
-
-
-def test_once_a_function_ran_out_of_time_its_further_checks_have_a_quarter(
+def test_an_exercise_has_the_time_it_asks_for_and_a_quarter_once_a_function_ran_out_of_it(
     catalog: Catalog, doubling: Exercise, session: GradingSession, solution: bytes
 ) -> None:
-    with GradingSession(doubling, catalog, scope="full", terms=Terms(timeout=0.6)) as slower:
+    twice = msgspec.structs.replace(doubling, time=2.0)
+    with GradingSession(twice, catalog, scope="full", terms=Terms(timeout=0.3)) as slower:
         verdict = grade(slower, solution + HANGS)
         late = [slower.took[check.id] for check in results(verdict, "double") if check.status == "timeout"]
     assert len(late) >= 2

@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime as dt
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from course.errors import MissingCapabilityError, NotFoundError, UsageError
@@ -33,8 +34,6 @@ days = 2
 
 
 def policy(**changes: object) -> Policy:
-    import msgspec
-
     return msgspec.structs.replace(parse_policy(POLICY), **changes)
 
 

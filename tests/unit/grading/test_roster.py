@@ -14,11 +14,11 @@ from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.records import PlatformIdentity
 from course.grading.results.effective import lift, override
-from course.grading.results.roster import Person, read_roster
+from course.grading.results.roster import Person, Roster, read_roster
 from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions
 from course.scoring.judging.submission import Terms
-from tests.unit.grading.made import graded_class
+from tests.unit.grading.made import graded_class, put, read_csv
 from tests.unit.grading.pages import faults, read_page
 from tests.unit.grading.running.test_run import right
 
@@ -58,9 +58,7 @@ def made(folder: Path, platform: str) -> tuple[Path, Path]:
     """A class and its roster."""
     roster, files = CLASSES[platform]
     for name in files:
-        path = folder / "class" / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text("def double(x):\n    return 2 * x\n")
+        put(folder / "class" / name, b"def double(x):\n    return 2 * x\n")
     path = folder / "roster.csv"
     path.write_text(roster, "utf-8-sig")
     return folder / "class", path
@@ -73,8 +71,13 @@ def graded(folder: Path, catalog: Catalog, platform: str):
 
 
 def rows(path: Path) -> dict[str, dict[str, str]]:
-    with path.open(encoding="utf-8-sig", newline="") as handle:
-        return {row["student"]: row for row in csv.DictReader(handle)}
+    return {row["student"]: row for row in read_csv(path)}
+
+
+def roster_of(tmp_path: Path, text: str) -> Roster:
+    path = tmp_path / "roster.csv"
+    path.write_bytes(text.encode("utf-8"))
+    return read_roster(path)
 
 
 def test_who_is_missing_has_a_row_and_a_page_too(tmp_path: Path, catalog: Catalog) -> None:
@@ -100,10 +103,8 @@ def test_missing_is_blank_or_zero_as_told(tmp_path: Path, catalog: Catalog) -> N
             options = ExportOptions(assignments={"doubling": "4711"}, missing=policy)
             written = export(results, "canvas", out, tmp_path / f"{policy}.csv", options)
         assert written.without_grade == []
-        with (tmp_path / f"{policy}.csv").open(encoding="utf-8-sig", newline="") as handle:
-            scores[policy] = {
-                row["ID"]: row["Doubling (4711)"] for row in csv.DictReader(handle) if row["ID"]
-            }
+        table = read_csv(tmp_path / f"{policy}.csv")
+        scores[policy] = {row["ID"]: row["Doubling (4711)"] for row in table if row["ID"]}
     assert scores == {
         "blank": {"101": "10", "102": "", "103": "10"},
         "zero": {"101": "10", "102": "0", "103": "10"},
@@ -127,13 +128,9 @@ def test_an_override_settles_what_is_missing(tmp_path: Path, catalog: Catalog) -
 
 def test_two_spellings_of_an_accent_are_one_student(tmp_path: Path, catalog: Catalog) -> None:
     name = "zoé"
-    submissions = tmp_path / "class"
-    (submissions / unicodedata.normalize("NFD", name)).mkdir(parents=True)
-    (submissions / unicodedata.normalize("NFD", name) / "doubling.py").write_text("double = abs\n")
-    (tmp_path / "roster.csv").write_text(f"student\n{unicodedata.normalize('NFC', name)}\n", "utf-8")
-    options = RunOptions(
-        exercises=("doubling",), terms=Terms(), seed=1, roster=read_roster(tmp_path / "roster.csv")
-    )
+    put(tmp_path / "class" / unicodedata.normalize("NFD", name) / "doubling.py", b"double = abs\n")
+    roster = roster_of(tmp_path, f"student\n{unicodedata.normalize('NFC', name)}\n")
+    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=roster)
     summary = graded_class(tmp_path, catalog, options, grade=right)
     assert (summary.missing, summary.strangers) == ([], [])
 
@@ -171,16 +168,14 @@ FOLDERS = {
 @pytest.mark.parametrize("kind", FOLDERS)
 def test_a_plain_folder_is_found_by_whatever_is_in_one_row_alone(tmp_path: Path, kind: str) -> None:
     text, names = FOLDERS[kind]
-    (tmp_path / "roster.csv").write_text(text, "utf-8")
-    found = read_roster(tmp_path / "roster.csv")
+    found = roster_of(tmp_path, text)
     assert {name: found.find(name) for name in names} == dict.fromkeys(names, found.people[0])
     assert [found.find(name) for name in ("Lovel", "lovelace", "x.org", "")] == [None] * 4
 
 
 def test_a_plain_folder_that_two_rows_could_mean_is_nobody(tmp_path: Path) -> None:
     text = "student,name,login\n1,Ada Lovelace,al\n2,Ada Lovelace,ada\n3,ada,x\n4,al,5\n"
-    (tmp_path / "roster.csv").write_text(text, "utf-8")
-    found = read_roster(tmp_path / "roster.csv")
+    found = roster_of(tmp_path, text)
     assert [found.find(name) for name in ("Ada Lovelace", "ada", "al")] == [None] * 3
     assert found.find("5") == found.people[3]
     matched, why = found.match(["3", "x", "ada", "eve"], {})
@@ -215,8 +210,7 @@ def test_who_is_in_no_row_is_told_which_columns_were_tried(tmp_path: Path, catal
 
 
 def test_a_download_is_told_which_of_its_keys_was_looked_for(tmp_path: Path) -> None:
-    (tmp_path / "roster.csv").write_text(MOODLE, "utf-8")
-    found = read_roster(tmp_path / "roster.csv")
+    found = roster_of(tmp_path, MOODLE)
     downloads = {"Eve_7": PlatformIdentity("moodle", "7", "Eve"), "101": PlatformIdentity("canvas", "101")}
     assert found.compared(["Eve_7"], downloads).endswith(
         "The Moodle id of a submission was looked for in Identifier, Full name; it has to be in exactly one "
@@ -250,17 +244,14 @@ def test_what_platforms_hand_out_is_read_unchanged(tmp_path: Path) -> None:
     Source: Gradescope help, "Adding Students and Staff"; canvas-lms/lib/gradebook_exporter.rb;
     moodle/mod/assign/gradingtable.php.
     """
-    path = tmp_path / "roster.csv"
-    path.write_text(CANVAS, "utf-8-sig")
-    assert [person.sis_user_id for person in read_roster(path).people] == ["S1", "S2", "S3"]
-    path.write_text(MOODLE, "utf-8")
-    found = read_roster(path)
+    canvas = roster_of(tmp_path, f"\ufeff{CANVAS}")
+    assert [person.sis_user_id for person in canvas.people] == ["S1", "S2", "S3"]
+    found = roster_of(tmp_path, MOODLE)
     assert found.people[0] == Person("Ada Lovelace_101", "Ada Lovelace", "ada@x.org", moodle_key="101")
     assert found.find("whatever", PlatformIdentity("moodle", "103", "?")) == found.people[2]
-    path.write_text(GRADESCOPE, "utf-8")
-    assert [person.student for person in read_roster(path).people] == ["S1", "S2", "S3"]
-    path.write_text("Name,Email\nAda Lovelace,ada@x.org\n", "utf-8")
-    assert read_roster(path).people == (Person("ada@x.org", "Ada Lovelace", "ada@x.org"),)
+    assert [person.student for person in roster_of(tmp_path, GRADESCOPE).people] == ["S1", "S2", "S3"]
+    (ada,) = roster_of(tmp_path, "Name,Email\nAda Lovelace,ada@x.org\n").people
+    assert ada == Person("ada@x.org", "Ada Lovelace", "ada@x.org")
 
 
 def test_an_empty_folder_is_missing_without_a_roster_too(tmp_path: Path, catalog: Catalog) -> None:
@@ -283,12 +274,6 @@ def test_an_empty_folder_is_missing_without_a_roster_too(tmp_path: Path, catalog
 
 
 # -- a file of an instructor's own ------------------------------------------------------------------------
-
-
-def roster_of(tmp_path: Path, text: str):
-    path = tmp_path / "roster.csv"
-    path.write_bytes(text.encode("utf-8"))
-    return read_roster(path)
 
 
 def test_a_roster_is_read_with_quotes_marks_and_any_alphabet(tmp_path: Path) -> None:

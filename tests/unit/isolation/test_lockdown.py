@@ -116,19 +116,17 @@ def test_restricted_calls_depend_on_their_argument(machine: str, name: str) -> N
         assert _decide(program, arch, number, *arguments) == _EPERM, arguments
 
 
-_CHANNELS = [
+_NEVER = {
+    "fork", "clone", "execve", "socket", "ptrace", "kill", "prctl", "unshare", "mount",
+    # By which one process would learn of another, or tell it.
     "sysinfo", "getpgid", "getsid", "getpriority", "get_robust_list", "set_robust_list", "membarrier",
     "futex_waitv", "flock", "mincore", "statfs", "fstatfs", "fadvise64", "readahead", "sync_file_range",
     "cachestat", "preadv2",
-]  # fmt: skip
+}  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    "name", ["fork", "clone", "execve", "socket", "ptrace", "kill", "prctl", "unshare", "mount", *_CHANNELS]
-)
-def test_what_must_never_be_allowed_is_not(name: str) -> None:
-    for machine in _MACHINES:
-        assert name not in lockdown.allowed_calls(machine)
+def test_what_must_never_be_allowed_is_not(machine: str) -> None:
+    assert lockdown.allowed_calls(machine).keys() & _NEVER == set()
 
 
 _HEADERS = {

@@ -56,11 +56,11 @@ def opened() -> Iterator[Callable[[str], Any]]:
         yield lambda level: stack.enter_context(contextlib.closing(spawner(require_level(level), ("numpy",))))
 
 
-def deep(top: Path, name: str, *files: str) -> None:
-    """A tree deeper than recursion goes, and than a path may be, with empty files on each floor."""
+def deep(top: Path, floors: int, name: str, *files: str) -> None:
+    """A tree with empty files on each floor."""
     top.mkdir()
     here = os.open(top, os.O_RDONLY)
-    for _ in range(1500):
+    for _ in range(floors):
         for file in files:
             os.close(os.open(file, os.O_CREAT | os.O_WRONLY, dir_fd=here))
         os.mkdir(name, dir_fd=here)
@@ -76,7 +76,7 @@ def deep(top: Path, name: str, *files: str) -> None:
 def test_what_cannot_be_deleted_keeps_nothing_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """However deep the rest is: what a killed session left behind must not end the next one."""
     top, stays = tmp_path / "top", "stays"
-    deep(top, "d", "file", stays)
+    deep(top, sys.getrecursionlimit() + 100, "d", "file", stays)
     unlink = os.unlink
 
     def refusing(path: str, **named: Any) -> None:
@@ -88,7 +88,7 @@ def test_what_cannot_be_deleted_keeps_nothing_else(tmp_path: Path, monkeypatch: 
     launch.remove_tree(top)
     assert {path.name for path in top.rglob("*") if path.is_file()} == {stays}
     monkeypatch.undo()
-    deep(tmp_path / "longer than a path may be", "d" * 20)
+    deep(tmp_path / "longer than a path may be, which is 4096", 250, "d" * 20)
     for path in list(tmp_path.iterdir()):
         launch.remove_tree(path)
         assert not path.exists()
@@ -144,9 +144,10 @@ def test_a_session_leaves_no_file(level: str, temporary: Path, opened: Any) -> N
 # -- L1 -------------------------------------------------------------------------------------------------
 
 
-@pytest.fixture
-def plain(opened: Any) -> ProcessSpawner:
-    return opened("L1")
+@pytest.fixture(scope="module")
+def plain() -> Iterator[ProcessSpawner]:
+    with contextlib.closing(spawner(require_level("L1"), ("numpy",))) as found:
+        yield found
 
 
 def test_a_plain_process_answers_prints_and_ends(plain: ProcessSpawner) -> None:
@@ -302,7 +303,3 @@ def test_no_level_between_the_bounds_is_an_error_that_gives_every_cause(
 def test_folders_above_a_path_are_named_outermost_first_and_none_inside_a_bind() -> None:
     paths = (Path("/opt/a/lib"), Path("/opt/a/lib/python"), Path("/usr/lib"))
     assert spawn._folders_above(paths) == [Path("/opt"), Path("/opt/a"), Path("/usr")]
-
-
-def test_levels_are_ordered_from_weak_to_strong() -> None:
-    assert Level.L1 < Level.L2 < Level.L3

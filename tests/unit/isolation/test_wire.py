@@ -242,6 +242,8 @@ def _key(text: str) -> bytes:
     return _u32(len(text)) + text.encode("ascii")
 
 
+_ONE_NONE, _EMPTY = b"l" + _u32(1) + b"N", b"l" + _u32(0)
+
 _HOSTILE = {
     "nothing": b"",
     "unknown tag": b"?",
@@ -258,19 +260,11 @@ _HOSTILE = {
     "more floats than bytes": b"l" + _u32(1) + b"r" + _u32(0xFFFFFFFF),
     "too many floats": b"l" + _u32(2) + (b"r" + _u32(110_000) + b"\0" * 880_000) * 2,
     "records without keys": b"t" + _u32(0),
-    "records of different lengths": b"t"
-    + _u32(2)
-    + _key("a")
-    + b"l"
-    + _u32(1)
-    + b"N"
-    + _key("b")
-    + b"l"
-    + _u32(0),
-    "records with a key twice": b"t" + _u32(2) + (_key("a") + b"l" + _u32(1) + b"N") * 2,
+    "records of different lengths": b"t" + _u32(2) + _key("a") + _ONE_NONE + _key("b") + _EMPTY,
+    "records with a key twice": b"t" + _u32(2) + (_key("a") + _ONE_NONE) * 2,
     "records from something else than lists": b"t" + _u32(1) + _key("a") + b"d" + _u32(0),
     "records that end early": b"t" + _u32(1) + _key("a"),
-    "deep records": (b"t" + _u32(1) + _key("a")) * (wire.MAX_DEPTH + 1) + b"l" + _u32(0),
+    "deep records": (b"t" + _u32(1) + _key("a")) * (wire.MAX_DEPTH + 1) + _EMPTY,
     "array past the end": b"v" + _u32(3) + b"\0" * 16,
     "array of unknown dtype": b"a\x04\x01" + _u32(0),
     "array of nine dimensions": b"a\x00\x09" + _u32(0) * 9,

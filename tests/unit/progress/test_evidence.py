@@ -14,21 +14,21 @@ from course.scoring.verdict import CheckResult, Status, Verdict, Visibility
 NOW = datetime(2025, 1, 1, tzinfo=UTC)
 
 
-def _failed(expected=None, actual=None, **fields):
-    return CheckResult(
-        **{
-            "id": "reach",
-            "title": "",
-            "task": "throw",
-            "status": Status.FAIL,
-            "visibility": Visibility.PUBLIC,
-            "points": 0.0,
-            "max_points": 1.0,
-            "expected": expected,
-            "actual": actual,
-        }
-        | fields
-    )
+def failed(expected=None, actual=None, **fields):
+    usual = {
+        "id": "reach", "title": "", "task": "throw", "status": Status.FAIL, "visibility": Visibility.PUBLIC,
+        "points": 0.0, "max_points": 1.0, "expected": expected, "actual": actual,
+    }  # fmt: skip
+    return CheckResult(**(usual | fields))
+
+
+def recorded(*checks):
+    """What ``course check`` writes down."""
+    verdict = Verdict(
+        exercise="throwing", scope="public", state="graded", score=0.0, max_score=1.0, passed=False,
+        checks=checks, isolation="L1",
+    )  # fmt: skip
+    return Attempt(None, b"", verdict, 0.1).data("1")
 
 
 @pytest.mark.parametrize(
@@ -57,12 +57,12 @@ def _failed(expected=None, actual=None, **fields):
     ],
 )
 def test_values_are_written_for_a_sentence_or_left_out(expected, got, fields):
-    assert numbers_of(_failed(expected, got)) == fields
+    assert numbers_of(failed(expected, got)) == fields
 
 
 def test_inputs_are_fields_by_their_names():
     given = {"h": 1 / 30, "q0": [1e7, 1e7 + 0.3], "path": list(range(50))}
-    found = numbers_of(_failed(2.0, 1.0, input=given))
+    found = numbers_of(failed(2.0, 1.0, input=given))
     assert found == {
         "h": "0.03333",
         "q0": "[10000000, 10000000.3]",
@@ -75,27 +75,13 @@ def test_inputs_are_fields_by_their_names():
 
 @pytest.mark.parametrize("other", [{"visibility": Visibility.HIDDEN}, {"status": Status.PASS}])
 def test_nothing_is_told_of_a_hidden_check_or_of_one_that_passed(other):
-    check = _failed(2.0, 1.0, input={"h": 0.05}, **other)
+    check = failed(2.0, 1.0, input={"h": 0.05}, **other)
     assert numbers_of(check) == {}
-    assert "numbers" not in _data(check)["checks"][0]
-
-
-def _data(*checks):
-    verdict = Verdict(
-        exercise="throwing",
-        scope="public",
-        state="graded",
-        score=0.0,
-        max_score=1.0,
-        passed=False,
-        checks=checks,
-        isolation="L1",
-    )
-    return Attempt(None, b"", verdict, 0.1).data("1")
+    assert "numbers" not in recorded(check)["checks"][0]
 
 
 def test_the_record_gives_them_back_with_the_diagnosis():
-    data = _data(_failed(2.0, 1.0, diagnosis="HALVED"), _failed(1, 2, id="other", task="catch"))
+    data = recorded(failed(2.0, 1.0, diagnosis="HALVED"), failed(1, 2, id="other", task="catch"))
     history = history_of([Event(id=1, at=NOW, kind="check", subject="throwing", data=data)])
     assert history.diagnosed("throw") == (
         ("HALVED", {"expected": "2", "got": "1", "off": "-1", "ratio": "0.5"}),
@@ -104,7 +90,7 @@ def test_the_record_gives_them_back_with_the_diagnosis():
 
 @pytest.mark.parametrize("odd", ["abc", 3, None, [1]])
 def test_a_record_that_somebody_changed_has_no_numbers(odd):
-    data = _data(_failed(2.0, 1.0))
+    data = recorded(failed(2.0, 1.0))
     data["checks"][0]["numbers"] = odd
     history = history_of([Event(id=1, at=NOW, kind="check", subject="throwing", data=data)])
     assert history.diagnosed("throw") == (("", {}),)

@@ -33,38 +33,26 @@ def _hint(code, index=0, task="double"):
     return ("hint", {"task": task, "index": index, "fingerprint": code})
 
 
-def test_no_hint_before_a_check():
-    assert not _history().hint_is_due(STUB)
+#: What happened -> the events, and whether the next hint is due.
+HINTS = {
+    "nothing": ([], False),
+    "a check of the untouched stub": ([_check(STUB)], False),
+    "a failed check of changed code": ([_check(FIRST)], True),
+    "a hint, and the same code again": ([_check(FIRST), _hint(FIRST), _check(FIRST)], False),
+    "a hint, and code changed since": ([_check(FIRST), _hint(FIRST), _check(SECOND)], True),
+    "other code, but before the last hint": ([_check(SECOND), _check(FIRST), _hint(FIRST)], False),
+    "a check that passed": ([_check(FIRST, status="pass")], False),
+    "a check that passed, and the stub again": ([_check(FIRST, status="pass"), _check(STUB)], False),
+    "a file that could not run": ([_check(FIRST, state="ungradable", checks=[])], False),
+}
 
 
-def test_no_hint_for_an_untouched_stub():
-    assert not _history(_check(STUB)).hint_is_due(STUB)
-
-
-def test_the_first_hint_follows_a_failed_check_of_changed_code():
-    assert _history(_check(FIRST)).hint_is_due(STUB)
-
-
-def test_no_second_hint_for_the_same_code():
-    history = _history(_check(FIRST), _hint(FIRST), _check(FIRST))
-    assert not history.hint_is_due(STUB)
-    assert history.hints_for("double") == (0,)
-
-
-def test_the_next_hint_follows_a_failed_check_of_code_changed_since():
-    assert _history(_check(FIRST), _hint(FIRST), _check(SECOND)).hint_is_due(STUB)
-
-
-def test_a_check_from_before_the_last_hint_does_not_count():
-    assert not _history(_check(SECOND), _check(FIRST), _hint(FIRST)).hint_is_due(STUB)
-
-
-def test_a_check_that_passed_earns_no_hint():
-    assert not _history(_check(FIRST, status="pass")).hint_is_due(STUB)
-
-
-def test_a_file_that_could_not_run_earns_no_hint():
-    assert not _history(_check(FIRST, state="ungradable", checks=[])).hint_is_due(STUB)
+@pytest.mark.parametrize("what", HINTS)
+def test_a_hint_is_due_after_a_failed_check_of_code_changed_since_the_last_one(what):
+    events, due = HINTS[what]
+    history = _history(*events)
+    assert history.hint_is_due(STUB) is due
+    assert history.hints_for("double") == tuple(data["index"] for kind, data in events if kind == "hint")
 
 
 def test_failing_tasks_are_those_of_the_newest_whole_run():

@@ -4,29 +4,21 @@ from __future__ import annotations
 
 from datetime import UTC, datetime, timedelta
 
-from course.handed_in.attempts import Attempt
+import pytest
+
 from course.progress.history import mistakes_of
 from course.progress.store import Event
-from course.scoring.verdict import CheckResult, Verdict
+from tests.unit.progress.test_evidence import failed, recorded
 
 START = datetime(2026, 11, 22, 10, tzinfo=UTC)
 
 
 def run(minute: int, *checks: tuple[str, str, str | None], subject: str = "integrators") -> Event:
-    """An event as ``course check`` writes it: (id, status, diagnosis) of each check of one function."""
-    results = tuple(
-        CheckResult(
-            id=name, title=name, task="step", status=status, visibility="public", points=0, max_points=1,
-            diagnosis=diagnosis,
-        )
-        for name, status, diagnosis in checks
-    )  # fmt: skip
-    verdict = Verdict(
-        exercise=subject, scope="public", state="graded", score=0, max_score=1, passed=False, checks=results,
-        isolation="L3",
-    )  # fmt: skip
-    data = Attempt(None, b"", verdict, 0.1).data("1")
-    return Event(minute, START + timedelta(minutes=minute), "check", subject, data)
+    """(id, status, diagnosis) of each check of one function."""
+    results = [
+        failed(id=name, task="step", status=status, diagnosis=diagnosis) for name, status, diagnosis in checks
+    ]
+    return Event(minute, START + timedelta(minutes=minute), "check", subject, recorded(*results))
 
 
 def test_a_mistake_has_its_first_and_last_run_and_the_one_that_mended_it():
@@ -43,34 +35,22 @@ def test_a_mistake_has_its_first_and_last_run_and_the_one_that_mended_it():
     assert minutes == [1, 2, 3]
 
 
-def test_another_failure_of_the_same_check_mends_nothing():
-    first, second = mistakes_of([run(1, ("order", "fail", "SWAPPED")), run(2, ("order", "fail", "SIGN"))])
-    assert first.mended is None
-    assert second.diagnosis == "SIGN"
-
-
-def test_a_mistake_made_again_is_open_again():
-    (one,) = mistakes_of(
-        [
-            run(1, ("order", "fail", "SWAPPED")),
-            run(2, ("order", "pass", None)),
-            run(3, ("order", "fail", "SWAPPED")),
-        ]
-    )
-    assert one.mended is None
-    assert one.runs == 2
-
-
-def test_a_check_of_the_same_name_elsewhere_mends_nothing():
-    events = [run(1, ("order", "fail", "SWAPPED")), run(2, ("order", "pass", None), subject="other")]
-    assert mistakes_of(events)[0].mended is None
+@pytest.mark.parametrize(
+    ("later", "found"),
+    [
+        ([run(2, ("order", "fail", "SIGN"))], [("SWAPPED", 1), ("SIGN", 1)]),
+        ([run(2, ("order", "pass", None)), run(3, ("order", "fail", "SWAPPED"))], [("SWAPPED", 2)]),
+        ([run(2, ("order", "pass", None), subject="other")], [("SWAPPED", 1)]),
+        ([run(2, ("order", "skip", None))], [("SWAPPED", 1)]),
+    ],
+    ids=["another failure of its check", "made again", "a check of that name elsewhere", "skipped"],
+)
+def test_what_mends_no_mistake(later: list[Event], found: list[tuple[str, int]]):
+    mistakes = mistakes_of([run(1, ("order", "fail", "SWAPPED")), *later])
+    assert [(one.diagnosis, one.runs) for one in mistakes] == found
+    assert {one.mended for one in mistakes} == {None}
 
 
 def test_work_to_do_and_what_follows_from_a_mistake_are_none():
     codes = ("NOT_IMPLEMENTED", "MISSING_FUNCTION", "CALLS_A_WRONG_FUNCTION")
     assert mistakes_of([run(1, *((code, "fail", code) for code in codes))]) == ()
-
-
-def test_a_check_that_was_skipped_since_mends_nothing():
-    events = [run(1, ("order", "fail", "SWAPPED")), run(2, ("order", "skip", None))]
-    assert mistakes_of(events)[0].mended is None

@@ -59,13 +59,16 @@ PLACES = Places(module="work.py")
         (True, 1.0, {}, ""),
         ([], [1.0, 2.0], {}, ""),
         (None, 2.4, {}, ""),
+        ([3.0, -4.0], [0.6, -0.9], {"wanted": [3.0, -4.0]}, "Your result is `wanted`, unchanged."),
+        # A wall's mass was once said to be the factor between two velocities.
+        ([-1.5, 1.9], [-1.5, 0.1], {"mb": math.inf}, "Only the second of these numbers is wrong."),
     ],
 )
-def test_a_number_is_compared_with_the_right_one_and_with_what_went_in(
+def test_an_answer_is_compared_with_the_right_one_and_with_what_went_in(
     actual: Any, expected: Any, given: dict[str, Any], said: str
 ) -> None:
     found = likeness(actual, expected, given)
-    assert found == said if not said or said.startswith("Here") else said in found
+    assert found == said if not said or said.endswith(".") else said in found
 
 
 @pytest.mark.parametrize(
@@ -114,15 +117,9 @@ def test_several_numbers_are_compared_with_the_right_ones(actual: Any, expected:
     assert bool(said) == bool(found)
 
 
-def test_an_input_that_is_given_back_is_recognised() -> None:
-    assert (
-        likeness([3.0, -4.0], [0.6, -0.9], {"wanted": [3.0, -4.0]}) == "Your result is `wanted`, unchanged."
-    )
-
-
-def test_what_is_said_of_random_numbers_is_nothing() -> None:
-    rng = np.random.default_rng(1)
-    drawn = rng.uniform(0.1, 10.0, (2000, 6))
+@pytest.mark.parametrize("size", [400, pytest.param(4000, marks=pytest.mark.soak)])
+def test_what_is_said_of_random_numbers_is_nothing(size: int) -> None:
+    drawn = np.random.default_rng(1).uniform(0.1, 10.0, (size, 6))
     said = [likeness(a, e, {"x": x, "list": [y, z]}) for a, e, x, y, z, _ in drawn.tolist()]
     said += [likeness(row[:3], row[3:], {"x": row[0] + 1.0}) for row in drawn.tolist()]
     assert not any(said)
@@ -265,10 +262,3 @@ def test_of_an_exception_in_several_lines_the_first_is_repeated_where_the_advice
     assert finding.help.endswith("has no `np.float`. Use `float`.")
     whole = finding_of(StudentFailure("error", type="ValueError", message="a\nb"), shown=True)
     assert whole.message == "Your code raised ValueError: a\\nb."
-
-
-def test_an_infinite_input_is_no_factor() -> None:
-    """A wall's mass was once said to be the factor between two velocities."""
-    assert (
-        likeness([-1.5, 1.9], [-1.5, 0.1], {"mb": math.inf}) == "Only the second of these numbers is wrong."
-    )

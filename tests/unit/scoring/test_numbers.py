@@ -10,10 +10,7 @@ import pytest
 from course.scoring import kit
 from course.scoring.failures import CheckFailed
 from course.scoring.verdict import (
-    CheckResult,
-    Status,
     Tolerance,
-    Visibility,
     format_input,
     format_pair,
     format_points,
@@ -22,6 +19,7 @@ from course.scoring.verdict import (
     in_points,
     numbers_of,
 )
+from tests.unit.scoring.test_likeness import judged
 
 
 @pytest.mark.parametrize(
@@ -88,27 +86,20 @@ def test_one_point_is_singular() -> None:
     ]  # fmt: skip
 
 
+def compared(
+    actual: Any, expected: Any, tolerance: Tolerance | None = None, units: str = "", quantity: str = ""
+) -> dict[str, str]:
+    """The numbers of a failed check by their labels."""
+    check = judged(actual=actual, expected=expected, tolerance=tolerance, units=units, quantity=quantity)
+    return dict(numbers_of(check))
+
+
 @pytest.mark.parametrize(
     ("actual", "shown"),
     [(0.5, "0.5 m"), (3, "3 m"), ([1.0, 2.0], "[1, 2] m"), (None, "None"), (False, "False"), ("no", "no")],
 )
 def test_only_numbers_have_a_unit(actual, shown):
-    check = CheckResult(
-        id="c", title="A check", task="t", status="fail", visibility="public", points=0.0, max_points=1.0,
-        actual=actual, expected=2.0, units="m",
-    )  # fmt: skip
-    assert numbers_of(check) == [("measured", shown), ("expected", "2 m")]
-
-
-def compared(
-    actual: Any, expected: Any, tolerance: Tolerance | None = None, units: str = ""
-) -> dict[str, str]:
-    """The numbers of a failed check by their labels."""
-    check = CheckResult(
-        id="c", title="c", task="t", status=Status.FAIL, visibility=Visibility.PUBLIC, points=0.0,
-        max_points=1.0, actual=actual, expected=expected, tolerance=tolerance, units=units,
-    )  # fmt: skip
-    return dict(numbers_of(check))
+    assert compared(actual, 2.0, units="m") == {"measured": shown, "expected": "2 m"}
 
 
 def test_limits_are_said_in_words_and_where_none_can_be_met_the_one_that_is_broken():
@@ -128,12 +119,8 @@ def test_a_measured_number_is_named_unless_the_message_names_it():
         return failed.value.finding
 
     finding = said("It slides too far.")
-    check = CheckResult(
-        id="c", title="c", task="t", status=Status.FAIL, visibility=Visibility.PUBLIC, points=0.0,
-        max_points=1.0, actual=finding.actual, expected=finding.expected, quantity=finding.quantity,
-        units="m",
-    )  # fmt: skip
-    assert numbers_of(check) == [("measured", "2 m (slip)"), ("expected", "at most 1 m")]
+    numbers = compared(finding.actual, finding.expected, quantity=finding.quantity, units="m")
+    assert list(numbers.items()) == [("measured", "2 m (slip)"), ("expected", "at most 1 m")]
     assert said("The `slip` is too large.").quantity == ""
 
 

@@ -71,16 +71,14 @@ def _impulse(ma, mb, closing, restitution):
 """
 
 
-def test_the_textbooks_reduced_mass_is_graded_and_costs_the_walls_only(session: GradingSession) -> None:
+def test_the_textbooks_reduced_mass_costs_the_walls_only_and_what_calls_it_is_told_to_wait(
+    session: GradingSession,
+) -> None:
     found = failed(session, REDUCED_MASS)
     assert codes(found["impulse_1d"]) == {"INFINITE_MASS_NAN"}
     assert all(
         "wall" in check.id or check.task == "simulate_head_on" for some in found.values() for check in some
     )
-
-
-def test_what_calls_a_wrong_function_is_told_to_wait(session: GradingSession) -> None:
-    found = failed(session, REDUCED_MASS)
     assert codes(found["resolve"]) == {"CALLS_A_WRONG_FUNCTION"}
     for check in found["resolve"]:
         assert "`resolve` calls your `impulse_1d`, which is wrong: fix that first." in check.message

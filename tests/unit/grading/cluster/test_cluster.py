@@ -32,22 +32,15 @@ from course.grading.running.snapshot import Snapshot, in_use
 from course.scoring.graders import grader_version
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
-from course.scoring.verdict import Problem, Verdict
+from course.scoring.verdict import Problem
 from tests.unit.grading.conftest import MINI
+from tests.unit.grading.made import RIGHT
 
 POISON = b"poison"
 
 
 def perfect(job: Job) -> Answer:
-    return Answer(
-        Verdict(
-            exercise=job.exercise, scope="full", state="graded", score=10.0, max_score=10.0, passed=True,
-            checks=(), isolation="L3",
-        ),
-        number=job.number,
-        sha256=Submission(job.files).sha256,
-        version=job.version,
-    )  # fmt: skip
+    return Answer(RIGHT, number=job.number, sha256=Submission(job.files).sha256, version=job.version)
 
 
 @dataclass
@@ -340,9 +333,8 @@ def test_what_dask_says_of_a_future_becomes_what_the_coordinator_understands() -
 
 
 @pytest.fixture
-def at_work(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Answers]]:
+def at_work() -> Iterator[Callable[..., Answers]]:
     """Has this process do what a Dask worker does, on the miniature course."""
-    monkeypatch.setenv("COURSE_CONTENT", str(MINI))
 
     def answers(jobs: list[Job], level: str | None = "L1") -> Answers:
         snapshot = Snapshot.take(content())

@@ -34,6 +34,7 @@ from tests.unit.grading.made import (
     digest,
     make_book,
     read_by_php,
+    read_csv,
 )
 from tests.unit.grading.test_results import POLICY
 
@@ -42,10 +43,6 @@ OPTIONS = ExportOptions(("doubling",), {"doubling": "4711"}, zeros=True)
 #: Values of hidden checks, in every spelling a file may have them.
 SECRETS = [str(SECRET), str(SECRET * 2), str(SECRET)[:6]]
 FOR_STUDENTS = ["junit", "gradescope"]
-
-
-def read_csv(path: Path) -> list[dict[str, str]]:
-    return list(csv.DictReader(io.StringIO(path.read_text("utf-8-sig"), newline=""), strict=True))
 
 
 @pytest.fixture(scope="module")

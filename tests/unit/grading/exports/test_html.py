@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import base64
-import csv
 import dataclasses
 import hashlib
-import io
 import re
 import statistics
 from pathlib import Path
@@ -20,7 +18,7 @@ from course.grading.exports.grades import number, safe_cell
 from course.grading.exports.html_report.pages import class_page, macro, script
 from course.grading.exports.html_report.tally import MOST_ROWS, Tally
 from course.grading.exports.selection import ExportOptions
-from course.grading.gradebook.records import Key, Override, Result, SubmittedAt
+from course.grading.gradebook.records import GradedExercise, Key, Override, Result, SubmittedAt
 from course.grading.results.effective import Results
 from course.grading.results.roster import Person, Roster
 from course.grading.running.folder import open_results
@@ -38,6 +36,7 @@ from tests.unit.grading.made import (
     digest,
     key,
     make_book,
+    read_csv,
     verdict,
 )
 from tests.unit.grading.pages import faults, read_page
@@ -68,8 +67,6 @@ def quiz_verdict(right: int):
 @pytest.fixture(scope="module")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A class with every name, every outcome, a quiz, overrides and people who are late."""
-    from course.grading.gradebook.records import GradedExercise
-
     folder = tmp_path_factory.mktemp("html")
     verdicts = {name: (RIGHT, HALF, REFUSED)[at % 3] for at, name in enumerate(NAMES)}
     verdicts |= {"late": RIGHT, "set": HALF, "broken": BROKEN, "wrong": WRONG}
@@ -97,9 +94,7 @@ def results(out: Path):
 
 def places(out: Path) -> dict[str, str]:
     """Name as a cell of the index -> file of the page."""
-    content = (out / "students.csv").read_text("utf-8-sig")
-    rows = csv.DictReader(io.StringIO(content, newline=""), strict=True)
-    return {row["student"]: row["page"] for row in rows}
+    return {row["student"]: row["page"] for row in read_csv(out / "students.csv")}
 
 
 def test_every_page_is_sound_whatever_the_names(out: Path) -> None:
@@ -231,10 +226,8 @@ def test_the_histogram_counts_everybody_with_a_grade_once(out: Path, results: Re
 def test_the_list_of_students_has_the_scores_of_the_table(out: Path) -> None:
     rows = read_page(out / "students.html").tables["Students and their scores"]
     assert rows[0] == ["Page", "Student", "Doubling, of 10", "Halving, of 2", "Quiz, of 5"]
-    content = (out / "grades.csv").read_text("utf-8-sig")
-    table = list(csv.DictReader(io.StringIO(content, newline=""), strict=True))
     found = places(out)
-    for line in table:
+    for line in read_csv(out / "grades.csv"):
         row = rows[int(re.findall(r"\d+", found[line["student"]])[0])]
         shown = row[{"doubling": 2, "halving": 3, "quiz": 4}[line["exercise"]]]
         assert shown.split()[0] == (line["score"] or "none"), line

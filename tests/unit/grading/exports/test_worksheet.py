@@ -19,7 +19,7 @@ from course.grading.results.roster import read_roster
 from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions
 from course.scoring.judging.submission import Terms
-from tests.unit.grading.made import graded_class, read_by_php
+from tests.unit.grading.made import graded_class, put, read_by_php
 from tests.unit.grading.running.test_run import right
 
 HEADINGS = [
@@ -39,6 +39,10 @@ def write(path: Path, rows: list[list[str]], headings: list[str] = HEADINGS) -> 
     csv.writer(text).writerows([headings, *rows])
     path.write_bytes(text.getvalue().encode())
     return path
+
+
+def cells_of(path: Path) -> list[list[str]]:
+    return list(csv.reader(io.StringIO(path.read_bytes().decode(), newline="")))
 
 
 def taken_by_moodle(path: Path, most: float) -> dict[str, tuple[float | None, str]]:
@@ -69,10 +73,9 @@ def taken_by_moodle(path: Path, most: float) -> dict[str, tuple[float | None, st
 def out(tmp_path_factory: pytest.TempPathFactory, catalog: Catalog) -> Path:
     folder = tmp_path_factory.mktemp("moodle")
     for name in ("Ada Lovelace_101", "Grace Hopper_103", "Cy É_104"):
-        place = folder / "class" / f"{name}_assignsubmission_file"
-        place.mkdir(parents=True)
         module = "doubling.py" if name != "Cy É_104" else "hw.py"
-        (place / module).write_text("def double(x):\n    return 2 * x\n")
+        place = folder / "class" / f"{name}_assignsubmission_file"
+        put(place / module, b"def double(x):\n    return 2 * x\n")
     roster = read_roster(write(folder / "sheet.csv", SHEET))
     options = RunOptions(exercises=("doubling",), terms=Terms(), seed=1, roster=roster)
     summary = graded_class(folder, catalog, options, grade=right)
@@ -96,7 +99,7 @@ def test_it_is_filled_in_and_everything_else_is_as_it_came(tmp_path: Path, out: 
     written = filled(out, sheet, tmp_path / "back.csv")
     assert (written.rows, written.paths) == (2, [tmp_path / "back.csv"])
     assert any("cannot be changed" in note for note in written.notes)
-    rows = list(csv.reader(io.StringIO((tmp_path / "back.csv").read_bytes().decode(), newline="")))
+    rows = cells_of(tmp_path / "back.csv")
     assert rows[0] == HEADINGS
     for before, after in zip(SHEET, rows[1:], strict=True):
         kept = [at for at in range(len(HEADINGS)) if HEADINGS[at] not in {"Grade", "Feedback comments"}]
@@ -147,7 +150,7 @@ def test_a_teachers_grade_and_feedback_stay_and_are_listed(
 ) -> None:
     sheet = write(tmp_path / "sheet.csv", with_cells(grade, feedback))
     written = filled(out, sheet, tmp_path / "back.csv")
-    rows = list(csv.reader(io.StringIO((tmp_path / "back.csv").read_bytes().decode(), newline="")))
+    rows = cells_of(tmp_path / "back.csv")
     assert rows[1] == with_cells(grade, feedback)[0]
     assert len(written.kept) == 1
     assert written.kept[0].startswith("Ada Lovelace_101 (")
@@ -161,7 +164,7 @@ def test_a_teachers_grade_and_feedback_stay_and_are_listed(
 def test_a_sheet_that_has_our_own_grades_is_filled_in_again(tmp_path: Path, out: Path) -> None:
     """Moodle gives back what was uploaded, with two digits after the point."""
     filled(out, write(tmp_path / "sheet.csv", SHEET), tmp_path / "back.csv")
-    head, *rows = csv.reader(io.StringIO((tmp_path / "back.csv").read_bytes().decode(), newline=""))
+    head, *rows = cells_of(tmp_path / "back.csv")
     rows = [[*row[:4], row[4] and f"{float(row[4]):.2f}", *row[5:]] for row in rows]
     written = filled(out, write(tmp_path / "again.csv", rows, head), tmp_path / "twice.csv")
     assert (written.rows, written.kept) == (2, [])

@@ -13,15 +13,14 @@ from course.grading.gradebook.records import PlatformIdentity
 from course.grading.intake.downloads import ClassList, Place, class_list, is_folder_meant
 from course.grading.intake.students import read_student
 from tests.unit.grading.intake.test_intake import archive
+from tests.unit.grading.made import put
 
 SOURCE = b"def double(x):\n    return 2 * x\n"
 
 
-def put(folder: Path, *names: str) -> None:
+def lay(folder: Path, *names: str) -> None:
     for name in names:
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(SOURCE + name.encode())
+        put(folder / name, SOURCE + name.encode())
 
 
 def graded(found: ClassList, exercise) -> dict[str, bytes | str]:
@@ -38,7 +37,7 @@ def graded(found: ClassList, exercise) -> dict[str, bytes | str]:
 
 
 def test_a_canvas_download_is_a_class(tmp_path: Path, doubling) -> None:
-    put(
+    lay(
         tmp_path,
         "lovelaceada_101_9001_doubling.py",
         "hopper_LATE_102_9002_doubling-2.py",
@@ -73,7 +72,7 @@ def test_a_canvas_download_is_a_class(tmp_path: Path, doubling) -> None:
 
 
 def test_one_canvas_user_with_two_names_is_nobody(tmp_path: Path) -> None:
-    put(tmp_path, "ada_101_1_doubling.py", "eve_101_2_doubling.py", "bob_102_3_doubling.py")
+    lay(tmp_path, "ada_101_1_doubling.py", "eve_101_2_doubling.py", "bob_102_3_doubling.py")
     found = class_list(tmp_path)
     assert [student.name for student in found.students] == ["bob_102"]
     assert len(found.unrecognised) == 1
@@ -81,7 +80,7 @@ def test_one_canvas_user_with_two_names_is_nobody(tmp_path: Path) -> None:
 
 
 def test_a_moodle_download_with_folders_is_a_class(tmp_path: Path, doubling) -> None:
-    put(
+    lay(
         tmp_path,
         "Ada Lovelace_11_assignsubmission_file/doubling.py",
         "Ada Lovelace_11_assignsubmission_onlinetext/onlinetext.html",
@@ -105,7 +104,7 @@ def test_a_moodle_download_with_folders_is_a_class(tmp_path: Path, doubling) -> 
 def test_a_moodle_download_without_folders_is_a_class_and_file_names_forge_nobody(
     tmp_path: Path, doubling
 ) -> None:
-    put(
+    lay(
         tmp_path,
         "Ada_11_assignsubmission_file_doubling.py",
         "Eve_12_assignsubmission_file_Bob_13_assignsubmission_file_doubling.py",
@@ -156,7 +155,7 @@ submission_904:
 
 def gradescope(folder: Path, metadata: str = METADATA) -> None:
     numbers = (900, 901, 902, 903, 904, 905)
-    put(folder, *(f"submission_{number}/doubling.py" for number in numbers))
+    lay(folder, *(f"submission_{number}/doubling.py" for number in numbers))
     (folder / "submission_metadata.yml").write_text(metadata, "utf-8")
 
 
@@ -214,7 +213,7 @@ def test_without_a_reader_of_metadata_the_command_that_installs_it_is_named(
 def test_a_folder_that_is_two_things_is_refused_and_the_odd_names_listed(
     tmp_path: Path, names: list[str], odd: str
 ) -> None:
-    put(tmp_path, *names)
+    lay(tmp_path, *names)
     with pytest.raises(UsageError) as caught:
         class_list(tmp_path)
     assert caught.value.code == "mixed_layout"
@@ -229,8 +228,8 @@ def test_a_folder_that_is_two_things_is_refused_and_the_odd_names_listed(
 
 def test_what_could_be_handed_in_beside_the_folders_is_listed(tmp_path: Path) -> None:
     students = ["..evil", "; rm -rf ~"]
-    put(tmp_path, *(f"{name}/doubling.py" for name in students), "bob.zip", "Cy.IPYNB", "doubling.py")
-    put(tmp_path, "x_1_2_notes.txt", "readme.txt", "class.csv", ".git/doubling.py")
+    lay(tmp_path, *(f"{name}/doubling.py" for name in students), "bob.zip", "Cy.IPYNB", "doubling.py")
+    lay(tmp_path, "x_1_2_notes.txt", "readme.txt", "class.csv", ".git/doubling.py")
     found = class_list(tmp_path)
     assert (found.layout, [student.name for student in found.students]) == ("folders", students)
     listed = [sentence.split(":")[0] for sentence in found.unrecognised]
@@ -247,8 +246,7 @@ def test_an_empty_class_and_an_unknown_layout_are_said_plainly(tmp_path: Path) -
 @pytest.mark.parametrize("folder", ["warm-ups/error-left", "error-left", "Error-Left (1)", "."])
 def test_a_warm_up_is_found_in_its_folder_with_or_without_the_one_above(tmp_path: Path, folder: str) -> None:
     path = tmp_path / folder / "error_left.py"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text("x = 1\n")
+    put(path, b"x = 1\n")
     assert Place(tmp_path).find("error_left.py", "warm-ups/error-left") == [path]
     assert is_folder_meant(folder, "warm-ups/error-left")
     assert not is_folder_meant("warm-ups", "warm-ups/error-left")

@@ -20,7 +20,7 @@ from course.grading.intake.downloads import Place, Student, class_list
 from course.grading.intake.students import Entry, read_student
 from course.handed_in.limits import MAX_FILE, MAX_FILES
 from course.scoring.verdict import Problem, not_graded
-from tests.unit.grading.made import notebook
+from tests.unit.grading.made import notebook, put
 
 SOURCE = b"def double(x):\n    return 2 * x\n"
 
@@ -69,11 +69,6 @@ LAID: dict[str, Callable[[Path], object]] = {
         folder / "mine.zip", {"doubling/doubling.ipynb": notebook(SOURCE.decode())}
     ),
 }
-
-
-def put(path: Path, content: bytes) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(content)
 
 
 @pytest.mark.parametrize("what", LAID)

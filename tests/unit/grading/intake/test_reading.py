@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import subprocess
 import sys
@@ -77,13 +78,6 @@ def strict() -> Iterator[Reader]:
     found.close()
 
 
-@pytest.fixture
-def impatient() -> Iterator[Reader]:
-    found = Reader(archives._Limits(cpu_s=60, wall_s=1.0))
-    yield found
-    found.close()
-
-
 _BOMBS = {
     "time": lambda: notebook(_DOUBLE, "y = 1\n" * 150_000).replace(b"2 * x", b"y"),
     "memory": lambda: (
@@ -103,15 +97,16 @@ def test_a_bomb_costs_itself_and_is_named(bomb: str, strict: Reader, doubling: E
     assert strict.notebook(notebook(_DOUBLE), doubling, "honest.ipynb")[0].decode().startswith("def double")
 
 
-def test_the_wall_clock_ends_a_reader_that_uses_no_time(impatient: Reader, doubling: Exercise) -> None:
-    impatient.notebook(notebook(_DOUBLE), doubling, "a.ipynb")
-    process = impatient._servant._process
-    assert process is not None
-    os.kill(process.pid, 19)  # SIGSTOP
-    with pytest.raises(RefusedError) as caught:
-        impatient.notebook(notebook(_DOUBLE), doubling, "b.ipynb")
-    assert caught.value.problem.code == "unreadable"
-    assert process.poll() is not None
+def test_the_wall_clock_ends_a_reader_that_uses_no_time(doubling: Exercise) -> None:
+    with contextlib.closing(Reader(archives._Limits(cpu_s=60, wall_s=1.0))) as impatient:
+        impatient.notebook(notebook(_DOUBLE), doubling, "a.ipynb")
+        process = impatient._servant._process
+        assert process is not None
+        os.kill(process.pid, 19)  # SIGSTOP
+        with pytest.raises(RefusedError) as caught:
+            impatient.notebook(notebook(_DOUBLE), doubling, "b.ipynb")
+        assert caught.value.problem.code == "unreadable"
+        assert process.poll() is not None
 
 
 def test_the_process_that_reads_loads_nothing_that_grades() -> None:

@@ -23,7 +23,7 @@ from course.grading.running.assign import assign, named, proposals, unsettled
 from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions
 from course.scoring.judging.submission import Terms
-from tests.unit.grading.made import graded_class, notebook, read_class, zipped
+from tests.unit.grading.made import graded_class, notebook, put, read_class, zipped
 from tests.unit.grading.running.test_run import right
 
 pytestmark = pytest.mark.usefixtures("unpacked")
@@ -35,9 +35,7 @@ NOTEBOOK = notebook(SOURCE.decode())
 
 def lay(folder: Path, student: str = "ada", /, **files: bytes) -> None:
     for name, content in files.items():
-        path = folder / student / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content)
+        put(folder / student / name, content)
 
 
 def read(folder: Path, doubling: Exercise, *, required: bool = True) -> Entry:

@@ -25,16 +25,16 @@ from course.grading.running.batch import grade_all
 from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions, grade_class
 from course.scoring.judging.submission import Terms
-from tests.unit.grading.made import notebook, zipped
+from tests.unit.grading.made import notebook, put, zipped
 from tests.unit.grading.running.test_run import right
 from tests.unit.grading.test_roster import rows
 
 if TYPE_CHECKING:
     from course.grading.running.run import GradeAll
 
-#: ``double`` is right, which is 4 of 10 points, and ``doublings`` wrong; every third student has both wrong.
 pytestmark = pytest.mark.usefixtures("unpacked")
 
+#: ``double`` is right, which is 4 of 10 points, and ``doublings`` wrong; every third student has both wrong.
 SOURCE = b"def double(x):\n    return 2 * x\n\ndef doublings(x, n):\n    return x\n"
 WRONG = b"\ndef double(x):\n    return x\n"
 EVERYBODY = range(1, 151)
@@ -66,11 +66,6 @@ def name(number: int) -> str:
 
 def canvas_name(number: int) -> str:
     return "".join(letter for letter in name(number).casefold() if letter.isalnum())
-
-
-def put(path: Path, content: bytes) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(content)
 
 
 def handed_in(number: int) -> tuple[str, bytes]:

@@ -21,6 +21,7 @@ from course.errors import InternalError, MissingCapabilityError, UsageError
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import Result
 from course.grading.intake.students import Entry
+from course.grading.results.effective import Effective
 from course.grading.running import batch
 from course.grading.running.batch import MAX_TRIES, Graded, grade_all
 from course.grading.running.folder import open_results
@@ -82,17 +83,21 @@ def test_resume_grades_only_what_is_new_and_with_the_same_seed(
     """And a file that is again what it was gets its earlier score."""
     make_class(tmp_path / "class", solution, 4)
     first = RunOptions(exercises=("doubling",), terms=Terms(), seed=5)
-    graded_class(tmp_path, catalog, first)
+    graded_class(tmp_path, catalog, first, grade=as_written)
     file = tmp_path / "class" / "student-001" / "doubling.py"
     before = file.read_bytes()
     file.write_bytes(solution + WRONG)
     again = RunOptions(exercises=("doubling",), terms=Terms(), resume=True)
     graded: list[str] = []
-    summary = graded_class(tmp_path, catalog, again, lambda result, *_: graded.append(result.student))
+
+    def report(result: Effective, *_: object) -> None:
+        graded.append(result.student)
+
+    summary = graded_class(tmp_path, catalog, again, report, grade=as_written)
     assert (summary.already, summary.seed) == (3, 5)
     assert scores(tmp_path / "out")["student-001"] == 6
     file.write_bytes(before)
-    graded_class(tmp_path, catalog, again, lambda result, *_: graded.append(result.student))
+    graded_class(tmp_path, catalog, again, report, grade=as_written)
     assert graded == ["student-001"]
     with open_results(tmp_path / "out") as results:
         noted = results.book.journal()
@@ -155,6 +160,7 @@ def test_a_submission_that_stops_its_grader_holds_nobody_up(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, unpacked: str, doubling: Exercise, solution: bytes
 ) -> None:
     monkeypatch.setattr(batch, "_TICK_S", 0.05)
+    monkeypatch.setattr(batch, "MAX_TRIES", 1)  # each takes a second
     make_class(tmp_path / "class", solution, 3)
     stop = b"\nimport os, signal\nos.kill(os.getppid(), signal.SIGSTOP)\n"
     (tmp_path / "class" / "student-001" / "doubling.py").write_bytes(solution + stop)
@@ -203,11 +209,14 @@ def test_a_run_that_is_refused_leaves_its_name_free(
     assert (tmp_path / "part" / "gradebook.sqlite").exists()
 
 
-def test_the_command_reports_json_lines_and_exit_codes(tmp_path: Path, solution: bytes) -> None:
+def test_the_command_reports_json_lines_and_exit_codes(
+    tmp_path: Path, solution: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(batch, "grade_all", lambda entries, terms, graders: right(entries, terms))
     make_class(tmp_path / "class", solution, 2)
     (tmp_path / "class" / "nobody").mkdir()
     line = ("grade", "run", tmp_path / "class", "--out", tmp_path / "out", "--exercise", "doubling", "--json")
-    done = in_process(*line, "--isolation", "process", env={**os.environ, "COURSE_CONTENT": str(MINI)})
+    done = in_process(*line)
     assert done.returncode == 6, done.stderr
     lines = [json.loads(line) for line in done.stdout.splitlines()]
     assert [line["schema"] for line in lines] == ["course.grade/1"] * 3 + ["course.grade-summary/1"]
@@ -311,21 +320,22 @@ def test_a_run_killed_before_it_had_a_gradebook_is_begun_again(
 def right(entries: Iterable[Entry], _: Terms) -> Iterator[Graded]:
     """Stands in for grader processes: everything that can be read is right, the rest is said."""
     for entry in entries:
-        problem = entry.problem
-        yield Graded(
-            entry,
-            Verdict(
-                exercise=entry.exercise.id,
-                scope="full",
-                state="graded" if problem is None else "ungradable",
-                score=0.0 if problem else entry.exercise.max_points,
-                max_score=entry.exercise.max_points,
-                passed=problem is None,
-                checks=(),
-                isolation="L1",
-                error=problem,
-            ),
-        )
+        if entry.problem is not None:
+            yield Graded(entry, batch.without_grading(entry, "ungradable", entry.problem))
+        else:
+            most = entry.exercise.max_points
+            verdict = Verdict(
+                exercise=entry.exercise.id, scope="full", state="graded", score=most, max_score=most,
+                passed=True, checks=(), isolation="L1",
+            )  # fmt: skip
+            yield Graded(entry, verdict)
+
+
+def as_written(entries: Iterable[Entry], terms: Terms) -> Iterator[Graded]:
+    """And what holds the mistake of every third student gets 6 points."""
+    for one in right(entries, terms):
+        wrong = one.entry.submission is not None and WRONG in one.entry.submission.files["doubling.py"]
+        yield replace(one, verdict=msgspec.structs.replace(one.verdict, score=6.0)) if wrong else one
 
 
 def test_a_download_with_several_exercises_is_graded_and_its_times_are_kept(

@@ -116,17 +116,12 @@ def judged_by_the_snapshot(
     first = outcomes(out)
     assert {judged_by for judged_by, _, _ in first.values()} == {version}
     assert {score for _, score, _ in first.values()} == {10.0, 6.0}
-    # What the edit would change is said, and nothing is changed by saying it.
-    with open_results(out) as results:
-        would = rerun(results, course, RerunOptions(dry_run=True, level=level)).changes
-    assert sorted((change.student, change.raw_before, change.raw_after) for change in would) == sorted(
+    # Changed by the edit, and made again from the snapshot of the first run: the same to the point.
+    with open_results(out, writing=True) as results:
+        changes = rerun(results, course, RerunOptions(level=level)).changes
+    assert sorted((change.student, change.raw_before, change.raw_after) for change in changes) == sorted(
         (student, score, score - 2.0) for student, (_, score, _) in first.items() if score == 10.0
     )
-    assert outcomes(out) == first
-    # Changed at last, and made again from the snapshot of the first run: the same to the point.
-    with open_results(out, writing=True) as results:
-        done = rerun(results, course, RerunOptions(level=level))
-    assert len(done.changes) == len(would)
     assert {judged_by for judged_by, _, _ in outcomes(out).values()} == {now}
     with open_results(out, writing=True) as results:
         again = rerun(results, course, RerunOptions(level=level, against="1"))
@@ -153,7 +148,7 @@ def test_an_edit_and_a_killed_grader_change_nothing_in_a_run(
             os.kill(pid, signal.SIGKILL)
             killed.append(pid)
 
-    judged_while_edited(tmp_path, course, solution, disturb, 40 if level else 8, level)
+    judged_while_edited(tmp_path, course, solution, disturb, 40 if level else 6, level)
     assert killed
 
 

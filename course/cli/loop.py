@@ -143,12 +143,11 @@ def watch(
 
 
 def go() -> int:
-    """Do one task after the other.
+    """Do one task after the other, checked at every save.
 
-    The next warm-up or exercise opens with its text, and its file is checked at every save. When it passes,
-    the next one opens; after the last come the quiz and `course submit`. Keys give a hint, the lesson where
-    it explains the task, the task before and the one after. With --json it opens nothing and says what is
-    next.
+    The next warm-up or exercise opens with its text. When it passes, the next one opens; after the last come
+    the quiz and `course submit`. Keys give a hint, the lesson where it explains the task, the task before and
+    the one after. With --json it opens nothing and says what is next.
     """
     console, here = current(), Here.load()
     if console.json:

@@ -36,8 +36,8 @@ def _imported(*words, **environ):
     return {line.rpartition("|")[2].strip().partition(".")[0] for line in ran.stderr.splitlines()}
 
 
-#: All but groups, and ``go``, whose help begins with other words than the list has.
-WHOLE = [name for name, one in registry.COMMANDS.items() if not one.is_group and name != "go"]
+#: All but groups.
+WHOLE = [name for name, one in registry.COMMANDS.items() if not one.is_group]
 
 
 @pytest.mark.parametrize("name", WHOLE)

@@ -74,6 +74,26 @@ mistakes(
     "Beyond the limit the impulse points the other way.",
     "Keep the direction of wanted.",
 )
+mistakes(
+    "UNIT_BEYOND",
+    "Beyond the limit your impulse has the length 1.",
+    "Give it the length of the limit: mu times normal.",
+).edit("friction", {"part * most / size": "part / size"})
+mistakes(
+    "NOT_DIVIDED_BY_THE_LENGTH",
+    "Beyond the limit you multiply by the limit, and do not divide by the length of wanted.",
+    "First make the length 1, then multiply by the limit.",
+).edit("friction", {"part * most / size": "part * most"})
+mistakes(
+    "SIZE_ONLY",
+    "You gave the size of the impulse.",
+    "Give its two components, in the direction of wanted.",
+).body(
+    "friction",
+    """
+        return min(mu * normal, math.hypot(*wanted))
+    """,
+)
 
 mistakes.accept(
     "By way of length and angle",

@@ -46,7 +46,7 @@ mistakes(
         digits = round(-math.log10(resolution))
         return min(round(distance, digits), limit)
     """,
-).edit("reading", {"round(distance / resolution) * resolution": "round(distance, 2)"})
+)
 mistakes(
     "LIMIT_IN_COUNTS",
     "You compared the counts with the limit, which is in metres.",
@@ -56,12 +56,6 @@ mistakes(
     "NOTHING_BEYOND",
     "Beyond the limit your sensor does not read the limit.",
     "There the reading is the limit itself.",
-).body(
-    "reading",
-    """
-        value = round(distance / resolution) * resolution
-        return value if value <= limit else None
-    """,
 ).body(
     "reading",
     """
@@ -116,4 +110,13 @@ def hypotheses():
             "size": {"COUNTS_NOT_METRES": lambda resolution: 1.0},
             "most": {"LIMIT_FORGOTTEN": lambda limit: math.inf},
         },
+    )
+
+
+@mistakes.more
+def two_decimals():
+    yield (
+        "reading",
+        ("DECIMAL_PLACES",),
+        lambda distance, resolution, limit: min(round(distance, 2), limit),
     )

@@ -28,9 +28,7 @@ mistakes(
     "A_FORGOTTEN",
     "The iterations of A are not used.",
     "A makes iterations / h of them in a second. B should make as many.",
-).edit("fair_step", {"h * other / iterations": "h / other"}).edit(
-    "fair_step", {"h * other / iterations": "h * other"}
-)
+).edit("fair_step", {"h * other / iterations": "h / other"})
 mistakes(
     "WHOLE_NUMBERS",
     "The quotient of the iterations is cut off to a whole number.",
@@ -57,3 +55,8 @@ mistakes.accept(
             return h / iterations * other
     """,
 )
+
+
+@mistakes.more
+def hypotheses():
+    yield "fair_step", ("A_FORGOTTEN",), lambda h, iterations, other: h * other

@@ -85,11 +85,6 @@ mistakes(
     """
         return x + h * v, v + a
     """,
-).body(
-    "euler_step",
-    """
-        return x + v, v + h * a
-    """,
 )
 mistakes(
     "ONE_STEP_LATE",
@@ -190,20 +185,13 @@ mistakes(
 )
 mistakes(
     "ASSIGNED_IN_TURN",
-    "Both balls have the same velocity afterwards: the first is overwritten before it is used.",
+    "Both balls have the same velocity afterwards: one of them is overwritten before it is used.",
     "Exchange both at once: return v2, v1.",
 ).body(
     "after_contact",
     """
         v1 = v2
         v2 = v1
-        return v1, v2
-    """,
-).body(
-    "after_contact",
-    """
-        v2 = v1
-        v1 = v2
         return v1, v2
     """,
 )
@@ -344,3 +332,9 @@ def hypotheses():
     yield "after_contact", ("ONE_REVERSED",), one_reversed(False)
     yield "after_contact", ("EXCHANGED_AND_REVERSED",), lambda v1, v2: (-v2, -v1)
     yield "gap", ("SIGN_OF_THE_GAP",), with_sign
+
+
+@mistakes.more
+def the_other_way():
+    yield "euler_step", ("STEP_MISSING",), lambda x, v, a, h: (x + v, v + h * a)
+    yield "after_contact", ("ASSIGNED_IN_TURN",), lambda v1, v2: (v1, v1)

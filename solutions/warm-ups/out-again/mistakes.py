@@ -18,14 +18,7 @@ mistakes(
     "PULLS_TOGETHER",
     "The speed can be negative, and then the bodies are pulled together.",
     "Where the depth is below the slop the speed is zero.",
-).edit("push_out", {"max(depth - slop, 0.0": "(depth - slop"}).body(
-    "push_out",
-    """
-        if depth <= 0:
-            return 0.0
-        return beta / h * (depth - slop)
-    """,
-)
+).edit("push_out", {"max(depth - slop, 0.0": "(depth - slop"})
 mistakes(
     "SLOP_FROM_THE_SPEED",
     "The slop, a length, is subtracted from a speed.",
@@ -94,3 +87,12 @@ mistakes.terms(
         "least": {"PULLS_TOGETHER": float("-inf")},
     },
 )
+
+
+@mistakes.more
+def gaps_alone():
+    yield (
+        "push_out",
+        ("PULLS_TOGETHER",),
+        lambda depth, h, beta, slop: beta / h * (depth - slop) if depth > 0 else 0.0,
+    )

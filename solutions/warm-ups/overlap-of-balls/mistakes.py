@@ -45,9 +45,7 @@ mistakes(
     "ONE_RADIUS_ONLY",
     "Only one of the two radii counts.",
     "Balls that just touch have their centres r1 + r2 apart.",
-).edit("overlap", {"r1 + r2": "r1"}).edit("overlap", {"r1 + r2": "r2"}).edit(
-    "overlap", {"r1 + r2": "min(r1, r2)"}
-)
+).edit("overlap", {"r1 + r2": "r1"})
 mistakes(
     "RADII_SUBTRACTED",
     "You subtracted the radii from each other.",
@@ -96,3 +94,9 @@ mistakes.terms(
         "sign": {"GAP_NOT_DEPTH": -1.0},
     },
 )
+
+
+@mistakes.more
+def one_radius():
+    yield "overlap", ("ONE_RADIUS_ONLY",), lambda p, q, r1, r2: r2 - math.dist(p, q)
+    yield "overlap", ("ONE_RADIUS_ONLY",), lambda p, q, r1, r2: min(r1, r2) - math.dist(p, q)

@@ -71,7 +71,7 @@ mistakes(
     "LAST_WORLD",
     "You compare the costs in one world only.",
     "Compare the largest cost of each controller.",
-).edit("robust", {"max(row)": "row[-1]"}).edit("robust", {"max(row)": "row[0]"})
+).edit("robust", {"max(row)": "row[-1]"})
 
 mistakes.accept(
     "The smallest index by a key",
@@ -105,3 +105,8 @@ def hypotheses():
     yield "robust", ("COST_NOT_INDEX",), cost
     yield "robust", ("COUNTED_FROM_ONE",), lambda costs: [max(row) for row in costs].index(cost(costs)) + 1
     yield "robust", ("LAST_OF_EQUALS",), last_of_equals
+
+
+@mistakes.more
+def first_world():
+    yield "robust", ("LAST_WORLD",), lambda costs: min(range(len(costs)), key=lambda i: costs[i][0])

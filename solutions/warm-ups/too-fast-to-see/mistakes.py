@@ -33,9 +33,7 @@ mistakes(
     "THICKNESS_TWICE",
     "The thickness counts twice.",
     "The wall is crossed once. It is the radius that counts twice, for the front and for the back.",
-).edit("fastest", {"(thickness + 2.0": "(2.0 * thickness + 2.0"}).edit(
-    "fastest", {"(thickness + 2.0 * radius)": "(2.0 * thickness + radius)"}
-)
+).edit("fastest", {"(thickness + 2.0": "(2.0 * thickness + 2.0"})
 mistakes(
     "BALL_INSIDE",
     "You took the way on which the whole ball is inside the wall.",

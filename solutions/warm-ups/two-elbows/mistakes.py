@@ -132,14 +132,6 @@ mistakes(
         aside = math.sqrt(length**2 - y**2)
         return tuple(sorted({x - aside, x + aside}))
     """,
-).body(
-    "carriages",
-    """
-        if abs(y) > length:
-            return None
-        aside = math.sqrt(length**2 - y**2)
-        return (x - aside, x + aside) if aside else x
-    """,
 )
 
 mistakes.accept(

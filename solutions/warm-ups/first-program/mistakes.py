@@ -161,19 +161,6 @@ mistakes(
     """,
 )
 mistakes(
-    "ZERO_IS_NONE",
-    "You give None where the first sample is on the ground already.",
-    "Its time is 0, and Python takes 0 for false. Ask `is not None`.",
-).body(
-    "landing_time",
-    """
-        for k, height in enumerate(heights):
-            if height <= 0.0:
-                return k * H or None
-        return None
-    """,
-)
-mistakes(
     "STUCK_TOGETHER",
     "Both balls go on with the mean of their velocities, as if they stuck together.",
     "Elastic balls keep their energy, too: equal ones exchange their velocities.",

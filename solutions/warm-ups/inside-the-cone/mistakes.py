@@ -84,16 +84,6 @@ mistakes(
     "Beyond the limit you multiply by the limit, and do not divide by the length of wanted.",
     "First make the length 1, then multiply by the limit.",
 ).edit("friction", {"part * most / size": "part * most"})
-mistakes(
-    "SIZE_ONLY",
-    "You gave the size of the impulse.",
-    "Give its two components, in the direction of wanted.",
-).body(
-    "friction",
-    """
-        return min(mu * normal, math.hypot(*wanted))
-    """,
-)
 
 mistakes.accept(
     "By way of length and angle",

@@ -8,7 +8,7 @@ from course.scoring import kit
 @pytest.mark.task("total_error")
 @pytest.mark.points(1)
 def test_budgets(submission):
-    """Budgets of two, three and one"""
+    """Budgets of two, three and four errors"""
     kit.expect_cases(
         submission,
         "total_error",

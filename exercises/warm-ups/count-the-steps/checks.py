@@ -13,7 +13,14 @@ def test_quotients_beside_a_whole_number(submission):
         submission,
         "steps_in",
         ("duration", "h"),
-        [((0.3, 0.1), 3), ((0.7, 0.1), 7), ((2.1, 0.3), 7), ((2.0, 0.01), 200)],
+        [
+            ((0.3, 0.1), 3),
+            ((0.7, 0.1), 7),
+            ((2.1, 0.3), 7),
+            ((2.0, 0.01), 200),
+            ((1.0, 0.1), 10),
+            ((0.25, 0.25), 1),
+        ],
         expect=kit.expect_equal,
         message="The number of steps is wrong.",
         help="Print duration / h with repr(): how far is it from a whole number?",
@@ -21,4 +28,15 @@ def test_quotients_beside_a_whole_number(submission):
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {"steps_in": [(0.3, 0.1), (0.7, 0.1), (2.1, 0.3), (0.29, 0.01), (2.0, 0.25), (0.57, 0.19)]}
+QUESTIONS = {
+    "steps_in": [
+        (0.3, 0.1),
+        (0.7, 0.1),
+        (2.1, 0.3),
+        (0.29, 0.01),
+        (2.0, 0.25),
+        (0.57, 0.19),
+        (1.0, 0.1),
+        (2.0, 0.01),
+    ]
+}

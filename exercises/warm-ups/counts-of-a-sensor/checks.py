@@ -13,11 +13,18 @@ def test_within(submission):
         submission,
         "reading",
         ("distance", "resolution", "limit"),
-        [((1.237, 0.01, 4.0), 1.24), ((1.233, 0.01, 4.0), 1.23), ((0.7, 0.25, 2.0), 0.75)],
+        [
+            ((1.237, 0.01, 4.0), 1.24),
+            ((1.233, 0.01, 4.0), 1.23),
+            ((0.7, 0.25, 2.0), 0.75),
+            ((2.6, 0.5, 7.0), 2.5),
+        ],
         quantity="reading",
         units="m",
         message="A reading within reach is wrong.",
-        help="How many counts is the distance, as a whole number?",
+        help=(
+            "How many counts is the distance, as a whole number? A reading is that many times the resolution."
+        ),
     )
 
 

@@ -8,7 +8,7 @@ from course.scoring import kit
 @pytest.mark.task("holding_torque")
 @pytest.mark.points(1)
 def test_torques(submission):
-    """Level, raised and lowered bars"""
+    """Level, raised and lowered bars, and bars beyond upright"""
     kit.expect_cases(
         submission,
         "holding_torque",
@@ -17,6 +17,8 @@ def test_torques(submission):
             ((2.0, 1.0, 0.0, 9.81), 9.81),
             ((3.0, 0.4, 0.7, 9.81), 4.50186111436),
             ((1.5, 0.8, -0.4, 1.62), 0.895271286171),
+            ((1.0, 1.0, 2.0, 9.81), -2.04120023326),
+            ((0.5, 2.0, -2.5, 1.62), -0.648926328593),
             ((2.0, 1.0, 0.0), 9.81),  # on earth, unless another g is given
         ],
         quantity="torque",

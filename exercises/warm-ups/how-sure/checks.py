@@ -20,7 +20,10 @@ def test_samples(submission):
         ],
         quantity="standard error",
         message="The standard error is wrong.",
-        help="Compute the standard deviation of one value first, then that of the mean.",
+        help=(
+            "Print two numbers: the standard deviation of the values, with n - 1, and the root of n."
+            " The result is the first over the second."
+        ),
     )
 
 

@@ -8,7 +8,7 @@ from course.scoring import kit
 @pytest.mark.task("seen")
 @pytest.mark.points(1)
 def test_readings(submission):
-    """Between samples, exactly at an arrival, and before the first"""
+    """Before the first arrival, between arrivals, exactly at one, and after the last"""
     kit.expect_cases(
         submission,
         "seen",
@@ -19,6 +19,9 @@ def test_readings(submission):
             (([0.0, 1.0, 2.0, 3.0], [5.0, 6.0, 7.0, 8.0], 0.5, 2.25), 6.0),
             (([0.0, 1.0], [5.0, 6.0], 0.5, 0.25), None),
             (([0.0, 0.25, 0.5, 0.75], [1.0, 2.0, 3.0, 4.0], 0.5, 0.75), 2.0),
+            (([0.0, 1.0, 2.0], [5.0, 6.0, 7.0], 0.5, 1.25), 5.0),
+            (([0.0, 1.0], [6.0, 5.0], 0.5, 4.0), 5.0),
+            (([0.0, 1.0, 2.0], [3.0, 0.0, -1.0], 0.25, 2.0), 0.0),
         ],
         expect=kit.expect_equal,
         message="That is not the newest value that has arrived.",
@@ -34,5 +37,8 @@ QUESTIONS = {
         ([0.0, 1.0, 2.0, 3.0], [5.0, 6.0, 7.0, 8.0], 0.5, 2.25),
         ([0.0, 1.0], [5.0, 6.0], 0.5, 0.25),
         ([0.0, 0.25, 0.5, 0.75], [1.0, 2.0, 3.0, 4.0], 0.5, 0.75),
+        ([0.0, 1.0, 2.0], [5.0, 6.0, 7.0], 0.5, 1.25),
+        ([0.0, 1.0], [6.0, 5.0], 0.5, 4.0),
+        ([0.0, 1.0, 2.0], [3.0, 0.0, -1.0], 0.25, 2.0),
     ]
 }

@@ -8,7 +8,7 @@ from course.scoring import kit
 @pytest.mark.task("angular_acceleration")
 @pytest.mark.points(1)
 def test_accelerations(submission):
-    """With and without the motor, level and raised"""
+    """With and without the motor, at several angles"""
     kit.expect_cases(
         submission,
         "angular_acceleration",
@@ -17,6 +17,7 @@ def test_accelerations(submission):
             ((0.0, 2.0, 1.0, 0.0), -14.715),  # on earth, unless another g is given
             ((12.0, 2.0, 1.0, 0.3, 9.81), 3.94222356252),
             ((-1.0, 0.5, 0.6, -1.0, 1.62), -18.8548910054),
+            ((1.5, 2.0, 1.0, 2.5, 9.81), 14.0388283028),
         ],
         quantity="angular acceleration",
         units="rad/s^2",
@@ -31,5 +32,6 @@ QUESTIONS = {
         (0.0, 2.0, 1.0, 0.0, 9.81),
         (12.0, 2.0, 1.0, 0.3, 9.81),
         (-1.0, 0.5, 0.6, -1.0, 1.62),
+        (1.5, 2.0, 1.0, 2.5, 9.81),
     ]
 }

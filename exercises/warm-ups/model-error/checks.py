@@ -22,7 +22,7 @@ def test_intervals(submission):
         ],
         expect=kit.expect_array,
         abs=1e-12,
-        quantity="ends of the interval",
+        quantity="the pair of ends",
         message="That is not the interval.",
         help="Its middle is simulated - measured. It reaches twice the root of a sum to either side.",
     )

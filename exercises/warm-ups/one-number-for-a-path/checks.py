@@ -14,21 +14,21 @@ def test_paths(submission):
         "rms",
         ("simulated", "measured"),
         [
-            (([0.0, 1.0], [0.3, 0.6]), 0.353553390593),
+            (([0.0, 1.0], [0.3, 0.4]), 0.474341649025),
             (([1.0, 2.0, 3.0], [1.1, 1.8, 3.2]), 0.173205080757),
             (([0.0, 0.0, 0.0, 0.0, 0.0], [1.0, -1.0, 2.0, -2.0, 0.5]), 1.43178210633),
         ],
         quantity="root mean square",
         units="m",
         message="The root mean square is wrong.",
-        help="Go through its name backwards: square, mean, root.",
+        help="Go through its name backwards: square, mean, root. What is squared is each difference itself.",
     )
 
 
 #: Calls that tell wrong programs apart.
 QUESTIONS = {
     "rms": [
-        ([0.0, 1.0], [0.3, 0.6]),
+        ([0.0, 1.0], [0.3, 0.4]),
         ([1.0, 2.0, 3.0], [1.1, 1.8, 3.2]),
         ([0.0, 0.0, 0.0, 0.0, 0.0], [1.0, -1.0, 2.0, -2.0, 0.5]),
     ]

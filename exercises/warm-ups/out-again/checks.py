@@ -13,13 +13,16 @@ def test_deep(submission):
         submission,
         "push_out",
         ("depth", "h", "beta", "slop"),
-        [((0.01, 0.01, 0.2, 0.002), 0.16), ((0.05, 0.004, 0.1, 0.01), 1.0)],
+        [((0.017, 0.01, 0.2, 0.002), 0.3), ((0.05, 0.004, 0.1, 0.01), 1.0)],
         abs=1e-12,
         source="closed form; absolute 1e-12 m/s where it is zero",
         quantity="separating speed",
         units="m/s",
         message="The speed that pushes out is wrong.",
-        help="What distance must be covered, and in what time?",
+        help=(
+            "The share beta of the depth beyond the slop must go within a step. What distance is "
+            "that, and in what time?"
+        ),
     )
 
 
@@ -44,7 +47,7 @@ def test_within_slop(submission):
 #: Calls that tell wrong programs apart.
 QUESTIONS = {
     "push_out": [
-        (0.01, 0.01, 0.2, 0.002),
+        (0.017, 0.01, 0.2, 0.002),
         (0.05, 0.004, 0.1, 0.01),
         (0.001, 0.01, 0.2, 0.002),
         (-0.03, 0.01, 0.2, 0.002),

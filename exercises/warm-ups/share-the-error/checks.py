@@ -8,12 +8,18 @@ from course.scoring import kit
 @pytest.mark.task("corrected")
 @pytest.mark.points(1)
 def test_corrections(submission):
-    """Small, large and whole corrections"""
+    """Small, large and whole corrections, and none"""
     kit.expect_cases(
         submission,
         "corrected",
         ("predicted", "measured", "share"),
-        [((1.0, 1.4, 0.25), 1.1), ((2.0, 1.0, 0.9), 1.1), ((-0.5, 0.7, 1.0), 0.7), ((3.0, 8.0, 0.1), 3.5)],
+        [
+            ((1.0, 1.4, 0.25), 1.1),
+            ((2.0, 1.0, 0.9), 1.1),
+            ((-0.5, 0.7, 1.0), 0.7),
+            ((3.0, 8.0, 0.1), 3.5),
+            ((2.5, -1.5, 0.0), 2.5),
+        ],
         quantity="position",
         units="m",
         message="The corrected position is wrong.",

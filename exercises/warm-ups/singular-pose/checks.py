@@ -31,7 +31,7 @@ def test_speeds(submission):
             rel=1e-9,
             abs=1e-9,
             source="closed form; absolute 1e-9 where it is zero",
-            quantity="speeds of carriage and rod",
+            quantity="the pair of speeds",
             units="m/s and rad/s",
             input=dict(zip(("angle", "length", "vx", "vy"), args, strict=True)),
             message="The speeds of the joints are wrong.",
@@ -42,11 +42,13 @@ def test_speeds(submission):
 @pytest.mark.task("joint_speeds")
 @pytest.mark.points(1)
 def test_singular_poses(submission):
-    """The rod upright, downright, and nearly upright"""
+    """Poses in which the tip can only move along the rail, and others"""
     for args, singular in (
         ((1.5707963267948966, 2.0, 0.3, 0.4), True),
         ((-1.5707963267948966, 1.0, 0.0, 1.0), True),
         ((1.5707963267948966, 2.0, 0.3, 0.0), True),
+        ((4.71238898038469, 1.0, 0.0, 1.0), True),
+        ((-4.71238898038469, 1.5, 0.3, 0.4), True),
         ((1.57, 2.0, 0.3, 0.4), False),
         ((0.0, 2.0, 0.3, 0.4), False),
         ((0.4, 2.0, 0.0, 0.0), False),
@@ -75,5 +77,6 @@ QUESTIONS = {
         (1.5707963267948966, 2.0, 0.3, 0.4),
         (-1.5707963267948966, 1.0, 0.0, 1.0),
         (1.5707963267948966, 2.0, 0.3, 0.0),
+        (4.71238898038469, 1.0, 0.0, 1.0),
     ]
 }

@@ -24,7 +24,18 @@ def test_both_places(submission):
             "You found no place, though the rod reaches the point.",
             expected="a pair",
             input=dict(zip(("x", "y", "length"), args, strict=True)),
-            help="The rod reaches the point if it is at least as long as |y|. Return both places.",
+            help=(
+                "The rod reaches the point if it is at least as long as |y|, wherever along the rail"
+                " that is. Return both places."
+            ),
+        )
+        kit.expect_length(
+            kit.as_list(found, "the pair of places"),
+            2,
+            name="the pair of places",
+            input=dict(zip(("x", "y", "length"), args, strict=True)),
+            message="You do not give two places.",
+            help="Give a pair. Where the rod stands upright both places are the same: give it twice.",
         )
         kit.expect_array(
             found,
@@ -32,7 +43,7 @@ def test_both_places(submission):
             rel=1e-9,
             abs=1e-9,
             source="closed form, written down to twelve digits; absolute 1e-9 m where it is zero",
-            quantity="places of the carriage",
+            quantity="the pair of places",
             units="m",
             input=dict(zip(("x", "y", "length"), args, strict=True)),
             message="The carriage stands in the wrong place.",

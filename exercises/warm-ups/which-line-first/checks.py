@@ -24,7 +24,10 @@ def test_energy_stays(submission):
             quantity="energy over the energy at the start",
             input={"k": k, "m": m, "h": h, "n": n},
             message="The energy of the swing does not stay where it began.",
-            help="Do one step on paper. Which line uses a value that the other has just computed?",
+            help=(
+                "Do one step on paper. One line needs old values alone, the other the value that the"
+                " first has just computed, and no mean of the two."
+            ),
         )
 
 

@@ -27,6 +27,32 @@ mistakes(
     "total_error",
     {"math.sqrt(sum(error * error for error in errors)": "sum(error * error for error in errors"},
 )
+mistakes(
+    "MEAN_OF_THE_ERRORS",
+    "Your result is the mean of the errors.",
+    "Another error makes the total larger: add the squares and take the root.",
+).edit("total_error", {"math.sqrt(sum(error * error for error in errors))": "sum(errors) / len(errors)"})
+mistakes(
+    "NOT_SQUARED",
+    "You took the root of the sum, but the errors are not squared.",
+    "Square each, add, then take the root.",
+).edit("total_error", {"error * error for error in errors": "errors"})
+mistakes(
+    "SUM_OVER_ROOT_OF_NUMBER",
+    "You divided the sum by the root of the number of errors.",
+    "Add the squares of the errors, and take the root of this sum.",
+).edit(
+    "total_error",
+    {"math.sqrt(sum(error * error for error in errors))": "sum(errors) / math.sqrt(len(errors))"},
+)
+mistakes(
+    "HALF_NOT_ROOT",
+    "You halved the sum of the squares instead of taking its root.",
+    "Write **0.5, or math.sqrt. In Python **1/2 is read as (**1)/2.",
+).edit(
+    "total_error",
+    {"math.sqrt(sum(error * error for error in errors))": "sum(error * error for error in errors) / 2"},
+)
 
 mistakes.accept(
     "With hypot",

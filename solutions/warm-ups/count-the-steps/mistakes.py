@@ -26,6 +26,20 @@ mistakes(
     "One is added to every count, even where it was right.",
     "Add nothing; round the quotient to the nearest whole number.",
 ).edit("steps_in", {"round(duration / h)": "int(duration / h) + 1"})
+mistakes(
+    "ADDED_UP",
+    "You add steps until the duration is reached. The sum has rounding errors, too, and the last comparison comes out wrong.",
+    "Divide once, and round the quotient to the nearest whole number.",
+).body(
+    "steps_in",
+    """
+        time, steps = 0.0, 0
+        while time < duration:
+            time += h
+            steps += 1
+        return steps
+    """,
+)
 
 mistakes.accept(
     "Cuts off after adding a half",

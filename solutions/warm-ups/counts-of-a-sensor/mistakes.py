@@ -34,6 +34,35 @@ mistakes(
     "Counts are rounded up, so the reading is half a count too large on average.",
     "Round to the nearest count.",
 )
+mistakes(
+    "DECIMAL_PLACES",
+    "You rounded to decimal places. That fits only counts of 0.1 m, 0.01 m and so on.",
+    "Divide by the resolution, round to a whole number, and multiply by the resolution again.",
+).body(
+    "reading",
+    """
+        import math
+
+        digits = round(-math.log10(resolution))
+        return min(round(distance, digits), limit)
+    """,
+)
+mistakes(
+    "LIMIT_IN_COUNTS",
+    "You compared the counts with the limit, which is in metres.",
+    "Turn the counts back into metres first.",
+).edit("reading", {"* resolution, limit)": ", limit) * resolution"})
+mistakes(
+    "NOTHING_BEYOND",
+    "Beyond the limit your sensor does not read the limit.",
+    "There the reading is the limit itself.",
+).body(
+    "reading",
+    """
+        value = round(distance / resolution) * resolution
+        return value if value <= limit else 0.0
+    """,
+)
 
 mistakes.accept(
     "Rounds by hand",
@@ -81,4 +110,13 @@ def hypotheses():
             "size": {"COUNTS_NOT_METRES": lambda resolution: 1.0},
             "most": {"LIMIT_FORGOTTEN": lambda limit: math.inf},
         },
+    )
+
+
+@mistakes.more
+def two_decimals():
+    yield (
+        "reading",
+        ("DECIMAL_PLACES",),
+        lambda distance, resolution, limit: min(round(distance, 2), limit),
     )

@@ -39,6 +39,29 @@ mistakes(
     "Your result is the slope of speed over force.",
     "Divide by the sum of the squared speeds.",
 ).edit("damping", {"v * v for v in speeds": "f * f for f in forces"})
+mistakes(
+    "ERRORS_OF_THE_SPEEDS",
+    "You made the errors of the speeds smallest, as if the noise were in them.",
+    "The errors are those of the forces, f - b v: divide the sum of v f by the sum of v v.",
+).edit(
+    "damping",
+    {"v * f for v": "f * f for v", "v * v for v in speeds": "v * f for v, f in zip(speeds, forces)"},
+)
+mistakes(
+    "SUM_SQUARED",
+    "You divided by the square of the sum of the speeds.",
+    "Square each speed first, then add.",
+).edit("damping", {"sum(v * v for v in speeds)": "sum(speeds) ** 2"})
+mistakes(
+    "NOT_DIVIDED",
+    "You gave the sum of v f, which is no slope.",
+    "Divide it by the sum of the squared speeds.",
+).edit("damping", {" / sum(v * v for v in speeds)": ""})
+mistakes(
+    "MEAN_OF_PRODUCTS",
+    "You divided the sum of v f by the number of points.",
+    "Divide it by the sum of the squared speeds.",
+).edit("damping", {"sum(v * v for v in speeds)": "len(speeds)"})
 
 mistakes.accept(
     "Two dot products",

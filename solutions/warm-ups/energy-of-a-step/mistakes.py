@@ -24,6 +24,26 @@ mistakes(
     "The energy shrinks here, but an explicit Euler step adds energy.",
     "Both squares are added: the sign is plus.",
 ).edit("growth", {"1.0 + h *": "1.0 - h *"})
+mistakes(
+    "ONLY_THE_GAIN",
+    "Your result is only the share that is added.",
+    "A factor contains what was there before: add 1.",
+).edit("growth", {"1.0 + h": "h"})
+mistakes(
+    "HALF_KEPT",
+    "What is added is half of what it should be.",
+    "The energy before has the factor 1/2, too: it drops out of the quotient.",
+).edit("growth", {"k / m": "k / m / 2"})
+mistakes(
+    "SQUARED",
+    "You squared the factor once more.",
+    "1 + h^2 k / m is the factor of the energy already.",
+).edit("growth", {"1.0 + h * h * k / m": "(1.0 + h * h * k / m) ** 2"})
+mistakes(
+    "MIXED_TERM_KEPT",
+    "You squared 1 + h omega. Its mixed term is not there in the energy.",
+    "The mixed terms of position and velocity have opposite signs and cancel.",
+).edit("growth", {"1.0 + h * h * k / m": "(1.0 + h * (k / m) ** 0.5) ** 2"})
 
 mistakes.accept(
     "By way of the angular frequency",

@@ -19,6 +19,26 @@ mistakes(
     "Your result is the number of steps per second.",
     "The length of one step is its inverse.",
 ).edit("fair_step", {"h * other / iterations": "iterations / (h * other)"})
+mistakes(
+    "ONE_ITERATION",
+    "Your result is the time for which one iteration of A stands.",
+    "B makes `other` iterations in a step: multiply by that.",
+).edit("fair_step", {"h * other / iterations": "h / iterations"})
+mistakes(
+    "A_FORGOTTEN",
+    "The iterations of A are not used.",
+    "A makes iterations / h of them in a second. B should make as many.",
+).edit("fair_step", {"h * other / iterations": "h / other"})
+mistakes(
+    "WHOLE_NUMBERS",
+    "The quotient of the iterations is cut off to a whole number.",
+    "Divide with one slash: /.",
+).edit("fair_step", {"h * other / iterations": "h * (other // iterations)"})
+mistakes(
+    "WORK_OF_A",
+    "Your result is the number of iterations that A makes in a second.",
+    "B's step is `other` over that number.",
+).edit("fair_step", {"h * other / iterations": "iterations / h"})
 
 mistakes.accept(
     "By the passes in a second",
@@ -35,3 +55,8 @@ mistakes.accept(
             return h / iterations * other
     """,
 )
+
+
+@mistakes.more
+def hypotheses():
+    yield "fair_step", ("A_FORGOTTEN",), lambda h, iterations, other: h * other

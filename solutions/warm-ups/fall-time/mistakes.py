@@ -34,6 +34,21 @@ mistakes(
     "You multiplied by g instead of dividing.",
     "Where gravity is stronger the fall is shorter: divide by g.",
 )
+mistakes(
+    "G_OUTSIDE_THE_ROOT",
+    "You took the root of 2 height and divided by g outside of it.",
+    "g belongs under the root, too: put brackets round 2 height / g.",
+).edit("fall_time", {"2.0 * height / g)": "2.0 * height) / g"})
+mistakes(
+    "TWO_OUTSIDE_THE_ROOT",
+    "The 2 stands outside the root.",
+    "Take the root of 2 height / g.",
+).edit("fall_time", {"math.sqrt(2.0 * height": "2.0 * math.sqrt(height"})
+mistakes(
+    "HALF_NOT_ROOT",
+    "Your result is height / g, which is half of what stands under the root.",
+    "Take the root of 2 height / g. (In Python **1/2 halves: write **0.5, or math.sqrt.)",
+).edit("fall_time", {"math.sqrt(2.0 * height / g)": "(2.0 * height / g) ** 1 / 2"})
 
 mistakes.accept(
     "The landing speed first, from the energy",

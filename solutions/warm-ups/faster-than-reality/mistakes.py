@@ -34,6 +34,16 @@ mistakes(
     "Your result is in per cent.",
     "Leave out the factor of 100.",
 )
+mistakes(
+    "TIMES_WALL",
+    "You multiplied by the time that you waited.",
+    "Divide by it: who waits longer has the slower simulation.",
+).edit("real_time_factor", {"/ wall": "* wall"})
+mistakes(
+    "ONE_STEP",
+    "You took the length of one step for the time inside the simulation.",
+    "Multiply it by the number of steps.",
+).edit("real_time_factor", {"steps * h": "h"})
 
 mistakes.accept(
     "Adds the steps up one by one",

@@ -146,6 +146,62 @@ mistakes(
     "The distance can be negative.",
     "Keep the abs().",
 )
+mistakes(
+    "LAST_BELOW",
+    "Your result is the time of the last sample at or below the ground.",
+    "The first one counts: return as soon as you have found it.",
+).body(
+    "landing_time",
+    """
+        landed = None
+        for k, height in enumerate(heights):
+            if height <= 0.0:
+                landed = k * H
+        return landed
+    """,
+)
+mistakes(
+    "STUCK_TOGETHER",
+    "Both balls go on with the mean of their velocities, as if they stuck together.",
+    "Elastic balls keep their energy, too: equal ones exchange their velocities.",
+).body(
+    "after_contact",
+    """
+        return (v1 + v2) / 2, (v1 + v2) / 2
+    """,
+)
+mistakes(
+    "ASSIGNED_IN_TURN",
+    "Both balls have the same velocity afterwards: one of them is overwritten before it is used.",
+    "Exchange both at once: return v2, v1.",
+).body(
+    "after_contact",
+    """
+        v1 = v2
+        v2 = v1
+        return v1, v2
+    """,
+)
+mistakes(
+    "START_TWICE",
+    "The start is in the list twice, and the state after the last step is not.",
+    "Put the start into the list before the loop, and append after each step.",
+).body(
+    "run",
+    """
+        states = [(x, v)]
+        for _ in range(n):
+            states.append((x, v))
+            v += H * a
+            x += H * v
+        return states
+    """,
+)
+mistakes(
+    "ONE_STEP_MORE",
+    "There is one step too many.",
+    "The loop takes n steps, and the start makes n + 1 pairs.",
+).edit("run", {"range(n)": "range(n + 1)"})
 
 mistakes.accept(
     "Arrays instead of lists",
@@ -263,3 +319,9 @@ def hypotheses():
     yield "after_contact", ("ONE_REVERSED",), one_reversed(False)
     yield "after_contact", ("EXCHANGED_AND_REVERSED",), lambda v1, v2: (-v2, -v1)
     yield "gap", ("SIGN_OF_THE_GAP",), with_sign
+
+
+@mistakes.more
+def the_other_way():
+    yield "euler_step", ("STEP_MISSING",), lambda x, v, a, h: (x + v, v + h * a)
+    yield "after_contact", ("ASSIGNED_IN_TURN",), lambda v1, v2: (v1, v1)

@@ -42,6 +42,26 @@ mistakes(
     "The time that is left stays what it was before the frame.",
     "Return the time that the steps did not use: account minus steps times h.",
 )
+mistakes(
+    "REST_OF_THE_FRAME",
+    "The time left is what remains of this frame alone, without what was left over from the frame before.",
+    "Return what remains in the account: account minus steps times h.",
+).edit("ticks", {"account - steps * h": "frame % h"})
+mistakes(
+    "STEPS_OF_THE_FRAME",
+    "The steps are counted from the frame alone, so what was left over is never used up.",
+    "First add the frame to the account, then see how often h fits.",
+).edit("ticks", {"int(account // h)": "int(frame // h)"})
+mistakes(
+    "ONE_STEP_AT_MOST",
+    "You take one step at most in a frame.",
+    "A long frame pays for several: take h out as often as it fits.",
+).edit("ticks", {"int(account // h)": "1 if account >= h else 0"})
+mistakes(
+    "REST_SUBTRACTED",
+    "The time left over is taken out of the account.",
+    "It belongs to the simulation: add it to the frame.",
+).edit("ticks", {"frame + left": "frame - left"})
 
 mistakes.accept(
     "Divides with remainder and returns a list",

@@ -29,6 +29,31 @@ mistakes(
     "The condition is the wrong way round: a rising ball bounces, a falling one does not.",
     "Upwards is positive, so a ball on its way down has v < 0.",
 )
+mistakes(
+    "RISING_STOPPED",
+    "A ball that is already rising is stopped.",
+    "It keeps its velocity: only a ball on its way down bounces.",
+).body(
+    "after_floor",
+    """
+        return max(-e * v, 0.0)
+    """,
+)
+mistakes(
+    "RISING_SLOWED",
+    "A ball that is already rising loses speed, too.",
+    "It keeps its velocity: only a ball on its way down bounces.",
+).edit("after_floor", {"-e * v if v < 0 else v": "e * abs(v)"})
+mistakes(
+    "SHARE_LOST",
+    "You took e as the share of the speed that is lost.",
+    "e is the share that is left.",
+).edit("after_floor", {"-e * v": "-(1 - e) * v"})
+mistakes(
+    "CHANGE_OF_VELOCITY",
+    "A falling ball gets 1 + e times its speed: that is the change of its velocity.",
+    "Its new speed is e times the old one.",
+).edit("after_floor", {"-e * v": "-(1 + e) * v"})
 
 mistakes.accept(
     "One formula for both cases",
@@ -56,7 +81,12 @@ mistakes.terms(
     bounce,
     {
         "falls": {"RISING_BOUNCES": lambda v: v > 0},
-        "share": {"SHARE_OF_ENERGY": lambda e: e**0.5, "RESTITUTION_IGNORED": lambda e: 1.0},
+        "share": {
+            "SHARE_OF_ENERGY": lambda e: e**0.5,
+            "RESTITUTION_IGNORED": lambda e: 1.0,
+            "SHARE_LOST": lambda e: 1 - e,
+            "CHANGE_OF_VELOCITY": lambda e: 1 + e,
+        },
         "turn": {"NOT_TURNED_ROUND": 1.0},
     },
 )

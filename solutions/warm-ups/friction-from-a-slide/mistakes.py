@@ -39,6 +39,16 @@ mistakes(
     "You multiplied by g instead of dividing.",
     "Where gravity is stronger the same slide needs less friction: divide by g.",
 )
+mistakes(
+    "BRACKETS_MISSING",
+    "You divide by the 2 only: g and the distance multiply.",
+    "Put brackets round all that divides: v**2 / (2 * g * distance).",
+).edit("friction_coefficient", {"(2.0 * g * distance)": "2.0 * g * distance"})
+mistakes(
+    "DISTANCE_MULTIPLIES",
+    "You multiplied by the distance.",
+    "A longer slide means less friction: divide by it.",
+).edit("friction_coefficient", {"(2.0 * g * distance)": "(2.0 * g) * distance"})
 
 mistakes.accept(
     "By way of the deceleration",
@@ -58,8 +68,8 @@ mistakes.accept(
 )
 
 
-def coefficient(half=0.5, power=2, gravity=lambda g: g):
-    return lambda v, distance, g=9.81: half * v**power / (gravity(g) * distance)
+def coefficient(half=0.5, power=2, gravity=lambda g: g, way=lambda s: s):
+    return lambda v, distance, g=9.81: half * v**power / (gravity(g) * way(distance))
 
 
 mistakes.terms(
@@ -73,5 +83,6 @@ mistakes.terms(
             "G_IGNORED": lambda g: 9.81,
             "G_MULTIPLIES": lambda g: 1 / g,
         },
+        "way": {"DISTANCE_MULTIPLIES": lambda s: 1 / s},
     },
 )

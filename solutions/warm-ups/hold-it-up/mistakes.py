@@ -31,6 +31,26 @@ mistakes(
     "You took the angle as degrees.",
     "It is in radians already.",
 )
+mistakes(
+    "SIZE_OF_THE_ARM",
+    "You took the lever arm without its sign.",
+    "Beyond upright the weight is on the other side, and the torque changes its sign: use the cosine as it is.",
+).edit("holding_torque", {"math.cos(angle)": "abs(math.cos(angle))"})
+mistakes(
+    "G_IGNORED",
+    "The argument g is not used.",
+    "Multiply by g, not by 9.81: on the Moon it is 1.62.",
+).edit("holding_torque", {"m * g": "m * 9.81"})
+mistakes(
+    "MASS_FOR_WEIGHT",
+    "You took the mass for the weight: g is missing.",
+    "The weight is m g.",
+).edit("holding_torque", {"m * g": "m"})
+mistakes(
+    "TANGENT",
+    "You took the lever arm as a tangent.",
+    "The bar is the long side of the triangle, so the side along the horizontal goes with the cosine.",
+).edit("holding_torque", {"math.cos": "math.tan"})
 
 mistakes.accept(
     "As a cross product",
@@ -51,8 +71,8 @@ mistakes.accept(
 )
 
 
-def torque(arm=0.5, turn=math.cos, unit=float, sign=1.0):
-    return lambda m, l, angle, g=9.81: sign * arm * m * g * l * turn(unit(angle))
+def torque(arm=0.5, turn=math.cos, unit=float, sign=1.0, pull=lambda g: g):
+    return lambda m, l, angle, g=9.81: sign * arm * m * pull(g) * l * turn(unit(angle))
 
 
 mistakes.terms(
@@ -60,8 +80,13 @@ mistakes.terms(
     torque,
     {
         "arm": {"WEIGHT_AT_THE_END": 1.0},
-        "turn": {"SINE_OF_THE_ANGLE": math.sin, "ANGLE_IGNORED": lambda angle: 1.0},
+        "turn": {
+            "SINE_OF_THE_ANGLE": math.sin,
+            "ANGLE_IGNORED": lambda angle: 1.0,
+            "SIZE_OF_THE_ARM": lambda angle: abs(math.cos(angle)),
+        },
         "unit": {"DEGREES": math.radians},
         "sign": {"GRAVITYS_OWN_TORQUE": -1.0},
+        "pull": {"G_IGNORED": lambda g: 9.81, "MASS_FOR_WEIGHT": lambda g: 1.0},
     },
 )

@@ -24,6 +24,40 @@ mistakes(
     "You took the variance for the standard deviation.",
     "The standard deviation is the root of the variance.",
 )
+mistakes(
+    "ROOT_OF_N_MINUS_ONE",
+    "The deviation is divided by the root of n - 1.",
+    "The n - 1 belongs in the standard deviation alone. Divide that by the root of n, the number of values.",
+).edit("standard_error", {"math.sqrt(len(values))": "math.sqrt(len(values) - 1)"})
+mistakes(
+    "MEAN_OF_THE_SIZES",
+    "You took the mean distance from the mean for the standard deviation.",
+    "Square the distances, add, divide by n - 1, and take the root.",
+).body(
+    "standard_error",
+    """
+        mean = sum(values) / len(values)
+        return sum(abs(value - mean) for value in values) / len(values) / math.sqrt(len(values))
+    """,
+)
+mistakes(
+    "SUM_NOT_DIVIDED",
+    "The sum of the squares is not divided by n - 1.",
+    "The standard deviation is the root of that sum over n - 1.",
+).edit(
+    "standard_error",
+    {
+        "statistics.stdev(values)": "math.sqrt(sum((value - sum(values) / len(values)) ** 2 for value in values))"
+    },
+)
+mistakes(
+    "OF_THE_VARIANCE",
+    "You divided the variance by n, but took no root of it.",
+    "Take the root of that.",
+).edit(
+    "standard_error",
+    {"statistics.stdev(values) / math.sqrt(len(values))": "statistics.variance(values) / len(values)"},
+)
 
 mistakes.accept(
     "Written out",

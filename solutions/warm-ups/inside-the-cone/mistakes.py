@@ -74,6 +74,16 @@ mistakes(
     "Beyond the limit the impulse points the other way.",
     "Keep the direction of wanted.",
 )
+mistakes(
+    "UNIT_BEYOND",
+    "Beyond the limit your impulse has the length 1.",
+    "Give it the length of the limit: mu times normal.",
+).edit("friction", {"part * most / size": "part / size"})
+mistakes(
+    "NOT_DIVIDED_BY_THE_LENGTH",
+    "Beyond the limit you multiply by the limit, and do not divide by the length of wanted.",
+    "First make the length 1, then multiply by the limit.",
+).edit("friction", {"part * most / size": "part * most"})
 
 mistakes.accept(
     "By way of length and angle",

@@ -65,6 +65,70 @@ mistakes(
     "Where nothing has arrived yet you give the first value.",
     "Give None there.",
 )
+mistakes(
+    "ZERO_IS_NONE",
+    "You give None where the newest value is 0.",
+    "Python takes 0 for false in `or` and in `if value`. Ask whether anything has arrived, not what.",
+).body(
+    "seen",
+    """
+        newest = None
+        for time, value in zip(times, values):
+            if time + latency <= now:
+                newest = value
+        return newest or None
+    """,
+)
+mistakes(
+    "FIRST_IS_NONE",
+    "You give None where only the first value has arrived.",
+    "Its index is 0, which Python takes for false. Ask whether one has arrived, not whether its index is above 0.",
+).body(
+    "seen",
+    """
+        found = None
+        for k, time in enumerate(times):
+            if time + latency <= now:
+                found = k
+        return values[found] if found else None
+    """,
+)
+mistakes(
+    "LARGEST_NOT_NEWEST",
+    "You take the largest value that has arrived.",
+    "Newest means the latest: take the last of those that have arrived.",
+).edit("seen", {"arrived[-1]": "max(arrived)"})
+mistakes(
+    "ALL_ARRIVED_IS_NONE",
+    "You give None where all values have arrived.",
+    "Where no value is still on its way, give the last one.",
+).body(
+    "seen",
+    """
+        for k, time in enumerate(times):
+            if time + latency > now:
+                return values[k - 1] if k else None
+        return None
+    """,
+)
+mistakes(
+    "ONE_TOO_EARLY",
+    "You give the value before the newest one that has arrived.",
+    "Of those that have arrived, the last one counts: its index is their number less one.",
+).edit("seen", {"arrived[-1] if arrived": "arrived[-2] if len(arrived) > 1"})
+mistakes(
+    "ONE_TOO_LATE",
+    "You give the first value that has not arrived yet.",
+    "Give the one before it.",
+).body(
+    "seen",
+    """
+        for time, value in zip(times, values):
+            if time + latency > now:
+                return value
+        return None
+    """,
+)
 
 mistakes.accept(
     "Goes from the newest to the oldest",
@@ -101,9 +165,17 @@ def index(times, values, latency, now):
     return arrived[-1] if arrived else None
 
 
+def falls_off(times, values, latency, now):
+    for k, time in enumerate(times):
+        if time + latency > now:
+            return values[k - 1]
+    return None
+
+
 @mistakes.more
 def hypotheses():
     yield "seen", ("INDEX_NOT_VALUE",), index
+    yield "seen", ("LAST_FOR_NONE", "ALL_ARRIVED_IS_NONE"), falls_off
     yield from with_terms(
         "seen",
         reading_of,

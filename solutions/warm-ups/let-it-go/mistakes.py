@@ -54,8 +54,38 @@ mistakes(
 mistakes(
     "SIGN_TURNED",
     "The acceleration has the wrong sign.",
-    "Upwards is positive: take the motor's torque less gravity's.",
+    "Positive is the direction in which the angle grows: take the motor's torque less gravity's.",
 )
+mistakes(
+    "MASS_AT_THE_CENTRE",
+    "You used the moment of inertia of a mass in the middle of the bar.",
+    "Half of a uniform bar is farther out, and that counts more: m l^2 / 3.",
+).edit("angular_acceleration", {"(m * l * l / 3.0)": "(m * (l / 2) ** 2)"})
+mistakes(
+    "SIZE_OF_THE_ARM",
+    "You took the lever arm of the weight without its sign.",
+    "Beyond upright the weight turns the bar the other way: use the cosine as it is.",
+).edit("angular_acceleration", {"math.cos(angle)": "abs(math.cos(angle))"})
+mistakes(
+    "G_IGNORED",
+    "The argument g is not used.",
+    "Multiply by g, not by 9.81: on the Moon it is 1.62.",
+).edit("angular_acceleration", {"m * g": "m * 9.81"})
+mistakes(
+    "INERTIA_NOT_USED",
+    "Your result is the sum of the torques.",
+    "Divide it by the moment of inertia about the end.",
+).edit("angular_acceleration", {" / (m * l * l / 3.0)": ""})
+mistakes(
+    "LENGTH_NOT_SQUARED",
+    "In the moment of inertia the length is not squared.",
+    "It is m l^2 / 3.",
+).edit("angular_acceleration", {"(m * l * l / 3.0)": "(m * l / 3.0)"})
+mistakes(
+    "BRACKETS_MISSING",
+    "You multiply by what stands behind the first slash: brackets are missing.",
+    "Put brackets round the moment of inertia: torque / (m * l**2 / 3).",
+).edit("angular_acceleration", {"(m * l * l / 3.0)": "m * l * l / 3.0"})
 
 mistakes.accept(
     "The moment of inertia by the parallel axis theorem",
@@ -92,10 +122,18 @@ def hypotheses():
         "angular_acceleration",
         acceleration,
         {
-            "inertia": {"INERTIA_ABOUT_THE_CENTRE": 1 / 12, "MASS_AT_THE_END": 1.0},
+            "inertia": {
+                "INERTIA_ABOUT_THE_CENTRE": 1 / 12,
+                "MASS_AT_THE_CENTRE": 1 / 4,
+                "MASS_AT_THE_END": 1.0,
+            },
             "turned": {"SIGN_TURNED": -1.0},
             "arm": {"WEIGHT_AT_THE_END": 1.0},
-            "turn": {"SINE_OF_THE_ANGLE": math.sin, "ANGLE_IGNORED": lambda angle: 1.0},
+            "turn": {
+                "SINE_OF_THE_ANGLE": math.sin,
+                "ANGLE_IGNORED": lambda angle: 1.0,
+                "SIZE_OF_THE_ARM": lambda angle: abs(math.cos(angle)),
+            },
             "unit": {"DEGREES": math.radians},
             "gravity": {"GRAVITY_UPWARDS": 1.0, "GRAVITY_FORGOTTEN": 0.0},
         },

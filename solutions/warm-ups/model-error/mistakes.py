@@ -137,7 +137,7 @@ mistakes(
 mistakes(
     "ONE_POINT_NINE_SIX",
     "You reach 1.96 uncertainties to either side.",
-    "That is for exactly 95 %. Here it is twice.",
+    "The README asks for twice the uncertainty.",
 ).body(
     "model_error",
     """

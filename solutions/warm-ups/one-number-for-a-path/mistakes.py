@@ -37,7 +37,7 @@ mistakes(
 mistakes(
     "ONE_LESS",
     "The sum is divided by n - 1.",
-    "No mean was estimated from the data here: divide by the number of differences.",
+    "Divide by the number of differences: their own mean plays no part in a root mean square.",
 ).body(
     "rms",
     """
@@ -48,6 +48,50 @@ mistakes(
     "MEAN_FORGOTTEN",
     "The squares are added, and no mean is taken.",
     "Divide the sum of the squares by their number before you take the root.",
+)
+mistakes(
+    "MEAN_TAKEN_OFF",
+    "You took their mean off the differences: that is their standard deviation.",
+    "A difference that is always the same counts, too: square the differences themselves.",
+).body(
+    "rms",
+    """
+        differences = [s - m for s, m in zip(simulated, measured)]
+        mean = sum(differences) / len(differences)
+        return math.sqrt(sum((d - mean) ** 2 for d in differences) / len(differences))
+    """,
+)
+mistakes(
+    "DIVIDED_AFTER_THE_ROOT",
+    "You took the root first, and divided by the number of differences after it.",
+    "Divide under the root: square, mean, root.",
+).edit("rms", {"math.sqrt(sum(squares) / len(squares))": "math.sqrt(sum(squares)) / len(squares)"})
+mistakes(
+    "HALF_NOT_ROOT",
+    "You halved the mean of the squares instead of taking its root.",
+    "Write **0.5, or math.sqrt. In Python **1/2 is read as (**1)/2.",
+).edit("rms", {"math.sqrt(sum(squares) / len(squares))": "sum(squares) / len(squares) / 2"})
+mistakes(
+    "DIFFERENCE_OF_TWO",
+    "You took the root mean square of each path, and subtracted.",
+    "Subtract first, at each moment: then square, mean, root.",
+).body(
+    "rms",
+    """
+        first = math.sqrt(sum(s * s for s in simulated) / len(simulated))
+        other = math.sqrt(sum(m * m for m in measured) / len(measured))
+        return abs(first - other)
+    """,
+)
+mistakes(
+    "LARGEST",
+    "Your result is the largest difference.",
+    "All differences count: square each, take the mean, take the root.",
+).body(
+    "rms",
+    """
+        return max(abs(s - m) for s, m in zip(simulated, measured))
+    """,
 )
 
 mistakes.accept(
@@ -68,13 +112,22 @@ mistakes.accept(
 )
 
 
-def mean_of(number=len, less=0, root=0.5):
+def mean_of(number=len, less=0, root=0.5, off=lambda d: 0.0):
     def rms(simulated, measured):
-        return (sum((s - m) ** 2 for s, m in zip(simulated, measured)) / (number(measured) - less)) ** root
+        differences = [s - m for s, m in zip(simulated, measured)]
+        middle = off(differences)
+        return (sum((d - middle) ** 2 for d in differences) / (number(measured) - less)) ** root
 
     return rms
 
 
 mistakes.terms(
-    "rms", mean_of, {"number": {"MEAN_FORGOTTEN": lambda values: 1}, "root": {"ROOT_MISSING": 1.0}}
+    "rms",
+    mean_of,
+    {
+        "number": {"MEAN_FORGOTTEN": lambda values: 1},
+        "less": {"ONE_LESS": 1},
+        "root": {"ROOT_MISSING": 1.0},
+        "off": {"MEAN_TAKEN_OFF": lambda d: sum(d) / len(d)},
+    },
 )

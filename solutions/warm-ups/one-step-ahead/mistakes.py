@@ -45,6 +45,21 @@ mistakes(
     "The acceleration is subtracted from the velocity.",
     "Add h a. Where it slows the body down, a itself is negative.",
 )
+mistakes(
+    "CHANGES_ALONE",
+    "You gave the changes of position and velocity, not their new values.",
+    "Add them to x and v.",
+).edit("step_ahead", {"x + h * v, v + h * a": "h * v, h * a"})
+mistakes(
+    "POSITION_KEPT",
+    "The position does not change.",
+    "It advances by h v.",
+).edit("step_ahead", {"x + h * v": "x"})
+mistakes(
+    "DIVIDED_BY_THE_STEP",
+    "You divided the rates by the step.",
+    "In a step of h seconds a value changes by h times its rate.",
+).edit("step_ahead", {"h * v, v + h * a": "v / h, v + a / h"})
 
 mistakes.accept(
     "Adds up a list of pairs",

@@ -47,6 +47,44 @@ mistakes(
     "The quotient of the steps has no logarithm.",
     "Divide the logarithm of error / error_small by that of h / h_small.",
 )
+mistakes(
+    "SLOPE_WITHOUT_LOGARITHM",
+    "You divided the change of the error by the change of the step, without logarithms.",
+    "A power is a slope only between logarithms.",
+).edit(
+    "observed_order",
+    {"math.log(error / error_small) / math.log(h / h_small)": "(error - error_small) / (h - h_small)"},
+)
+mistakes(
+    "LOGARITHM_OF_DIFFERENCES",
+    "You took the logarithm of a difference.",
+    "It belongs to the quotient: log(error / error_small), and log(h / h_small).",
+).edit("observed_order", {"error / error_small": "error - error_small", "h / h_small": "h - h_small"})
+mistakes(
+    "QUOTIENTS_OF_LOGARITHMS",
+    "You divided the logarithms of the two errors, and those of the two steps.",
+    "Subtract them: log(error) - log(error_small), and log(h) - log(h_small).",
+).body(
+    "observed_order",
+    """
+        return (math.log(error) / math.log(error_small)) / (math.log(h) / math.log(h_small))
+    """,
+)
+mistakes(
+    "ROUNDED",
+    "You rounded the order to a whole number.",
+    "Give it as it comes out: then one sees whether it is one.",
+).edit(
+    "observed_order",
+    {
+        "math.log(error / error_small) / math.log(h / h_small)": "round(math.log(error / error_small) / math.log(h / h_small))"
+    },
+)
+mistakes(
+    "LOGARITHMS_SUBTRACTED",
+    "You subtracted the logarithm of the steps from that of the errors.",
+    "Divide: the order is how many times one goes into the other.",
+).edit("observed_order", {") / math.log(h": ") - math.log(h"})
 
 mistakes.accept(
     "Slope of a line in logarithms",

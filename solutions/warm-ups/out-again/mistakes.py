@@ -29,6 +29,31 @@ mistakes(
     "The slop is added to the depth.",
     "The slop does not count: subtract it.",
 )
+mistakes(
+    "SLOP_AS_A_THRESHOLD",
+    "Beyond the slop the whole depth counts: you use the slop only to decide whether to push.",
+    "Its first part does not count: subtract the slop from the depth.",
+).edit("push_out", {"max(depth - slop, 0.0)": "(depth if depth > slop else 0.0)"})
+mistakes(
+    "BETA_IGNORED",
+    "beta is not used: everything beyond the slop is removed in one step.",
+    "Remove the share beta of it: multiply by beta.",
+).edit("push_out", {"beta / h": "1 / h"})
+mistakes(
+    "TIMES_THE_STEP",
+    "You multiplied by the step.",
+    "A speed is a distance over a time: divide by h.",
+).edit("push_out", {"beta / h": "beta * h"})
+mistakes(
+    "SHARE_LEFT",
+    "You took beta as the share that is left.",
+    "It is the share that is removed.",
+).edit("push_out", {"beta / h": "(1 - beta) / h"})
+mistakes(
+    "SIZE_OF_THE_DEPTH",
+    "You took the depth without its sign, so bodies that are apart are pushed.",
+    "A negative depth is a gap: there the speed is zero.",
+).edit("push_out", {"max(depth": "max(abs(depth)"})
 
 mistakes.accept(
     "Two cases",
@@ -57,8 +82,17 @@ mistakes.terms(
     "push_out",
     speed_of,
     {
-        "per": {"A_DISTANCE": lambda h: 1.0},
+        "per": {"A_DISTANCE": lambda h: 1.0, "TIMES_THE_STEP": lambda h: 1 / h},
         "less": {"SLOP_IGNORED": 0.0, "SLOP_ADDED": -1.0},
         "least": {"PULLS_TOGETHER": float("-inf")},
     },
 )
+
+
+@mistakes.more
+def gaps_alone():
+    yield (
+        "push_out",
+        ("PULLS_TOGETHER",),
+        lambda depth, h, beta, slop: beta / h * (depth - slop) if depth > 0 else 0.0,
+    )

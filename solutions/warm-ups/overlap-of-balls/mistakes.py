@@ -41,6 +41,21 @@ mistakes(
     "You doubled the radii.",
     "Balls that just touch have their centres r1 + r2 apart.",
 )
+mistakes(
+    "ONE_RADIUS_ONLY",
+    "Only one of the two radii counts.",
+    "Balls that just touch have their centres r1 + r2 apart.",
+).edit("overlap", {"r1 + r2": "r1"})
+mistakes(
+    "RADII_SUBTRACTED",
+    "You subtracted the radii from each other.",
+    "Balls that just touch have their centres r1 + r2 apart: add them.",
+).edit("overlap", {"r1 + r2": "abs(r1 - r2)"})
+mistakes(
+    "SIZE_ONLY",
+    "You took the size of the depth, so a gap counts as an overlap.",
+    "Leave out the abs: a gap is negative.",
+).edit("overlap", {"r1 + r2 - math.dist(p, q)": "abs(r1 + r2 - math.dist(p, q))"})
 
 mistakes.accept(
     "Pythagoras by hand",
@@ -79,3 +94,9 @@ mistakes.terms(
         "sign": {"GAP_NOT_DEPTH": -1.0},
     },
 )
+
+
+@mistakes.more
+def one_radius():
+    yield "overlap", ("ONE_RADIUS_ONLY",), lambda p, q, r1, r2: r2 - math.dist(p, q)
+    yield "overlap", ("ONE_RADIUS_ONLY",), lambda p, q, r1, r2: min(r1, r2) - math.dist(p, q)

@@ -34,6 +34,16 @@ mistakes(
     "Where the sum would go below zero you change nothing.",
     "Take back what there is: apply -total.",
 )
+mistakes(
+    "SUM_BELOW_ZERO",
+    "Where the sum would go below zero you give that sum.",
+    "Take back what there is: apply -total.",
+).edit("applied", {"max(total + wanted, 0.0) - total": "wanted if total + wanted >= 0 else total + wanted"})
+mistakes(
+    "ONLY_WHAT_IS_LEFT",
+    "You compare the correction with the sum as if it took from it.",
+    "A correction may add as much as it wants. Only total + wanted must not be below zero.",
+).edit("applied", {"max(total + wanted, 0.0) - total": "min(total, wanted)"})
 
 mistakes.accept(
     "The correction is at least minus the sum",

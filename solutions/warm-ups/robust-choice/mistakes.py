@@ -51,6 +51,27 @@ mistakes(
     "Of equal controllers you take the last one.",
     "Take the first: compare with <, not <=.",
 )
+mistakes(
+    "SMALLEST_SPREAD",
+    "You take the controller whose costs differ the least.",
+    "Costs that are all large differ little, too. Compare the worst costs.",
+).edit("robust", {"max(row) for": "max(row) - min(row) for"})
+mistakes(
+    "COSTS_AS_REWARDS",
+    "You take the controller whose smallest cost is the largest. That would be careful if the numbers were rewards.",
+    "A small cost is good: the worst of a controller is its largest cost, and the smallest of these counts.",
+).body(
+    "robust",
+    """
+        best = [min(row) for row in costs]
+        return best.index(max(best))
+    """,
+)
+mistakes(
+    "LAST_WORLD",
+    "You compare the costs in one world only.",
+    "Compare the largest cost of each controller.",
+).edit("robust", {"max(row)": "row[-1]"})
 
 mistakes.accept(
     "The smallest index by a key",
@@ -84,3 +105,8 @@ def hypotheses():
     yield "robust", ("COST_NOT_INDEX",), cost
     yield "robust", ("COUNTED_FROM_ONE",), lambda costs: [max(row) for row in costs].index(cost(costs)) + 1
     yield "robust", ("LAST_OF_EQUALS",), last_of_equals
+
+
+@mistakes.more
+def first_world():
+    yield "robust", ("LAST_WORLD",), lambda costs: min(range(len(costs)), key=lambda i: costs[i][0])

@@ -16,7 +16,7 @@ mistakes(
 )
 mistakes(
     "CFM_KEPT",
-    "The ERP follows the step, but the CFM is the old one.",
+    "The CFM is the old one.",
     "The CFM is one over h k + c: it contains the step, too.",
 ).body(
     "same_floor",
@@ -43,6 +43,49 @@ mistakes(
     "The damper was taken to be one over the CFM, which is h k + c.",
     "Subtract the spring's share: c is what is left of one over the CFM without h k.",
 ).edit("same_floor", {"damper = (1 - erp) / cfm": "damper = 1 / cfm"})
+mistakes(
+    "ERP_KEPT",
+    "The ERP is the old one.",
+    "The ERP is the share of h k in h k + c, so it changes with the step, too.",
+).edit("same_floor", {"return new_h * spring / whole": "return erp"})
+mistakes(
+    "CFM_SCALED",
+    "The CFM is scaled as if it went with one over the step.",
+    "It is one over h k + c, and c does not change with the step.",
+).edit("same_floor", {"1 / whole": "cfm * h / new_h"})
+mistakes(
+    "CFM_SCALED_WITH_THE_STEP",
+    "The CFM is scaled like the step.",
+    "It is one over h k + c: a longer step makes it smaller.",
+).edit("same_floor", {"1 / whole": "cfm * new_h / h"})
+mistakes(
+    "ERP_SCALED_AGAINST_THE_STEP",
+    "The ERP is scaled like one over the step.",
+    "Compute the spring and the damper, and from them the ERP at the new step: a longer step makes it larger.",
+).edit("same_floor", {"new_h * spring / whole": "erp * h / new_h"})
+mistakes(
+    "STEPS_EXCHANGED",
+    "The two steps are exchanged.",
+    "The old numbers belong to h, and the new ones to new_h.",
+).body(
+    "same_floor",
+    """
+        spring = erp / (cfm * new_h)
+        damper = (1 - erp) / cfm
+        whole = h * spring + damper
+        return h * spring / whole, 1 / whole
+    """,
+)
+mistakes(
+    "CFM_NOT_INVERTED",
+    "Your second number is h k + c itself.",
+    "The CFM is one over it.",
+).edit("same_floor", {"1 / whole": "whole"})
+mistakes(
+    "SWAPPED",
+    "The two numbers are exchanged.",
+    "The ERP comes first, then the CFM.",
+).edit("same_floor", {"new_h * spring / whole, 1 / whole": "1 / whole, new_h * spring / whole"})
 
 mistakes.accept(
     "Solves two equations for the spring and the damper",
@@ -63,4 +106,30 @@ mistakes.accept(
             share = r * erp + 1 - erp
             return [r * erp / share, cfm / share]
     """,
+)
+
+
+def floor_of(erp=lambda e, r: r * e / (r * e + 1 - e), cfm=lambda e, r: 1 / (r * e + 1 - e)):
+    def same_floor(e, old, h, new_h):
+        r = new_h / h
+        return erp(e, r), old * cfm(e, r)
+
+    return same_floor
+
+
+mistakes.terms(
+    "same_floor",
+    floor_of,
+    {
+        "erp": {
+            "ERP_KEPT": lambda e, r: e,
+            "ERP_SCALED": lambda e, r: e * r,
+            "ERP_SCALED_AGAINST_THE_STEP": lambda e, r: e / r,
+        },
+        "cfm": {
+            "CFM_KEPT": lambda e, r: 1.0,
+            "CFM_SCALED": lambda e, r: 1 / r,
+            "CFM_SCALED_WITH_THE_STEP": lambda e, r: r,
+        },
+    },
 )

@@ -144,6 +144,30 @@ mistakes(
     "You measured from where a begins to where b ends.",
     "The gap is between the ends that face each other, whichever shape is ahead.",
 ).edit("shadow_gap", {"min(on_b) - max(on_a), min(on_a) - max(on_b)": "on_b) - min(on_a"})
+mistakes(
+    "MEAN_OF_THE_CORNERS",
+    "You took the mean of the corners for the middle of a shadow.",
+    "The middle is half way between the two ends. It is simpler to compare the ends themselves.",
+).edit(
+    "shadow_gap",
+    {
+        "max(min(on_b) - max(on_a), min(on_a) - max(on_b))": "abs(sum(on_b) / len(on_b) - sum(on_a) / len(on_a)) - (\n        max(on_a) - min(on_a) + max(on_b) - min(on_b)\n    ) / 2"
+    },
+)
+mistakes(
+    "FIRST_AND_LAST_CORNER",
+    "You took the first and the last corner for the ends of a shadow.",
+    "The ends are its smallest and its largest corner, wherever in the list they are.",
+).body(
+    "shadow_gap",
+    """
+        dx, dy = direction
+        size = math.hypot(dx, dy)
+        on_a = [(x * dx + y * dy) / size for x, y in a]
+        on_b = [(x * dx + y * dy) / size for x, y in b]
+        return max(on_b[0] - on_a[-1], on_a[0] - on_b[-1])
+    """,
+)
 
 mistakes.accept(
     "Divides once, at the end",

@@ -37,6 +37,21 @@ mistakes(
     "The correction is added to the measurement.",
     "It starts from the prediction.",
 )
+mistakes(
+    "SIZE_OF_THE_DIFFERENCE",
+    "You took the difference without its sign, so the correction always goes up.",
+    "Leave out the abs: where the measurement is smaller the position must go down.",
+).edit("corrected", {"(measured - predicted)": "abs(measured - predicted)"})
+mistakes(
+    "BOTH_IN_FULL",
+    "You added the whole difference: your result is the measurement.",
+    "Go only the given share of the way.",
+).edit("corrected", {"share * (measured - predicted)": "(measured - predicted)"})
+mistakes(
+    "BRACKETS_MISSING",
+    "Only the measurement is multiplied by the share, and then the prediction is subtracted in full.",
+    "Put brackets round measured - predicted.",
+).edit("corrected", {"(measured - predicted)": "measured - predicted"})
 
 mistakes.accept(
     "Starts from the other end",

@@ -147,6 +147,11 @@ mistakes(
     "In a singular pose you give nan.",
     "The README asks for None there.",
 )
+mistakes(
+    "QUARTER_TURNS_ONLY",
+    "You give None only for angles of a quarter turn, to either side.",
+    "After a further half turn the rod is upright or hangs again: compare |cos(angle)| with 1e-9.",
+).edit("joint_speeds", {"abs(math.cos(angle)) < 1e-9": "abs(abs(angle) - math.pi / 2) < 1e-9"})
 
 mistakes.accept(
     "Solves J v = (vx, vy)",

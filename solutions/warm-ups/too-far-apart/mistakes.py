@@ -26,6 +26,36 @@ mistakes(
     "You divide by the variance.",
     "Take the root of the sum of the squares.",
 ).edit("distance_in_doubts", {"math.hypot(doubt_s, doubt_m": "(doubt_s**2 + doubt_m**2"})
+mistakes(
+    "MEAN_OF_THE_SQUARES",
+    "You took the root of the mean of the squares: the uncertainty of one of the two, not of their difference.",
+    "Add the squares without halving, and take the root.",
+).edit("distance_in_doubts", {"math.hypot(doubt_s, doubt_m)": "math.sqrt((doubt_s**2 + doubt_m**2) / 2)"})
+mistakes(
+    "MEASUREMENT_WITHOUT_DOUBT",
+    "Only the simulation's uncertainty counts.",
+    "A measurement has an uncertainty too: combine both.",
+).edit("distance_in_doubts", {"math.hypot(doubt_s, doubt_m)": "doubt_s"})
+mistakes(
+    "LARGER_DOUBT",
+    "Only the larger uncertainty counts.",
+    "Both count: add their squares and take the root.",
+).edit("distance_in_doubts", {"math.hypot(doubt_s, doubt_m)": "max(doubt_s, doubt_m)"})
+mistakes(
+    "MEAN_OF_THE_DOUBTS",
+    "You divide by the mean of the uncertainties.",
+    "The uncertainty of a difference is larger than either: add the squares and take the root.",
+).edit("distance_in_doubts", {"math.hypot(doubt_s, doubt_m)": "((doubt_s + doubt_m) / 2)"})
+mistakes(
+    "HALF_NOT_ROOT",
+    "You took the sum of the squares without its root, and divided by 2.",
+    "Write **0.5, or math.sqrt. In Python **1/2 is read as (**1)/2. And put brackets round what you divide by.",
+).edit("distance_in_doubts", {"math.hypot(doubt_s, doubt_m)": "(doubt_s**2 + doubt_m**2) / 2"})
+mistakes(
+    "NOT_SQUARED",
+    "You took the root of the sum, but the uncertainties are not squared.",
+    "Square each, add, then take the root.",
+).edit("distance_in_doubts", {"math.hypot(doubt_s, doubt_m)": "math.sqrt(doubt_s + doubt_m)"})
 
 mistakes.accept(
     "The root of a quotient",
@@ -56,6 +86,9 @@ mistakes.terms(
             "DOUBTS_ADDED": lambda s, m: s + m,
             "ROOT_MISSING": lambda s, m: s * s + m * m,
             "SIMULATION_WITHOUT_DOUBT": lambda s, m: m,
+            "MEASUREMENT_WITHOUT_DOUBT": lambda s, m: s,
+            "LARGER_DOUBT": max,
+            "MEAN_OF_THE_SQUARES": lambda s, m: math.hypot(s, m) / math.sqrt(2),
         },
         "size": {"SIGN_KEPT": lambda d: d},
     },

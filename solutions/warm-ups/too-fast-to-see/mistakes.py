@@ -29,6 +29,21 @@ mistakes(
     "Your result is a distance: the step is not used.",
     "A speed is a distance over a time: divide by h.",
 )
+mistakes(
+    "THICKNESS_TWICE",
+    "The thickness counts twice.",
+    "The wall is crossed once. It is the radius that counts twice, for the front and for the back.",
+).edit("fastest", {"(thickness + 2.0": "(2.0 * thickness + 2.0"})
+mistakes(
+    "BALL_INSIDE",
+    "You took the way on which the whole ball is inside the wall.",
+    "It overlaps the wall as long as any part is inside: add the ball's diameter.",
+).edit("fastest", {"thickness + 2": "thickness - 2"})
+mistakes(
+    "STEP_OVER_DISTANCE",
+    "The quotient is upside down.",
+    "A speed is a distance over a time: divide by h.",
+).edit("fastest", {"(thickness + 2.0 * radius) / h": "h / (thickness + 2.0 * radius)"})
 
 mistakes.accept(
     "By the diameter",
@@ -47,14 +62,15 @@ mistakes.accept(
 )
 
 
-def speed_of(radii=2, per=lambda way, h: way / h):
-    return lambda thickness, radius, h: per(thickness + radii * radius, h)
+def speed_of(walls=1, radii=2, per=lambda way, h: way / h):
+    return lambda thickness, radius, h: per(walls * thickness + radii * radius, h)
 
 
 mistakes.terms(
     "fastest",
     speed_of,
     {
+        "walls": {"THICKNESS_TWICE": 2},
         "radii": {"RADIUS_FORGOTTEN": 0, "RADIUS_ONCE": 1},
         "per": {
             "TIMES_THE_STEP": lambda way, h: way * h,

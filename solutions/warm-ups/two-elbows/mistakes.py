@@ -115,6 +115,24 @@ mistakes(
     "For points out of reach you give nan.",
     "The README asks for None there.",
 )
+mistakes(
+    "X_AGAINST_THE_LENGTH",
+    "You compared x with the length to see whether the rod reaches the point.",
+    "The carriage goes along the rail, so only the distance from the rail counts: |y|.",
+).edit("carriages", {"if abs(y) > length": "if abs(x) > length"})
+mistakes(
+    "GIVEN_ONCE",
+    "Where the rod stands upright you give one place.",
+    "Both places are the same there: give it twice.",
+).body(
+    "carriages",
+    """
+        if abs(y) > length:
+            return None
+        aside = math.sqrt(length**2 - y**2)
+        return tuple(sorted({x - aside, x + aside}))
+    """,
+)
 
 mistakes.accept(
     "Solves (x - s)^2 + y^2 = length^2",

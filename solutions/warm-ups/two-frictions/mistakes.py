@@ -44,6 +44,46 @@ mistakes(
     "Your result is mu1, whatever the rule is.",
     "Look at which rule is given, and use both coefficients.",
 )
+mistakes(
+    "ELSE_OVERWRITES",
+    'For "product" you give the larger coefficient.',
+    "If your rules are separate `if`s, the last `else` belongs to the last of them only, and overwrites the product: write elif.",
+).body(
+    "pair_friction",
+    """
+        if rule == "product":
+            result = mu1 * mu2
+        if rule == "mean":
+            result = (mu1 + mu2) / 2
+        else:
+            result = max(mu1, mu2)
+        return result
+    """,
+)
+mistakes(
+    "MEAN_AND_PRODUCT_SWAPPED",
+    'For "mean" you multiply, and for "product" you take the mean.',
+    "Exchange the two lines.",
+).body(
+    "pair_friction",
+    """
+        if rule == "mean":
+            return mu1 * mu2
+        if rule == "product":
+            return (mu1 + mu2) / 2
+        return max(mu1, mu2)
+    """,
+)
+mistakes(
+    "FIRST_FOR_LARGER",
+    'For "larger" you give mu1, even where mu2 is larger.',
+    "Take max(mu1, mu2).",
+).edit("pair_friction", {"max(mu1, mu2)": "mu1"})
+mistakes(
+    "LIMITED_TO_ONE",
+    "You cut coefficients off at 1.",
+    "A coefficient of friction may be above 1: leave it as it is.",
+).edit("pair_friction", {"mu1 * mu2": "min(mu1, 1.0) * min(mu2, 1.0)"})
 
 mistakes.accept(
     "A match over the rule",

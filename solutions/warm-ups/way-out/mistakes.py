@@ -182,6 +182,21 @@ mistakes(
     "You chose the axis by the size of the boxes.",
     "Compare how deep they overlap along each axis.",
 ).edit("way_out", {"if along < across:": "if width < height:"})
+mistakes(
+    "RELATIVE_DEPTHS",
+    "You compared the depths as shares of the width and the height.",
+    "The move is a length: compare the depths themselves, in m.",
+).edit("way_out", {"if along < across:": "if along / width < across / height:"})
+mistakes(
+    "SIGN_OF_X",
+    "Along y your box moves by the sign of x.",
+    "Along y the sign of y counts: the box moves to the side where it is already.",
+).edit("way_out", {".copysign(across, y": ".copysign(across, x"})
+mistakes(
+    "SIGN_OF_Y",
+    "Along x your box moves by the sign of y.",
+    "Along x the sign of x counts: the box moves to the side where it is already.",
+).edit("way_out", {".copysign(along, x": ".copysign(along, y"})
 
 mistakes.accept(
     "Tries all four ways",

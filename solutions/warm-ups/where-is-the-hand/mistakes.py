@@ -52,6 +52,31 @@ mistakes(
     "You took the arm for one long link at the angle a1 + a2.",
     "The first link points at a1 alone: add the two links one by one.",
 )
+mistakes(
+    "SECOND_LINK_ALONE",
+    "You left out the first link.",
+    "The second link begins at the elbow: add where that is.",
+).edit("hand", {"l1 * math.cos(a1) + ": "", "l1 * math.sin(a1) + ": ""})
+mistakes(
+    "FIRST_LINK_ALONE",
+    "Your result is where the elbow is.",
+    "Add the second link, which points at a1 + a2.",
+).edit("hand", {" + l2 * math.cos(a1 + a2)": "", " + l2 * math.sin(a1 + a2)": ""})
+mistakes(
+    "LINKS_EXCHANGED",
+    "The lengths of the two links are exchanged.",
+    "l1 goes with a1, and l2 with a1 + a2.",
+).body(
+    "hand",
+    """
+        return l2 * math.cos(a1) + l1 * math.cos(a1 + a2), l2 * math.sin(a1) + l1 * math.sin(a1 + a2)
+    """,
+)
+mistakes(
+    "BOTH_AT_THE_FIRST_ANGLE",
+    "You took the arm as stretched out: a2 is not used.",
+    "The second link points at a1 + a2.",
+).edit("hand", {"math.cos(a1 + a2)": "math.cos(a1)", "math.sin(a1 + a2)": "math.sin(a1)"})
 
 mistakes.accept(
     "Turns of complex numbers",

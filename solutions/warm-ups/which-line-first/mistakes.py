@@ -51,6 +51,47 @@ mistakes(
     "The force pushes the mass away from the middle.",
     "A spring pulls back: the force is -k x.",
 )
+mistakes(
+    "MEAN_VELOCITY",
+    "The position moves with the mean of the old and the new velocity, and the swing still grows.",
+    "Move it with the new velocity alone.",
+).body(
+    "swing",
+    """
+        for _ in range(n):
+            before = v
+            v += h * (-k / m * x)
+            x += h * (before + v) / 2
+        return x, v
+    """,
+)
+mistakes(
+    "MEAN_POSITION",
+    "The force is taken at the mean of the old and the new position, and the swing still grows.",
+    "Take it at the new position alone.",
+).body(
+    "swing",
+    """
+        for _ in range(n):
+            before = x
+            x += h * v
+            v += h * (-k / m * (before + x) / 2)
+        return x, v
+    """,
+)
+mistakes(
+    "SECOND_ORDER",
+    "This is the step of a method of second order (Heun's, or the midpoint method). The swing still grows, only slower.",
+    "No new formula is needed: let one of the two lines of the file use the value that the other has just computed.",
+).body(
+    "swing",
+    """
+        for _ in range(n):
+            a = -k / m * x
+            x, v = x + h * v + 0.5 * h * h * a, v + h * a - 0.5 * h * h * k / m * v
+        return x, v
+    """,
+)
 
 mistakes.accept(
     "Half a kick on either side of the move",

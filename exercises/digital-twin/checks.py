@@ -106,7 +106,7 @@ def _expect_bias(submission, measured, bias, true, step, given):
 @pytest.mark.task("imu")
 @pytest.mark.points(0)
 def test_imu_draws(submission):
-    """imu: where noise and bias come from, and whether they go together"""
+    """imu: the random numbers of noise and bias"""
     sensors.expect_gyroscope_draws(submission, 5, 0.02)
     sensors.expect_walk(submission, 20000, 0.02, 0.01, 0.3, np.random.default_rng(6))
 
@@ -189,7 +189,8 @@ def test_lidar_nearest(submission):
         units="m",
         input={"pose": [0.0, 0.0, 0.0], "segments": walls, "angles": angles, "r_max": 5.0, "sigma": 0.0},
         message="With several walls, without noise, a distance is wrong.",
-        help="Take the smallest of all hits; a hit is ahead of the robot and between the ends of its wall.",
+        help="Take the beam of this index alone. For each wall, print the distance along the beam and the "
+        "place between the ends of the wall: is it a hit? Then take the smallest of all hits.",
         diagnose=lambda: sensors.scanners.of_straight_lidar(submission, noisy=False),
     )
 

@@ -1031,7 +1031,7 @@ mistakes("STATE_KEPT").program(
 )
 mistakes(
     "GENERATOR_COPIED",
-    "Your code makes a deep copy of rng, the generator that is passed in. What it draws from a copy, it draws again in the next call with the same generator.",
+    "Your code makes a deep copy of rng, the generator that is passed in. A copy gives the numbers that rng itself gives next, so the same numbers come again: in this call, or in a later one with the same generator.",
     "Draw from rng itself, which moves on with each number. It is the one argument that a call may change.",
     kind="fact",
 ).program(
@@ -1076,7 +1076,7 @@ mistakes(
 mistakes(
     "NOISE_CUT_AT_MAX",
     "A wall just within range never reads more than r_max, even with noise.",
-    "Decide without noise whether a beam hits, then add the noise. The reading of a hit may exceed r_max.",
+    "The reading of a hit may exceed r_max: after the noise, limit it to zero or more and to nothing else. If your code decides from the noisy reading whether a beam hits, let it decide before the noise.",
 ).program(
     "lidar",
     """
@@ -1300,6 +1300,11 @@ mistakes(
     """,
 )
 mistakes(
+    "CORRECTION_JUMPS",
+    "The correction is about as large just below the target speed as far below it: it jumps at the target, where it should go to zero.",
+    "Multiply the difference of the speeds by 0.2 to 3 per second, and take more of it than its sign.",
+).edit("command", {"* target_speed": '* target_speed + 0.4 * np.sign(target_speed - twin["speed"])'})
+mistakes(
     "DRIVE_LIMITED",
     "A small drive is right, but beyond some value it stops growing.",
     "Return friction * target_speed as it is: the README asks for no limit.",
@@ -1502,6 +1507,18 @@ mistakes(
     "Only the bias is a running sum. Draw new white noise for each sample.",
 )
 mistakes(
+    "WHITE_NOISE_NOT_NORMAL",
+    "Of thousands of samples of the white noise, none is as far from zero as one standard normal number in a hundred.",
+    "Draw standard normal numbers: rng.standard_normal(n). Uniform numbers lie between two limits, and numbers of which only the sign is random have one size.",
+).edit("imu", {"dt) * rng.standard_normal(n)": "dt) * rng.uniform(-math.sqrt(3), math.sqrt(3), n)"})
+mistakes(
+    "BIAS_STEPS_NOT_NORMAL",
+    "Of thousands of bias steps, none is as far from zero as one standard normal number in a hundred.",
+    "Draw standard normal numbers: rng.standard_normal(n - 1). Uniform numbers lie between two limits, and numbers of which only the sign is random have one size.",
+).edit("imu", {"(dt) * rng.standard_normal(n - 1)": "(dt) * rng.choice([-1.0, 1.0], n - 1)"}).edit(
+    "imu", {"(dt) * rng.standard_normal(n - 1)": "(dt) * math.sqrt(12) * (rng.random(n - 1) - 0.5)"}
+)
+mistakes(
     "BIAS_CONSTANT",
     "In a recording with a random walk and no white noise, the bias keeps its first value.",
     "Add a step of std bias_random_walk * sqrt(dt) from each sample to the next.",
@@ -1616,7 +1633,7 @@ mistakes(
 mistakes(
     "WALK_SCATTERS",
     "The random walk is too large for some recordings and too small for others.",
-    "Use all of the recording, in blocks of lengths up to a twelfth of it, and divide each equation of the fit by its own size. Otherwise the large ones outweigh the small ones.",
+    "Use all of the recording, in blocks of many lengths up to a twelfth of it: of the longest there are few, and their mean square is mostly chance. If your code fits one equation for each length, divide each by its own size, or the large ones outweigh the small ones.",
 )
 mistakes(
     "FIT_SWAPPED",
@@ -1751,6 +1768,29 @@ mistakes(
     "Add sigma times a standard normal number: its std is sigma.",
 )
 mistakes(
+    "NOISE_BEFORE_NEAREST",
+    "Of two walls in the same place, the readings are too short: they are those of noise that is added to each wall, before the smallest is taken.",
+    "Find the nearest wall without noise first. Then add noise to its distance, once for each beam.",
+).edit(
+    "lidar",
+    {
+        "np.where(hit, along, np.inf)": "np.where(hit, along + sigma * rng.standard_normal(along.shape), np.inf)",
+        "nearest + sigma * rng.standard_normal(len(beam))": "nearest",
+    },
+)
+mistakes(
+    "WALLS_ALONG_AXES_MISSED",
+    "A wall parallel to the x axis or to the y axis is not seen, while a slanted one is.",
+    "If your code divides by a difference of two x or two y, or compares only one coordinate with the ends: use the place u along the wall. From p + s d = a + u w, a hit has u between 0 and 1, and this holds for every direction of a wall.",
+).edit("lidar", {"(cross != 0) &": "(cross != 0) & (wx != 0) &"}).edit(
+    "lidar", {"(cross != 0) &": "(cross != 0) & (wy != 0) &"}
+)
+mistakes(
+    "NEAR_WALL_NOT_SEEN",
+    "A wall very close to the robot is not seen: its beam reads r_max.",
+    "A hit counts at every distance from zero on: compare the distance along the beam with 0.",
+).edit("lidar", {"(along >= 0)": "(along >= 0.15)"})
+mistakes(
     "LIDAR_NOISE_ONE_SIDED",
     "The noise always has the same sign.",
     "A standard normal number is negative as often as positive: use it as it is.",
@@ -1779,6 +1819,11 @@ mistakes(
     "SATURATION_MISSING",
     "A command beyond u_max is followed in full.",
     "Clip u to [-u_max, u_max] before the lag.",
+)
+mistakes(
+    "SATURATION_OF_DIFFERENCE",
+    "The difference of command and speed is clipped to u_max, not the command.",
+    "Clip u to [-u_max, u_max]. The difference u - w may be larger.",
 )
 mistakes(
     "SATURATION_ONE_SIDED",
@@ -1987,6 +2032,11 @@ mistakes(
     "With a latency of two samples the output is right. With one of two and a half it is not on the straight line between two samples.",
     "Use np.interp with left=0.0. If your code draws a curve through the samples, or shifts them by a Fourier transform, it gets other values between them.",
     kind="fact",
+)
+mistakes(
+    "DELAY_SHARE_NEGATIVE",
+    "The output is on the line through the wrong two samples: one share is negative, as it is where latency / dt is rounded up.",
+    "If your code rounds latency / dt, round down, with math.floor: then the rest lies between 0 and 1, and so do the shares of both samples.",
 )
 mistakes(
     "DELAY_HALF_WAY",
@@ -2238,6 +2288,35 @@ mistakes(
             bias[k + 1] = bias[k] + bias_random_walk * math.sqrt(dt) * rng.standard_normal()
         return true + bias + noise_density / math.sqrt(dt) * rng.standard_normal(n), bias
     """,
+)
+mistakes(
+    "FRICTION_SIGN_OF_DRIVE",
+    "With a drive against the motion, a surprise changes the friction in the wrong direction.",
+    "The sign of the correction is that of the speed, whichever way the drive pushes: a cart that rolls forwards and falls behind has more friction.",
+).body(
+    "sync",
+    """
+        dt = t_measured - twin["t"]
+        if dt < 0:
+            return dict(twin)
+        x, v, b = twin["position"], twin["speed"], twin["friction"]
+        a = twin["drive"] - b * v
+        x, v = x + dt * v + dt * dt / 2 * a, v + dt * a
+        surprise = z - x
+        x, v = x + 0.3 * surprise, v + 0.4 * surprise
+        b = max(b - 0.2 * surprise * (1 if twin["drive"] > 0 else -1), 0.01)
+        return {**twin, "t": t_measured, "position": x, "speed": v, "friction": b, "memory": {}}
+    """,
+)
+mistakes(
+    "LARGE_SURPRISES_DROPPED",
+    "A large surprise changes nothing, while a small one does: neither position nor speed nor friction takes a share of it.",
+    "Correct by a share of every surprise. After a jump of the friction the surprises are large because the twin is wrong, not because the measurement is.",
+).edit(
+    "sync",
+    {
+        '_correct(state, spread, seen, twin["sigma"])': '_correct(state, spread, seen, twin["sigma"]) if abs(seen - state[0]) < 1.5 * twin["sigma"] else (state, spread)'
+    },
 )
 mistakes(
     "FRICTION_SHARE_TOO_LARGE",

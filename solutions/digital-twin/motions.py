@@ -99,6 +99,10 @@ def _dead_about_the_speed(clipped):
     return motor_step
 
 
+def _difference_clipped(w, u, dt, tau, u_max, deadband):
+    return w - math.expm1(-dt / tau) * _clip(_dead(u, deadband) - w, u_max)
+
+
 def _stopped_within(w, u, dt, tau, u_max, deadband):
     w = w - math.expm1(-dt / tau) * (_clip(u, u_max) - w)
     return w if abs(w) > deadband else 0.0
@@ -224,6 +228,23 @@ def _shifted(count):
 def _held(count):
     def delay_line(x, dt, latency):
         return np.concatenate((np.full(count(latency / dt), x[0]), np.asarray(x, dtype=float)))[: len(x)]
+
+    return delay_line
+
+
+def _beyond_the_nearest(first):
+    """The latency rounded to the nearest sample, and the rest as a share, even where it is negative.
+
+    first: what of the first sample is there when it comes, from the rest
+    """
+
+    def delay_line(x, dt, latency):
+        whole = round(latency / dt)
+        rest = latency / dt - whole
+        y = np.zeros(len(x))
+        for k in range(whole, len(x)):
+            y[k] = (1 - rest) * x[k - whole] + rest * x[k - whole - 1] if k > whole else first(rest) * x[0]
+        return y
 
     return delay_line
 
@@ -479,6 +500,7 @@ OTHERS = {
         (("DEADBAND_OF_DIFFERENCE",), _dead_about_the_speed(clipped=True)),
         (("DEADBAND_OF_DIFFERENCE",), _dead_about_the_speed(clipped=False)),
         (("DEADBAND_OF_SPEED",), _stopped_within),
+        (("SATURATION_OF_DIFFERENCE",), _difference_clipped),
     ],
     "backlash": [
         (("BACKLASH_NEVER_RESTS",), _behind(of=lambda x, state: x, kept=lambda y, x: x)),
@@ -489,6 +511,9 @@ OTHERS = {
         *((("DELAY_WHOLE_SAMPLES", "DELAY_HOLDS_FIRST"), _held(count)) for count in _COUNTS),
         *((("DELAY_WRAPS",), _rolled(count)) for count in _COUNTS),
         (("DELAY_ADVANCES",), _at_end),
+        (("DELAY_SHARE_NEGATIVE",), _beyond_the_nearest(lambda rest: float(rest <= 0))),
+        (("DELAY_SHARE_NEGATIVE",), _beyond_the_nearest(lambda rest: float(rest == 0))),
+        (("DELAY_SHARE_NEGATIVE",), _beyond_the_nearest(lambda rest: 1 - rest)),
         (("DELAY_COVERS_START",), lambda x, dt, latency: np.where(dt * np.arange(len(x)) >= latency, x, 0.0)),
         (("DELAY_WRAPS",), _circle),
     ],

@@ -20,6 +20,7 @@ _WIDE = np.array([[[2.0, -8.0], [2.0, 8.0]]])  # both ends beyond the reach, and
 _ASIDE = np.array([[[2.0, -0.5], [2.0, 14.0]]])
 _ORIGIN, _REACH = (0.0, 0.0, 0.0), 5.0
 _ONE_METRE = np.array([[[2.0, -0.5], [2.0, 0.5]]])
+_TWICE = np.concatenate((_WALL, _WALL))
 
 #: Four beams in a crooked room, and how far off its walls are along each.
 _CORNERS = np.array([[-2.0, -1.5], [3.0, -1.0], [2.5, 2.0], [-1.5, 1.2]])
@@ -47,6 +48,7 @@ _SCENES = (
     ("LONG_WALL_LEFT_OUT", _ORIGIN, _ASIDE, 0.1, *_at(0.1, 2.0), (_REACH,)),
     ("PARALLEL_TEST_WRONG", _ORIGIN, _ONE_METRE, 0.0, 2.0, (_REACH,)),
     ("PARALLEL_TEST_WRONG", _ORIGIN, _ONE_METRE[:, ::-1], 0.0, 2.0, (_REACH,)),
+    ("NEAR_WALL_NOT_SEEN", (1.995, 0.0, 0.0), _WALL, 0.0, 0.005, (_REACH,)),
 )
 #: position, walls, the one beam, the right reading: a wall ahead whose ends come in one order and in the
 #: other, one wall along the beam, none within reach
@@ -61,6 +63,10 @@ _PLAIN = (
 #: A wall in three places; what a beam at it reads has to differ.
 _SHIFTS = ((0.0, 0.0), (1.0, 0.3), (-0.7, -0.2))
 _SLANTED = np.array([[[2.0, -1.5], [3.0, 2.0]]])
+_BEAM = 0.05
+#: One along the x axis to the left, and the slanted one, both turned there; the beam at them.
+_LEFT = [np.stack((-walls[..., 1], walls[..., 0]), axis=-1) for walls in (_WALL, _SLANTED)]
+_LEFT_BEAM = math.pi / 2 + _BEAM
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything
@@ -76,20 +82,36 @@ def of_lidar(submission, noisy=True, straight=False):
     calls = [((_X, _Y, heading), _ROOM, fan) for heading, fan in beams]
     calls += [((-0.5, 0.6, _HEADING), _ROOM, _FAN)]
     calls += [(pose, walls, np.array([beam])) for pose, walls, beam, _ in scenes]
-    calls += [(_ORIGIN, wall + shift, np.array([0.05])) for wall in (_WALL, _SLANTED) for shift in _SHIFTS]
+    calls += [(_ORIGIN, wall + shift, np.array([_BEAM])) for wall in (_WALL, _SLANTED) for shift in _SHIFTS]
+    calls += [(_ORIGIN, wall, np.array([_LEFT_BEAM])) for wall in _LEFT]
     calls = [(*call, _REACH, 0.0, np.random.default_rng(1)) for call in calls]
     results = submission.call_each("lidar", calls)
     *fans, moved = (kit.as_vector(result, len(_FAN), "ranges") for result in results[: len(beams) + 1])
-    readings = np.array([kit.as_vector(result, 1, "ranges")[0] for result in results[len(beams) + 1 : -6]])
-    shifted = [float(kit.as_vector(result, 1, "ranges")[0]) for result in results[-6:]]
+    readings = np.array([kit.as_vector(result, 1, "ranges")[0] for result in results[len(beams) + 1 : -8]])
+    *shifted, level, left = (float(kit.as_vector(result, 1, "ranges")[0]) for result in results[-8:])
     if len(set(shifted)) == 1 and shifted[0] != _REACH:
         return named("WALLS_NOT_READ")
+    if _along_axes_missed(shifted, level, left):
+        return named("WALLS_ALONG_AXES_MISSED")
     right = np.abs(readings - [scene[-1] for scene in scenes]) < 1e-9
     if np.all(right) and (straight or np.allclose(fans[0], _READS, rtol=0, atol=1e-9)):
         return of_lidar_noise(submission) if noisy else None
     fixed = np.allclose(moved, fans[0], rtol=0, atol=1e-9)
     room = np.allclose(fans[3 if straight else 0], _READS, rtol=0, atol=1e-9)
     return _of_scenes(readings, right, None if straight else _turning(*fans), fixed, room)
+
+
+def _along_axes_missed(shifted, level, left):
+    """Whether walls along x or y are not seen, and slanted ones in the same places are as they are.
+
+    shifted: what is read of the wall along y in three places, then of the slanted one; level, left: of those
+        to the left
+    """
+    (ax, ay), (wx, wy) = (_SLANTED[0, 0] + _SHIFTS).T, _SLANTED[0, 1] - _SLANTED[0, 0]
+    slanted = (ax * wy - ay * wx) / (math.cos(_BEAM) * wy - math.sin(_BEAM) * wx)
+    if not np.allclose([*shifted[3:], left], [*slanted, slanted[0]], rtol=0, atol=1e-9):
+        return False
+    return all(reading == _REACH for reading in shifted[:3]) or level == _REACH
 
 
 def of_straight_lidar(submission, noisy=True):
@@ -160,7 +182,8 @@ def of_lidar_noise(submission):
         for sigma in (0.1, 0.0)
         for seed, (pose, beams) in enumerate(places)
     ]
-    scans = [kit.as_vector(r, 2000, "ranges") for r in submission.call_each("lidar", calls)]
+    calls.append((_ORIGIN, _TWICE, fan, 5.0, 0.1, np.random.default_rng(4)))
+    *scans, twice = (kit.as_vector(r, 2000, "ranges") for r in submission.call_each("lidar", calls))
     hits, misses, close, far, *quiet = scans
     exact = 2.0 / np.cos(fan), 5.0, 0.05 / np.cos(fan), 4.95 / np.cos(ahead)
     if not all(np.allclose(*pair, rtol=0, atol=1e-9) for pair in zip(quiet, exact, strict=True)):
@@ -174,9 +197,16 @@ def of_lidar_noise(submission):
         ("NEGATIVE_RANGE", np.any(close < 0)),
         ("LIDAR_SIGMA_WRONG", not 0.09 < spread < 0.11),
         ("NOISE_CUT_AT_MAX", not np.any(far > 5.0)),  # the wall is 4.95 m away
+        ("NOISE_BEFORE_NEAREST", abs(np.mean(noise)) < 0.012 and _is_smaller_of_two(twice - exact[0])),
     )
     code = next((code for code, seen in looks if seen), None)
     return named(code) if code else of_scan_draws(submission)
+
+
+def _is_smaller_of_two(noise):
+    """Whether noise (2000,) is that of the smaller of two readings of std 0.1, by mean and std."""
+    mean, spread = -0.1 / math.sqrt(math.pi), 0.1 * math.sqrt(1 - 1 / math.pi)
+    return abs(np.mean(noise) - mean) < 0.012 and abs(np.std(noise) - spread) < 0.008
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything

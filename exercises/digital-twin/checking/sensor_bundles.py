@@ -52,7 +52,8 @@ def expect_counts(submission, counts, theta, counts_per_rev):
         units="counts",
         input=given,
         message="The counts are neither the angles rounded down to whole counts nor rounded to nearest.",
-        help="counts = theta * counts_per_rev / (2 pi), rounded the same way on both sides of zero.",
+        help="counts = theta * counts_per_rev / (2 pi), with math.pi, and then rounded: all down, or all "
+        "to the nearest.",
         diagnose=lambda: sensors.of_encoder(submission, values, theta, counts_per_rev),
     )
     kit.expect_true(
@@ -203,7 +204,7 @@ def expect_no_copy(submission, task, *args):
     kit.expect_true(
         not sensors.copies_generator(submission, task, *args),
         "The call makes a deep copy of its generator `rng`.",
-        help="Draw from rng itself: it moves on with each number. A copy starts again in the next call.",
+        help="Draw from rng itself: it moves on with each number. A copy gives the same numbers again.",
         diagnose=sensors.named("GENERATOR_COPIED"),
     )
 
@@ -267,6 +268,15 @@ def expect_gyroscope_draws(submission, seed, dt):
         help="Draw two arrays of standard normal numbers, use each number once, and sum up only one array.",
         diagnose=lambda: sensors.of_imu(submission),
     )
+    # Of 4000 normal numbers 50 are beyond 2.5 stds: of right ones, never in a lifetime none.
+    for values, name in ((white, "samples of the noise (measured - bias)"), (steps, "bias steps")):
+        kit.expect_true(
+            bool(np.any(np.abs(values) > sensors.FAR * std(values))),
+            f"Of thousands of {name}, none is as far from zero as one standard normal number in a hundred.",
+            help="Draw standard normal numbers: rng.standard_normal(...).",
+            input={"dt": dt, "noise_density": 0.01, "bias_random_walk": 0.01, "samples": n},
+            diagnose=lambda: sensors.of_imu(submission),
+        )
 
 
 def recordings(rng, count, make):
@@ -409,6 +419,9 @@ def expect_density_of_short(submission, still, dt, density):
 
 #: A long wall across the x axis, 3 m ahead: a beam at angle a reads 3/cos(a).
 _WALL = np.array([[[3.0, -30.0], [3.0, 30.0]]])
+#: In std, how far the mean of 4000 readings may be off: six times its scatter. The smaller of two readings
+#: half a std apart is off by 0.35 on the mean.
+_MEAN_OF_HITS_WITHIN = 0.1
 
 
 def expect_scan_noise(submission, r_max, sigma, rng):
@@ -419,7 +432,9 @@ def expect_scan_noise(submission, r_max, sigma, rng):
     n, fan, ahead = 4000, np.linspace(-2.0, 2.0, 4000), np.linspace(-0.01, 0.01, 4000)
     places = ((0.0, fan), (3.0 - 0.5 * sigma, ahead), (3.0 - r_max + 0.5 * sigma, ahead))
     calls = [(np.array([x, 0.0, 0.0]), _WALL, beams, r_max, sigma, rng) for x, beams in places]
-    wide, near, far = (kit.as_vector(v, n, "ranges") for v in submission.call_each("lidar", calls))
+    behind = np.concatenate((_WALL + np.array([0.5 * sigma, 0.0]), _WALL))
+    calls.append((np.zeros(3), behind, ahead, r_max, sigma, rng))
+    wide, near, far, two = (kit.as_vector(v, n, "ranges") for v in submission.call_each("lidar", calls))
     with np.errstate(divide="ignore"):
         exact = np.where(np.cos(fan) > 0, 3.0 / np.cos(fan), np.inf)
     hits = exact <= r_max
@@ -475,6 +490,21 @@ def expect_scan_noise(submission, r_max, sigma, rng):
         "Close to the maximum range, too few readings of hits lie beyond r_max.",
         help="Whether a beam hits is decided without noise; what the noise makes of the reading stays.",
         input=given,
+        diagnose=ask,
+    )
+    with np.errstate(all="ignore"):
+        mean = float(np.mean(two - 3.0 / np.cos(ahead)))
+    kit.expect_close(
+        mean,
+        0.0,
+        abs=_MEAN_OF_HITS_WITHIN * sigma,
+        source="the README's",
+        quantity="mean of the readings minus the distance of the nearer wall",
+        units="m",
+        input={**given, "distances of two walls": [3.0, 3.0 + 0.5 * sigma]},
+        message="Of two walls, one just behind the other, the mean reading is not that of the nearer one.",
+        help="Is the mean off with one wall as well? If so, look at the noise. If not, find the nearest wall "
+        "without noise first, and then add noise to its distance.",
         diagnose=ask,
     )
 

@@ -77,6 +77,7 @@ OF_THE_WALK = {
     "BIAS_FACTOR",
     "BIAS_STARTS_LATE",
     "LAST_BIAS_LEFT_OUT",
+    "BIAS_STEPS_NOT_NORMAL",
 }
 OF_THE_NOISE = {
     "WHITE_NOISE_MISSING",
@@ -88,6 +89,7 @@ OF_THE_NOISE = {
     "WHITE_NOISE_ACCUMULATES",
     "WHITE_NOISE_RELATED",
     "WHITE_NOISE_SHARED",
+    "WHITE_NOISE_NOT_NORMAL",
 }
 
 
@@ -116,6 +118,8 @@ def of_imu(submission, bias_first=False):
     looks = [lambda: _of_white(pairs), lambda: _of_bias(pairs, ones)]
     codes = (look() for look in looks[:: -1 if bias_first else 1])
     code = _of_parts(pairs, ones) or next(filter(None, codes), None)
+    if code in {None, "WHITE_NOISE_FACTOR", "BIAS_FACTOR"}:
+        code = _of_shape(pairs, code, bias_first) or code
     code = code or (_CARRIED if _carries_over(submission) else None) or _of_both(pairs)
     return named(code) if code else of_randomness(submission)
 
@@ -141,6 +145,23 @@ def _of_parts(pairs, true):
         return "RETURNS_SWAPPED"
     holds = _wanders(bias) < 2 and np.allclose(measured - bias, np.mean(measured - bias))
     return "BIAS_HOLDS_WHITE_NOISE" if holds else None
+
+
+#: Std; one standard normal number in eighty is further from zero, and no uniform one.
+FAR = 2.5
+
+
+def _of_shape(pairs, code, bias_first):
+    """Whether white noise or steps, each alone, stay within limits; of that whose size is wrong, if any."""
+    looks = [
+        ("WHITE_NOISE_FACTOR", "WHITE_NOISE_NOT_NORMAL", np.subtract(*pairs[5])),
+        ("BIAS_FACTOR", "BIAS_STEPS_NOT_NORMAL", np.diff(pairs[6][1])),
+    ]
+    for wrong, bounded, values in looks[:: -1 if bias_first else 1]:
+        size = float(np.std(values))
+        if code in (None, wrong) and size > 1e-9 and np.all(np.abs(values) < FAR * size):
+            return bounded
+    return None
 
 
 def _is_white(noise, steps):

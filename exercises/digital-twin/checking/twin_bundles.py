@@ -30,7 +30,7 @@ def _of_sync(submission, late, backwards, driven=False):
     driven: whether measurements may be late after another drive has begun
     """
     refuted = set() if late else {"LATE_USED_AS_CURRENT", "LATE_STATE_AS_CURRENT", "TIME_RUNS_BACK"}
-    refuted |= set() if driven else {"PAST_WITH_NEW_DRIVE"}
+    refuted |= set() if driven else {"PAST_WITH_NEW_DRIVE", "FRICTION_SIGN_OF_DRIVE"}
     refuted |= set() if backwards else {"LEARNS_FORWARDS_ONLY"}
     return twins.of_sync(submission, refuted)
 
@@ -84,8 +84,9 @@ def expect_follows(submission, twin, run, *, settled, frictions, message):
             units="m",
             input={"measurements": len(calls), "rms error of the measurements": sensor, "twin": twin},
             message=message,
-            help="Print the surprises. Are some far beyond sigma: was the position predicted for that time, "
-            "with the drive of that time? Are they all about sigma: how much of each does the position take?",
+            help="Print the surprises, and what each one changes. If some are far beyond sigma, was the "
+            "position predicted for that time, with the drive of that time? If not, how much of each does "
+            "the position take? Does the friction come closer to the cart's, whatever the drive is?",
             diagnose=ask,
         )
     with np.errstate(all="ignore"):
@@ -176,7 +177,7 @@ def expect_drives(submission, cases):
 
 
 #: At the target speed a correction is zero, whatever is wrong with it.
-_OF_CORRECTION = {"PUSHES_AWAY", "GAIN_TOO_LARGE"}
+_OF_CORRECTION = {"PUSHES_AWAY", "GAIN_TOO_LARGE", "CORRECTION_JUMPS"}
 
 
 def jump(rng):
@@ -343,8 +344,9 @@ def expect_sync_closes_loop(submission, rng):
         units="m/s",
         input=given,
         message="A cart whose drive comes from the twin's friction does not get back to its speed.",
-        help="Its drive is the mean friction of the last 3 s times the target speed. Look at how friction is "
-        "learned, and predict with the drive that the twin holds now: it changes from time to time.",
+        help="Its drive is the mean friction of the last 3 s times the target speed. Print the friction and "
+        "the surprises after the jump: is each of them used, and does it bring the friction closer to the "
+        "cart's? If the drive is kept from an earlier call, take that of the twin: it may change.",
         diagnose=ask,
     )
     kit.expect_close(
@@ -422,6 +424,8 @@ def expect_command_closes_loop(submission, rng):
     asked = [(gain, given) for gain in (max(gains), min(gains))]
     # Beyond what a twin learns here: a correction by the friction itself may push away from the target there.
     slow = [(b, target, 0.5 * target) for b in (0.3, 2.0) for target in targets.tolist()]
+    # Next to the target speed, on either side: there a correction is nearly zero, and its sign alone is not.
+    slow += [(0.8, target, share * target) for share in (0.99, 1.01) for target in targets.tolist()]
     calls = [(scenes.new_twin(b, 0.0, speed=speed), target) for b, target, speed in slow]
     for (b, target, speed), drive in zip(slow, submission.call_each("command", calls), strict=True):
         gain = (kit.as_number(drive, "the drive") - b * target) / (target - speed)

@@ -62,7 +62,8 @@ def of_sync(submission, refuted=()):
     looks = (
         lambda: [_braking(submission)],
         lambda: _in_one_step(submission),
-        lambda: [_backwards(submission), _learning(submission)],
+        lambda: [_backwards(submission), _against_the_drive(submission), _learning(submission)],
+        lambda: [_drops_large_ones(submission)],
     )
     codes = []
     for look in looks:
@@ -109,6 +110,7 @@ _APART = {
     "SPEED_CORRECTED_BACKWARDS": "speed",
     "FRICTION_LEARNS_BACKWARDS": "friction",
     "LEARNS_FORWARDS_ONLY": "friction",
+    "FRICTION_SIGN_OF_DRIVE": "friction",
     "FRICTION_NOT_LEARNED": "friction",
 }
 
@@ -257,6 +259,30 @@ def _backwards(submission):
     return "FRICTION_LEARNS_BACKWARDS" if forwards > 1e-9 else "LEARNS_FORWARDS_ONLY"
 
 
+def _against_the_drive(submission):
+    """Whether a surprise changes the friction the right way only where the drive goes with the motion."""
+    calls = [
+        (scenes.new_twin(0.5, push * v, speed=v), 0.1 * v + z, 0.1)
+        for push in (1.0, -1.0)
+        for v in (1.0, -1.0)
+        for z in (0.0, _SURPRISE)
+    ]
+    friction = states(submission.call_each("sync", calls))[:, 3].reshape(2, 2, 2)
+    along, against = (friction[..., 1] - friction[..., 0]) * [1.0, -1.0]  # less friction is right forwards
+    return "FRICTION_SIGN_OF_DRIVE" if np.all(along < -1e-9) and np.all(against > 1e-9) else None
+
+
+def _drops_large_ones(submission):
+    """Whether a surprise of five stds, either way, changes nothing, and one of half a std does."""
+    warm, good = _warm(submission)
+    t, x, v, _ = states([warm])[0].tolist()
+    calls = [(warm, x + 0.1 * v + n * _SURPRISE, t + 0.1) for n in (0.0, 0.5, 5.0, -5.0)]
+    none, small, ahead, behind = states(submission.call_each("sync", calls))
+    moved = small[1] - none[1]
+    dropped = np.all(ahead == behind) and abs(ahead[1] - none[1]) < abs(moved) and abs(moved) > 1e-6
+    return "LARGE_SURPRISES_DROPPED" if good and dropped else None
+
+
 def _one_way(submission):
     """Whether a new twin's friction moves, and never in both directions for surprises of either sign."""
     calls = [
@@ -339,6 +365,8 @@ def _share(submission, twin):
 
 #: 1/s, the README's, with room for rounding. With a command every 0.1 s a correction by 20 never settles.
 LARGEST_GAIN = 3.0 * (1 + 1e-6)
+#: m/s; so near to the target speed a correction is nearly zero.
+_NEXT = 0.01
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything
@@ -361,6 +389,8 @@ def of_command(submission):
         base | {"target": 6.0, "speed": 6.0},
         base | {"target": -6.0, "speed": -6.0},
         base,
+        base | {"speed": 1.5 - _NEXT},
+        base | {"speed": 1.5 + _NEXT},
     ]
     calls = [
         (scenes.new_twin(case["friction"], case["drive"], speed=case["speed"]), case["target"])
@@ -368,7 +398,7 @@ def of_command(submission):
     ]
     values = [kit.as_number(value, "the drive") for value in submission.call_each("command", calls)]
     first, slower, slick, back, driven, faster, behind, slowest, sticky, sticky_faster = values[:10]
-    stickiest, ahead, far, far_back, again = values[10:]
+    stickiest, ahead, far, far_back, again, near, beyond = values[10:]
     if abs(again - first) > 1e-9:
         return None  # what came before has an effect: nothing else can be told from one call beside another
     # A correction by the friction itself, at one friction, looks as if the target were not looked at.
@@ -390,7 +420,11 @@ def of_command(submission):
         *_laws(at_target),
         ("BACKWARDS_NOT_DRIVEN", back > -1e-9 and first > 1e-9),
         ("PUSHES_AWAY", behind < first - 1e-9 or (balanced and sticky_faster < 2.0 * 3.0 - 1e-9)),
-        ("GAIN_TOO_LARGE", behind - first > LARGEST_GAIN * 0.75),
+        ("CORRECTION_JUMPS", min(near - first, first - beyond) > max(0.5 * (behind - first), 1e-9)),
+        (
+            "GAIN_TOO_LARGE",
+            behind - first > LARGEST_GAIN * 0.75 or near - first > LARGEST_GAIN * _NEXT + 1e-9,
+        ),
     )
     return next((named(code) for code, seen in tests if seen), None)
 

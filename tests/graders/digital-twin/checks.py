@@ -75,7 +75,7 @@ def test_imu_walk(submission, rng):
 @pytest.mark.task("imu")
 @pytest.mark.points(2)
 def test_imu_randomness(submission, rng):
-    """imu with other numbers: where noise and bias come from, and whether they go together"""
+    """imu at another rate: the random numbers of noise and bias"""
     sensors.expect_gyroscope_draws(submission, int(rng.integers(2**32)), rng.uniform(0.004, 0.05))
 
 

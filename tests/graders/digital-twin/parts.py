@@ -24,7 +24,8 @@ def expect_ranges(submission, value, pose, walls, angles, r_max, message):
         units="m",
         input={"pose": pose, "segments": walls, "angles": angles, "r_max": r_max, "sigma": 0.0},
         message=message,
-        help="Try a wall behind the robot, one that the beam misses, two behind each other, and none.",
+        help="Take the beam of this index alone. For each wall, print the distance along the beam and the "
+        "place between the ends of the wall: is it a hit? Then take the smallest of all hits.",
         diagnose=lambda: scanners.of_lidar(submission, noisy=False),
     )
 

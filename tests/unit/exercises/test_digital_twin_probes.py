@@ -282,6 +282,58 @@ def test_a_correction_of_any_gain_the_readme_allows_closes_the_loop(gain):
         twin_bundles.expect_command_closes_loop(Fake("command", command), np.random.default_rng(seed))
 
 
+@pytest.mark.parametrize(
+    ("adds", "code"),
+    [
+        (lambda off: 0.05 * np.sign(off), "CORRECTION_JUMPS"),
+        (lambda off: 5.0 * np.sign(off), "CORRECTION_JUMPS"),
+        (lambda off: np.clip(10.0 * off, -0.4, 0.4), "GAIN_TOO_LARGE"),
+        (lambda off: np.clip(3.0 * off, -0.4, 0.4), None),
+        (lambda off: 3.0 * off * (abs(off) > 0.05), None),
+    ],
+)
+def test_a_correction_has_to_go_to_zero_at_the_target_speed(adds, code):
+    def command(twin, target):
+        return twin["friction"] * target + float(adds(target - twin["speed"]))
+
+    assert told("command", command) == code
+    seen = None
+    try:
+        twin_bundles.expect_command_closes_loop(Fake("command", command), np.random.default_rng(0))
+    except kit.CheckFailed as failed:
+        seen = failed.guess.code
+    assert seen == code
+
+
+def test_the_noise_of_a_scan_is_that_of_one_reading_and_not_of_the_smaller_of_two():
+    def of_each_wall(pose, walls, *rest):
+        scans = [right.lidar(pose, wall[None], *rest) for wall in walls]
+        return np.min(scans, axis=0)
+
+    for seed in range(10):
+        rng = np.random.default_rng(seed)
+        asked = rng.uniform(6.0, 9.0), rng.uniform(0.02, 0.08), rng
+        sensor_bundles.expect_scan_noise(Fake(), *asked)
+        with pytest.raises(kit.CheckFailed) as failed:
+            sensor_bundles.expect_scan_noise(Fake("lidar", of_each_wall), *asked)
+        assert failed.value.guess.code == "NOISE_BEFORE_NEAREST"
+
+
+@pytest.mark.parametrize(
+    ("skips", "code"),
+    [
+        (lambda walls: walls[:, 0, 0] == walls[:, 1, 0], "WALLS_ALONG_AXES_MISSED"),
+        (lambda walls: walls[:, 0, 1] == walls[:, 1, 1], "WALLS_ALONG_AXES_MISSED"),
+        (lambda walls: walls[:, 0, 0] > -99.0, None),
+    ],
+)
+def test_walls_along_an_axis_are_said_to_be_missed_only_where_slanted_ones_are_seen(skips, code):
+    def lidar(pose, walls, *rest):
+        return right.lidar(pose, walls[~skips(walls)], *rest)
+
+    assert told("lidar", lidar) == code
+
+
 def test_a_twin_that_passes_the_measurement_on_is_never_good_enough():
     def passes_on(twin, z, t):
         out = right.sync(twin, z, t)
@@ -518,6 +570,11 @@ IMU = [
     ("BIAS_STEPS_RELATED", [(DRAWN, "np.convolve(rng.standard_normal(n), (0.5, 0.5), 'valid')")]),
     ("TRUE_RATE_MISSING", [("true + bias", "bias")]),
     (None, [("true + bias", "dt * true + bias")]),
+    # Numbers between two limits: of the right size, and of another.
+    ("WHITE_NOISE_NOT_NORMAL", [(NOISE + " * rng.standard_normal(n)", NOISE + " * rng.uniform(-1, 1, n)")]),
+    ("BIAS_STEPS_NOT_NORMAL", [(DRAWN, "rng.uniform(-1, 1, n - 1)")]),
+    ("BIAS_STEPS_NOT_NORMAL", [(DRAWN, "np.sign(rng.standard_normal(n - 1))")]),
+    ("WHITE_NOISE_FACTOR", [("/ math.sqrt(dt) * rng", "/ 2 / math.sqrt(dt) * rng")]),
     # Single precision is neither a step too many nor another bias.
     (None, [("bias0 + np", "np.float32(bias0) + np")]),
     (None, [("return true + bias", "return np.float32(true + bias)")]),
@@ -599,6 +656,9 @@ SYNC = [
     ("LEARNS_FORWARDS_ONLY", [("* np.sign(v)", "")]),
     ("SHARE_TOO_LARGE", [("x + 0.3", "x + 0.7")]),
     ("SHARE_OVER_ONE", [("x + 0.3", "x + 1.5")]),
+    ("FRICTION_SIGN_OF_DRIVE", [("np.sign(v)", "np.sign(twin['drive'])")]),
+    ("LARGE_SURPRISES_DROPPED", [("z - x", "(z - x) * (abs(z - x) < 2 * twin['sigma'])")]),
+    (None, [("z - x", "float(np.clip(z - x, -2 * twin['sigma'], 2 * twin['sigma']))")]),
 ]
 
 

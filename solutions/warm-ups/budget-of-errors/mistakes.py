@@ -48,7 +48,7 @@ mistakes(
 mistakes(
     "HALF_NOT_ROOT",
     "You halved the sum of the squares instead of taking its root.",
-    "Write **0.5, or math.sqrt. In Python **1/2 is read as (**1)/2.",
+    "Write **0.5, or math.sqrt. Python reads x**1/2 as half of x.",
 ).edit(
     "total_error",
     {"math.sqrt(sum(error * error for error in errors))": "sum(error * error for error in errors) / 2"},

@@ -47,7 +47,7 @@ mistakes(
 mistakes(
     "HALF_NOT_ROOT",
     "Your result is height / g, which is half of what stands under the root.",
-    "Take the root of 2 height / g. (In Python **1/2 halves: write **0.5, or math.sqrt.)",
+    "Take the root of 2 height / g. (Python reads x**1/2 as half of x: write x**0.5, or math.sqrt.)",
 ).edit("fall_time", {"math.sqrt(2.0 * height / g)": "(2.0 * height / g) ** 1 / 2"})
 
 mistakes.accept(

@@ -69,7 +69,7 @@ mistakes(
 mistakes(
     "HALF_NOT_ROOT",
     "You halved the mean of the squares instead of taking its root.",
-    "Write **0.5, or math.sqrt. In Python **1/2 is read as (**1)/2.",
+    "Write **0.5, or math.sqrt. Python reads x**1/2 as half of x.",
 ).edit("rms", {"math.sqrt(sum(squares) / len(squares))": "sum(squares) / len(squares) / 2"})
 mistakes(
     "DIFFERENCE_OF_TWO",

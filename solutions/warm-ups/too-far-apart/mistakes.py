@@ -49,7 +49,7 @@ mistakes(
 mistakes(
     "HALF_NOT_ROOT",
     "You took the sum of the squares without its root, and divided by 2.",
-    "Write **0.5, or math.sqrt. In Python **1/2 is read as (**1)/2. And put brackets round what you divide by.",
+    "Write **0.5, or math.sqrt. Python reads x**1/2 as half of x. And put brackets round what you divide by.",
 ).edit("distance_in_doubts", {"math.hypot(doubt_s, doubt_m)": "(doubt_s**2 + doubt_m**2) / 2"})
 mistakes(
     "NOT_SQUARED",

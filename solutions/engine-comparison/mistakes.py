@@ -1733,8 +1733,8 @@ mistakes(
 )
 mistakes(
     "SETTLED_ELSEWHERE",
-    "Where this value is wrong, no body was put on the floor of that engine and left alone there; on another engine one was.",
-    "Let a body settle on each engine that is given. What is kept from one call to the next belongs to another engine.",
+    "Where this value is wrong, no body was put on the floor of that engine and left alone there: its state at rest comes from elsewhere.",
+    "Let a body settle on each engine that is given, and keep nothing from one call to the next.",
     kind="fact",
 ).program(
     "characterise",

@@ -46,15 +46,21 @@ def _not_run(_: str, cases: list[Any]) -> bool:
 
 
 def _settled_elsewhere(key: str, cases: list[Any]) -> bool:
-    """On each engine whose value is wrong no body was left alone on the floor, and on another one it was."""
+    """On each engine whose value is wrong no body was left alone on the floor, and yet one has sunk there."""
     wrong = [case for case in cases if not probing.right(key, case)]
-    return all(bench.all_noted(case) and not _left_alone(case) for case in wrong) and any(
-        map(_left_alone, cases)
-    )
+    return all(bench.all_noted(case) and not _left_alone(case) and _has_sunk(key, case) for case in wrong)
 
 
 def _left_alone(case: Any) -> bool:
-    return any(n > 1 and not any(force) for _, (*_, n, force) in probing.runs([case], "floor"))
+    """Or pressed down: not pushed aside."""
+    return any(n > 1 and not any(force[:2]) for _, (*_, n, force) in probing.runs([case], "floor"))
+
+
+def _has_sunk(key: str, case: Any) -> bool:
+    """A depth is reported, or bodies are pushed that do not begin on the floor's top."""
+    if key == "rest_penetration":
+        return bool(case.measured(key) > 0)
+    return any(q0[2] != case.box.radius for _, (_, q0, *_) in probing.runs([case], "floor"))
 
 
 def _kept(key: str, cases: list[Any]) -> bool:

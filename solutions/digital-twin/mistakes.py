@@ -2304,7 +2304,7 @@ mistakes(
         x, v = x + dt * v + dt * dt / 2 * a, v + dt * a
         surprise = z - x
         x, v = x + 0.3 * surprise, v + 0.4 * surprise
-        b = max(b - 0.2 * surprise * (1 if twin["drive"] > 0 else -1), 0.01)
+        b = max(b - 0.4 * surprise * (1 if twin["drive"] > 0 else -1), 0.01)
         return {**twin, "t": t_measured, "position": x, "speed": v, "friction": b, "memory": {}}
     """,
 )

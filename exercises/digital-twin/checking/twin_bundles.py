@@ -212,7 +212,7 @@ def expect_keeps_up(submission, rng, *, sign, late, message):
 def expect_follows_drives(submission, rng):
     """20 s, either way; from 5 s on the drive changes about once a second, while measurements come late.
 
-    In two seconds of three it pushes against the motion: who learns by the sign of the drive learns wrongly then.
+    In two seconds of three it pushes against the motion: who learns by its sign learns wrongly then.
     """
     friction, sign, sigma = (
         rng.uniform(0.4, 0.8),

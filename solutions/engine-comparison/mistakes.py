@@ -1739,13 +1739,13 @@ mistakes(
 ).program(
     "characterise",
     """
-        _settle, _AT_REST = _settled, []
+        _settle, _AT_REST = _settled, {}
 
 
         def _settled(engine, info):
-            if not _AT_REST:
-                _AT_REST.append(_settle(engine, info))
-            return _AT_REST[0]
+            if info["dt"] not in _AT_REST:
+                _AT_REST[info["dt"]] = _settle(engine, info)
+            return _AT_REST[info["dt"]]
     """,
 )
 mistakes(

@@ -53,7 +53,7 @@ def _settled_elsewhere(key: str, cases: list[Any]) -> bool:
 
 def _left_alone(case: Any) -> bool:
     """Or pressed down: not pushed aside."""
-    return any(n > 1 and not any(force[:2]) for _, (*_, n, force) in probing.runs([case], "floor"))
+    return any(n > 0 and not any(force[:2]) for _, (*_, n, force) in probing.runs([case], "floor"))
 
 
 def _has_sunk(key: str, case: Any) -> bool:

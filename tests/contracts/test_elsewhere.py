@@ -86,7 +86,6 @@ def test_a_fault_report_and_the_doctor_work_without_posix(workspace, tmp_path):
     assert "protection: L1" in text
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("encoding", ["cp1252", "latin-1"])
 def test_a_console_of_another_encoding_gets_what_it_can_show(tmp_path, encoding):
     """A character that it cannot show is a question mark, never the end of the program."""
@@ -106,7 +105,6 @@ def test_a_console_of_another_encoding_gets_what_it_can_show(tmp_path, encoding)
     assert json.loads(out)["id"] == "why-simulate"
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("line", ["", "demo", "lesson numerical-integration --plain", "check doubling"])
 def test_a_console_of_windows_shows_what_is_met_first(workspace, line):
     real = line.startswith(("demo", "lesson"))

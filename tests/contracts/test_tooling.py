@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.turns import of_other_days
+from tests.turns import lines_of, listed, of_other_days
 
 ROOT = Path(__file__).parents[2]
 _LINT_IMPORTS = "import sys; from importlinter.cli import lint_imports_command as run; sys.exit(run())"
@@ -35,7 +35,6 @@ def test_the_repository_passes(command: tuple[str, ...]) -> None:
     assert done.returncode == 0, f"{done.stdout[-4000:]}\n{done.stderr[-1000:]}"
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     "script",
     [
@@ -74,29 +73,45 @@ sys.exit(pytest.main(["--collect-only", "-q", "-n0", "-p", "no:cacheprovider", "
 """
 
 
-@pytest.mark.turns(4)
 def test_tests_are_collected_without_any_extra() -> None:
     """As the README's second command has it; CI installs them all, and would hide such an import."""
     done = _run("-c", _WITHOUT_EXTRAS)
     assert done.returncode == 0, f"{done.stdout[-2000:]}\n{done.stderr[-1000:]}"
 
 
-def test_what_comes_in_turn_comes_once_in_its_days() -> None:
-    class Item:
-        def __init__(self, path: str, of: int | None, long: bool = False) -> None:
-            self.path, self.of, self.long = Path(path), of, long
+class _Item:
+    def __init__(self, nodeid: str, long: bool = False) -> None:
+        self.nodeid, self.long = nodeid, long
 
-        def get_closest_marker(self, name: str) -> pytest.Mark | None:
-            has = self.long if name == "soak" else self.of
-            return pytest.Mark(name, (self.of,), {}, _ispytest=True) if has else None
+    def get_closest_marker(self, _: str) -> bool:
+        return self.long
 
-    always = [*(Item("a.py", None) for _ in range(3)), *(Item("a.py", 4, long=True) for _ in range(5))]
-    turns = [Item(path, 4) for path in "aaaaaaabb"]
-    seen: list[Item] = []
+
+def test_what_comes_in_turn_comes_once_in_its_days(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        "tests.turns.listed", lambda: {"a::many": (4, 0), "a::one": (4, 1), "a::many[9]": (4, 2)}
+    )
+    always = [_Item("a::other"), _Item("a::one_more[1]"), *(_Item(f"a::many[{n}]", long=True) for n in "xyz")]
+    turns = [*(_Item(f"a::many[{n}]") for n in range(10)), _Item("a::one")]
+    seen: list[_Item] = []
     for day in range(363, 367):
-        later = of_other_days([*always, *turns], day)  # type: ignore[list-item,arg-type]
+        later = of_other_days([*always, *turns], day)  # type: ignore[list-item]
         today = [item for item in turns if item not in later]
         assert not {*map(id, always)} & {*map(id, later)}
-        assert len(today) <= 4
+        assert 2 <= len(today) <= 4
         seen += today
     assert sorted(map(id, seen)) == sorted(map(id, turns))
+
+
+def test_the_list_of_what_comes_in_turn_says_what_takes_longest() -> None:
+    many = {f"a::many[{n}]": 0.5 for n in range(40)}
+    one_of_them = {"a::f[x]": 9.0, "a::f[y]": 0.2, "a::f[z]": 0.2}
+    times = {**many, **one_of_them, "a::quick": 0.2, "a::long": 30.0}
+    assert lines_of(times) == ["4 a::long", "10 a::many", "4 a::f[x]"]
+
+
+def test_what_comes_in_turn_is_there() -> None:
+    """A test that has another name runs every time, and a run takes longer than it says."""
+    there = {name.partition("[")[0] for name in listed()}
+    for path, function in (name.split("::") for name in sorted(there)):
+        assert f"def {function}(" in (ROOT / path).read_text("utf-8"), f"{path}::{function}"

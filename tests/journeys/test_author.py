@@ -17,7 +17,6 @@ from course.catalog.reading import BLANK
 from tests.journeys.conftest import ROOT, Way
 from tests.unit.authoring.test_scaffold import fill as fill_tripling
 
-pytestmark = pytest.mark.turns(4)
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
 SCENE = ROOT / "course" / "authoring" / "templates" / "scene.toml.tmpl"
 #: What an author writes into the blanks of a warm-up, file by file and from top to bottom.

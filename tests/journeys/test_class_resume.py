@@ -30,10 +30,7 @@ MOST_ATTEMPTS = 60
 GRADERS = 2
 ON_ONE_MACHINE, ON_A_CLUSTER = ("-j", str(GRADERS)), ("--local-cluster", str(GRADERS))
 
-pytestmark = [
-    pytest.mark.turns(2),
-    pytest.mark.skipif(sys.platform != "linux", reason="reads the process table of Linux"),
-]
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads the process table of Linux")
 
 
 def make_class(folder: Path, students: int) -> dict[str, float]:

@@ -193,7 +193,6 @@ OLD = "def rk4_step(accel, t, q, v, h):\n    return q + h * v, v"
 CHECK = "%course_check integrators"
 
 
-@pytest.mark.turns(3)
 @with_kernel
 def test_what_the_kernel_has_run_besides_changes_nothing(
     kernel: Kernel, student: Way, instructor: Way, workspace: Path
@@ -235,7 +234,6 @@ def test_what_the_kernel_has_run_besides_changes_nothing(
     assert f"{handed['integrators'][0]:g} of 40 points" in said
 
 
-@pytest.mark.turns(3)
 @with_kernel
 def test_what_is_not_saved_or_not_run_is_said(kernel: Kernel) -> None:
     kernel.run_all()
@@ -250,7 +248,6 @@ def test_what_is_not_saved_or_not_run_is_said(kernel: Kernel) -> None:
     assert "40 of 40 points" not in said
 
 
-@pytest.mark.turns(3)
 @with_kernel
 def test_after_a_restart_the_check_judges_the_file(kernel: Kernel) -> None:
     assert "40 of 40 points" in kernel.run(CHECK)

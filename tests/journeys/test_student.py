@@ -46,7 +46,6 @@ def test_the_first_hour(student: Way, tmp_path: Path) -> None:
     assert {lesson["id"]: lesson["read_at"] for lesson in overview["lessons"]}[first]
 
 
-@pytest.mark.turns(2)
 @pytest.mark.parametrize("shape", [(), ("--plain",)], ids=["fancy", "plain"])
 def test_five_tasks_in_a_row_without_leaving_the_loop(
     student: Way, workspace: Path, shape: tuple[str, ...]

@@ -138,7 +138,6 @@ def test_a_workspace_behind_a_link_works(course, workspace, tmp_path):
     assert course("-C", str(link), "submit").returncode == 0
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     "extra", [{"NO_COLOR": "1", "FORCE_COLOR": "1"}, {"TERM": "dumb"}, {"FORCE_COLOR": "1"}, {}]
 )

@@ -187,7 +187,6 @@ def cases() -> Iterator[Any]:
 CASES = sorted(cases(), key=lambda case: str(case.values[1]), reverse=True)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(("name", "level"), CASES)
 def test_an_attack_gains_nothing_and_leaves_nothing(name: str, level: str, arenas: Any) -> None:
     attack = ATTACKS[name]
@@ -341,7 +340,6 @@ def test_the_model_earns_full_marks_and_the_wrong_code_almost_none(arenas: Any) 
     assert 0 < arena.wrong_score < 0.2 * model.score
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("every", [False, pytest.param(True, marks=pytest.mark.soak)], ids=["some", "all"])
 @pytest.mark.parametrize("exercise", EXERCISES)
 def test_no_plain_value_makes_a_check_itself_fail(exercise: str, every: bool) -> None:

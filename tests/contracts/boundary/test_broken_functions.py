@@ -151,7 +151,6 @@ def cases() -> Iterator[Any]:
             number += 1
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(("exercise", "task", "kind"), list(cases()))
 def test_a_broken_function_costs_its_own_task_only(
     session_of: Any, exercise: Exercise, task: str, kind: str
@@ -160,7 +159,6 @@ def test_a_broken_function_costs_its_own_task_only(
     check_one(session_of(exercise, patience), task, kind)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("exercise", CATALOG.exercises(), ids=lambda exercise: exercise.id)
 def test_what_is_printed_and_plotted_costs_nothing(session_of: Any, exercise: Exercise) -> None:
     path = solution_path(CATALOG, exercise)

@@ -386,7 +386,6 @@ def _cases() -> list[Any]:
     return found
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.soak) for name in DOORS if name != "scheduler"]
 )
@@ -394,7 +393,6 @@ def test_the_right_document_is_taken(right: Any, name: str) -> None:
     assert right(name).code in TAKEN, right(name).said
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(("name", "document"), _cases())
 def test_a_hostile_document_is_taken_or_refused_in_words(
     place: Path, right: Any, tmp_path: Path, name: str, document: str

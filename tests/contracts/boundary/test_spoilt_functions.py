@@ -198,7 +198,6 @@ def cases() -> Iterator[Any]:
             yield pytest.param(warm_up, one.id, every, id=name, marks=pytest.mark.soak)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(("exercise", "task", "chosen"), list(cases()))
 def test_no_spoilt_result_ends_in_a_fault_of_the_grader(
     session_of: Any, exercise: Exercise, task: str, chosen: list[tuple[str, str, str]]

@@ -15,7 +15,6 @@ from course.cli.author.trying import refused
 CATALOG = Catalog(content())
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("lesson_id", CATALOG.lesson_ids())
 def test_every_command_to_try_works_in_a_fresh_workspace(lesson_id: str) -> None:
     blocks = b.walk_blocks(read_blocks(Path(CATALOG.lesson(lesson_id).path)))

@@ -36,7 +36,6 @@ GOOD_LINKS = (
 REQUIRING = 'points(3)\n@pytest.mark.requires("doublings_values")'
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("file", "old", "new", "at", "code", "says"),
     [
@@ -177,7 +176,6 @@ def test_each_fault_is_found_at_its_line(
         assert (found[0].file, found[0].line) == (file, line_of(mini / file, at))
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("file", "code", "says"),
     [
@@ -280,7 +278,6 @@ def test_a_task_that_no_mutant_breaks_is_named(mini: Path, run: Callable[..., Au
     assert "no mutant breaks task doublings" in run().problems[0].message
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("text", "line", "says"),
     [

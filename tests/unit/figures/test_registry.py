@@ -19,7 +19,6 @@ from course.figures.style import METHODS, WIDTH_IN
 GOLDEN = Path(__file__).parents[2] / "fixtures" / "golden"
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("figure_id", ["integrators-energy", "integrators-order", "integrators-phase"])
 def test_the_tolerance_sees_one_method_drawn_as_another(
     figure_id: str, monkeypatch: pytest.MonkeyPatch
@@ -47,7 +46,6 @@ def drawn(change: Callable[[Figure, Axes], object]) -> Callable[[], Figure]:
     return builder
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("change", "problem"),
     [

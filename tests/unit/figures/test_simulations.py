@@ -35,7 +35,6 @@ def labels(axes: Axes) -> list[str]:
     return [text.get_text() for text in legend.get_texts()] if legend else []
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("name", "pairs"),
     [
@@ -65,7 +64,6 @@ def test_extreme_settings_still_give_a_figure_with_a_title_that_fits(name: str, 
     assert title.get_window_extent().x1 <= drawn.bbox.x1
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     "name",
     ["projectile", "collision", "integrators", "rotation", "solver-iterations", "substeps", "contact-models"],

@@ -25,7 +25,6 @@ def drawn(name, columns):
     return page, in_cells(lambda: page, columns, ROWS)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("columns", [38, 76])
 @pytest.mark.parametrize("name", FIGURES)
 def test_words_lie_inside_and_never_on_each_other(name, columns):
@@ -42,7 +41,6 @@ def test_words_lie_inside_and_never_on_each_other(name, columns):
         assert not set("$\\{}") & set(label.text)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("name", FIGURES)
 def test_the_finding_heads_it_and_both_axes_have_numbers(name):
     page, figure = drawn(name, 76)
@@ -51,7 +49,6 @@ def test_the_finding_heads_it_and_both_axes_have_numbers(name):
     assert len(numbers) >= 4
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("name", [*FIGURES, "contact-tunnelling", "engines-speed", "twins-following"])
 def test_every_word_can_be_read_on_what_is_drawn_under_it(name):
     """By WCAG 2.1's contrast, computed anew; the inks of the house have at least 3 on paper."""
@@ -69,7 +66,6 @@ def test_every_word_can_be_read_on_what_is_drawn_under_it(name):
             assert letter == " " or (light + 0.05) / (dark + 0.05) >= 3.0, label
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("name", ["engines-speed", "integrators-order", "twins-following"])
 def test_no_axis_loses_its_name_on_a_small_screen(name):
     page, figure = drawn(name, 76)

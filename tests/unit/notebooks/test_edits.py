@@ -37,7 +37,6 @@ def behaviour(source: bytes) -> list[Any]:
     return [np.concatenate([q.ravel(), v.ravel()]).tobytes() for _, q, v in runs] + [times.tobytes()]
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("first", range(0, 500, 125))
 def test_500_random_edits_leave_the_code_what_it_was(
     solved: bytes, solution: str, integrators: Exercise, first: int

@@ -19,7 +19,6 @@ def result(name: str, *pairs: str) -> Result:
     return run(get(name), pairs)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("name", SIMULATIONS)
 def test_a_simulation_asks_runs_measures_and_finds(name: str) -> None:
     simulation, out = get(name), result(name)
@@ -33,7 +32,6 @@ def test_a_simulation_asks_runs_measures_and_finds(name: str) -> None:
     assert len({column.name for column in out.columns}) == len(out.columns)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("name", SIMULATIONS)
 def test_a_simulation_repeats_bit_for_bit(name: str) -> None:
     short = ("duration=1",) if get(name).parameter("duration") else ()
@@ -91,7 +89,6 @@ def test_a_throw_that_does_not_come_down_says_so() -> None:
     assert math.isnan(out.row("time of the highest point").simulated)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("pairs", [["speed_z=-3", "height=20"], ["height=5", "speed_z=0"], ["speed_x=0"]])
 def test_throws_of_every_direction_agree_with_theory(pairs: list[str]) -> None:
     for row in result("projectile", *pairs).rows:
@@ -117,7 +114,6 @@ def test_the_pair_touches_at_2_25_s_one_metre_apart_and_ends_at_six() -> None:
     assert "2.5 s" in out.finding
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     "pairs", [["restitution=0.5", "mass1=3"], ["speed2=1"], ["restitution=0"], ["speed1=-1"], ["mass2=1000"]]
 )
@@ -138,7 +134,6 @@ def test_the_two_eulers_are_told_apart() -> None:
     assert "0.00553 m" in out.finding
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize(
     ("step", "expected"),
     [
@@ -268,7 +263,6 @@ def test_a_spring_too_stiff_for_the_step_is_said_to_throw_the_ball() -> None:
     assert out.row("hop out of the overlap, ERP split impulse").simulated == 0.0
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("work", [2, 7, 60])
 def test_any_amount_of_work_is_split_into_at_most_six_ways(work: int) -> None:
     out = result("substeps", f"work={work}", "duration=0.5", "frame=0.025")

@@ -262,7 +262,6 @@ def test_open_shows_a_page_or_says_how_to_get_to_it(course, workspace, monkeypat
 
 
 @needs_jupyterlab
-@pytest.mark.turns(2)
 @pytest.mark.parametrize("wanted", ["doubling", None])
 def test_open_prints_an_address_that_lets_one_in_and_leaves_what_is_there(
     course, workspace, monkeypatch, wanted

@@ -65,7 +65,6 @@ def lines(*typed: str) -> Callable[[str], str | None]:
     return lambda _: next(left, None)
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("lesson", CATALOG.lesson_ids())
 def test_every_lesson_is_there_whole_and_says_each_fact_once(lesson: str, workspace: Workspace) -> None:
     someone = Typed(lambda question: "it grows" if question.startswith("Your prediction") else "")

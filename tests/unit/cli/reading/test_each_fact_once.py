@@ -60,7 +60,6 @@ def heard(capsys: pytest.CaptureFixture[str], *words: str) -> str:
     return said.out + said.err
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize("lesson", CATALOG.lesson_ids())
 def test_a_lesson(lesson: str, capsys: pytest.CaptureFixture[str]) -> None:
     text = heard(capsys, "lesson", lesson)

@@ -110,7 +110,6 @@ async def to_question(app: ReaderApp, pilot: Any, number: int = 1) -> None:
     await pilot.pause()
 
 
-@pytest.mark.turns(4)
 @pytest.mark.parametrize("lesson", LESSONS)
 @pytest.mark.parametrize(
     "size",

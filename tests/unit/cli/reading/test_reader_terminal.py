@@ -73,7 +73,6 @@ def test_a_student_reads_predicts_runs_and_comes_back_to_the_line(
     assert store.events("bookmark", LESSON)[-1].data["block"] == place["block"]
 
 
-@pytest.mark.turns(3)
 @pytest.mark.parametrize(
     "before", ["TERM=dumb", "LANG=C LC_ALL=C PYTHONUTF8=0 PYTHONCOERCECLOCALE=0", "TERM="]
 )

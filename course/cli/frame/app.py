@@ -6,6 +6,7 @@ This is the only place where an error becomes words and an exit code.
 from __future__ import annotations
 
 import contextlib
+import errno
 import gc
 import io
 import os
@@ -26,8 +27,17 @@ from course import __version__
 from course.cli.frame.console import Console, current, install
 from course.cli.frame.options import Line, global_options
 from course.cli.frame.registry import HOME, build, find, understood
-from course.errors import INTERRUPTED, CourseError, InternalError, NotFoundError, UsageError
+from course.errors import (
+    INTERRUPTED,
+    CourseError,
+    InternalError,
+    MissingCapabilityError,
+    NotFoundError,
+    UsageError,
+)
 
+#: A disk without room, or a user's share of it.
+_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 SHELLS = ("bash", "zsh", "fish", "powershell", "pwsh")
 
 
@@ -74,13 +84,20 @@ def run(arguments: Sequence[str]) -> int:
     except Exception as error:  # noqa: BLE001 - the boundary: nothing passes it
         if hasattr(error, "format_message"):
             code = _usage(console, line, error)
+        elif isinstance(error, OSError) and error.errno in _FULL:
+            with contextlib.suppress(OSError):
+                console.flush()  # if it is the output that has no room, nothing more goes there
+            code = _no_room(console, line, error)
         else:  # our fault: the details go to a file, one line to the screen
             kind = f"A fault in the course, not in your work ({type(error).__name__})"
             message = f"{kind}; the details are in {write_report(error)}."
             code = _say(console, line, InternalError.exit_code, "internal", message)
     if console.json and not console.emitted:
         _emit(console, line, code)
-    console.flush()
+    try:
+        console.flush()
+    except OSError as error:
+        code = _no_room(console, line, error)
     return code
 
 
@@ -202,6 +219,12 @@ def _say(
         body = ErrorBody(code=code, message=message, help=help)
         console.emit(ErrorReply(schema=schema_of_line(line), exit_code=exit_code, error=body))
     return exit_code
+
+
+def _no_room(console: Console, line: Line, error: OSError) -> int:
+    message = f"{error.filename or 'The output'} cannot be written ({error.strerror or error})."
+    kind = MissingCapabilityError
+    return _say(console, line, kind.exit_code, kind.default_code, message, "Make room, or write elsewhere.")
 
 
 def _emit(console: Console, line: Line, code: int) -> None:

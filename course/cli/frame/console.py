@@ -12,6 +12,7 @@ Rich is imported only for the first. Commands call ``current()`` and never ``pri
 from __future__ import annotations
 
 import contextlib
+import errno
 import io
 import os
 import re
@@ -39,8 +40,16 @@ if TYPE_CHECKING:
 # An output stream whose reader may go away.
 
 
+#: What is said of a stream whose reader is gone: a closed pipe (on Windows, too), a terminal that hung up.
+_GONE = {errno.EPIPE, errno.ECONNRESET, errno.EIO} | ({errno.EINVAL} if os.name == "nt" else set())
+
+
 class Stream:
-    """A text stream whose reader may go away: ``course lessons | head -1`` is not an error."""
+    """A text stream whose reader may go away: ``course lessons | head -1`` is not an error.
+
+    Raises:
+        OSError: it cannot be written for another reason: it goes to a file, and the disk is full.
+    """
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
@@ -69,13 +78,15 @@ class Stream:
             return
         try:
             action()
-        except BrokenPipeError:
+        except OSError as error:
             self._open = False
             # The interpreter flushes the real stream once more when it exits; give it somewhere to go.
             with contextlib.suppress(OSError, ValueError):
                 null = os.open(os.devnull, os.O_WRONLY)
                 os.dup2(null, self._stream.fileno())
                 os.close(null)
+            if error.errno not in _GONE:
+                raise
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)

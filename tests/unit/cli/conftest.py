@@ -152,7 +152,10 @@ def loaded(name, entry, mode):
 
 @pytest.fixture
 def course(monkeypatch, tmp_path, capsys):
-    """Run a command line in ``tmp_path`` on the miniature course; gives code, out and err."""
+    """Run a command line in ``tmp_path`` on the miniature course; gives code, out and err.
+
+    A fault of the course ends a test that has not said with ``course.faulty`` that it makes one.
+    """
     from course.cli.frame import app
     from course.handed_in import attempts
 
@@ -169,10 +172,12 @@ def course(monkeypatch, tmp_path, capsys):
         capsys.readouterr()
         code = app.run(words)
         captured = capsys.readouterr()
+        assert run.faulty or "A fault in the course" not in captured.err, captured.err
         if "--json" in words:
             keeps_its_schema(captured.out)
         return Ran(code, captured.out, captured.err)
 
+    run.faulty = False
     return run
 
 

@@ -43,6 +43,7 @@ def crash_in(course, monkeypatch, message):
         raise RuntimeError(message)
 
     monkeypatch.setattr(doctor, "load_catalog", break_)
+    course.faulty = True
     ran = course("doctor", "-C", ".")
     assert ran.code == 70
 

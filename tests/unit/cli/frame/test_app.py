@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import io
 import os
 import re
 import subprocess
@@ -11,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from course.cli.frame import registry
+from course.cli.frame.console import Stream
 from course.errors import (
     ContentError,
     CourseError,
@@ -159,6 +162,7 @@ def failing(course, monkeypatch):
             raise error
 
         monkeypatch.setattr(doctor, "doctor", doctor_that_fails)
+        course.faulty = True
         return course
 
     return arrange
@@ -233,6 +237,35 @@ def test_a_reader_that_stops_reading_is_no_error():
     ) as read:  # fmt: skip
         read.stdout.close()
         assert (read.wait(120), read.stderr.read()) == (0, b"")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="has no device that is always full")
+@pytest.mark.parametrize("line", ["--version", "--help", "lessons", "lessons --json", "lesson twice-as-much"])
+def test_an_output_without_room_is_no_fault_of_the_course(line):
+    with Path("/dev/full").open("wb") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "course", *line.split()],
+            env={**os.environ, "PYTHONPATH": str(ROOT), "COURSE_CONTENT": str(MINI_COURSE)},
+            stdout=full, stderr=subprocess.PIPE, text=True, timeout=120, check=False,
+        )  # fmt: skip
+    said = "The output cannot be written (No space left on device).\nMake room, or write elsewhere.\n"
+    assert (done.returncode, done.stderr[-len(said) :]) == (4, said)
+
+
+def test_a_file_without_room_is_named(failing):
+    ran = failing(OSError(errno.ENOSPC, "No space left on device", "there/it.json"))("doctor")
+    said = "there/it.json cannot be written (No space left on device).\nMake room, or write elsewhere.\n"
+    assert (ran.code, ran.err) == (4, said)
+
+
+def test_a_terminal_that_hung_up_is_no_fault_of_the_course():
+    class HungUp(io.StringIO):
+        def write(self, text):
+            raise OSError(errno.EIO, "Input/output error")
+
+    stream = Stream(HungUp())
+    assert stream.write("Next: course go") == len("Next: course go")
+    stream.flush()
 
 
 def test_the_folder_of_the_student_is_not_importable(tmp_path):

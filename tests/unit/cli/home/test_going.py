@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 
 import pytest
@@ -132,7 +133,7 @@ def test_the_reader_on_the_whole_screen_and_page_by_page_go_on_where_the_other_w
         return InProgress(script, store.events(subject="twice-as-much"), store.append)
 
     monkeypatch.setattr(Console, "interactive", property(lambda _: True))
-    typed = ["q", "", "", "", "", ""]
+    typed = ["q", *itertools.repeat("", 20)]
     monkeypatch.setattr(Console, "ask", lambda *_: typed.pop(0))
     course("lesson", "twice-as-much", "--page")
     second = reader().place

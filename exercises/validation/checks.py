@@ -241,7 +241,7 @@ def test_validate_accepts(submission, draw):
 @pytest.mark.task("validate")
 @pytest.mark.points(2)
 def test_validate_margins_apart(submission, draw):
-    """Each measure with its own margin, by its interval and not by its number"""
+    """Each of the four measures with its own margin, and ends that lie on a margin"""
     ((case, right),) = bundles.public("validate_margins_apart", draw)
     bundles.expect_margins(submission, case, right)
     bundles.expect_edges(submission, np.random.default_rng(64) if draw is None else draw)

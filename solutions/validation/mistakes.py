@@ -845,6 +845,19 @@ mistakes(
             scores.append(np.sqrt(np.mean(np.concatenate(e) ** 2)))
         return np.array(scores)
     """,
+).body(
+    "cross_validate",
+    """
+        size = -(-len(runs) // k)
+        scores = []
+        for first in range(0, k * size, size):
+            fold = runs[first : first + size]
+            model = fit(runs[:first] + runs[first + size :])
+            e = [np.subtract(predict(model, run), run["y"]) for run in fold]
+            scores.append(np.sqrt(np.mean(np.concatenate(e) ** 2)))
+        return np.array(scores)
+    """,
+    also=("", "RAISED"),
 )
 mistakes(
     "ONE_RUN_LEFT_OUT",

@@ -198,12 +198,13 @@ def test_cross_validate_lengths(submission):
     """Folds of different sizes, with runs of different lengths"""
     rng = np.random.default_rng(32)
     data = []
-    for i, n in enumerate((8, 40, 15, 8, 25)):
+    for i, n in enumerate((8, 40, 15, 8, 25, 12, 9, 30, 8, 21)):
         u = rng.standard_normal(n)
         data.append({"u": u, "y": (1 + 0.3 * i) * u + 0.05 * rng.standard_normal(n)})
-    for k in (3, 4):
-        shared.expect_folds(submission, data, k)
-    shared.expect_folds(submission, [{**run, "y": np.rint(10 * run["y"]).astype(int)} for run in data], 3)
+    # Folds of n/k runs, rounded up: of ten in four the last is too small, and of five in four it is empty.
+    for count, k in ((10, 4), (5, 3), (5, 4)):
+        shared.expect_folds(submission, data[:count], k)
+    shared.expect_folds(submission, [{**run, "y": np.rint(10 * run["y"]).astype(int)} for run in data[:5]], 3)
 
 
 @pytest.mark.task("validate")
@@ -241,7 +242,7 @@ def test_validate_accepts(submission, draw):
 @pytest.mark.task("validate")
 @pytest.mark.points(2)
 def test_validate_margins_apart(submission, draw):
-    """Each measure with its own margin, by its interval and not by its number"""
+    """Each of the four measures with its own margin, and ends that lie on a margin"""
     ((case, right),) = bundles.public("validate_margins_apart", draw)
     bundles.expect_margins(submission, case, right)
     bundles.expect_edges(submission, np.random.default_rng(64) if draw is None else draw)

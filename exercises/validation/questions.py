@@ -57,6 +57,7 @@ def _intervals():
     yield low + np.abs(low) / 3, low, low + np.abs(low) / 3  # on the upper end, by numbers that are rounded
     yield y + 1e-9, y - np.maximum(below, 0.1), y  # hardly outside
     yield np.array([1.0, 1.2, 5.0]), np.zeros(3), np.full(3, 2.0)
+    yield np.array([9.0, 1.2, 0.5, 1.0, 1.5]), np.zeros(5), np.full(5, 2.0)
     yield np.array([0.0, 1.0, 9.0]), np.array([5.0, 6.0, 7.0]), np.array([6.0, 7.0, 8.0])
 
 

@@ -33,6 +33,7 @@ def facts(recorded, sim, real, lates, mass):
         "alone": half([run["lag_s"] for run in alone]) if several else 0.0,
         "even": [],
         "about": {},
+        "own": [run["lag_s"] for run in alone] if several else [],
     }
     if several:
         without = [_measure(pairs[:i] + pairs[i + 1 :], lags) for i in n]

@@ -814,7 +814,7 @@ mistakes(
 )
 mistakes(
     "FOLDS_UNEVEN",
-    "The folds are not k parts of nearly equal size that hold each run once.",
+    "The folds that hold a run are not k, or a run is in none of them, or in several.",
     "np.array_split(range(len(runs)), k) gives k parts whose lengths differ by at most one.",
     kind="fact",
 ).body(
@@ -828,6 +828,36 @@ mistakes(
             scores.append(np.sqrt(np.mean(np.concatenate(e) ** 2)))
         return scores
     """,
+)
+mistakes(
+    "FOLD_SIZES",
+    "There are k folds and each run is in one of them, but one fold has at least two runs more than another.",
+    "Give the runs that are left over to different folds, one each: seven runs in three folds are 3, 2 and 2. np.array_split(range(len(runs)), k) does so.",
+    kind="fact",
+).body(
+    "cross_validate",
+    """
+        edges = [j * (len(runs) // k) for j in range(k)] + [len(runs)]
+        scores = []
+        for first, last in zip(edges, edges[1:]):
+            model = fit(runs[:first] + runs[last:])
+            e = [np.subtract(predict(model, run), run["y"]) for run in runs[first:last]]
+            scores.append(np.sqrt(np.mean(np.concatenate(e) ** 2)))
+        return np.array(scores)
+    """,
+).body(
+    "cross_validate",
+    """
+        size = -(-len(runs) // k)
+        scores = []
+        for first in range(0, k * size, size):
+            fold = runs[first : first + size]
+            model = fit(runs[:first] + runs[first + size :])
+            e = [np.subtract(predict(model, run), run["y"]) for run in fold]
+            scores.append(np.sqrt(np.mean(np.concatenate(e) ** 2)))
+        return np.array(scores)
+    """,
+    also=("", "RAISED"),
 )
 mistakes(
     "ONE_RUN_LEFT_OUT",
@@ -1017,16 +1047,6 @@ mistakes(
         return total
     """,
     of="misfit",
-).program(
-    "validate",
-    """
-        _shift = best_shift
-
-
-        def best_shift(pairs):
-            return _shift(sorted(pairs, key=lambda pair: pair[0]["id"])[:1])
-    """,
-    also=("LAG_MEAN_OF_RUNS", ""),
 ).body(
     "validate",
     """
@@ -1090,6 +1110,32 @@ mistakes(
             return np.mean([_pooled([pair], shifts) for pair in pairs], axis=0)
     """,
     also=("LAG_MEAN_OF_RUNS", "LAG_OF_PARTS", "LAG_NOT_BEST"),
+)
+mistakes(
+    "LAG_OF_ONE_RUN",
+    "The lag is about that of one of the runs by itself.",
+    "At each shift, add up the squares of all runs. If a loop over the runs sets the sum to zero each time, only the last run is left: set it to zero before the loop.",
+    kind="fact",
+).program(
+    "validate",
+    """
+        _pooled = misfit
+
+
+        def misfit(pairs, shifts):
+            return _pooled(pairs[-1:], shifts)
+    """,
+    also=("LAG_MEAN_OF_RUNS", "LAG_OF_PARTS", "LAG_NOT_BEST"),
+).program(
+    "validate",
+    """
+        _shift = best_shift
+
+
+        def best_shift(pairs):
+            return _shift(sorted(pairs, key=lambda pair: pair[0]["id"])[:1])
+    """,
+    also=("LAG_MEAN_OF_RUNS", ""),
 )
 mistakes(
     "LAG_NOT_NEGATIVE",
@@ -1573,6 +1619,18 @@ mistakes(
     """,
 )
 mistakes(
+    "BAND_BY_CHANCE",
+    "Two calls with the same arguments give different bands.",
+    "If you draw random numbers, compute the quantiles instead: `course hint validation --task consistency_band` shows ways.",
+    kind="fact",
+).body(
+    "consistency_band",
+    """
+        sums = np.random.default_rng().chisquare(dof * runs, 2000)
+        return tuple(np.quantile(sums, [alpha / 2, 1 - alpha / 2]) / runs)
+    """,
+)
+mistakes(
     "ROUGH_QUANTILES",
     "The band is roughly right, but off by more than 1 %.",
     "Check the levels, alpha/2 and 1 - alpha/2, and the degrees of freedom, dof * runs. If they are right, find the quantiles more exactly: `course hint validation --task consistency_band` shows ways.",
@@ -1698,6 +1756,25 @@ mistakes(
     """,
 )
 mistakes(
+    "BLOCKS_CUT_SHORT",
+    "In a short trial, many blocks end at the last error of the series before they have `block` errors.",
+    "Let a block start at N - block at most, or go on at the start of the series. A slice that reaches beyond the end of `e` is shorter, without a word.",
+    kind="fact",
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        values = []
+        for _ in range(n_boot):
+            parts = []
+            while sum(map(len, parts)) < len(e):
+                start = rng.integers(len(e))
+                parts.append(e[start : start + block])
+            values.append(statistic(np.concatenate(parts)[: len(e)]))
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
     "BLOCKS_DRAWN_ONCE",
     "In a short trial, no block is drawn twice for the same resample, though chance would.",
     "Draw the starting points with replacement, as rng.integers does. rng.choice needs replace=True, its default.",
@@ -1707,6 +1784,19 @@ mistakes(
     {
         "rng.integers(0, n - block + 1, size=(n_boot, math.ceil(n / block)))": "np.array([rng.choice(n - block + 1, math.ceil(n / block), replace=False) for _ in range(n_boot)])"
     },
+)
+mistakes(
+    "LAST_VALUE_LEFT_OUT",
+    "The last value is never counted as inside its interval.",
+    "Look at all values: range(len(y)) reaches the last one, range(len(y) - 1) does not.",
+).body(
+    "coverage",
+    """
+        inside = 0
+        for i in range(len(y) - 1):
+            inside += bool(lo[i] <= y[i] <= hi[i])
+        return inside / len(y)
+    """,
 )
 mistakes(
     "MIDDLE_AND_HALF",
@@ -2032,6 +2122,20 @@ mistakes(
     "The result is a quotient: without an error it is 1 or -1, not 0.",
     "Take the difference first, then divide: (E - E[0]) / abs(E[0]), or (sim - real) / real.",
     kind="consequence",
+)
+mistakes(
+    "IMPULSE_AT_SAME_TIME",
+    "The impulse of one force is taken only where the other one acts.",
+    "Integrate each force over the whole recording, wherever the other one begins and ends.",
+    kind="consequence",
+).body(
+    "contact_force_error",
+    """
+        f_sim, f_real = np.asarray(f_sim, dtype=float), np.asarray(f_real, dtype=float)
+        touching = f_real > 0
+        peak, impulse = np.max(f_real), np.sum(f_real[touching])
+        return {"peak": np.max(f_sim) / peak - 1, "impulse": np.sum(f_sim[touching]) / impulse - 1}
+    """,
 )
 mistakes(
     "IMPULSE_OF_SQUARES",

@@ -362,24 +362,24 @@ def expect_ends_covered(submission, rng):
 
     Every error is 1.96, and no value is as large: each sum and difference of them is exact.
     """
-    side = float(rng.choice([-1, 1]))
     recorded = [twins.record(rng, f"end {i}", rng.uniform(5, 7), 0.02, 0.02) for i in range(3)]
-    sim, real = twins.simulated(recorded), twins.measured(recorded)
-    for ours, theirs in zip(sim["runs"], real["runs"], strict=True):
-        swing = ours["y"] / np.max(np.abs(ours["y"]))
-        theirs["y"] = side * np.round(57 * swing - 58) / 64
-        ours |= {"y": theirs["y"] + side * 1.96, "sigma": np.ones(len(theirs["y"]))}
-    report = kit.as_record(submission.call("validate", sim, real, LENIENT), KEYS, "the report")
-    kit.expect_close(
-        kit.as_number(report["coverage"], "coverage"),
-        1.0,
-        rel=1e-6,
-        source="a closed formula: only rounding is allowed",
-        quantity="coverage",
-        message="`coverage` is wrong where every error is exactly 1.96 sigma.",
-        help="Ends are included: a value is covered where abs(y_sim - y_real) <= 1.96 * sigma.",
-        input={"every error": side * 1.96, "sigma": 1.0},
-    )
+    for side in (-1.0, 1.0):  # the lower ends, and the upper ones
+        sim, real = twins.simulated(recorded), twins.measured(recorded)
+        for ours, theirs in zip(sim["runs"], real["runs"], strict=True):
+            swing = ours["y"] / np.max(np.abs(ours["y"]))
+            theirs["y"] = side * np.round(57 * swing - 58) / 64
+            ours |= {"y": theirs["y"] + side * 1.96, "sigma": np.ones(len(theirs["y"]))}
+        report = kit.as_record(submission.call("validate", sim, real, LENIENT), KEYS, "the report")
+        kit.expect_close(
+            kit.as_number(report["coverage"], "coverage"),
+            1.0,
+            rel=1e-6,
+            source="a closed formula: only rounding is allowed",
+            quantity="coverage",
+            message="`coverage` is wrong where every error is exactly 1.96 sigma.",
+            help="Ends are included: a value is covered where abs(y_sim - y_real) <= 1.96 * sigma.",
+            input={"every error": side * 1.96, "sigma": 1.0},
+        )
 
 
 def _specs(right):

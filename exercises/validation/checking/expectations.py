@@ -142,7 +142,9 @@ def expect_band(submission, setting, value, right, *, source, help):
             input=dict(zip(("dof", "runs", "alpha"), setting, strict=True)),
             message=f"`{name}` of the band is off by more than 1 %.",
             help=help,
-            diagnose=lambda: probes.of_band(submission, setting, ends, right),
+            diagnose=lambda: (
+                probes.of_random_band(submission, setting) or probes.of_band(submission, setting, ends, right)
+            ),
         )
 
 
@@ -158,7 +160,8 @@ def expect_coverage(submission, y, lo, hi):
         quantity="coverage",
         input={"y": y, "lo": lo, "hi": hi},
         message="The fraction of covered values is wrong.",
-        help="Count the values with lo <= y <= hi, ends included, and divide by the number of values.",
+        help="Look at each value, the first and the last too. Count those with lo <= y <= hi, ends included, "
+        "and divide by the number of values.",
         diagnose=lambda: probes.of_whole(
             submission, "coverage", [y, lo, hi], lambda x: _near(x, np.mean((lo <= y) & (y <= hi)))
         ),
@@ -265,13 +268,13 @@ def pulse(t, start, length, peak, rise=0.5):
     """A force that begins and ends smoothly; rise: the share of its length before the peak."""
     x = np.clip((t - start) / length, 0, 1)
     phase = np.where(x < rise, x / rise, 1 + (x - rise) / (1 - rise)) / 2
-    return peak * np.sin(np.pi * phase) ** 2
+    return peak * np.where(x < 1, np.sin(np.pi * phase) ** 2, 0.0)
 
 
 #: How each force becomes one number.
 _REDUCED = {
     "peak": "The peak of a force is its largest sample, not a point of a curve through it nor a percentile.",
-    "impulse": "Integrate each force by itself, and all of it.",
+    "impulse": "Integrate each force by itself, from the first sample of the recording to the last.",
 }
 
 

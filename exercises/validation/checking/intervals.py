@@ -25,8 +25,9 @@ def expect_width(submission, rng, scale, offset):
     }
     kit.expect_bounded(
         float(np.mean(ends[:, 1] - ends[:, 0])) / (2 * 1.96 * scale * shared.spread_of_mean(n, phi)),
-        low=0.55,
+        low=0.5,
         high=1.3,
+        # Of any right interval, less than 0.5 has a chance below 3e-9; less than 0.55, one of 4e-5.
         source="blocks give 0.6 to 1.0, single samples 0.22",
         quantity="mean width over true width",
         input=shown,
@@ -54,14 +55,13 @@ def expect_resamples(submission, seed):
             },
         )
     code = probes.of_ends(found)
-    # Of few values, an interval by another rule may look like it.
-    if code == "ALPHA_AT_ONE_END" and probes.of_interval(submission, seed, found) is None:
-        code = None
-    if code is not None:
+    # Of few values, an interval by another rule may look like it: more of them must show it, too.
+    mistake = code and probes.of_interval(submission, seed, found)
+    if mistake is not None:
         kit.fail(
             "The ends of the interval are not the quantiles that they should be.",
             help="The alpha/2 and the 1 - alpha/2 quantile of the statistic over the resamples.",
-            diagnose=lambda: probes.of_interval(submission, seed, found),
+            diagnose=lambda: mistake,
             expected="quantiles at 0.1 and 0.9 of what the statistic said",
             actual=found.inspected.value,
         )
@@ -88,9 +88,17 @@ def expect_whole(submission):
 def expect_centred(submission, ends, statistics, shown):
     """Each interval has its statistic about in its middle, in the mean over all."""
     middle = np.mean(ends, axis=1)
-    width = float(np.mean(ends[:, 1] - ends[:, 0])) or 1e-12  # a point has no width to divide by
+    width = float(np.mean(ends[:, 1] - ends[:, 0]))
+    kit.expect_true(
+        bool(np.any(ends[:, 1] != ends[:, 0])),
+        "Both ends of the interval are the same number.",
+        help="The ends are two quantiles of the statistic over the resamples. Draw each resample anew.",
+        input=shown,
+        actual=ends[0],
+        diagnose=lambda: probes.of_interval(submission, 1),
+    )
     kit.expect_bounded(
-        float(np.mean(np.abs(middle - statistics)) / width),
+        float(np.mean(np.abs(middle - statistics)) / (width or 1e-12)),
         high=0.35,
         source="right intervals stay below 0.2",
         quantity="distance of the middle from the statistic, in widths",
@@ -122,8 +130,8 @@ def expect_level(submission, rng, statistic):
     ratio = float(np.mean(wide[:, 1] - wide[:, 0]) / np.mean(narrow[:, 1] - narrow[:, 0]))
     kit.expect_bounded(
         ratio,
-        low=1.55,
-        high=2.5,
+        low=1.5,
+        high=2.8,  # ends on the outer of two neighbouring values reach 2.5 with a chance of 9e-6
         source="a normal distribution gives 1.97",
         quantity="width at alpha 0.05 over width at alpha 0.32",
         input=shown,

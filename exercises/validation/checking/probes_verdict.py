@@ -35,6 +35,7 @@ class Facts:
         even: the lag with the smallest mean of the runs' own mean squares, and half the width that its
             interval would have.
         about: half the widths of the intervals, with the number in the place of the mean of all but one.
+        own: the lags of the runs, each by itself.
     """
 
     used: list[str]
@@ -46,6 +47,7 @@ class Facts:
     alone: float
     even: list[float] = field(default_factory=list)
     about: dict[str, float] = field(default_factory=dict)
+    own: list[float] = field(default_factory=list)
 
     @property
     def dt(self):
@@ -220,6 +222,7 @@ def of_lag(value, half, right):
     looks += [
         ("LAG_OF_EVEN_RUNS", _about(value, half, [right.even], dt)),
         ("LAG_MEAN_OF_RUNS", _about(value, half, right.averages, dt)),
+        ("LAG_OF_ONE_RUN", any(abs(value - lag) <= 0.06 * dt for lag in right.own)),
         ("LAG_NOT_NEGATIVE", late < -0.6 * dt and value >= 0),
     ]
     return named(next((code for code, fits in looks if fits), "LAG_NOT_BEST"))

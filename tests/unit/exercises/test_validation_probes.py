@@ -24,6 +24,7 @@ probes = kit.companion("validation", "probes")
 shared = kit.companion("validation", "expectations")
 twins = kit.companion("validation", "twins")
 verdict = kit.companion("validation", "probes_verdict")
+intervals = kit.companion("validation", "intervals")
 bundles = kit.companion("validation", "bundles")
 report = kit.companion("validation", "report")
 formulas = kit.reference("validation", "formulas")
@@ -84,6 +85,52 @@ def test_a_basic_interval_is_as_right_as_the_plain_one(levels, code):
     ends = 2 * np.mean(e**2) - np.quantile(answers, levels)
     found = probes.Resampled(e, asked, answers, kit.Inspected(ends, [e], shared=False))
     assert probes.of_ends(found) == code
+
+
+@pytest.mark.parametrize(
+    "middle", [lambda whole, mean: whole, lambda whole, mean: mean, lambda w, m: 2 * w - m]
+)
+@pytest.mark.parametrize("factor", [1.2816, 1.3195])  # of a normal distribution, and Student's t
+def test_a_normal_interval_is_right_of_whatever_resamples(middle, factor):
+    """It is told by its middle and its width: of 24 values, it may lie on any quantiles."""
+    e = 1.0 + np.arange(250.0)
+    for seed in range(300):
+        rng = np.random.default_rng(seed)
+        answers = np.mean(rng.choice(e, (24, 20)) ** 2, axis=1)
+        centre = middle(np.mean(e**2), np.mean(answers))
+        ends = centre + factor * np.std(answers, ddof=1) * np.array([-1, 1])
+        found = probes.Resampled(e, [e[::-1]] * 24, list(answers), kit.Inspected(ends, [e], shared=False))
+        assert probes.of_ends(found) is None
+
+
+def blocks(n, block, rng, rule):
+    """One resample of a series whose values are 1, 2, ..., n; rule: fits, circular, cut or random."""
+    parts = []
+    while sum(map(len, parts)) < n:
+        start = rng.integers(n - block + 1 if rule == "fits" else n)
+        length = rng.geometric(1 / block) if rule == "random" else block
+        places = start + np.arange(length)
+        parts.append(places % n if rule == "circular" else places[places < n])
+    return 1.0 + np.concatenate(parts)[:n]
+
+
+@pytest.mark.parametrize(
+    ("rule", "code"), [("fits", None), ("circular", None), ("random", None), ("cut", "BLOCKS_CUT_SHORT")]
+)
+def test_only_blocks_of_one_length_are_told_to_be_cut_short(rule, code):
+    e = 1.0 + np.arange(250)
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        asked = [blocks(250, 12, rng, rule) for _ in range(24)]
+        found = probes.Resampled(e, asked, [0.0] * 24, kit.Inspected((0.0, 1.0), [e], shared=False))
+        assert probes.of_resamples(found) == code
+
+
+def test_intervals_that_are_points_are_told_to_be_points():
+    """A distance in widths of zero is no number, and was once printed as 1.2e+11."""
+    with pytest.raises(kit.CheckFailed) as failed:
+        intervals.expect_centred(SOLUTION, np.full((8, 2), 3.0), np.full(8, 2.9), {})
+    assert failed.value.finding.message == "Both ends of the interval are the same number."
 
 
 @pytest.mark.parametrize(

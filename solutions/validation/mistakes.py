@@ -1064,7 +1064,7 @@ mistakes(
         return float(dt * (i - most + 0.5 * (a - c) / (a - 2 * b + c)))
     """,
     of="best_shift",
-    also=("LAGS_OF_SINGLE_RUNS", ""),
+    also=("LAGS_OF_SINGLE_RUNS", "LAG_OF_PARTS", "LAG_OF_EVEN_RUNS", ""),
 ).body(
     "validate",
     """
@@ -1081,7 +1081,7 @@ mistakes(
         return float(shifts[i] + 0.5 * dt * (a - c) / (a - 2 * b + c))
     """,
     of="best_shift",
-    also=("LAG_MEAN_OF_RUNS", ""),
+    also=("LAG_MEAN_OF_RUNS", "LAG_OF_ONE_RUN", ""),
 ).body(
     "validate",
     """

@@ -222,7 +222,8 @@ def of_lag(value, half, right):
     looks += [
         ("LAG_OF_EVEN_RUNS", _about(value, half, [right.even], dt)),
         ("LAG_MEAN_OF_RUNS", _about(value, half, right.averages, dt)),
-        ("LAG_OF_ONE_RUN", any(abs(value - lag) <= 0.06 * dt for lag in right.own)),
+        # The lags of several runs are only some steps apart: what is near one may be so by chance.
+        ("LAG_OF_ONE_RUN", any(abs(value - lag) <= 0.01 * dt for lag in right.own)),
         ("LAG_NOT_NEGATIVE", late < -0.6 * dt and value >= 0),
     ]
     return named(next((code for code, fits in looks if fits), "LAG_NOT_BEST"))

@@ -161,6 +161,11 @@ def _impact(
     return resolve
 
 
+def _only_along(ma, mb, va, vb, n, e):
+    """What is across the normal is lost, also of bodies that do not approach."""
+    return tuple((w @ n) * n for w in _impact()(ma, mb, va, vb, n, e))
+
+
 def _each_alone(ma, mb, va, vb, n, e, mu=0.0):
     """Each body is thrown back as if from a wall, by its own velocity."""
     va, vb, n = _array(va), _array(vb), _array(n)
@@ -248,6 +253,19 @@ def _rubs_by_speed(share):
     def resolve(ma, mb, va, vb, n, e, mu):
         def friction(press, slip, speed, give, mu):
             return -min(mu * share(e) * press * give / (1 + e), speed / give) * _unit(slip)
+
+        return _impact(friction=friction)(ma, mb, va, vb, n, e, mu)
+
+    return resolve
+
+
+def _sticks_up_to(limit):
+    """The slip is stopped where it is at most ``limit(mu, s)``, and mu J acts elsewhere."""
+
+    def resolve(ma, mb, va, vb, n, e, mu):
+        def friction(press, slip, speed, give, mu):
+            sticks = speed <= limit(mu, press * give / (1 + e))
+            return -(speed / give if sticks else mu * press) * _unit(slip)
 
         return _impact(friction=friction)(ma, mb, va, vb, n, e, mu)
 
@@ -480,6 +498,7 @@ _IMPACTS = {
     "along": (
         ("BLOW_NOT_ALONG_NORMAL", lambda n, u: _unit(u)),
         ("BLOW_NOT_ALONG_NORMAL", lambda n, u: -_unit(u)),
+        ("BLOW_NOT_ALONG_NORMAL", lambda n, u: u / float(u @ n)),
         ("BLOW_NOT_ALONG_NORMAL", lambda n, u: np.ones(len(n))),
         ("BLOW_PER_AXIS", lambda n, u: np.sign(n)),
         ("BLOW_PER_AXIS", lambda n, u: n * np.abs(n)),
@@ -530,6 +549,18 @@ _FRICTIONS = {
         ("FRICTION_SPINS", lambda p, s, v, g, mu: -min(mu * p, v / g / 3) * _unit(s)),
         ("FRICTION_STOPS_TWICE_THE_SLIP", lambda p, s, v, g, mu: -min(mu * p, 2 * v / g) * _unit(s)),
         ("FRICTION_ALL_OR_NOTHING", lambda p, s, v, g, mu: -s / g if mu * p >= v / g else 0.0 * s),
+        (
+            "FRICTION_ONLY_WHILE_SLIDING",
+            lambda p, s, v, g, mu: -mu * p * _unit(s) if mu * p < v / g else 0.0 * s,
+        ),
+        (
+            "FRICTION_OTHER_COMPARISON",
+            lambda p, s, v, g, mu: -(v / g if v <= mu * p else mu * p) * _unit(s),
+        ),
+        (
+            "FRICTION_OTHER_COMPARISON",
+            lambda p, s, v, g, mu: -(v / g if v <= mu else mu * p) * _unit(s),
+        ),
         ("FRICTION_NOT_UNIT", lambda p, s, v, g, mu: -min(mu * p, v / g) * s),
         ("FRICTION_WITHOUT_BLOW", lambda p, s, v, g, mu: -min(mu, v / g) * _unit(s)),
     ),
@@ -614,6 +645,7 @@ TERMS = {
                 ("DISTANCE_TO_POINT", lambda x, p, n: _size(x - p)),
                 ("SOLID_ON_THE_WRONG_SIDE", lambda x, p, n: -float((x - p) @ n)),
                 ("CENTRE_IGNORED", lambda x, p, n: float(p @ n)),
+                ("LENGTH_OF_THE_POINT", lambda x, p, n: float(x @ n) - _size(p)),
                 ("DISTANCE_SQUARED", lambda x, p, n: float((x - p) @ n) ** 2),
                 ("NORMAL_PER_AXIS", lambda x, p, n: float((x - p) @ np.abs(n))),
                 ("NORMAL_PER_AXIS", lambda x, p, n: float(np.sum(x - p))),
@@ -770,6 +802,7 @@ OTHERS = {
         *((("APPROACH_BY_ONE_BODY",), _approach_in_space(meets)) for meets in _BY_ONE),
         (("IMPULSE_COMPUTED_TWICE",), _one_after_the_other),
         (("APPROACH_REVERSED",), _reversed(_impact())),
+        (("ACROSS_NOT_KEPT",), _only_along),
         (("EACH_BODY_ALONE",), _each_alone),
         (("RETURNS_SWAPPED",), _swapped(_impact())),
         (("MASSES_SWAPPED",), _exchanged(_impact())),
@@ -786,6 +819,7 @@ OTHERS = {
         (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: 1.0)),
         (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: 1 + e)),
         (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: e)),
+        (("FRICTION_OTHER_COMPARISON",), _sticks_up_to(lambda mu, s: mu * s)),
         (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: ma + mb)),
         (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: ma)),
         (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: mb)),

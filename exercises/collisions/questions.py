@@ -287,8 +287,9 @@ QUESTIONS = {
             (0.15, 0.0, 0.15, 0.6, 9.81, 0.3, 0.03),
             (0.5, 0.0, 0.1, 0.3, 9.81, 1.5, 0.03),
             (0.5, 0.0, 0.1, 0.8, 9.81, 0.29, 0.01),
-            # It touches with 0.9 g h late in a step; and with 3 g h early in one, to leave with half of that.
+            # First contacts: 0.9 g h late in a step; 0.75 g h early in one; 3 g h early in one, e a half.
             (0.1052, 0.0, 0.1, 1.0, 7.3, 0.6, 0.04),
+            (0.102614, 0.1012, 0.1, 1.0, 7.3, 0.4, 0.04),
             (0.22, 0.118, 0.15, 0.5, 9.81, 0.24, 0.04),
         )
     ],

@@ -260,16 +260,20 @@ def _rubs_by_speed(share):
 
 
 def _sticks_up_to(limit):
-    """The slip is stopped where it is at most ``limit(mu, s)``, and mu J acts elsewhere."""
+    """The slip is stopped where it is at most ``limit(mu, s, J)``, and mu J acts elsewhere."""
 
     def resolve(ma, mb, va, vb, n, e, mu):
         def friction(press, slip, speed, give, mu):
-            sticks = speed <= limit(mu, press * give / (1 + e))
+            sticks = speed <= limit(mu, press * give / (1 + e), press)
             return -(speed / give if sticks else mu * press) * _unit(slip)
 
         return _impact(friction=friction)(ma, mb, va, vb, n, e, mu)
 
     return resolve
+
+
+def _rubs_while_sliding(press, slip, speed, give, mu):
+    return -mu * press * _unit(slip) if mu * press < speed / give else 0.0 * slip
 
 
 def _from_both_sides(right):
@@ -549,18 +553,6 @@ _FRICTIONS = {
         ("FRICTION_SPINS", lambda p, s, v, g, mu: -min(mu * p, v / g / 3) * _unit(s)),
         ("FRICTION_STOPS_TWICE_THE_SLIP", lambda p, s, v, g, mu: -min(mu * p, 2 * v / g) * _unit(s)),
         ("FRICTION_ALL_OR_NOTHING", lambda p, s, v, g, mu: -s / g if mu * p >= v / g else 0.0 * s),
-        (
-            "FRICTION_ONLY_WHILE_SLIDING",
-            lambda p, s, v, g, mu: -mu * p * _unit(s) if mu * p < v / g else 0.0 * s,
-        ),
-        (
-            "FRICTION_OTHER_COMPARISON",
-            lambda p, s, v, g, mu: -(v / g if v <= mu * p else mu * p) * _unit(s),
-        ),
-        (
-            "FRICTION_OTHER_COMPARISON",
-            lambda p, s, v, g, mu: -(v / g if v <= mu else mu * p) * _unit(s),
-        ),
         ("FRICTION_NOT_UNIT", lambda p, s, v, g, mu: -min(mu * p, v / g) * s),
         ("FRICTION_WITHOUT_BLOW", lambda p, s, v, g, mu: -min(mu, v / g) * _unit(s)),
     ),
@@ -645,7 +637,6 @@ TERMS = {
                 ("DISTANCE_TO_POINT", lambda x, p, n: _size(x - p)),
                 ("SOLID_ON_THE_WRONG_SIDE", lambda x, p, n: -float((x - p) @ n)),
                 ("CENTRE_IGNORED", lambda x, p, n: float(p @ n)),
-                ("LENGTH_OF_THE_POINT", lambda x, p, n: float(x @ n) - _size(p)),
                 ("DISTANCE_SQUARED", lambda x, p, n: float((x - p) @ n) ** 2),
                 ("NORMAL_PER_AXIS", lambda x, p, n: float((x - p) @ np.abs(n))),
                 ("NORMAL_PER_AXIS", lambda x, p, n: float(np.sum(x - p))),
@@ -780,6 +771,7 @@ OTHERS = {
         (("DEPTH_SIGN_FLIPPED",), _plane(depth=lambda r, s: s - r, touching=lambda deep: deep <= 0)),
         (("DEPTH_CLAMPED",), _plane(depth=lambda r, s: max(r - s, 0.0), touching=lambda deep: deep > 0)),
         (("NORMAL_REVERSED",), _plane(gap=lambda x, p, n: -float((x - p) @ n), normal=lambda n: -n)),
+        (("LENGTH_OF_THE_POINT",), _plane(gap=lambda x, p, n: float(x @ n) - _size(p))),
     ],
     "impulse_1d": [
         (("ONLY_THE_REBOUND",), _line(factor=lambda e: 2 * e)),
@@ -819,7 +811,10 @@ OTHERS = {
         (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: 1.0)),
         (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: 1 + e)),
         (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: e)),
-        (("FRICTION_OTHER_COMPARISON",), _sticks_up_to(lambda mu, s: mu * s)),
+        (("FRICTION_ONLY_WHILE_SLIDING",), _impact(friction=_rubs_while_sliding)),
+        (("FRICTION_OTHER_COMPARISON",), _sticks_up_to(lambda mu, s, j: mu * s)),
+        (("FRICTION_OTHER_COMPARISON",), _sticks_up_to(lambda mu, s, j: mu * j)),
+        (("FRICTION_OTHER_COMPARISON",), _sticks_up_to(lambda mu, s, j: mu)),
         (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: ma + mb)),
         (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: ma)),
         (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: mb)),

@@ -2237,6 +2237,8 @@ def hypotheses():
     families = {task: (family, base, terms) for task, (family, base, terms) in formulas.TERMS.items()}
     families["simulate_head_on"] = _head_on, {}, _HEAD_ON
     families["simulate_drop"] = _drop, {}, _DROP
+    for again in (lambda s: max(s, 0.0), lambda s: s):
+        yield "simulate_head_on", ("IMPULSE_COMPUTED_TWICE",), _head_on(again=again)
     for task, (family, base, terms) in families.items():
         for codes, function in formulas.OTHERS.get(task, ()):
             yield task, codes, function
@@ -2353,10 +2355,6 @@ _HEAD_ON = {
     ),
     "leaves": (("TIME_LEFT_WRONG", lambda h, wait: h), ("TIME_LEFT_WRONG", lambda h, wait: wait)),
     "slow": formulas.TERMS["resolve"][2]["slow"],
-    "again": (
-        ("IMPULSE_COMPUTED_TWICE", lambda s: max(s, 0.0)),
-        ("IMPULSE_COMPUTED_TWICE", lambda s: s),
-    ),
 }
 
 

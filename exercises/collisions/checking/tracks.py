@@ -252,7 +252,8 @@ def _drop_flight(scene, t, z, v, h, before, off):
     last = int(np.flatnonzero(before)[-1])
     share = off[last] / t[last]  # what is off grows with t, by g/2 times a step
     parts = scene.g * h / 2 / abs(share) if share else 0.0
-    whole = 1.5 < parts < 1e4 and abs(parts - round(parts)) < 1e-3
+    # A wrong factor of h² is off in the same way, by more.
+    whole = 9.5 < parts < 1e4 and abs(parts - round(parts)) < 1e-3
     if whole and np.allclose(off[before], share * t[before], rtol=0, atol=1e-9):
         return "EULER_IN_PARTS"
     g = (scene.v0 - v[1]) / h

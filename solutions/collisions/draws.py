@@ -313,8 +313,12 @@ def early(rng):
 
 
 def near_centres(rng):
-    """Two spheres whose centres are a hundredth of a millimetre apart, and do not coincide."""
-    xa, ra, _, rb = spheres(rng, 3, 1.0)
+    """Two spheres whose centres are a hundredth of a millimetre apart, and do not coincide.
+
+    They are so far from the origin that a relative tolerance takes all coordinates for the same.
+    """
+    _, ra, _, rb = spheres(rng, 3, 1.0)
+    xa = rng.uniform(4.0, 10.0, 3) * rng.choice([-1.0, 1.0], 3)
     return xa, ra, xa + 10 ** rng.uniform(-5.2, -4.5) * unit(rng, 3), rb
 
 

@@ -161,6 +161,11 @@ def _impact(
     return resolve
 
 
+def _only_along(ma, mb, va, vb, n, e):
+    """What is across the normal is lost, also of bodies that do not approach."""
+    return tuple((w @ n) * n for w in _impact()(ma, mb, va, vb, n, e))
+
+
 def _each_alone(ma, mb, va, vb, n, e, mu=0.0):
     """Each body is thrown back as if from a wall, by its own velocity."""
     va, vb, n = _array(va), _array(vb), _array(n)
@@ -252,6 +257,23 @@ def _rubs_by_speed(share):
         return _impact(friction=friction)(ma, mb, va, vb, n, e, mu)
 
     return resolve
+
+
+def _sticks_up_to(limit):
+    """The slip is stopped where it is at most ``limit(mu, s, J)``, and mu J acts elsewhere."""
+
+    def resolve(ma, mb, va, vb, n, e, mu):
+        def friction(press, slip, speed, give, mu):
+            sticks = speed <= limit(mu, press * give / (1 + e), press)
+            return -(speed / give if sticks else mu * press) * _unit(slip)
+
+        return _impact(friction=friction)(ma, mb, va, vb, n, e, mu)
+
+    return resolve
+
+
+def _rubs_while_sliding(press, slip, speed, give, mu):
+    return -mu * press * _unit(slip) if mu * press < speed / give else 0.0 * slip
 
 
 def _from_both_sides(right):
@@ -480,6 +502,7 @@ _IMPACTS = {
     "along": (
         ("BLOW_NOT_ALONG_NORMAL", lambda n, u: _unit(u)),
         ("BLOW_NOT_ALONG_NORMAL", lambda n, u: -_unit(u)),
+        ("BLOW_NOT_ALONG_NORMAL", lambda n, u: u / float(u @ n)),
         ("BLOW_NOT_ALONG_NORMAL", lambda n, u: np.ones(len(n))),
         ("BLOW_PER_AXIS", lambda n, u: np.sign(n)),
         ("BLOW_PER_AXIS", lambda n, u: n * np.abs(n)),
@@ -748,6 +771,7 @@ OTHERS = {
         (("DEPTH_SIGN_FLIPPED",), _plane(depth=lambda r, s: s - r, touching=lambda deep: deep <= 0)),
         (("DEPTH_CLAMPED",), _plane(depth=lambda r, s: max(r - s, 0.0), touching=lambda deep: deep > 0)),
         (("NORMAL_REVERSED",), _plane(gap=lambda x, p, n: -float((x - p) @ n), normal=lambda n: -n)),
+        (("LENGTH_OF_THE_POINT",), _plane(gap=lambda x, p, n: float(x @ n) - _size(p))),
     ],
     "impulse_1d": [
         (("ONLY_THE_REBOUND",), _line(factor=lambda e: 2 * e)),
@@ -770,6 +794,7 @@ OTHERS = {
         *((("APPROACH_BY_ONE_BODY",), _approach_in_space(meets)) for meets in _BY_ONE),
         (("IMPULSE_COMPUTED_TWICE",), _one_after_the_other),
         (("APPROACH_REVERSED",), _reversed(_impact())),
+        (("ACROSS_NOT_KEPT",), _only_along),
         (("EACH_BODY_ALONE",), _each_alone),
         (("RETURNS_SWAPPED",), _swapped(_impact())),
         (("MASSES_SWAPPED",), _exchanged(_impact())),
@@ -786,6 +811,10 @@ OTHERS = {
         (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: 1.0)),
         (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: 1 + e)),
         (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: e)),
+        (("FRICTION_ONLY_WHILE_SLIDING",), _impact(friction=_rubs_while_sliding)),
+        (("FRICTION_OTHER_COMPARISON",), _sticks_up_to(lambda mu, s, j: mu * s)),
+        (("FRICTION_OTHER_COMPARISON",), _sticks_up_to(lambda mu, s, j: mu * j)),
+        (("FRICTION_OTHER_COMPARISON",), _sticks_up_to(lambda mu, s, j: mu)),
         (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: ma + mb)),
         (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: ma)),
         (("STICKING_WITHOUT_MASS",), _held_by(lambda ma, mb: mb)),

@@ -535,6 +535,12 @@ mistakes(
         def time_of_impact(xa, va, ra, xb, vb, rb, dt):
             return 0.0 if np.linalg.norm(xb - xa) <= ra + rb else _right(xa, va, ra, xb, vb, rb, dt)
     """,
+)
+mistakes(
+    "OVERLAP_LEVEL_HITS",
+    "Bodies that overlap and neither approach nor part are reported as colliding.",
+    "Where x . v is zero they do not approach: return None for every x . v >= 0.",
+    kind="consequence",
 ).edit(
     "time_of_impact",
     {
@@ -697,7 +703,7 @@ mistakes(
 mistakes(
     "RESTING_JITTER",
     "The ball is not on the floor where it must be at rest already.",
-    "When the ball touches the floor at a speed of at most g h, put it to rest: z = radius and v = 0 from then on. Compare with g h itself, not with a fixed speed.",
+    "Put the ball to rest the first time that it touches the floor at a speed of at most g h: z = radius and v = 0 from then on. Compare with g h itself: not with a fixed speed, and not with a part of g h.",
     true_too=("SINKS_THROUGH_FLOOR",),
 ).body(
     "simulate_drop",
@@ -955,6 +961,211 @@ mistakes(
     """,
 )
 mistakes(
+    "BRIEF_CONTACTS_MISSED",
+    "Only contacts are missed at which the bodies overlap for a short part of the step. All times are right.",
+    "If your code looks at samples of the step, bodies can meet and part again between two of them. Solve |dx + dv t| = ra + rb for t instead: at any speed the first contact is the smaller root.",
+    kind="consequence",
+).body(
+    "time_of_impact",
+    """
+        x, v, reach = xb - xa, vb - va, ra + rb
+        if x @ v >= 0:
+            return None
+        if np.linalg.norm(x) < reach:
+            return 0.0
+        low = 0.0
+        for high in np.linspace(0.0, dt, 1001):
+            if np.linalg.norm(x + v * high) <= reach:
+                for _ in range(100):
+                    middle = (low + high) / 2
+                    if np.linalg.norm(x + v * middle) > reach:
+                        low = middle
+                    else:
+                        high = middle
+                return float(high)
+            low = high
+        return None
+    """,
+)
+mistakes(
+    "SLOW_PAIRS_SPARED",
+    "Of these pairs that approach, only the slowest keep their velocities. The others are right.",
+    "Every pair with (va - vb) . n > 0 gets its impulse, however slow it is. Compare with zero itself, without a small number or a tolerance.",
+    kind="consequence",
+).body(
+    "impulse_1d",
+    """
+        s = va - vb
+        if s <= 1e-3:
+            return 0.0
+        return (1 + restitution) * s / (1 / ma + 1 / mb)
+    """,
+).body(
+    "impulse_1d",
+    """
+        s = va - vb
+        if s <= 0 or np.isclose(va, vb):
+            return 0.0
+        return (1 + restitution) * s / (1 / ma + 1 / mb)
+    """,
+)
+mistakes(
+    "SLOW_SLIPS_SPARED",
+    "Of these pairs that slide past each other, only the slowest have no friction. The others are right.",
+    "Jt = min(mu J, |vt| / (1/ma + 1/mb)), however slow the slip is. vt has no direction only where it is zero.",
+    kind="consequence",
+).body(
+    "resolve_with_friction",
+    """
+        closing = (va - vb) @ normal
+        if closing <= 0:
+            return va, vb
+        give = 1 / ma + 1 / mb
+        along = (1 + restitution) * closing / give
+        slip = vb - va + closing * normal
+        speed = np.linalg.norm(slip)
+        across = min(mu * along, speed / give) if speed > 0.01 else 0.0
+        impulse = along * normal - (across * slip / speed if across else 0.0)
+        return va - impulse / ma, vb + impulse / mb
+    """,
+)
+mistakes(
+    "FRICTION_ONLY_WHILE_SLIDING",
+    "Where friction could stop the slip, there is none.",
+    "There Jt = |vt| / (1/ma + 1/mb), which stops the slip: take the smaller of that and mu J.",
+)
+mistakes(
+    "FRICTION_OTHER_COMPARISON",
+    "Whether friction stops the slip is decided by another comparison than that of mu J with |vt| / (1/ma + 1/mb).",
+    "Jt = min(mu J, |vt| / (1/ma + 1/mb)): take the smaller of the two impulses, and no other condition is needed.",
+)
+mistakes(
+    "NEAR_CENTRES_COINCIDE",
+    "The normal is wrong only where the centres lie very close together.",
+    "Centres coincide where their distance is zero, and not where it is small. All others have a direction: (xb - xa)/d.",
+    kind="consequence",
+).body(
+    "detect_sphere_sphere",
+    """
+        apart = xb - xa
+        distance = float(np.linalg.norm(apart))
+        normal = np.eye(1, len(apart))[0] if np.allclose(xa, xb) else apart / distance
+        depth = ra + rb - distance
+        return depth >= 0, normal, depth
+    """,
+)
+mistakes(
+    "TIME_TO_FLOOR_SIGN",
+    "The time to the floor is computed with the wrong sign of v.",
+    "v is upwards, and negative on the way down. From (z, v) the ball gets to the floor after (v + speed)/g, with speed = sqrt(v**2 + 2 g (z - radius)).",
+).body(
+    "simulate_drop",
+    """
+        n = round(t_end / h)
+        z, v = float(z0), float(v0)
+        rest = z <= radius and v == 0
+        zs, vs = [z], [v]
+        for i in range(n):
+            left = h
+            while not rest:
+                speed = math.sqrt(max(0.0, v * v + 2 * g * (z - radius)))
+                wait = (speed - v) / g
+                if wait > left:
+                    z, v = z + v * left - g * left * left / 2, v - g * left
+                    break
+                left -= wait
+                z, v = radius, restitution * speed
+                rest = speed <= g * h
+            if rest:
+                z, v = radius, 0.0
+            zs.append(z)
+            vs.append(v)
+        return h * np.arange(n + 1), np.array(zs), np.array(vs)
+    """,
+).edit("simulate_drop", {"(v[i] + speed) / g": "(speed - v[i]) / g"})
+mistakes(
+    "REST_BY_TIME_LEFT",
+    "Whether the ball rests is decided with what is left of the step in place of h.",
+    "The limit is g h, with all of the step h, wherever in the step the ball touches.",
+).body(
+    "simulate_drop",
+    """
+        n = round(t_end / h)
+        z, v = float(z0), float(v0)
+        rest = z <= radius and v == 0
+        zs, vs = [z], [v]
+        for i in range(n):
+            left = h
+            while not rest:
+                speed = math.sqrt(max(0.0, v * v + 2 * g * (z - radius)))
+                wait = (v + speed) / g
+                if wait > left:
+                    z, v = z + v * left - g * left * left / 2, v - g * left
+                    break
+                left -= wait
+                z, v = radius, restitution * speed
+                rest = speed <= g * left
+            if rest:
+                z, v = radius, 0.0
+            zs.append(z)
+            vs.append(v)
+        return h * np.arange(n + 1), np.array(zs), np.array(vs)
+    """,
+).body(
+    "simulate_drop",
+    """
+        n = round(t_end / h)
+        z, v = float(z0), float(v0)
+        rest = z <= radius and v == 0
+        zs, vs = [z], [v]
+        for i in range(n):
+            left = h
+            while not rest:
+                speed = math.sqrt(max(0.0, v * v + 2 * g * (z - radius)))
+                wait = (v + speed) / g
+                if wait > left:
+                    z, v = z + v * left - g * left * left / 2, v - g * left
+                    break
+                left -= wait
+                z, v = radius, restitution * speed
+                rest = restitution * speed <= g * left
+            if rest:
+                z, v = radius, 0.0
+            zs.append(z)
+            vs.append(v)
+        return h * np.arange(n + 1), np.array(zs), np.array(vs)
+    """,
+)
+mistakes(
+    "REST_BY_STEP_END",
+    "Whether the ball rests is decided by its speed at the end of the step, and not at the contact.",
+    "It rests if it touches the floor with at most g h: compare the speed that it has at the contact.",
+).body(
+    "simulate_drop",
+    """
+        n = round(t_end / h)
+        z, v = float(z0), float(v0)
+        rest = z <= radius and v == 0
+        zs, vs = [z], [v]
+        for i in range(n):
+            left = h
+            while not rest:
+                speed = math.sqrt(max(0.0, v * v + 2 * g * (z - radius)))
+                wait = (v + speed) / g
+                if wait > left:
+                    z, v = z + v * left - g * left * left / 2, v - g * left
+                    break
+                left -= wait
+                z, v = radius, restitution * speed
+                rest = abs(v - g * left) <= g * h
+            if rest:
+                z, v = radius, 0.0
+            zs.append(z)
+            vs.append(v)
+        return h * np.arange(n + 1), np.array(zs), np.array(vs)
+    """,
+)
+mistakes(
     "MISS_IS_A_NUMBER",
     "Where the bodies do not touch within the step, the result is something other than None.",
     "Return None there: a number would be read as a time, and infinity as one that never comes.",
@@ -1170,6 +1381,33 @@ mistakes(
             t, z, v = _right(z0, v0, radius, restitution, g, t_end, h)
             still = (v == 0.0) & (z == radius) & (t > 0)
             return t, z, np.where(still, 0.3 * g * h, v)
+    """,
+)
+mistakes(
+    "EULER_IN_PARTS",
+    "Before the first contact the fall has the error of Euler steps that are shorter than h.",
+    "Shorter steps have a smaller error, but free flight has an exact step: z + v h - g h**2 / 2 for the height and v - g h for the velocity.",
+    kind="consequence",
+).body(
+    "simulate_drop",
+    """
+        n, parts = round(t_end / h), 200
+        z, v, rest = z0, v0, False
+        zs, vs = [z], [v]
+        for i in range(n):
+            for _ in range(parts):
+                if rest:
+                    break
+                v = v - g * h / parts
+                z = z + v * h / parts
+                if z <= radius and v < 0:
+                    rest = -v <= g * h
+                    z, v = radius, -restitution * v
+            if rest:
+                z, v = radius, 0.0
+            zs.append(z)
+            vs.append(v)
+        return h * np.arange(n + 1), np.array(zs), np.array(vs)
     """,
 )
 mistakes(
@@ -1428,6 +1666,11 @@ mistakes(
     "The height of the centre is (x - point) . normal.",
 )
 mistakes(
+    "LENGTH_OF_THE_POINT",
+    "The length of `point` is subtracted, where its part along the normal belongs.",
+    "The plane goes through `point`: the height of the centre is (x - point) . normal.",
+)
+mistakes(
     "TOUCHING_WRONG",
     "The normal and the depth are right, but touching is not.",
     "touching is depth >= 0, and nothing else: however deep, however far, on whichever side.",
@@ -1546,7 +1789,7 @@ mistakes(
 mistakes(
     "MOMENTUM_LOST",
     "The total momentum changes, although no outside force acts.",
-    "Both bodies get the same impulses, with opposite signs, each divided by its own mass. Compute both changes by hand and compare.",
+    "Both bodies get the same impulses, with opposite signs, each divided by its own mass. Nothing else of va and vb changes: what lies across n stays. Compute both changes by hand and compare.",
     kind="consequence",
 )
 mistakes(
@@ -1870,7 +2113,7 @@ mistakes(
 mistakes(
     "FALLS_THROUGH_FLOOR",
     "The ball falls through the floor as if it were not there.",
-    "In each step, ask whether the centre comes down to z = radius within it. If so, move to the contact and bounce there.",
+    "In each step, ask whether the centre comes down to z = radius within it. If so, move to the contact and bounce there. If your code does so, print its time to the floor: it is (v + speed)/g, with v upwards.",
 )
 mistakes(
     "SPEED_AT_STEP_START",
@@ -1994,6 +2237,8 @@ def hypotheses():
     families = {task: (family, base, terms) for task, (family, base, terms) in formulas.TERMS.items()}
     families["simulate_head_on"] = _head_on, {}, _HEAD_ON
     families["simulate_drop"] = _drop, {}, _DROP
+    for again in (lambda s: max(s, 0.0), lambda s: s):
+        yield "simulate_head_on", ("IMPULSE_COMPUTED_TWICE",), _head_on(again=again)
     for task, (family, base, terms) in families.items():
         for codes, function in formulas.OTHERS.get(task, ()):
             yield task, codes, function
@@ -2029,13 +2274,15 @@ def _head_on(
     overlaps=False,
     clock=lambda i, h: i * h,
     slow=None,
+    again=None,
     waits=lambda gap, va, vb: max(gap, 0.0) / (va - vb),
     leaves=lambda h, wait: h - wait,
     old=(),
 ):
     """``late``: the impact comes at the sample after; ``rest``: what is flown of the rest of the step;
 
-    ``old``: which balls fly it with their old velocities; ``overlaps``: it acts only if the balls overlap at
+    ``old``: which balls fly it with their old velocities; ``again``: what is taken for the speed of approach
+    where the second impulse is computed from the first new velocity; ``overlaps``: it acts only if the balls overlap at
     the end of the step; ``first``: keeps row 0.
     """
 
@@ -2043,7 +2290,10 @@ def _head_on(
         if slow is not None and va - vb < slow:
             e = 0.0
         j = factor(e) * (va - vb) / give(*m)
-        return va + shares[0] * kick(j, m[0], m[1]), vb + shares[1] * kick(j, m[1], m[0])
+        va = va + shares[0] * kick(j, m[0], m[1])
+        if again:
+            j = factor(e) * again(va - vb) / give(*m)
+        return va, vb + shares[1] * kick(j, m[1], m[0])
 
     def simulate(m, x0, v0, radius, e, t_end, h):
         n = count(t_end / h)

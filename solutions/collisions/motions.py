@@ -47,12 +47,14 @@ def contacts(scene, t_end, slowest):
 
 
 def settling(scene, t_end, h):
-    """From when on the ball may rest, and from when on it must: (s, s)."""
-    slowest = scene.g * h
-    times, speeds = contacts(scene, t_end, slowest * (1 - 1e-6))
-    slow = [time for time, speed in zip(times, speeds, strict=True) if speed <= slowest * (1 + 1e-6)]
-    if not slow:
-        return math.inf, math.inf
-    # The last hop starts at g h at most, so it is over after two steps.
-    must = times[-1] + 2 * h * (1 + 1e-6) if speeds[-1] == 0.0 else math.inf
-    return float(slow[0]), float(must)
+    """From when on the ball may rest, by its speed after a contact, and must, by that before it: (s, s)."""
+    slowest, may, before = scene.g * h, math.inf, scene.fastest
+    t = (scene.v0 + before) / scene.g
+    while t <= t_end:
+        after = scene.restitution * before
+        if after <= slowest * (1 + 1e-6):
+            may = min(may, t)
+        if before <= slowest * (1 - 1e-6) or after == 0.0:
+            return may, t
+        t, before = t + 2 * after / scene.g, after
+    return may, math.inf

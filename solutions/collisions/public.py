@@ -113,7 +113,7 @@ PUBLIC = {
         draws.wall(draws.chased(rng, draws.impact(rng, d), side), side) for d, side in ((2, 0), (3, 1))
     ],
     "friction_regimes": lambda rng: [
-        *(draws.friction(rng, d, share) for d, share in ((3, 0.3), (3, 0.7), (3, 1.5), (3, 5.0), (2, 0.6))),
+        *(draws.friction(rng, d, share) for d, share in ((3, 0.3), (3, 0.7), (3, 1.1), (3, 5.0), (2, 0.6))),
         draws.rough(rng),
         draws.creeping(rng),
         *(change(rng, draws.friction(rng, 3, 0.5)) for change in draws.MASSES),
@@ -142,4 +142,10 @@ PUBLIC = {
         draws.settling_at_once(rng),
     ],
     "drop_pymunk": _fall_beside_pymunk,
+    "sphere_kept": lambda rng: [draws.spheres(rng, 3, 0.6)],
+    "plane_kept": lambda rng: [draws.plane(rng, 3, 0.6)],
+    "resolve_kept": lambda rng: [draws.impact(rng, 3)],
+    "friction_kept": lambda rng: [draws.friction(rng, 3, 0.6)],
+    "moment_kept": lambda rng: [draws.passing(rng, 3, 0.6)],
+    "head_on_kept": lambda rng: [draws.early(rng)],
 }

@@ -107,3 +107,11 @@ class Bounces:
     speeds: tuple[float, ...]
     may: float
     must: float
+
+
+def hopping(scene, bounces):
+    """The speeds of ``bounces``, m/s, if the ball leaves its last contact, too: with e times its speed."""
+    if not bounces.speeds:
+        return ()
+    before = bounces.speeds[-2] if len(bounces.speeds) > 1 else scene.fastest
+    return *bounces.speeds[:-1], bounces.speeds[-1] or scene.restitution * before

@@ -64,7 +64,18 @@ def _of_contact(task, calls, values, truth):  # noqa: PLR0911 - one return per m
         return "NORMAL_NOT_UNIT"
     if all(_same((-right[1], right[2]), value[1:]) for _, value, right in wrong) and len(wrong) < len(values):
         return "NORMAL_REVERSED_AT_TIMES"
-    return _other_height(wrong) if task == "detect_sphere_plane" else None
+    if task == "detect_sphere_sphere":
+        return _near_centres(calls, values, truth)
+    return _other_height(wrong)
+
+
+def _near_centres(calls, values, truth):
+    """Whether the normal alone is wrong, and only where the centres nearly coincide."""
+    apart = np.array([float(np.linalg.norm(call[2] - call[0])) / (call[1] + call[3]) for call in calls])
+    off = np.array([not _same(right, value) for value, right in zip(values, truth, strict=True)])
+    only = all(_same((r[0], r[2]), (v[0], v[2])) for v, r in zip(values, truth, strict=True))
+    near = (apart > 0) & (apart < 0.01)
+    return "NEAR_CENTRES_COINCIDE" if only and not off.all() and np.array_equal(off, near) else None
 
 
 def _other_height(wrong):
@@ -251,7 +262,10 @@ def _concerned(task, calls, values, truth):
         return "IMPULSE_ON_SEPARATING" if kept else None
     struck = any(met and _closing(task, call) > 0 for (call, _, _), met in zip(pairs, right, strict=True))
     if struck and all(_same(still, value) for still, (_, value, _) in zip(idle, wrong, strict=True)):
-        return "SOME_PAIRS_SPARED"
+        speeds = [(_closing(task, call), met) for (call, _, _), met in zip(pairs, right, strict=True)]
+        slowest = min(speed for speed, met in speeds if met and speed > 0)
+        slow = all(speed < 0.1 * slowest for speed, met in speeds if not met)
+        return "SLOW_PAIRS_SPARED" if slow else "SOME_PAIRS_SPARED"
     if task == "impulse_1d" or (not struck and len(wrong) < 2):
         return None
     # A body that cannot move is always right.
@@ -293,6 +307,8 @@ def _by_speeds(task, colliding):
 
 def _rubs(calls, values, truth):
     """How friction is wrong, where all else is right: its direction, or its size."""
+    if _slow_slips(calls, values, truth):
+        return "SLOW_SLIPS_SPARED"
     seen = []
     for call, value, right in zip(calls, values, truth, strict=True):
         if _same(right, value):
@@ -320,6 +336,23 @@ def _rubs(calls, values, truth):
     if seen and (seen[0] == "FRICTION_ASKEW" or len(set(seen)) == 1):
         return seen[0]
     return None
+
+
+def _slow_slips(calls, values, truth):
+    """Whether friction is missing only between the bodies that slide most slowly."""
+    slow, fast = [], []
+    for call, value, right in zip(calls, values, truth, strict=True):
+        slip = float(np.linalg.norm(_slip(call)))
+        if not _same(right, value):
+            n = call[4]
+            changes = [np.subtract(answer, call[2:4]) for answer in (value, right)]
+            smooth = np.allclose(changes[0], np.outer(changes[1] @ n, n), rtol=1e-9, atol=1e-9)
+            if not smooth:
+                return False
+            slow.append(slip)
+        elif slip and call[6] and _closing("resolve", call) > 0:
+            fast.append(slip)
+    return bool(slow and fast) and max(slow) < 0.1 * min(fast)
 
 
 def _closing(task, call):
@@ -379,7 +412,7 @@ def _wrong_moment(calls, values, truth):
             continue
         if right is None:
             if value == 0.0 and _overlap(call):
-                return "OVERLAP_ALWAYS_HITS"
+                return "OVERLAP_ALWAYS_HITS" if _parting_hits(calls, values) else "OVERLAP_LEVEL_HITS"
             # Only a time at which they do touch is a contact that was, or one that is to come.
             if not _apart(call, value) < 1e-6:
                 return None if _overlap(call) else "MISS_IS_A_NUMBER"
@@ -391,6 +424,14 @@ def _wrong_moment(calls, values, truth):
         late = -2 * float(dx @ dv) / float(dv @ dv) - right
         return "TIME_OF_IMPACT_LATE_ROOT" if right > 0.0 and _same(late, value) else None
     return None
+
+
+def _parting_hits(calls, values):
+    """Whether any spheres that overlap and move apart, and are not only no nearer, get a time."""
+    return any(
+        value is not None and _overlap(call) and (call[3] - call[0]) @ (call[4] - call[1]) > 1e-12
+        for call, value in zip(calls, values, strict=True)
+    )
 
 
 def _beyond(call, value):
@@ -420,6 +461,8 @@ def _coarse(calls, values, truth):
             else None
         )
     found = [pair for pair in pairs if None not in pair]
+    if _brief(calls, values, truth):
+        return "BRIEF_CONTACTS_MISSED"
     near = all(abs(value - right) <= 0.05 * dt for right, value, dt in found)
     if len(found) == sum(right is not None for right, _, _ in pairs):
         return "MOMENT_TOO_COARSE" if near else None
@@ -427,6 +470,19 @@ def _coarse(calls, values, truth):
     late = all(value >= right - 1e-9 for right, value, _ in found)
     rough = [(value, dt) for right, value, dt in found if not _same(right, value)]
     return "TUNNELS" if near and late and rough and _sampled(rough) else "CONTACTS_MISSED"
+
+
+def _brief(calls, values, truth):
+    """Whether all times are right, and only contacts are missed at which bodies overlap for a short time."""
+    missed, found = [], []
+    for call, value, right in zip(calls, values, truth, strict=True):
+        if right:
+            x, v = call[3] - call[0], call[4] - call[1]
+            late = -2 * float(x @ v) / float(v @ v) - right
+            (missed if value is None else found).append((late - right) / call[-1])
+        if value is not None and not _same(right, value):
+            return False
+    return bool(missed and found) and max(missed) < min(0.05, *found)
 
 
 def _sampled(found):

@@ -104,6 +104,49 @@ def test_a_ball_that_falls_on_while_it_lies_on_the_floor_loses_points():
         bundles.expect_drop(scene, truth, (t, z, np.where(t == t[2], -0.1, v)), t_end, h, "wrong")
 
 
+@pytest.mark.parametrize("e", [0.3, 0.7])
+def test_between_the_two_readings_of_rest_only_their_two_paths_are_right(e):
+    """A hop of another height had full marks there, and a later row was said to differ first."""
+    scene, t_end, h = draws.settling(np.random.default_rng(8), e)
+    (truth,) = bundles.bounces([(scene, t_end, h)])
+    t = h * np.arange(round(t_end / h) + 1)
+    for speeds in (truth.speeds, paths.hopping(scene, truth)):
+        z, v = scene.at(t, truth.times, speeds)
+        rests = t >= truth.must
+        z, v = np.where(rests, scene.radius, z), np.where(rests, 0.0, v)
+        bundles.expect_drop(scene, truth, (t, z, v), t_end, h, "wrong")
+        between = (t > truth.may) & (t < truth.must)
+        assert between.any()
+        for other in ((z + 1e-6 * between, v), (z, v + 1e-6 * between)):
+            with pytest.raises(kit.CheckFailed):
+                bundles.expect_drop(scene, truth, (t, *other), t_end, h, "wrong")
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_ball_that_touches_slowly_has_one_path_and_the_first_row_off_it_is_told(seed):
+    scene, t_end, h = draws.settling_at_once(np.random.default_rng(seed))
+    (truth,) = bundles.bounces([(scene, t_end, h)])
+    t = h * np.arange(round(t_end / h) + 1)
+    bounces = scene.at(t, *motions.contacts(scene, t_end, 1e-9))
+    with pytest.raises(kit.CheckFailed) as failed:
+        bundles.expect_drop(scene, truth, (t, *bounces), t_end, h, "wrong")
+    assert failed.value.finding.first_divergence.step == np.argmax(t > truth.may)
+
+
+KEPT = ["sphere_kept", "plane_kept", "resolve_kept", "friction_kept", "moment_kept", "head_on_kept"]
+
+
+@pytest.mark.parametrize("check", KEPT)
+@pytest.mark.parametrize("seed", [None, 1, 2])
+def test_what_a_call_may_not_change_would_be_changed_by_any_difference_or_sum(check, seed):
+    (asked,) = bundles.asked(check, None if seed is None else np.random.default_rng(seed))
+    args = asked[0].args(*asked[1:]) if check == "head_on_kept" else asked
+    vectors = [arg for arg in args if isinstance(arg, np.ndarray)]
+    assert len(vectors) > 1
+    assert all(vector.all() for vector in vectors)
+    assert all(np.all(a != b) for i, a in enumerate(vectors) for b in vectors[:i] if len(a) == len(b))
+
+
 @pytest.mark.parametrize("spoil", [math.nan, math.inf, 1e308, -1e308])
 def test_paths_that_blow_up_half_way_are_wrong_and_no_probe_stumbles_over_them(spoil):
     ball, pair = paths.Drop(1.0, 0.0, 0.1, 0.7), paths.HeadOn((1.0, 2.0), (-1.0, 0.6), (2.0, -1.0), 0.5, 0.5)

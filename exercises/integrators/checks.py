@@ -139,8 +139,8 @@ def _expect_samples(submission, omega, spiral, start, steps):
     kit.expect_length(
         t,
         n + 1,
-        message="integrate does not return one sample more than there are steps.",
-        help="N = round(t_end / h) steps connect N + 1 states.",
+        message="integrate does not return N + 1 times for N steps.",
+        help="N = round(t_end / h) steps connect N + 1 states, each with its time.",
         input=given,
         diagnose=lambda: probes.of_count(submission, n, h),
     )

@@ -109,7 +109,7 @@ mistakes(
 ).edit("semi_implicit_euler_step", {"h * v_next, v_next": "h * (v + v_next) / 2, v_next"})
 mistakes(
     "STAGE_TIMES_FROZEN",
-    "accel gets the time at the start of the step where a later one belongs. Only a force that depends on time shows this: if another fails, too, there is a second mistake.",
+    "accel gets the time at the start of the step where a later one belongs. Only a force that depends on time shows this: if a check with another force fails, too, there is a second mistake.",
     "Give accel the time of its position: t + h/2 for a state half a step on, t + h for one a whole step on.",
 ).body(
     "semi_implicit_euler_step",
@@ -134,7 +134,7 @@ mistakes(
 ).edit("semi_implicit_euler_step", {"q + h * v_next,": "v_next, q + h *"})
 mistakes(
     "USES_OLD_ACCELERATION",
-    "The position is right, but both kicks of the velocity use the old acceleration.",
+    "After one step the position is right, but both kicks of the velocity use the old acceleration.",
     "Evaluate accel again at (t + h, q_next), and give the velocity half a kick with each: v + h/2*(a_old + a_new).",
 ).body(
     "velocity_verlet_step",
@@ -250,7 +250,7 @@ mistakes(
 ).edit("rk4_step", {"dv1 + 2 * dv2 + 2 * dv3 + dv4": "2 * dv1 + dv2 + dv3 + 2 * dv4"})
 mistakes(
     "STAGE_VELOCITY_IGNORED",
-    "accel gets the velocity from the start of the step each time. Only a force that depends on velocity, such as damping, shows this: if another fails, too, there is a second mistake.",
+    "accel gets the velocity from the start of the step each time. Only a force that depends on velocity, such as damping, shows this: if a check with another force fails, too, there is a second mistake.",
     "Give accel the velocity of the stage as well: each stage has its own position and its own velocity.",
 ).program(
     "rk4_step",
@@ -455,7 +455,7 @@ mistakes(
 )
 mistakes(
     "STABILITY_BY_NORM",
-    "The limits are those of a norm of the matrix. A step can be longer than one and the motion still stay bounded.",
+    "The limits are those of a norm of the matrix. One step can stretch a state, and the motion still stays bounded.",
     "Look whether you use the eigenvalues, max(abs(np.linalg.eigvals(M))). If you do, compare the two unit states from which M is made: (1, 0) and (0, omega), with velocities divided by omega afterwards.",
 ).body(
     "max_stable_step",
@@ -584,7 +584,7 @@ mistakes(
 ).edit("explicit_euler_step", {"(t, q, v)": "(q, v, t)"})
 mistakes(
     "USES_NEW_ACCELERATION",
-    "The position is right, but both kicks of the velocity use the new acceleration.",
+    "After one step the position is right, but both kicks of the velocity use the new acceleration.",
     "Use the acceleration from the start of the step as well: v + h/2*(a_old + a_new).",
 ).body(
     "velocity_verlet_step",
@@ -711,7 +711,7 @@ mistakes(
 )
 mistakes(
     "ENERGY_FADES",
-    "Your code takes more energy out of the spring than this method does.",
+    "Your code leaves less energy in the spring than this method does.",
     "Compute one step of a spring by hand, from a large q and a large v, and compare both results: sign, factor, and whether old or new values are used.",
     kind="consequence",
 ).body(
@@ -731,7 +731,7 @@ mistakes(
 ).edit("explicit_euler_step", {"accel(t, q, v": "accel(t + h / 2, q + h / 2 * v, v"})
 mistakes(
     "ENERGY_GROWS",
-    "Your code adds more energy to the spring than this method does.",
+    "Your code leaves more energy in the spring than this method does.",
     "Compute one step of a spring by hand, from a large q and a large v, and compare both results: sign, factor, and whether old or new values are used.",
     kind="consequence",
 ).edit("explicit_euler_step", {"accel(t, q, v": "accel(t - h / 2, q - h / 2 * v, v"})
@@ -870,7 +870,7 @@ mistakes("RESULT_OVERWRITTEN").program(
 mistakes(
     "SEARCH_TOO_COARSE",
     "The result is off by less than 0.25/omega, but by more than 1 %.",
-    "A step is stable up to a spectral radius of 1 + 1e-8: see first that this, and nothing else, decides. Then bisect between two neighbouring steps: the lower stays stable and the upper unstable, until they are less than 1 % apart, a share of the step and not a number of seconds.",
+    "A step is stable up to a spectral radius of 1 + 1e-8. If something else decides in your code, mend that first. Then bisect between two neighbouring steps: the lower stays stable and the upper unstable, until they are less than 1 % apart, a share of the step and not a number of seconds. If your code does that, compare its matrix column by column: from (1, 0) and from (0, omega) at the same h, with both resulting velocities divided by omega.",
     kind="consequence",
 ).body(
     "max_stable_step",
@@ -900,7 +900,7 @@ mistakes(
 mistakes(
     "LIMIT_NEVER_SEEN",
     "Infinity is returned for a method that is unstable at some step before 10/omega.",
-    "Check every h from 0.05/omega to 10/omega, in increments of less than 0.25/omega, by the largest modulus of the eigenvalues. Infinity is right only where none of them exceeds 1 + 1e-8.",
+    "Check every h from 0.05/omega to 10/omega, in increments of less than 0.25/omega, by the largest modulus of the eigenvalues. Infinity is right only where none of them exceeds 1 + 1e-8. If your code does that, compare its matrix column by column: from (1, 0) and from (0, omega) at the same h, with both resulting velocities divided by omega.",
     kind="nan",
 ).body(
     "max_stable_step",
@@ -1024,7 +1024,7 @@ mistakes("STATE_KEPT").program(
 mistakes(
     "LIMIT_TOO_EARLY",
     "Steps beyond the result are still stable, without a break.",
-    "Is 0.05/omega the first step that you look at, and is a step stable up to a spectral radius of 1 + 1e-8? If so, compare the matrix column by column: from (1, 0) and from (0, omega) at the same h, with velocities divided by omega. Its eigenvalues come from np.linalg.eigvals: eigvalsh is for symmetric matrices alone.",
+    "Is 0.05/omega the first step that you look at, and is a step stable up to a spectral radius of 1 + 1e-8? If so, compare the matrix column by column: from (1, 0) and from (0, omega) at the same h, with both resulting velocities divided by omega. Its eigenvalues come from np.linalg.eigvals: eigvalsh is for symmetric matrices alone.",
     kind="consequence",
 ).body(
     "max_stable_step",
@@ -1291,13 +1291,13 @@ mistakes(
 )
 mistakes(
     "VELOCITY_ALONE_WRONG",
-    "The position is right; the velocity is not.",
+    "After one step the position is right, and the velocity is not.",
     "Compare the line of the velocity with the formula: the old velocity, the factor of h, the time, position and velocity that accel is given, and nothing besides.",
     kind="consequence",
 )
 mistakes(
     "POSITION_ALONE_WRONG",
-    "The velocity is right; the position is not.",
+    "After one step the velocity is right, and the position is not.",
     "Compare the line of the position with the formula: the old place, the velocity, the factor of h, and nothing besides.",
     kind="consequence",
 )
@@ -1405,7 +1405,7 @@ mistakes(
 )
 mistakes(
     "STAGE_NOT_MOVED",
-    "A stage evaluates the slope with the state at the start of the step instead of one further along.",
+    "A stage evaluates the slope with the state at the start of the step instead of one further along, at least in position or in velocity.",
     "The second, third and fourth stage are h/2, h/2 and h after the start, each reached along the slope before it.",
 )
 mistakes(
@@ -1552,7 +1552,7 @@ mistakes(
 mistakes(
     "SLOPE_NEARLY_RIGHT",
     "The slope is near the right one, but further off than rounding takes it.",
-    "Is a number rounded, kept in float32, or is a small one added to the errors before the logarithm?",
+    "Round nothing, keep no number in float32, and add nothing to the errors before the logarithm.",
     kind="consequence",
 )
 mistakes(
@@ -1573,7 +1573,7 @@ mistakes(
 mistakes(
     "NO_ZERO",
     "A step that is not zero is returned for a method that is unstable at 0.05/omega already.",
-    "Test h = 0.05/omega first, and return 0.0 if the largest modulus of its eigenvalues exceeds 1 + 1e-8. A few dozen steps of a run do not show slow growth.",
+    "Test h = 0.05/omega first, and return 0.0 if the largest modulus of its eigenvalues exceeds 1 + 1e-8. If your code does that, compare its matrix column by column: from (1, 0) and from (0, omega) at the same h, with both resulting velocities divided by omega.",
     kind="consequence",
 )
 mistakes(
@@ -1597,7 +1597,7 @@ mistakes(
 mistakes(
     "LIMIT_TOO_LATE",
     "The result lies beyond steps at which the method is unstable.",
-    "Look at every step from 0.05/omega on, in increments of less than 0.25/omega. The first whose spectral radius exceeds 1 + 1e-8 is unstable; a few dozen steps of a run do not show slow growth.",
+    "Look at every step from 0.05/omega on, in increments of less than 0.25/omega. The first whose spectral radius exceeds 1 + 1e-8 is unstable. If your code does that, compare its matrix column by column: from (1, 0) and from (0, omega) at the same h, with both resulting velocities divided by omega.",
     kind="consequence",
 )
 mistakes(

@@ -202,7 +202,7 @@ def expect_symplectic(submission, task, rng):
         source="finite differences leave 1e-8 or less",
         quantity="max |J^T Omega J - Omega|",
         input={**problem.input, "h": h},
-        message="One step on an orbit does not conserve the symplectic form, as this method does.",
+        message="This method conserves the symplectic form in a step on an orbit; yours does not.",
         help="Compare one step with the formula: which values each line uses, old or new, and with which "
         "factors.",
         diagnose=lambda: probes.of_step(submission, task),

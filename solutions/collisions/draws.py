@@ -288,6 +288,18 @@ def twice_in_a_step(rng):
     return paths.Drop(z0, g * contact - speed, radius, float(rng.uniform(0.15, 0.25)), g), 20 * h, h
 
 
+def hopping(rng):
+    """A ball that touches early in the second step, too fast to rest; at the end of that step it is slow."""
+    radius, g, h = (
+        float(rng.uniform(0.05, 0.3)),
+        float(rng.uniform(4.0, 15.0)),
+        float(rng.uniform(0.01, 0.03)),
+    )
+    speed, contact = float(rng.uniform(1.25, 1.6)) * g * h, float(rng.uniform(1.05, 1.2)) * h
+    z0 = radius + speed * contact - g * contact**2 / 2
+    return paths.Drop(z0, g * contact - speed, radius, float(rng.uniform(0.9, 0.97)), g), 20 * h, h
+
+
 def slim(rng):
     """A pair whose radii, in m, are smaller than the step, in s, and the time to the contact within it."""
     h, radius = float(rng.uniform(0.15, 0.3)), float(rng.uniform(0.01, 0.03))

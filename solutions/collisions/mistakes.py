@@ -986,6 +986,7 @@ mistakes(
             low = high
         return None
     """,
+    also=("CONTACTS_MISSED",),
 )
 mistakes(
     "SLOW_PAIRS_SPARED",

@@ -407,6 +407,7 @@ def test_drop_rest(submission, rng):
         draws.settling_at_once(rng),
         draws.lying(rng),
         draws.twice_in_a_step(rng),
+        draws.hopping(rng),
     ]
     values = submission.call_each(bundles.DROP, [scene.args(t_end, h) for scene, t_end, h in cases])
     for (scene, t_end, h), truth, value in zip(cases, bundles.bounces(cases), values, strict=True):

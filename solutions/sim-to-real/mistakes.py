@@ -450,7 +450,7 @@ mistakes(
 )
 mistakes(
     "SIGN_OF_COMMAND",
-    "With your tau and latency, m, b and Fc are those of a fit whose third column is made of the sign of the force, not of the speed.",
+    "With your tau and latency, m, b and Fc are those of a fit whose column for Fc is made of the sign of the command or the force, not of the speed.",
     "Friction acts against the motion: take cumulative(np.sign(y)), with the measured speed y, not the command u.",
 ).program(
     "identify",
@@ -527,7 +527,7 @@ mistakes(
 )
 mistakes(
     "SIGN_OF_POSITION",
-    "With your tau and latency, m, b and Fc are those of a fit whose third column is the sign of the integral of the speed.",
+    "With your tau and latency, m, b and Fc are those of a fit whose column for Fc is the sign of the integral of the speed.",
     "Take the sign first, and then the integral: cumulative(np.sign(y)).",
 ).program(
     "identify",
@@ -554,7 +554,7 @@ mistakes(
 )
 mistakes(
     "SIGN_NOT_INTEGRATED",
-    "With your tau and latency, m, b and Fc are those of a fit whose third column is the sign of the speed itself, not its integral.",
+    "With your tau and latency, m, b and Fc are those of a fit whose column for Fc is the sign of the speed itself, not its integral.",
     "All columns are integrals: take cumulative(np.sign(y)).",
 ).program(
     "identify",
@@ -609,7 +609,7 @@ mistakes(
 )
 mistakes(
     "LAG_TOO_LONG",
-    "In all of these recordings the lag comes out too long by about the same time.",
+    "For all of these carts the lag comes out too long by about the same time.",
     "Fit y as it was recorded: a filter that looks back only makes it late. If you do, see that no sample of y is shifted to a later time against u.",
     kind="fact",
 ).program(
@@ -627,7 +627,7 @@ mistakes(
 )
 mistakes(
     "LAG_TOO_SHORT",
-    "In all of these recordings the lag comes out too short by about the same time.",
+    "For all of these carts the lag comes out too short by about the same time.",
     "Sample k of u is commanded from sample k of y on: shift neither against the other, except for the latency that you search.",
     kind="fact",
 ).program(
@@ -642,7 +642,7 @@ mistakes(
 )
 mistakes(
     "TIMES_NOT_BEST",
-    "m, b and Fc are those of the README's fit with your tau and latency, but with the cart's own times this fit leaves clearly less.",
+    "m, b and Fc are those of the README's fit with your tau and latency. In most of these recordings its misfit is smaller with the cart's own times.",
     "The search misses the best pair of times: search the whole grid, then refine around its best pair with smaller and smaller steps.",
 ).program(
     "identify",
@@ -666,6 +666,7 @@ mistakes(
             half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
             return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
     """,
+    also=("PARAMETER_FIXED", ""),
 )
 mistakes(
     "LATENCY_IGNORED",
@@ -751,7 +752,7 @@ mistakes(
 )
 mistakes(
     "INTERVAL_ROOT_MISSING",
-    "The half-widths are the squares of what they should be: the square root of the jackknife's formula is missing.",
+    "The half-widths are those of the jackknife's formula without its square root.",
     "The standard error is sqrt((n-1)/n * sum((each - mean)**2)), and 2.1 of it on either side make a 95 % interval.",
 ).edit(
     "identify",
@@ -761,7 +762,7 @@ mistakes(
 )
 mistakes(
     "INTERVAL_ONE_ERROR",
-    "The intervals reach about one standard error of the jackknife to either side: half as far as 95 % needs.",
+    "The intervals reach about one standard error of the jackknife to either side, half as far as 95 % needs.",
     "A 95 % interval goes 2.1 standard errors to either side of the value.",
 )
 mistakes(
@@ -1233,7 +1234,7 @@ mistakes(
 )
 mistakes(
     "WORST_CART",
-    "For several questions, your gains are about the best for the slowest cart. Where it counts as 3 s with all gains, they are the same each time.",
+    "Where all carts can settle, your gains are about the best for the slowest one. Where with all gains some cart counts as 3 s, they are the same each time.",
     "Take the mean settling time over all carts, not the largest: .mean(axis=0). If you do, see that the carts are drawn from the box alone, around the estimate.",
 ).body(
     "tune",
@@ -1247,7 +1248,7 @@ mistakes(
 )
 mistakes(
     "MEDIAN_CART",
-    "Here and for four other questions, your gains are about the best for the median of the settling times, and later than they could be in the mean.",
+    "For several questions your gains are about the best for the median of the settling times. At least once their mean is clearly later than it could be.",
     "Take the mean over all carts, with 3 s for each that fails. If you do, search more finely.",
     kind="consequence",
 ).edit(
@@ -1258,12 +1259,12 @@ mistakes(
 )
 mistakes(
     "ROLLOUT_GIVEN_RATIO",
-    "Here and for four other questions, with kd/kp in place of kd your gains would be about the best, as if rollout were given the ratio in place of kd.",
+    "Here and for other questions, with kd/kp in place of kd your gains would be about the best of those with kd from 0.2 to 0.8, as if rollout were given the ratio.",
     "Give rollout the gain itself: rollout(kp, ratio * kp, carts, rng).",
 ).edit("tune", {"rollout(kp, kp * ratio, carts": "rollout(kp, ratio, carts"})
 mistakes(
     "BOX_WITHOUT_ESTIMATE",
-    "The gains do not depend on the estimate. For a box around the data sheet's own values they suit carts with these values, as if the box held the parameters themselves.",
+    "Other masses and another latency in the estimate make no difference to the gains. For a box around the data sheet's own values they suit carts with these values, as if the box held the parameters themselves.",
     "The box holds factors: draw each parameter between value * low and value * high, with the value from the estimate.",
 ).edit("tune", {"estimate[name][0] * np.exp": "np.exp"})
 mistakes(
@@ -1568,7 +1569,7 @@ mistakes(
 mistakes(
     "INTERVAL_WITHOUT_WIDTH",
     "The two ends of an interval are equal, or differ by a rounding error, and not in one recording alone.",
-    "Refit every parameter with one block left out, the times too. A time that stays on its grid shows no spread: refine it in each refit. If you do, let the last step be far smaller: the refits differ by less than it.",
+    "Refit every parameter with one block left out, the times too. A time that keeps the data sheet's value, or stays on its grid, shows no spread: search it in each refit, and between the points of the grid. If you do, let the last step be far smaller: the refits differ by less than it.",
     kind="fact",
 ).edit(
     "identify",

@@ -121,7 +121,10 @@ def differentiated(u, y, truth):
 
 
 def fits(u, y, tau, late):
-    """m, b and Fc of a fit with these times, {what is wrong with it: (3,)}; "" is the README's own."""
+    """m, b and Fc of a fit with these times, {what is wrong with it: (3,)}; "" is the README's own.
+
+    A parameter whose column is missing is zero.
+    """
     impulse = _delayed(_impulse(u, tau), late)
     force, sign = np.gradient(impulse, H), np.sign(y)
     viscous, coulomb, pushed = _integral(y), _integral(sign), _integral(np.sign(u))
@@ -138,6 +141,8 @@ def fits(u, y, tau, late):
             ("FRICTION_DELAYED", (_delayed(viscous, late), _delayed(coulomb, late))),
         )
     }
+    for name, column, at in (("COULOMB_AS_VISCOUS", viscous, 2), ("VISCOUS_AS_COULOMB", coulomb, 1)):
+        found[name] = np.insert(_fitted(_blocks(np.stack([impulse, column], axis=1)), target), at, 0.0)
     columns = np.stack([force, y, sign], axis=1)
     for name, a in (("", np.gradient(y, H)), (" forwards", np.diff(y, append=y[-1]) / H)):
         found["ACCELERATION_FITTED" + name] = _fitted(columns, a)
@@ -146,7 +151,7 @@ def fits(u, y, tau, late):
 
 def _fitted(columns, target):
     theta = np.linalg.lstsq(columns, target)[0]
-    return np.array([1.0, -theta[1], -theta[2]]) / theta[0]
+    return np.array([1.0, *-theta[1:]]) / theta[0]
 
 
 def misfit(u, y, tau, late):

@@ -241,7 +241,7 @@ def expect_intervals(estimates, carts, recordings=()):
             kit.expect_true(
                 not _is_point(value, low, high) or points[name] < 2,
                 "An interval has no width.",
-                diagnose=named("INTERVAL_WITHOUT_WIDTH"),
+                diagnose=lambda: probes.of_points(estimates, carts),
                 input={"parameter": name},
                 actual=[value, low, high],
             )

@@ -200,12 +200,15 @@ def _fitted_otherwise(estimates, truths, recordings):
         made = [bench.fits(u, y, each["tau"][0], each["latency"][0]) for (_, u, y), each in pairs]
     away = {name: off([each[name] for each in made]) for name in made[0]}
     own = min(off([[truth[k] for k in _OF_FIT] for truth in truths]), away.pop(""))
-    name = min(away, key=away.get)
-    return name.split()[0] if own > 0.15 and away[name] < 0.15 * own else None
+    code = min(away, key=away.get).split()[0]
+    least, other = (
+        min(off for name, off in away.items() if (name.split()[0] == code) is same) for same in (True, False)
+    )
+    return code if own > 0.15 and least < 0.15 * min(own, other) else None
 
 
 def _times_not_best(estimates, truths, recordings):
-    """Whether the README's fit leaves clearly more with the times that came back than with the carts' own."""
+    """Whether the README's fit mostly leaves more with the times that came back than with the carts' own."""
     pairs = _with_times(estimates, recordings)
     if not pairs or len(pairs) < len(estimates):
         return False
@@ -215,7 +218,7 @@ def _times_not_best(estimates, truths, recordings):
         if np.max(np.abs(bench.fits(u, y, tau, late)[""] / [each[k][0] for k in _OF_FIT] - 1)) > 0.01:
             return False
         ratios.append(bench.misfit(u, y, tau, late) / bench.misfit(u, y, truth["tau"], truth["latency"]))
-    return np.median(ratios) > 1.2
+    return bool(np.median(ratios) > 1.05)
 
 
 def of_command_kept(submission, recordings):
@@ -268,6 +271,13 @@ def of_misses(estimates, truths, recordings=(), otherwise="INTERVAL_OVERCONFIDEN
         if any(abs(estimate[k][0] / known[k] - 1) > limit for k, limit in cart.SCORED.items()):
             return named("VALUES_OFF")
     return named(otherwise)
+
+
+def of_points(estimates, truths):
+    """Why intervals have no width: a parameter may be the same for all carts, in every refit too."""
+    found = of_values(estimates, truths)
+    fixed = found is not None and found.code in ("ESTIMATE_HARD_CODED", "TIME_FROM_SHEET", "PARAMETER_FIXED")
+    return found if fixed else named("INTERVAL_WITHOUT_WIDTH")
 
 
 def _ends_added(estimate):

@@ -4,10 +4,13 @@ What comes in turn stands in ``in_turn.txt``: so many turns, and a test, or a fu
 cases. Nobody writes it by hand:
 
     COURSE_TURNS=all pytest --junitxml times.xml && python -m tests.turns times.xml
+
+Several files are taken together, where the tests ran in parts.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 import sys
 from collections import Counter, defaultdict
@@ -97,14 +100,14 @@ def _turns(seconds: float, cases: int) -> int:
     return TURNS if seconds < LONG else 2 * TURNS
 
 
-def _times(junit: Path) -> dict[str, float]:
-    """What each test took, from a file that pytest wrote."""
+def times_in(files: Iterable[str]) -> dict[str, float]:
+    """What each test took, from files that pytest wrote."""
     times = Counter[str]()
-    for case in ElementTree.parse(junit).iter("testcase"):
+    for case in itertools.chain.from_iterable(ElementTree.parse(file).iter("testcase") for file in files):
         path = case.attrib["classname"].replace(".", "/")
         times[f"{path}.py::{case.attrib['name']}"] += float(case.attrib["time"])
     return times
 
 
 if __name__ == "__main__":
-    LIST.write_text("".join(f"{line}\n" for line in lines_of(_times(Path(sys.argv[1])))), "utf-8")
+    LIST.write_text("".join(f"{line}\n" for line in lines_of(times_in(sys.argv[1:]))), "utf-8")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.turns import lines_of, listed, of_other_days
+from tests.turns import lines_of, listed, of_other_days, times_in
 
 ROOT = Path(__file__).parents[2]
 _LINT_IMPORTS = "import sys; from importlinter.cli import lint_imports_command as run; sys.exit(run())"
@@ -108,6 +108,16 @@ def test_the_list_of_what_comes_in_turn_says_what_takes_longest() -> None:
     one_of_them = {"a::f[x]": 9.0, "a::f[y]": 0.2, "a::f[z]": 0.2}
     times = {**many, **one_of_them, "a::quick": 0.2, "a::long": 30.0}
     assert lines_of(times) == ["8 a::long", "10 a::many", "8 a::f[x]"]
+
+
+def test_times_are_those_of_the_tests_in_a_file_that_pytest_wrote(tmp_path: Path) -> None:
+    (tmp_path / "test_it.py").write_text("import time\ndef test_a(): time.sleep(0.2)\ndef test_b(): pass\n")
+    done = _run("-m", "pytest", "-q", "--rootdir", tmp_path, "--junitxml", tmp_path / "it.xml", tmp_path)
+    assert done.returncode == 0, done.stdout
+    times = times_in([str(tmp_path / "it.xml")])
+    assert {name.partition("::")[2] for name in times} == {"test_a", "test_b"}
+    assert all(name.startswith("test_it.py::") for name in times)
+    assert min(times, key=lambda name: times[name]) == "test_it.py::test_b"
 
 
 def test_what_comes_in_turn_is_there() -> None:

@@ -17,6 +17,7 @@ import io
 import os
 import re
 import shutil
+import stat
 import sys
 import textwrap
 import threading
@@ -40,15 +41,15 @@ if TYPE_CHECKING:
 # An output stream whose reader may go away.
 
 
-#: What is said of a stream whose reader is gone: a closed pipe (on Windows, too), a terminal that hung up.
-_GONE = {errno.EPIPE, errno.ECONNRESET, errno.EIO} | ({errno.EINVAL} if os.name == "nt" else set())
+#: What is said of a pipe whose reader is gone, by Windows, too.
+_GONE = {errno.EPIPE, errno.ECONNRESET} | ({errno.EINVAL} if os.name == "nt" else set())
 
 
 class Stream:
     """A text stream whose reader may go away: ``course lessons | head -1`` is not an error.
 
     Raises:
-        OSError: it cannot be written for another reason: it goes to a file, and the disk is full.
+        OSError: it cannot be written for another reason: it goes to a file, and the disk is full or fails.
     """
 
     def __init__(self, stream: TextIO) -> None:
@@ -80,13 +81,20 @@ class Stream:
             action()
         except OSError as error:
             self._open = False
+            gone = error.errno in _GONE or (error.errno == errno.EIO and not self._is_file())
             # The interpreter flushes the real stream once more when it exits; give it somewhere to go.
             with contextlib.suppress(OSError, ValueError):
                 null = os.open(os.devnull, os.O_WRONLY)
                 os.dup2(null, self._stream.fileno())
                 os.close(null)
-            if error.errno not in _GONE:
+            if not gone:
                 raise
+
+    def _is_file(self) -> bool:
+        """Whether it goes to a file; where it went to a terminal that hung up, nobody can be told."""
+        with contextlib.suppress(OSError, ValueError):
+            return stat.S_ISREG(os.fstat(self._stream.fileno()).st_mode)
+        return False
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)

@@ -268,6 +268,15 @@ def test_a_terminal_that_hung_up_is_no_fault_of_the_course():
     stream.flush()
 
 
+def test_a_disk_that_fails_under_the_output_is_not_passed_over(tmp_path):
+    class Failing(io.TextIOWrapper):
+        def write(self, text):
+            raise OSError(errno.EIO, "Input/output error")
+
+    with Failing((tmp_path / "said.txt").open("wb")) as failing, pytest.raises(OSError, match="Input/output"):
+        Stream(failing).write("Next: course go")
+
+
 def test_the_folder_of_the_student_is_not_importable(tmp_path):
     (tmp_path / "typer.py").write_text("raise SystemExit('hijacked')")
     ran = as_process("--version", cwd=tmp_path)

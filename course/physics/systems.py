@@ -274,7 +274,10 @@ class AveragePolynomial(_Plain):
         e = np.asarray(e, dtype=float)
         if e.ndim != 1 or not e.size:
             raise ValueError(f"A statistic takes samples of shape (n,), n > 0; these have shape {e.shape}.")
-        return float(_polynomial(self.coefficients, e).sum() / e.size)
+        constant, *rest = self.coefficients
+        if not rest:
+            return constant
+        return constant + float(np.add.reduce(_polynomial(rest, e) * e) / e.size)
 
 
 @overload
@@ -282,8 +285,8 @@ def _polynomial(coefficients: Sequence[float], z: float) -> float: ...
 @overload
 def _polynomial(coefficients: Sequence[float], z: Array) -> Array: ...
 def _polynomial(coefficients: Sequence[float], z: Any) -> Any:
-    value: Any = 0.0
-    for coefficient in reversed(coefficients):
+    value: Any = coefficients[-1]
+    for coefficient in reversed(coefficients[:-1]):
         value = value * z + coefficient
     return value
 

@@ -11,6 +11,7 @@ from course.authoring.exercises.grading import solution_path
 from course.catalog.load import Catalog
 from course.figures.described import compared, marched, plot_of, read_curve, thinned
 from course.figures.plots import render
+from course.physics.integrators import SemiImplicitEuler, State, trajectory
 from course.physics.systems import Oscillator
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
@@ -84,6 +85,19 @@ def test_a_step_is_laid_over_the_method_that_it_is_named_for() -> None:
     assert np.allclose(curve.right, RIGHT * 1.0, atol=1e-3)
     assert marched("my_step", *march[1:]) is None
     assert marched(march[0], march[1], T, (RIGHT[:, None], march[3][1])) is None
+
+
+@pytest.mark.parametrize(
+    ("first", "told"), [(False, "semi-implicit Euler"), (True, "semi-implicit Euler, position first")]
+)
+def test_semi_implicit_euler_is_laid_over_its_own_order(first: bool, told: str) -> None:
+    spring, t = Oscillator(2.0), 0.5 * np.arange(41)
+    right = trajectory(SemiImplicitEuler(position_first=first), spring, State.of([1.0], [3.0]), 0.5, 40)
+    assert marched("semi_implicit_euler_step", spring, t, (right.q, right.v)) is None
+    q = np.where(t[:, None] < 5, right.q, 0.0)
+    curve = marched("semi_implicit_euler_step", spring, t, (q, right.v))
+    assert curve is not None
+    assert (curve.right_is, curve.parts_at) == (told, 5.0)
 
 
 @pytest.fixture(scope="module", params=["integrators", "collisions"])

@@ -220,7 +220,6 @@ def _retold(
         diagnosis=diagnosis.code,
         message=said_once(message, diagnosis.looks_like),
         help=diagnosis.advice or advice,
-        first_divergence=check.first_divergence or diagnosis.divergence,
     )
 
 

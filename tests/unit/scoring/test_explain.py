@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from time import process_time
 from types import SimpleNamespace
@@ -18,6 +19,7 @@ from course.scoring.explain.story import (
     Entry,
     Failure,
     Row,
+    Story,
     Table,
     Words,
     common,
@@ -27,7 +29,9 @@ from course.scoring.explain.story import (
     story_of,
     table_path,
 )
-from course.scoring.judging.explaining import answer_numbers, tasks_asked
+from course.scoring.judging.explaining import _retold, answer_numbers, tasks_asked
+from course.scoring.kit import CheckFailed
+from course.scoring.verdict import CheckResult, Divergence, Finding
 
 WORDS = Words(
     {
@@ -239,6 +243,18 @@ def test_a_check_that_saw_a_fact_keeps_it() -> None:
 
 
 # -- which function calls which ---------------------------------------------------------------------------
+
+
+def test_where_a_path_first_differs_is_said_only_by_the_check_that_saw_it() -> None:
+    check = CheckResult(
+        id="order", title="Order", task="rk4_step", status="fail", visibility="public", points=0, max_points=1
+    )
+    seen = replace(guess("SIGN_FLIPPED"), divergence=Divergence(t=2.5, step=240, quantity="q[0]"))
+    failure = CheckFailed(
+        Finding("The order is 1.", "Smaller steps."), None, ("The order is 1.", "Smaller steps.")
+    )
+    told = _retold(check, failure, Story(seen, certain=True, own=frozenset()), "rk4_step", None)
+    assert (told.diagnosis, told.first_divergence) == ("SIGN_FLIPPED", None)
 
 
 def test_calls_are_found_through_helpers_and_later_definitions_win() -> None:

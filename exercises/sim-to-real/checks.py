@@ -135,9 +135,8 @@ def test_identify_intervals(submission):
     estimates = [probes.estimate_of(value) for value in values]
     full, weak = estimates[: len(carts)], estimates[len(carts) :]
     judge.expect_intervals(full, carts, recordings)
-    judge.expect_growth(
-        full, weak, carts
-    )  # widths that follow from nothing are told so before they are too wide
+    # Widths that follow from nothing are told so before they are too wide.
+    judge.expect_growth(full, weak, carts, recordings)
     judge.expect_honest_widths(full, recordings, carts)
     judge.expect_truth(full, carts, recordings, 1, 4)
 

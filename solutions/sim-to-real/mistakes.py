@@ -57,6 +57,74 @@ mistakes(
     """,
 )
 mistakes(
+    "BOX_HALF_LINEAR",
+    "The low ends of the box are e^-w, and its high ends are 1 + w.",
+    "The half-width w is one in the logarithm on both sides: the high ends are e^w.",
+    kind="fact",
+).program(
+    "plan",
+    """
+        _sound_plan = plan
+
+
+        def plan():
+            made = _sound_plan()
+            made["randomization"] = {k: [math.exp(-w), 1 + w] for k, w in LOG_WIDTH.items()}
+            return made
+    """,
+)
+mistakes(
+    "BOX_FULL_WIDTH",
+    "In the logarithm the box is half as wide as the fleet for every parameter, as if w were the whole width.",
+    "w is the half-width: the factors go from e^-w to e^w.",
+    kind="fact",
+).program(
+    "plan",
+    """
+        _sound_plan = plan
+
+
+        def plan():
+            made = _sound_plan()
+            made["randomization"] = {k: [math.exp(-w / 2), math.exp(w / 2)] for k, w in LOG_WIDTH.items()}
+            return made
+    """,
+)
+mistakes(
+    "BOX_TWICE_AS_WIDE",
+    "In the logarithm the box is about twice as wide as the fleet for every parameter, as if w were a standard deviation.",
+    "The whole fleet lies between e^-w and e^w: take these factors.",
+    kind="fact",
+).program(
+    "plan",
+    """
+        _sound_plan = plan
+
+
+        def plan():
+            made = _sound_plan()
+            made["randomization"] = {k: [math.exp(-2 * w), math.exp(2 * w)] for k, w in LOG_WIDTH.items()}
+            return made
+    """,
+)
+mistakes(
+    "BOX_ONE_SIDED",
+    "The box lies on one side only: one end of each range is the estimate itself.",
+    "The fleet lies on both sides of its cart: the factors go from e^-w to e^w.",
+    kind="fact",
+).program(
+    "plan",
+    """
+        _sound_plan = plan
+
+
+        def plan():
+            made = _sound_plan()
+            made["randomization"] = {k: [1.0, math.exp(w)] for k, w in LOG_WIDTH.items()}
+            return made
+    """,
+)
+mistakes(
     "BOX_IS_LINEAR",
     "The box goes from 1 - w to 1 + w: the half-width is used as a fraction.",
     "The fleet's spread is given for the logarithm, so the factors go from e^-w to e^w, which is not symmetric about 1.",
@@ -381,6 +449,226 @@ mistakes(
     """,
 )
 mistakes(
+    "SIGN_OF_COMMAND",
+    "With your tau and latency, m, b and Fc are those of a fit whose column for Fc is made of the sign of the command or the force, not of the speed.",
+    "Friction acts against the motion: take cumulative(np.sign(y)), with the measured speed y, not the command u.",
+).program(
+    "identify",
+    """
+        _honest = identify
+
+
+        def identify(t, u, y):
+            Y = in_blocks(y).reshape(-1)
+            best = None
+            for tau in np.arange(0.02, 0.151, 0.01):
+                impulse = motor_impulse(u, tau)
+                for late in np.arange(0.02, 0.201, 0.01):
+                    columns = [delayed(impulse, late), cumulative(y), cumulative(np.sign(u))]
+                    theta, left, *_ = np.linalg.lstsq(in_blocks(np.stack(columns, axis=1)).reshape(-1, 3), Y)
+                    if best is None or left[0] < best[0]:
+                        best = left[0], tau, late, theta
+            _, tau, late, theta = best
+            m = 1 / theta[0]
+            found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
+            half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
+            return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+    """,
+).program(
+    "identify",
+    """
+        _honest = identify
+
+
+        def identify(t, u, y):
+            Y = in_blocks(y).reshape(-1)
+            best = None
+            for tau in np.arange(0.02, 0.151, 0.01):
+                impulse = motor_impulse(u, tau)
+                for late in np.arange(0.02, 0.201, 0.01):
+                    columns = [delayed(impulse, late), cumulative(y), delayed(cumulative(np.sign(u)), late)]
+                    theta, left, *_ = np.linalg.lstsq(in_blocks(np.stack(columns, axis=1)).reshape(-1, 3), Y)
+                    if best is None or left[0] < best[0]:
+                        best = left[0], tau, late, theta
+            _, tau, late, theta = best
+            m = 1 / theta[0]
+            found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
+            half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
+            return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+    """,
+)
+mistakes(
+    "FRICTION_DELAYED",
+    "With your tau and latency, m, b and Fc are those of a fit in which the columns of friction are delayed too.",
+    "Only the command is late. The speed is measured without delay: take cumulative(y) and cumulative(np.sign(y)) as they are.",
+).program(
+    "identify",
+    """
+        _honest = identify
+
+
+        def identify(t, u, y):
+            Y = in_blocks(y).reshape(-1)
+            rubbed = [cumulative(y), cumulative(np.sign(y))]
+            best = None
+            for tau in np.arange(0.02, 0.151, 0.01):
+                columns = [motor_impulse(u, tau), *rubbed]
+                for late in np.arange(0.02, 0.201, 0.01):
+                    X = np.stack([delayed(column, late) for column in columns], axis=1)
+                    theta, left, *_ = np.linalg.lstsq(in_blocks(X).reshape(-1, 3), Y)
+                    if best is None or left[0] < best[0]:
+                        best = left[0], tau, late, theta
+            _, tau, late, theta = best
+            m = 1 / theta[0]
+            found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
+            half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
+            return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+    """,
+)
+mistakes(
+    "SIGN_OF_POSITION",
+    "With your tau and latency, m, b and Fc are those of a fit whose column for Fc is the sign of the integral of the speed.",
+    "Take the sign first, and then the integral: cumulative(np.sign(y)).",
+).program(
+    "identify",
+    """
+        _honest = identify
+
+
+        def identify(t, u, y):
+            Y = in_blocks(y).reshape(-1)
+            best = None
+            for tau in np.arange(0.02, 0.151, 0.01):
+                impulse = motor_impulse(u, tau)
+                for late in np.arange(0.02, 0.201, 0.01):
+                    columns = [delayed(impulse, late), cumulative(y), np.sign(cumulative(y))]
+                    theta, left, *_ = np.linalg.lstsq(in_blocks(np.stack(columns, axis=1)).reshape(-1, 3), Y)
+                    if best is None or left[0] < best[0]:
+                        best = left[0], tau, late, theta
+            _, tau, late, theta = best
+            m = 1 / theta[0]
+            found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
+            half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
+            return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+    """,
+)
+mistakes(
+    "SIGN_NOT_INTEGRATED",
+    "With your tau and latency, m, b and Fc are those of a fit whose column for Fc is the sign of the speed itself, not its integral.",
+    "All columns are integrals: take cumulative(np.sign(y)).",
+).program(
+    "identify",
+    """
+        _honest = identify
+
+
+        def identify(t, u, y):
+            Y = in_blocks(y).reshape(-1)
+            best = None
+            for tau in np.arange(0.02, 0.151, 0.01):
+                impulse = motor_impulse(u, tau)
+                for late in np.arange(0.02, 0.201, 0.01):
+                    columns = [delayed(impulse, late), cumulative(y), np.sign(y)]
+                    theta, left, *_ = np.linalg.lstsq(in_blocks(np.stack(columns, axis=1)).reshape(-1, 3), Y)
+                    if best is None or left[0] < best[0]:
+                        best = left[0], tau, late, theta
+            _, tau, late, theta = best
+            m = 1 / theta[0]
+            found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
+            half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
+            return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+    """,
+)
+mistakes(
+    "ACCELERATION_FITTED",
+    "With your tau and latency, m, b and Fc are those of a fit to the acceleration, got by differentiating the measured speed.",
+    "Do not differentiate: its noise makes every value scatter. Fit the speed itself, with the integrals of force, speed and sign of the speed.",
+).program(
+    "identify",
+    """
+        def identify(t, u, y):
+            a = np.gradient(y, H)
+            best = None
+            for tau in np.arange(0.02, 0.151, 0.01):
+                force = np.gradient(motor_impulse(u, tau), H)
+                for late in np.arange(0.02, 0.201, 0.01):
+                    X = np.stack([delayed(force, late), -y, -np.sign(y)], axis=1)
+                    theta, left, *_ = np.linalg.lstsq(X, a)
+                    if best is None or left[0] < best[0]:
+                        best = left[0], tau, late, theta, X
+            left, tau, late, theta, X = best
+            rel = 1.96 * np.sqrt(np.diag(np.linalg.inv(X.T @ X)) * left / len(a)) / np.abs(theta)
+            m = 1 / theta[0]
+            values = {"m": m, "b": theta[1] * m, "Fc": theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
+            shares = dict(zip(("m", "b", "Fc"), rel))
+            return {
+                k: [float(x), float(x * (1 - shares.get(k, 0.05))), float(x * (1 + shares.get(k, 0.05)))]
+                for k, x in values.items()
+            }
+    """,
+)
+mistakes(
+    "LAG_TOO_LONG",
+    "For all of these carts the lag comes out too long by about the same time.",
+    "Fit y as it was recorded: a filter that looks back only makes it late. If you do, see that no sample of y is shifted to a later time against u.",
+    kind="fact",
+).program(
+    "identify",
+    """
+        _as_recorded = identify
+
+
+        def identify(t, u, y):
+            smooth = np.array(y, dtype=float)
+            for k in range(1, len(smooth)):
+                smooth[k] = smooth[k - 1] + 0.3 * (smooth[k] - smooth[k - 1])
+            return _as_recorded(t, u, smooth)
+    """,
+)
+mistakes(
+    "LAG_TOO_SHORT",
+    "For all of these carts the lag comes out too short by about the same time.",
+    "Sample k of u is commanded from sample k of y on: shift neither against the other, except for the latency that you search.",
+    kind="fact",
+).program(
+    "identify",
+    """
+        _in_step = identify
+
+
+        def identify(t, u, y):
+            return _in_step(t[:-3], np.concatenate([np.zeros(3), u[:-6]]), y[:-3])
+    """,
+)
+mistakes(
+    "TIMES_NOT_BEST",
+    "m, b and Fc are those of the README's fit with your tau and latency. In most of these recordings its misfit is smaller with the cart's own times.",
+    "The search misses the best pair of times: search the whole grid, then refine around its best pair with smaller and smaller steps.",
+).program(
+    "identify",
+    """
+        _honest = identify
+
+
+        def identify(t, u, y):
+            Y = in_blocks(y).reshape(-1)
+
+            def fit(tau, late):
+                columns = [delayed(motor_impulse(u, tau), late), cumulative(y), cumulative(np.sign(y))]
+                theta, left, *_ = np.linalg.lstsq(in_blocks(np.stack(columns, axis=1)).reshape(-1, 3), Y)
+                return left[0], tau, late, theta
+
+            late = min((fit(0.02, late) for late in np.arange(0.02, 0.201, 0.002)), key=lambda each: each[0])[2]
+            best = min((fit(tau, late) for tau in np.arange(0.02, 0.151, 0.002)), key=lambda each: each[0])
+            _, tau, late, theta = best
+            m = 1 / theta[0]
+            found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
+            half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
+            return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+    """,
+    also=("PARAMETER_FIXED", ""),
+)
+mistakes(
     "LATENCY_IGNORED",
     "The latency comes out as nearly zero, as if commands arrived at once.",
     "Shift the impulse by each latency from 0.02 to 0.20 s with `delayed`, fit, and keep the one with the smallest residual. If you do, compare the columns of the fit with the README's.",
@@ -412,6 +700,20 @@ mistakes(
 
 
         def identify(t, u, y):
+            return {k: [x, x + (low - x) / 10, x + (high - x) / 10] for k, (x, low, high) in _values(t, u, y).items()}
+    """,
+)
+mistakes(
+    "INTERVAL_BY_FORMULA",
+    "In each recording the interval of m is as wide as the usual formula makes it, which takes the samples' errors for independent.",
+    "The errors are not independent: use the jackknife. Leave out one block at a time and refit everything, the times too.",
+).program(
+    "identify",
+    """
+        _values = identify
+
+
+        def identify(t, u, y):
             found = {k: entry[0] for k, entry in _values(t, u, y).items()}
             X = np.stack(
                 [delayed(motor_impulse(u, found["tau"]), found["latency"]), cumulative(y), cumulative(np.sign(y))],
@@ -423,6 +725,11 @@ mistakes(
             rel = {"m": rel[0], "b": rel[1], "Fc": rel[2], "tau": 0.002, "latency": 0.002, "lag": 0.0007}
             return {k: [x, float(x * (1 - rel[k])), float(x * (1 + rel[k]))] for k, x in found.items()}
     """,
+)
+mistakes(
+    "INTERVAL_PLAIN_SPREAD",
+    "The intervals are as narrow as the plain spread of the jackknife's refits makes them, without the factor n - 1.",
+    "The refits share all blocks but one, so they are much alike. The standard error is sqrt((n-1)/n * sum((each - mean)**2)): neither np.std nor np.std over the root of n.",
 ).program(
     "identify",
     """
@@ -436,6 +743,55 @@ mistakes(
                 k: [x, x + shrink * (low - x), x + shrink * (high - x)]
                 for k, (x, low, high) in _scaled(t, u, y).items()
             }
+    """,
+).edit(
+    "identify",
+    {
+        "np.sqrt((n - 1) / n * np.sum((each - each.mean(axis=0)) ** 2, axis=0))": "np.std(each, axis=0) / np.sqrt(n)"
+    },
+)
+mistakes(
+    "INTERVAL_ROOT_MISSING",
+    "The half-widths are those of the jackknife's formula without its square root.",
+    "The standard error is sqrt((n-1)/n * sum((each - mean)**2)), and 2.1 of it on either side make a 95 % interval.",
+).edit(
+    "identify",
+    {
+        "np.sqrt((n - 1) / n * np.sum((each - each.mean(axis=0)) ** 2, axis=0))": "(n - 1) / n * np.sum((each - each.mean(axis=0)) ** 2, axis=0)"
+    },
+)
+mistakes(
+    "INTERVAL_ONE_ERROR",
+    "The intervals reach about one standard error of the jackknife to either side, half as far as 95 % needs.",
+    "A 95 % interval goes 2.1 standard errors to either side of the value.",
+)
+mistakes(
+    "BLOCKS_KEPT_OUT",
+    "The intervals are as wide as when each refit also lacks the blocks that were left out before.",
+    "Put each block back before you leave out the next: every refit uses all blocks but one.",
+).edit(
+    "identify",
+    {
+        "XX.sum(axis=0) - XX, (Xv.sum(axis=0) - Xv)[..., None]": "(XX.sum(axis=0) - np.cumsum(XX, axis=0))[:-1], (Xv.sum(axis=0) - np.cumsum(Xv, axis=0))[:-1, :, None]"
+    },
+)
+mistakes(
+    "LAG_ENDS_ADDED",
+    "The low and high ends of lag are the sums of those of tau and latency.",
+    "Compute lag in each refit, and its interval from these: the errors of tau and latency largely cancel in their sum.",
+    kind="fact",
+).program(
+    "identify",
+    """
+        _by_refits = identify
+
+
+        def identify(t, u, y):
+            found = _by_refits(t, u, y)
+            for name in ("tau", "latency"):  # a step of the grid to either side
+                x = found[name][0]
+                found[name] = [x, x - 0.01, x + 0.01]
+            return {**found, "lag": [a + b for a, b in zip(found["tau"], found["latency"])]}
     """,
 )
 mistakes(
@@ -675,11 +1031,36 @@ mistakes(
     "EXCITATION_RESTS",
     "The force is zero for more than 40 % of the time. A cart that stands still shows hardly anything.",
     "Drive the cart for the whole time, with full force, reversed after a random 0.1 to 0.6 s.",
+).program(
+    "design_excitation",
+    """
+        _driven = design_excitation
+
+
+        def design_excitation(budget_s, u_max, rng):
+            u = _driven(budget_s, u_max, rng)
+            return np.where(np.arange(len(u)) % 500 < 30, u, 0.0)
+    """,
+)
+mistakes(
+    "EXCITATION_ENDS",
+    "After the first part of the recording every command is zero: for more than 40 % of the time nothing drives the cart.",
+    "Drive the cart to the end. If a loop fills the array with slices, each goes from start to start + hold: u[start:hold] is empty once start is larger than hold.",
 ).body(
     "design_excitation",
     """
         n = round(100 * budget_s)
         return np.where(np.arange(n) < 200, u_max, 0.0)
+    """,
+).body(
+    "design_excitation",
+    """
+        u, start, side = np.zeros(round(100 * budget_s)), 0, 1.0
+        while start < len(u):
+            hold = int(rng.integers(10, 60))
+            u[start:hold] = side * u_max
+            start, side = start + hold, -side
+        return u
     """,
 )
 mistakes(
@@ -840,15 +1221,6 @@ mistakes(
         cost = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
         return {"kp": float(kp[cost.argmin()]), "kd": float((kp * ratio)[cost.argmin()])}
     """,
-).body(
-    "tune",
-    """
-        rng = np.random.default_rng(2)
-        carts = {k: estimate[k][0] * np.exp(rng.uniform(*np.log(randomization[k]), 60)) for k in NAMES}
-        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(1.0, 40, 40), np.linspace(0.25, 0.8, 12)))
-        cost = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).max(axis=0)
-        return {"kp": float(kp[cost.argmin()]), "kd": float((kp * ratio)[cost.argmin()])}
-    """,
 ).program(
     "tune",
     """
@@ -861,8 +1233,44 @@ mistakes(
     """,
 )
 mistakes(
+    "WORST_CART",
+    "Where all carts can settle, your gains are about the best for the slowest one. Where with all gains some cart counts as 3 s, they are the same each time.",
+    "Take the mean settling time over all carts, not the largest: .mean(axis=0). If you do, see that the carts are drawn from the box alone, around the estimate.",
+).body(
+    "tune",
+    """
+        rng = np.random.default_rng(2)
+        carts = {k: estimate[k][0] * np.exp(rng.uniform(*np.log(randomization[k]), 60)) for k in NAMES}
+        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(1.0, 40, 40), np.linspace(0.25, 0.8, 12)))
+        cost = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).max(axis=0)
+        return {"kp": float(kp[cost.argmin()]), "kd": float((kp * ratio)[cost.argmin()])}
+    """,
+)
+mistakes(
+    "MEDIAN_CART",
+    "For several questions your gains are about the best for the median of the settling times. At least once their mean is clearly later than it could be.",
+    "Take the mean over all carts, with 3 s for each that fails. If you do, search more finely.",
+    kind="consequence",
+).edit(
+    "tune",
+    {
+        "np.random.default_rng(1)).mean(axis=0)\n        return kp[mean.argmin()]": "np.random.default_rng(1))\n        mean = np.median(mean, axis=0)\n        return kp[mean.argmin()]"
+    },
+)
+mistakes(
+    "ROLLOUT_GIVEN_RATIO",
+    "Here and for other questions, with kd/kp in place of kd your gains would be about the best of those with kd from 0.2 to 0.8, as if rollout were given the ratio.",
+    "Give rollout the gain itself: rollout(kp, ratio * kp, carts, rng).",
+    kind="consequence",
+).edit("tune", {"rollout(kp, kp * ratio, carts": "rollout(kp, ratio, carts"})
+mistakes(
+    "BOX_WITHOUT_ESTIMATE",
+    "Other masses and another latency in the estimate make no difference to the gains. For a box around the data sheet's own values they suit carts with these values, as if the box held the parameters themselves.",
+    "The box holds factors: draw each parameter between value * low and value * high, with the value from the estimate.",
+).edit("tune", {"estimate[name][0] * np.exp": "np.exp"})
+mistakes(
     "FAILURES_LEFT_OUT",
-    "These gains suit the soonest cart, or those that settle, and more than half of the carts count as 3 s.",
+    "With these gains more than half of the carts count as 3 s. They are about the best for the soonest cart alone, or for a mean that leaves out every cart that counts as 3 s.",
     "Take the mean over all carts, with 3 s for each that fails. If you do, look at the carts: each parameter is the estimate's value times a factor drawn from the box.",
     kind="fact",
 ).body(
@@ -1161,9 +1569,14 @@ mistakes(
 )
 mistakes(
     "INTERVAL_WITHOUT_WIDTH",
-    "The two ends of an interval are equal, and not in one recording alone.",
-    "Refit every parameter with one block left out, the times too. A time that stays on its grid shows no spread: refine it in each refit. If you do, let the last step be far smaller: the refits differ by less than it.",
+    "The two ends of an interval are equal, or differ by a rounding error, and not in one recording alone.",
+    "Refit every parameter with one block left out, the times too. A time that keeps the data sheet's value, or stays on its grid, shows no spread: search it in each refit, and between the points of the grid. If you do, let the last step be far smaller: the refits differ by less than it.",
     kind="fact",
+).edit(
+    "identify",
+    {
+        "np.linalg.solve(XX.sum(axis=0) - XX, (Xv.sum(axis=0) - Xv)[..., None])[..., 0]": "np.pad(np.linalg.solve((XX.sum(axis=0) - XX)[:, :3, :3], (Xv.sum(axis=0) - Xv)[:, :3, None])[..., 0], [(0, 0), (0, 2)])"
+    },
 )
 
 # -- tune
@@ -1320,11 +1733,14 @@ _LEAST = "integral_least_squares"
 
 _PLAN = {
     "box": (
-        ("BOX_TOO_WIDE", lambda w: [math.exp(-2 * w), math.exp(2 * w)]),
+        ("BOX_TOO_WIDE", lambda w: [math.exp(-2.5 * w), math.exp(2.5 * w)]),
+        ("BOX_TWICE_AS_WIDE", lambda w: [math.exp(-2 * w), math.exp(2 * w)]),
         ("BOX_TOO_WIDE", lambda w: [0.2, 5.0]),
         ("BOX_TOO_NARROW", lambda w: [1.0, 1.0]),
-        ("BOX_TOO_NARROW", lambda w: [math.exp(-w / 2), math.exp(w / 2)]),
-        ("BOX_TOO_NARROW", lambda w: [1.0, math.exp(w)]),
+        ("BOX_FULL_WIDTH", lambda w: [math.exp(-w / 2), math.exp(w / 2)]),
+        ("BOX_ONE_SIDED", lambda w: [1.0, math.exp(w)]),
+        ("BOX_ONE_SIDED", lambda w: [math.exp(-w), 1.0]),
+        ("BOX_HALF_LINEAR", lambda w: [math.exp(-w), 1 + w]),
         ("BOX_TOO_NARROW", lambda w: [0.9, 1.1]),
         ("BOX_IS_LINEAR", lambda w: [1 - w, 1 + w]),
         ("BOX_IN_LOGARITHMS", lambda w: [-w, w]),
@@ -1400,10 +1816,13 @@ _EXCITATION = {
         ("EXCITATION_TOO_FAST", lambda t, rng: rng.uniform(-1, 1, len(t))),
         ("EXCITATION_TOO_FAST", lambda t, rng: rng.choice([-1.0, 1.0], len(t))),
         ("EXCITATION_CONSTANT", lambda t, rng: np.ones(len(t))),
-        ("EXCITATION_RESTS", lambda t, rng: np.where(t < 2.0, 1.0, 0.0)),
+        ("EXCITATION_ENDS", lambda t, rng: np.where(t < 2.0, 1.0, 0.0)),
         ("EXCITATION_ZERO", lambda t, rng: np.zeros(len(t))),
     ),
-    "active": (("EXCITATION_RESTS", _first(2.0)),),
+    "active": (
+        ("EXCITATION_ENDS", _first(2.0)),
+        ("EXCITATION_RESTS", lambda u: np.where(np.arange(len(u)) % 500 < 30, u, 0.0)),
+    ),
 }
 
 
@@ -1469,7 +1888,8 @@ _IDENTIFY = {
         ("INTERVAL_REVERSED", lambda found: {k: [v, h, low] for k, (v, low, h) in found.items()}),
         ("INTERVAL_REVERSED", lambda found: {k: [v, low - v, h - v] for k, (v, low, h) in found.items()}),
         ("INTERVAL_WITHOUT_WIDTH", _widths(lambda k, v, w: 0.0)),
-        ("INTERVAL_OVERCONFIDENT", _widths(lambda k, v, w: w / 20)),
+        ("INTERVAL_OVERCONFIDENT", _widths(lambda k, v, w: w / 10)),
+        ("INTERVAL_PLAIN_SPREAD", _widths(lambda k, v, w: w / 19)),
         ("INTERVAL_WITHOUT_RECORDING", _widths(lambda k, v, w: _FIXED[k] * v)),
         ("INTERVAL_USELESS", _widths(lambda k, v, w: 20 * w)),
     ),
@@ -1498,7 +1918,7 @@ _TUNE = {
         ("RANDOMIZATION_IGNORED", lambda estimate, box: (estimate, _one(box))),
         ("RANDOMIZATION_IGNORED", lambda estimate, box: (estimate, {k: [0.7, 1.4] for k in box})),
         ("ESTIMATE_IGNORED", lambda estimate, box: ({k: [v] * 3 for k, v in _SHEET.items()}, box)),
-        ("ESTIMATE_IGNORED", lambda estimate, box: (dict.fromkeys(estimate, [1.0] * 3), box)),
+        ("BOX_WITHOUT_ESTIMATE", lambda estimate, box: (dict.fromkeys(estimate, [1.0] * 3), box)),
         ("DELAY_IGNORED", _without("latency")),
     ),
     "told": (

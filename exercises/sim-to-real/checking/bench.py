@@ -117,6 +117,93 @@ def differentiated(u, y, truth):
     return masses
 
 
+# -- fits with a mistake, and intervals from them ---------------------------------------------------------
+
+
+def fits(u, y, tau, late):
+    """m, b and Fc of a fit with these times, {what is wrong with it: (3,)}; "" is the README's own.
+
+    A parameter whose column is missing is zero.
+    """
+    impulse = _delayed(_impulse(u, tau), late)
+    force, sign = np.gradient(impulse, H), np.sign(y)
+    viscous, coulomb, pushed = _integral(y), _integral(sign), _integral(np.sign(u))
+    target = _blocks(y[:, None])[:, 0]
+    found = {
+        name: _fitted(_blocks(np.stack([impulse, *friction], axis=1)), target)
+        for name, friction in (
+            ("", (viscous, coulomb)),
+            ("SIGN_OF_COMMAND", (viscous, pushed)),
+            ("SIGN_OF_COMMAND late", (viscous, _delayed(pushed, late))),
+            ("SIGN_OF_COMMAND force", (viscous, _integral(np.sign(force)))),
+            ("SIGN_OF_POSITION", (viscous, np.sign(viscous))),
+            ("SIGN_NOT_INTEGRATED", (viscous, sign)),
+            ("FRICTION_DELAYED", (_delayed(viscous, late), _delayed(coulomb, late))),
+        )
+    }
+    for name, column, at in (("COULOMB_AS_VISCOUS", viscous, 2), ("VISCOUS_AS_COULOMB", coulomb, 1)):
+        found[name] = np.insert(_fitted(_blocks(np.stack([impulse, column], axis=1)), target), at, 0.0)
+    columns = np.stack([force, y, sign], axis=1)
+    for name, a in (("", np.gradient(y, H)), (" forwards", np.diff(y, append=y[-1]) / H)):
+        found["ACCELERATION_FITTED" + name] = _fitted(columns, a)
+    return found
+
+
+def _fitted(columns, target):
+    theta = np.linalg.lstsq(columns, target)[0]
+    return np.array([1.0, *-theta[1:]]) / theta[0]
+
+
+def misfit(u, y, tau, late):
+    """Sum of squares that the README's fit leaves with these times, (m/s)^2."""
+    columns = _blocks(
+        np.stack([_delayed(_impulse(u, tau), late), _integral(y), _integral(np.sign(y))], axis=1)
+    )
+    target = _blocks(y[:, None])[:, 0]
+    theta = np.linalg.lstsq(columns, target)[0]
+    return float(np.sum((target - columns @ theta) ** 2))
+
+
+def errors(u, y, tau, late):
+    """Standard errors of m, b, Fc, tau, latency and lag for a fit near these times, {how: (6,)}.
+
+    "": the README's jackknife. "kept out": each refit also lacks the blocks that were left out before.
+    "formula": what the usual formula says of m, of blocks and of the whole recording, with the times fitted
+    or known, (4,).
+    """
+    d, size = 0.001, round(1 / H)
+    impulse, later, sooner = (_impulse(u, each) for each in (tau, tau + d, tau - d))
+    by_tau = _delayed((later - sooner) / (2 * d), late)
+    by_late = (_delayed(impulse, late + d) - _delayed(impulse, late - d)) / (2 * d)
+    whole = np.stack([_delayed(impulse, late), _integral(y), _integral(np.sign(y)), by_tau, by_late], axis=1)
+    cut, target = _blocks(whole), _blocks(y[:, None])[:, 0]
+    X, v = cut.reshape(-1, size, 5), target.reshape(-1, size)
+    XX, Xv = X.transpose(0, 2, 1) @ X, np.einsum("bki,bk->bi", X, v)
+    refits = {
+        "": (XX.sum(axis=0) - XX, Xv.sum(axis=0) - Xv),
+        "kept out": ((XX.sum(axis=0) - XX.cumsum(axis=0))[:-1], (Xv.sum(axis=0) - Xv.cumsum(axis=0))[:-1]),
+    }
+    found = {}
+    for name, (left, right) in refits.items():
+        theta = (np.linalg.pinv(left) @ right[..., None])[..., 0]
+        m = 1 / theta[:, 0]
+        times = tau + theta[:, 3] * m, late + theta[:, 4] * m
+        each = np.stack([m, -theta[:, 1] * m, -theta[:, 2] * m, *times, times[0] + times[1]], axis=1)
+        n = len(each)
+        found[name] = np.sqrt((n - 1) / n * np.sum((each - each.mean(axis=0)) ** 2, axis=0))
+    found["formula"] = np.array(
+        [_by_formula(A[:, :k], b) for A, b in ((cut, target), (whole, y)) for k in (3, 5)]
+    )
+    return found
+
+
+def _by_formula(columns, target):
+    """The usual standard error of m, where the errors of all samples are independent."""
+    theta = np.linalg.lstsq(columns, target)[0]
+    left = np.sum((target - columns @ theta) ** 2) / (len(target) - columns.shape[1])
+    return math.sqrt(left * np.linalg.pinv(columns.T @ columns)[0, 0]) / theta[0] ** 2
+
+
 def _impulse(u, tau):
     """Integral of the motor's force since the start, N s, (N,), if it heard the command at once."""
     keep = math.exp(-H / tau)

@@ -170,15 +170,16 @@ def public_recordings():
     return cart.prbs_recordings(carts, 20.0, cart.U_BENCH, np.random.default_rng(21)), carts
 
 
-def expect_accurate(estimates, carts, recordings=(), submission=None):
+def expect_accurate(estimates, carts, recordings=(), submission=None, single=None):
     """The values are as near the truth as the README asks.
 
     recordings: (t, u, y) of each, where there is one, for a diagnosis
     submission: who is asked besides, where they are not
+    single: estimates and carts of all recordings, where ``estimates`` are means over some
     """
 
     def why():
-        found = probes.of_values(estimates, carts, recordings)
+        found = probes.of_values(estimates, carts, recordings, single)
         hard_coded = found and found.code == "ESTIMATE_HARD_CODED"
         return (not hard_coded and submission and probes.of_command_kept(submission, recordings)) or found
 
@@ -227,9 +228,7 @@ def expect_intervals(estimates, carts, recordings=()):
     All refits of one recording may end at the same time, where the last step of the search is a quarter of a
     millisecond: an interval without width counts where a second recording has one of the same parameter.
     """
-    points = Counter(
-        name for estimate in estimates for name, (_, low, high) in estimate.items() if low == high
-    )
+    points = Counter(name for estimate in estimates for name, entry in estimate.items() if _is_point(*entry))
     for estimate in estimates:
         for name, (value, low, high) in estimate.items():
             kit.expect_true(
@@ -240,9 +239,9 @@ def expect_intervals(estimates, carts, recordings=()):
                 actual=[value, low, high],
             )
             kit.expect_true(
-                low < high or points[name] < 2,
+                not _is_point(value, low, high) or points[name] < 2,
                 "An interval has no width.",
-                diagnose=named("INTERVAL_WITHOUT_WIDTH"),
+                diagnose=lambda: probes.of_points(estimates, carts),
                 input={"parameter": name},
                 actual=[value, low, high],
             )
@@ -255,9 +254,16 @@ def expect_intervals(estimates, carts, recordings=()):
                 quantity=f"half-width of {name}",
                 units=_UNITS[name],
                 message="An interval is too wide to be useful.",
-                diagnose=lambda: probes.of_misses(estimates, carts, recordings, "INTERVAL_USELESS"),
+                diagnose=lambda name=name: probes.of_misses(
+                    estimates, carts, recordings, "INTERVAL_USELESS", name
+                ),
                 input={"parameter": name, "value": value},
             )
+
+
+def _is_point(value, low, high):
+    """Whether an interval has no width but for rounding."""
+    return 0 <= high - low <= 1e-9 * abs(value)
 
 
 def _shares(estimate):
@@ -280,12 +286,14 @@ def expect_honest_widths(estimates, recordings, carts):
             source="the README's",
             quantity=f"mean half-width of {name} over the narrowest possible",
             message="The intervals of a parameter are far wider than the recordings require.",
-            diagnose=lambda: probes.of_misses(estimates, carts, recordings, "INTERVAL_USELESS"),
+            diagnose=lambda name=name: probes.of_misses(
+                estimates, carts, recordings, "INTERVAL_USELESS", name
+            ),
             input={"parameter": name},
         )
 
 
-def expect_growth(full, weak, carts):
+def expect_growth(full, weak, carts, recordings=()):
     """Intervals from short and weak recordings are wider than those from full ones of the same carts."""
     with np.errstate(all="ignore"):
         ratios = np.mean([_shares(each) for each in weak], axis=0) / np.mean(
@@ -298,7 +306,7 @@ def expect_growth(full, weak, carts):
         source="the README's",
         quantity="half-widths from the weak recordings over those from the full ones, geometric mean",
         message="From short and weak recordings, the intervals are not so much wider as the README asks.",
-        diagnose=lambda: probes.of_values(full, carts) or named("INTERVAL_WITHOUT_RECORDING"),
+        diagnose=lambda: probes.of_values(full, carts, recordings) or named("INTERVAL_WITHOUT_RECORDING"),
         input={"weak recordings": "8 s at 1.2 N", "full ones": "20 s at 3 N"},
     )
 

@@ -128,6 +128,7 @@ def of_command(u, carts=(), u_max=cart.U_BENCH, enough=lambda u: False):
     frequency = np.fft.rfftfreq(len(u), cart.H)
     looks = (
         ("EXCITATION_ZERO", lambda: peak == 0.0),
+        ("EXCITATION_ENDS", lambda: np.flatnonzero(u)[-1] < 0.6 * len(u) - 1),
         ("EXCITATION_RESTS", lambda: np.mean(u == 0.0) > 0.6),
         ("EXCITATION_CONSTANT", lambda: np.count_nonzero(np.diff(u)) <= 2),
         ("EXCITATION_RESTS", lambda: np.mean(u == 0.0) > 0.4),
@@ -144,22 +145,80 @@ def of_command(u, carts=(), u_max=cart.U_BENCH, enough=lambda u: False):
 # -- identify -------------------------------------------------------------------------------------------
 
 
-def of_values(estimates, truths, recordings=()):
+def of_values(estimates, truths, recordings=(), single=None):
     """What the values of several estimates look like beside the true carts.
 
     recordings: (t, u, y) of each, where there is one
+    single: estimates and carts of the recordings, where ``estimates`` are means over some of them
     """
     got = {k: np.array([estimate[k][0] for estimate in estimates]) for k in ALL}
     true = {k: np.array([_known(truth)[k] for truth in truths]) for k in ALL}
     with np.errstate(all="ignore"):
         found = next((code for code, looks in _LIKENESSES if looks(got, true)), None)
+    if found != "ESTIMATE_HARD_CODED":
+        found = _fitted_otherwise(*(single or (estimates, truths)), recordings) or found
     # The low ends of tau and latency do not add up to that of lag, whose interval is narrower than both.
     if found == "LAG_NOT_SUM" and all(a < b < c for each in estimates for a, b, c in each.values()):
         return named("INTERVAL_REVERSED")
     # A fit to a speed that was differentiated may leave a time at the edge of its range.
     if found in (None, "PARAMETER_FIXED") and _differentiated(got, true, recordings):
         return named("NOISE_DIFFERENTIATED")
+    if found is None and _times_not_best(*(single or (estimates, truths)), recordings):
+        return named("TIMES_NOT_BEST")
     return found and named(found)
+
+
+#: The parameters of a fit whose times are known.
+_OF_FIT = ("m", "b", "Fc")
+
+
+def _with_times(estimates, recordings):
+    """Pairs of a recording and an estimate of it whose times are ones that a fit can be made with."""
+    return [
+        (recording, estimate)
+        for recording, estimate in zip(recordings, estimates, strict=False)
+        if 0.005 < estimate["tau"][0] < 1.0 and 0.0 <= estimate["latency"][0] < 1.0
+    ]
+
+
+def _fitted_otherwise(estimates, truths, recordings):
+    """Which wrong fit gives these m, b and Fc with the times that came back, as a code, or None.
+
+    Of the same recordings and times a fit gives the same numbers: they have to be far nearer to its own than
+    to the carts' and to those of the README's fit, each in every parameter, over several recordings.
+    """
+    pairs = _with_times(estimates, recordings)
+    if len(pairs) < 2 or len(pairs) < len(estimates):
+        return None
+    unit = np.array([[cart.SCORED[k] * truth[k] for k in _OF_FIT] for truth in truths])
+    got = np.array([[each[k][0] for k in _OF_FIT] for each in estimates])
+
+    def off(values):
+        return math.sqrt(np.mean(np.square((got - values) / unit)))
+
+    with np.errstate(all="ignore"):
+        made = [bench.fits(u, y, each["tau"][0], each["latency"][0]) for (_, u, y), each in pairs]
+    away = {name: off([each[name] for each in made]) for name in made[0]}
+    own = min(off([[truth[k] for k in _OF_FIT] for truth in truths]), away.pop(""))
+    code = min(away, key=away.get).split()[0]
+    least, other = (
+        min(off for name, off in away.items() if (name.split()[0] == code) is same) for same in (True, False)
+    )
+    return code if own > 0.15 and least < 0.15 * min(own, other) else None
+
+
+def _times_not_best(estimates, truths, recordings):
+    """Whether the README's fit mostly leaves more with the times that came back than with the carts' own."""
+    pairs = _with_times(estimates, recordings)
+    if not pairs or len(pairs) < len(estimates):
+        return False
+    ratios = []
+    for ((_, u, y), each), truth in zip(pairs, truths, strict=True):
+        tau, late = each["tau"][0], each["latency"][0]
+        if np.max(np.abs(bench.fits(u, y, tau, late)[""] / [each[k][0] for k in _OF_FIT] - 1)) > 0.01:
+            return False
+        ratios.append(bench.misfit(u, y, tau, late) / bench.misfit(u, y, truth["tau"], truth["latency"]))
+    return bool(np.median(ratios) > 1.05)
 
 
 def of_command_kept(submission, recordings):
@@ -194,16 +253,76 @@ def _differentiated(got, true, recordings):
     return False
 
 
-def of_misses(estimates, truths, recordings=(), otherwise="INTERVAL_OVERCONFIDENT"):
-    """Why intervals miss the truth, or are too wide: values that are off by themselves come first."""
+def of_misses(estimates, truths, recordings=(), otherwise="INTERVAL_OVERCONFIDENT", name=None):
+    """Why intervals miss the truth, or are too wide: values that are off by themselves come first.
+
+    name: the parameter that the finding is about, if it is about one
+    """
     found = of_values(estimates, truths, recordings)
     if found:
         return found
+    if name == "lag" and otherwise == "INTERVAL_USELESS" and all(_ends_added(each) for each in estimates):
+        return named("LAG_ENDS_ADDED")
+    code = _of_widths(estimates, recordings)
+    if code:
+        return named(code)
     for estimate, truth in zip(estimates, truths, strict=True):
         known = _known(truth)
         if any(abs(estimate[k][0] / known[k] - 1) > limit for k, limit in cart.SCORED.items()):
             return named("VALUES_OFF")
     return named(otherwise)
+
+
+def of_points(estimates, truths):
+    """Why intervals have no width: a parameter may be the same for all carts, in every refit too."""
+    found = of_values(estimates, truths)
+    fixed = found is not None and found.code in ("ESTIMATE_HARD_CODED", "TIME_FROM_SHEET", "PARAMETER_FIXED")
+    return found if fixed else named("INTERVAL_WITHOUT_WIDTH")
+
+
+def _ends_added(estimate):
+    """Whether the ends of the interval of lag are the sums of those of tau and latency."""
+    tau, late, lag = (estimate[k] for k in ("tau", "latency", "lag"))
+    return all(math.isclose(tau[i] + late[i], lag[i], rel_tol=1e-9) for i in (1, 2))
+
+
+#: Half-widths over standard errors by the README's jackknife, for n blocks: which mistake leaves which.
+_LEAVES = (
+    ("INTERVAL_PLAIN_SPREAD", lambda n: 2.1 / (n - 1)),  # np.std over the root of n
+    ("INTERVAL_PLAIN_SPREAD", lambda n: 2.1 / math.sqrt(n - 1)),  # np.std
+    ("INTERVAL_ONE_ERROR", lambda n: 1.0),
+)
+
+
+def _of_widths(estimates, recordings):
+    """What half-widths over the standard errors of the same recordings say of how they are made, or None."""
+    pairs = _with_times(estimates, recordings)
+    if len(pairs) < 2 or len(pairs) < len(estimates):
+        return None
+    with np.errstate(all="ignore"):
+        made = [bench.errors(u, y, each["tau"][0], each["latency"][0]) for (_, u, y), each in pairs]
+    half = np.array([[(each[k][2] - each[k][1]) / 2 for k in ALL] for each in estimates])
+    own, kept_out = (np.array([each[name] for each in made]) for name in ("", "kept out"))
+    scored = [ALL.index(k) for k in cart.SCORED]
+
+    def times(other, most):
+        """By how much these are wider than others, where that is alike for all of the scored parameters."""
+        ratio = np.maximum(half, 1e-300) / other
+        typical = np.median(ratio[:, scored], axis=0)
+        middle = float(np.exp(np.mean(np.log(typical))))
+        return middle if np.all(np.abs(np.log(typical / middle)) < most) else math.nan
+
+    n = len(recordings[0][1]) // 100
+    for code, factor in _LEAVES:
+        if abs(math.log(times(own, 0.12) / factor(n))) < 0.08:
+            return code
+    if abs(math.log(times(own**2, 0.25) / 2.05)) < 0.15:
+        return "INTERVAL_ROOT_MISSING"
+    if abs(math.log(times(kept_out, 0.2) / 2.1)) < 0.12 and np.median(half[:, 0] / own[:, 0]) > 4.2:
+        return "BLOCKS_KEPT_OUT"
+    formula = half[:, :1] / np.array([each["formula"] for each in made])
+    alike = np.ptp(formula, axis=0) < 0.06 * formula.mean(axis=0)
+    return "INTERVAL_BY_FORMULA" if np.any(alike & (np.abs(formula.mean(axis=0) - 2) < 0.15)) else None
 
 
 def _known(truth):
@@ -271,6 +390,8 @@ _LIKENESSES = (
             and all(_alike(got[k] / true[k], got["m"] / true["m"], 0.08) for k in ("b", "Fc"))
         ),
     ),
+    ("LAG_TOO_LONG", lambda got, true: _shifted(got["lag"] - true["lag"], got, true)),
+    ("LAG_TOO_SHORT", lambda got, true: _shifted(true["lag"] - got["lag"], got, true)),
     ("LOCAL_MINIMUM", lambda got, true: np.median(np.abs(got["lag"] / true["lag"] - 1)) > 0.25),
     ("FRICTION_SIGN", lambda got, true: _share(got, true, "b") < -0.5 or _share(got, true, "Fc") < -0.5),
     (
@@ -292,6 +413,13 @@ _LIKENESSES = (
     ("VISCOUS_MISSING", lambda got, true: abs(_share(got, true, "b")) < 0.3),
     ("COULOMB_MISSING", lambda got, true: abs(_share(got, true, "Fc")) < 0.3),
 )
+
+
+def _shifted(late, got, true):
+    """Whether these times are alike, and about a sample or more, though the lags differ; m is right."""
+    middle = float(np.median(late))
+    alike = np.max(np.abs(late - middle)) < 0.0015 + 0.1 * abs(middle)
+    return bool(middle > 0.008 and alike and np.ptp(true["lag"]) > 0.01 and _right(got, true, "m"))
 
 
 def exchanged(estimates, truths):
@@ -374,14 +502,33 @@ def of_gains(submission, estimate, box, gains, success):
     def ended_far_off():
         return success(*_best_of_grid(estimate, box)) > 1.03 * success(kp, kd)
 
+    def box_alone():
+        """Whether, for a box around the data sheet's values, the gains suit carts with these values."""
+        asked = [(each, _UNITS_BOX) for each in (estimate, heavy)]
+        found = kit.attempt(lambda: [gains_of(each) for each in submission.call_each("tune", asked)])
+        return found is not None and found[0] == found[1] and _lateness_of(found[0], _UNITS_BOX) < 1.05
+
+    @functools.cache
+    def summed():
+        found = _of_sums([(estimate, box), *questions], [gains, *other])
+        if found != "TIED":
+            return found
+        # With all gains the slowest cart counts as 3 s: on a narrow box it settles.
+        narrow = {k: [(low / high) ** 0.2, (high / low) ** 0.2] for k, (low, high) in box.items()}
+        asked = [(each, narrow) for each in (estimate, heavy)]
+        answers = kit.attempt(lambda: [gains_of(each) for each in submission.call_each("tune", asked)])
+        return answers and _of_sums([(estimate, box), *asked], [gains, *answers])
+
     looks = (
         ("GAINS_SWAPPED", swapped),
         (
             "KD_IS_RATIO",
             lambda: _are_ratios([gains, *other]) and _would_do(kp, kp * kd, gains, estimate, box, success),
         ),
+        ("ROLLOUT_GIVEN_RATIO", lambda: summed() == "ROLLOUT_GIVEN_RATIO"),
         # The mark is 1 m away: with less than friction the cart never moves, damped or not.
         ("NO_DAMPING", lambda: kd < 0.05 * kp and kp > estimate["Fc"][0]),
+        ("BOX_WITHOUT_ESTIMATE", lambda: all(same[:3]) and not same[3] and box_alone()),
         (
             "ESTIMATE_IGNORED",
             lambda: (
@@ -392,6 +539,7 @@ def of_gains(submission, estimate, box, gains, success):
             ),
         ),
         ("GAINS_HARD_CODED", lambda: all(same) and _never_changes(submission, estimate, box, gains)),
+        ("WORST_CART", lambda: summed() == "WORST_CART"),
         ("SEARCH_ENDED_EARLY", lambda: all(same) or (stays and ended_early())),
         ("ENDS_READ", lambda: unmoved(ends) is False and unmoved((estimate, box))),
         # Where nothing settles, gains are as good as any others, and what they depend on shows nothing.
@@ -411,6 +559,7 @@ def of_gains(submission, estimate, box, gains, success):
         ("RANDOMIZATION_IGNORED", lambda: same[3] and not same[0] and unmoved(*boxes)),
     )
     rest = (
+        ("MEDIAN_CART", lambda: summed() == "MEDIAN_CART"),
         ("FAILURES_LEFT_OUT", lambda: failing() is not None),
         ("KD_FOLLOWS_KP", lambda: _follows([gains, *other], [estimate, *(asked for asked, _ in questions)])),
     )
@@ -418,6 +567,58 @@ def of_gains(submission, estimate, box, gains, success):
     code = code or _best_for_others([(estimate, box), *questions], [gains, *other])
     code = code or next((code for code, seen in rest if seen()), None)
     return named(code or "SEARCH_ENDED_EARLY") if code or ended_early() or ended_far_off() else None
+
+
+#: A box in the parameters' own units.
+_UNITS_BOX = {k: [0.9 * value, 1.1 * value] for k, value in cart.SHEET.items()}
+
+
+def _lateness_of(gains, box):
+    """The mean settling time over the best of a grid, on carts drawn from the box itself."""
+    carts = _drawn({k: [1.0] for k in NAMES}, box, 50)[1]
+    pairs = (np.append(all_, one) for all_, one in zip(_grid(), gains, strict=True))
+    mean = cart.rollout(*pairs, carts, np.random.default_rng(32)).mean(axis=0)
+    return mean[-1] / mean.min()
+
+
+def _of_sums(questions, answers):
+    """What gains are the best for in all questions, where it is not the mean; a code or None.
+
+    ROLLOUT_GIVEN_RATIO: with kd/kp in place of kd the mean is least. WORST_CART: the slowest time is least;
+    where that is 3 s with all gains, the same come each time; TIED: it always is. MEDIAN_CART: the median is.
+    """
+    kp, kd = _grid()
+    mean, middle, most, ratio = [], [], [], []
+    for (estimate, box), (p, d) in zip(questions, answers, strict=True):
+        around = np.array(_AROUND[1:]).T
+        pairs = np.concatenate([kp, p * around[0], [p]]), np.concatenate([kd, d * around[1], [d]])
+        times = _settling(pairs, estimate, box)
+        for found, of_all in ((mean, times.mean(0)), (middle, np.median(times, 0)), (most, times.max(0))):
+            found.append((of_all[-1], of_all.min()))
+        if p > 0 and 0.1 < d / p < 1.0:
+            other = np.append(kp, p), np.append(kd / kp, d / p)
+            of_all = _settling(other, estimate, box).mean(axis=0)
+            ratio.append((of_all[-1], of_all.min()))
+    late = [own / best for own, best in mean]
+    if max(late) < _WORSE:
+        return None
+    if (
+        len(ratio) == len(answers)
+        and np.median(late) > 1.1
+        and all(own < 1.06 * best for own, best in ratio)
+        and min(best for _, best in ratio) < 2.75
+    ):
+        return "ROLLOUT_GIVEN_RATIO"
+    slowest = [own / best for own, best in most if best < 2.4]
+    tied = {pair for pair, (_, best) in zip(answers, most, strict=True) if best >= 3.0}
+    if slowest and max(slowest) < 1.2 and np.median(slowest) < 1.06 and len(tied) <= 1:
+        return "WORST_CART"
+    if not slowest and len(tied) == 1:
+        return "TIED"
+    medians = [own / best for own, best in middle if best < 2.9]
+    if len(medians) > 1 and max(medians) < 1.08 and max(late) > 1.12:
+        return "MEDIAN_CART"
+    return None
 
 
 def _follows(pairs, estimates):

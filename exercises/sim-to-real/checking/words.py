@@ -139,11 +139,27 @@ def of_box(box, shown=cart.NAMES):
     """
     if all(_near(box[k], (1 - w, 1 + w)) for k, w in cart.FLEET.items()):
         return named("BOX_IS_LINEAR")
+    low, high = (
+        {k: math.log(box[k][end]) / sign / w for k, w in cart.FLEET.items()}
+        for end, sign in ((0, -1), (1, 1))
+    )
+    if _all_near(low.values(), 1.0) and all(abs(box[k][1] - 1 - w) < 0.011 for k, w in cart.FLEET.items()):
+        return named("BOX_HALF_LINEAR")
+    for code, times in (("BOX_FULL_WIDTH", 0.5), ("BOX_TWICE_AS_WIDE", 2.0)):
+        if _all_near(low.values(), times) and _all_near(high.values(), times):
+            return named(code)
+    if _all_near(low.values(), 0.0) != _all_near(high.values(), 0.0):
+        return named("BOX_ONE_SIDED")
     middles = {k: math.sqrt(low * high) for k, (low, high) in box.items()}
     if all(abs(math.log(middles[k] / cart.SHEET[k])) < 0.2 for k in cart.NAMES):
         return named("BOX_NOT_FACTORS")
     narrow = any(inside(k, *box[k]) < 0.95 for k in shown)
     return named("BOX_TOO_NARROW" if narrow else "BOX_TOO_WIDE")
+
+
+def _all_near(shares, expected):
+    """Whether ends of the box lie at this share of w, in the logarithm, for every parameter."""
+    return all(abs(share - expected) < 0.05 for share in shares)
 
 
 def _near(a, b):

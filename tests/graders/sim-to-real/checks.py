@@ -105,8 +105,8 @@ def _uneven(rng, count):
 def test_identify_accurate(submission):
     """Mass, both frictions and lag of three unknown carts, from two recordings each"""
     estimates, carts = execution.bench(submission)
-    recordings = reference.recordings(submission.seed)[:3]
-    judge.expect_accurate(execution.means(estimates), carts[:3], recordings, submission)
+    recordings, single = reference.recordings(submission.seed), (estimates, carts)
+    judge.expect_accurate(execution.means(estimates), carts[:3], recordings, submission, single)
 
 
 @pytest.mark.task("identify")
@@ -115,7 +115,7 @@ def test_identify_honest(submission):
     """The intervals for strong and weak recordings, and the true values"""
     estimates, carts = execution.bench(submission)
     judge.expect_intervals(estimates, carts, reference.recordings(submission.seed))
-    judge.expect_growth(estimates, execution.weak(submission), carts)
+    judge.expect_growth(estimates, execution.weak(submission), carts, reference.recordings(submission.seed))
     judge.expect_honest_widths(estimates, reference.recordings(submission.seed), carts)
     judge.expect_truth(estimates, carts, reference.recordings(submission.seed), 2, 8)
 

@@ -299,3 +299,145 @@ def test_times_that_are_exchanged_are_seen_where_they_differ(swapped):
 def test_a_slow_sine_does_not_show_the_lag(word, shows):
     """The narrowest interval alone is within 10 %, and no fit comes near it."""
     assert (bench.reach(word, "lag", 20.0, cart.PUBLIC_TYPES, (0, 5)) <= words.SHOWN["lag"]) == shows
+
+
+def _recorded(column):
+    """The public recordings with the m, b and Fc of one of the fits, and the right times."""
+    recordings, truths = judge.public_recordings()
+    estimates = []
+    for (_, u, y), truth in zip(recordings, truths, strict=True):
+        m, b, rub = bench.fits(u, y, truth["tau"], truth["latency"])[column]
+        estimates.append(_with(m=lambda _, x=m: x, b=lambda _, x=b: x, Fc=lambda _, x=rub: x)(truth))
+    return estimates, truths, recordings
+
+
+@pytest.mark.parametrize(
+    "column",
+    [
+        "SIGN_OF_COMMAND",
+        "SIGN_OF_COMMAND late",
+        "SIGN_OF_COMMAND force",
+        "SIGN_OF_POSITION",
+        "SIGN_NOT_INTEGRATED",
+        "FRICTION_DELAYED",
+        "ACCELERATION_FITTED",
+        "ACCELERATION_FITTED forwards",
+    ],
+)
+def test_a_fit_with_a_wrong_column_is_known_by_its_own_numbers(column):
+    estimates, truths, recordings = _recorded(column)
+    assert probes.of_values(estimates, truths, recordings).code == column.split()[0]
+    assert getattr(probes.of_values(estimates, truths), "code", None) != column.split()[0]  # nothing to fit
+
+
+def test_the_readmes_own_fit_is_told_no_wrong_column_nor_wrong_times():
+    assert probes.of_values(*_recorded("")) is None
+    _, truths, recordings = _recorded("")
+    assert probes.of_values([_with()(truth) for truth in truths], truths, recordings) is None
+
+
+@pytest.mark.parametrize(("shift", "code"), [(0.024, "LAG_TOO_LONG"), (-0.02, "LAG_TOO_SHORT")])
+def test_a_lag_that_is_off_by_the_same_time_for_different_carts_is_told_which_way(shift, code):
+    truths = [cart.PUBLIC, cart.PUBLIC, cart.SHEET]
+    late = [
+        _with(latency=lambda p: p["latency"] + shift, lag=lambda p: p["lag"] + shift)(truth)
+        for truth in truths
+    ]
+    assert probes.of_values(late, truths).code == code
+    one = [_with(latency=lambda p: p["latency"] + shift, lag=lambda p: p["lag"] + shift)(truths[0])]
+    assert probes.of_values(one, truths[:1]) is None  # of one cart it may be chance
+
+
+def _with_widths(half):
+    """The same by the README's fit, with half-widths made of its standard errors."""
+    estimates, truths, recordings = _recorded("")
+    for estimate, (_, u, y) in zip(estimates, recordings, strict=True):
+        made = bench.errors(u, y, estimate["tau"][0], estimate["latency"][0])
+        for i, name in enumerate((*cart.NAMES, "lag")):
+            value, width = estimate[name][0], half(made)[i]
+            estimate[name] = (value, value - width, value + width)
+    return estimates, truths, recordings
+
+
+@pytest.mark.parametrize(
+    ("half", "code"),
+    [
+        (lambda made: 2.1 * made[""], "INTERVAL_OVERCONFIDENT"),
+        (lambda made: 0.3 * made[""], "INTERVAL_OVERCONFIDENT"),
+        (lambda made: made[""], "INTERVAL_ONE_ERROR"),
+        (lambda made: 2.1 * made[""] / 19, "INTERVAL_PLAIN_SPREAD"),
+        (lambda made: 2.1 * made[""] / math.sqrt(19), "INTERVAL_PLAIN_SPREAD"),
+        (lambda made: 2.1 * made[""] ** 2, "INTERVAL_ROOT_MISSING"),
+        (lambda made: 2.1 * made["kept out"], "BLOCKS_KEPT_OUT"),
+        (lambda made: [1.96 * made["formula"][0], *0.5 * made[""][1:]], "INTERVAL_BY_FORMULA"),
+    ],
+)
+def test_how_intervals_are_made_is_known_by_their_widths(half, code):
+    assert probes.of_misses(*_with_widths(half)).code == code
+
+
+def test_ends_of_the_lag_that_are_sums_are_told_only_of_the_lag():
+    estimates, truths, recordings = _recorded("")
+    for each in estimates:
+        each["lag"] = tuple(a + b for a, b in zip(each["tau"], each["latency"], strict=True))
+    asked = estimates, truths, recordings, "INTERVAL_USELESS"
+    assert probes.of_misses(*asked, "lag").code == "LAG_ENDS_ADDED"
+    assert probes.of_misses(*asked, "m").code == "INTERVAL_USELESS"
+
+
+def test_an_interval_as_wide_as_a_rounding_error_has_no_width():
+    points = {k: (v, v, v * (1 + 1e-16)) for k, (v, _, _) in _with()(cart.PUBLIC).items()}
+    with pytest.raises(kit.CheckFailed) as failed:
+        judge.expect_intervals([points, points], [cart.PUBLIC, cart.PUBLIC])
+    assert failed.value.guess.code == "INTERVAL_WITHOUT_WIDTH"
+
+
+@pytest.mark.parametrize(
+    ("ends", "code"),
+    [
+        (lambda w: (math.exp(-w), 1 + w), "BOX_HALF_LINEAR"),
+        (lambda w: (1 - w, 1 + w), "BOX_IS_LINEAR"),
+        (lambda w: (math.exp(-w / 2), math.exp(w / 2)), "BOX_FULL_WIDTH"),
+        (lambda w: (math.exp(-1.96 * w), math.exp(1.96 * w)), "BOX_TWICE_AS_WIDE"),
+        (lambda w: (1.0, math.exp(w)), "BOX_ONE_SIDED"),
+        (lambda w: (1.0, 1.0), "BOX_TOO_NARROW"),
+        (lambda w: (math.exp(-0.8 * w), math.exp(0.8 * w)), "BOX_TOO_NARROW"),
+    ],
+)
+def test_a_box_is_told_which_ends_it_has(ends, code):
+    assert words.of_box({k: ends(w) for k, w in cart.FLEET.items()}).code == code
+
+
+def test_a_command_that_ends_is_told_from_one_with_pauses():
+    on = np.where(np.arange(2000) < 700, 3.0, 0.0)
+    pauses = np.where(np.arange(2000) % 100 < 30, 3.0, 0.0)
+    assert probes.of_command(on).code == "EXCITATION_ENDS"
+    assert probes.of_command(pauses).code == "EXCITATION_RESTS"
+
+
+def _tuned(sum_up, ratio=False):
+    """A sound search, but for what it makes of the carts' times, or for what it hands to ``rollout``."""
+
+    def tune(estimate, box):
+        value, factor = probes._drawn(estimate, box, 150)
+        carts = {k: value[k] * factor[k] for k in cart.NAMES}
+        kp, r = (x.ravel() for x in np.meshgrid(np.geomspace(2, 40, 20), np.linspace(0.2, 0.8, 13)))
+        times = cart.rollout(kp, r if ratio else kp * r, carts, np.random.default_rng(6))
+        best = int(sum_up(times).argmin())
+        return {"kp": float(kp[best]), "kd": float(kp[best] * r[best])}
+
+    return tune
+
+
+@pytest.mark.parametrize(
+    ("code", "tune"),
+    [
+        ("WORST_CART", _tuned(lambda times: times.max(axis=0))),
+        ("ROLLOUT_GIVEN_RATIO", _tuned(lambda times: times.mean(axis=0), ratio=True)),
+    ],
+)
+def test_gains_that_are_the_best_for_something_else_are_told_for_what(code, tune):
+    estimate, box = cart.with_intervals(cart.PUBLIC), cart.MATCHED
+    gains = probes.gains_of(tune(estimate, box))
+    found = probes.of_gains(Answers(tune), estimate, box, gains, lambda *pair: cart.public_success(*pair)[0])
+    assert found.code == code

@@ -427,6 +427,27 @@ mistakes(
     """,
 )
 mistakes(
+    "FRICTION_EACH_ALONE",
+    "Friction brakes each body's own velocity across the normal, as if the other one stood still.",
+    "Friction acts on the slip, which is relative: vt is the component of vb - va across the normal. Both bodies get the same Jt, in opposite directions.",
+).body(
+    "resolve_with_friction",
+    """
+        closing = (va - vb) @ normal
+        if closing <= 0:
+            return va, vb
+        J = (1 + restitution) * closing / (1 / ma + 1 / mb)
+        ends = []
+        for m, v, sign in ((ma, va, -1), (mb, vb, 1)):
+            along = (v @ normal) * normal
+            across = v - along
+            speed = np.linalg.norm(across)
+            brake = min(mu * J / m, speed) / speed if speed else 0.0
+            ends.append(along + sign * J / m * normal + (1 - brake) * across)
+        return tuple(ends)
+    """,
+)
+mistakes(
     "TIME_OF_IMPACT_LATE_ROOT",
     "The later root is taken, at which the bodies, having passed through each other, would come apart.",
     "The quadratic has two roots. Bodies that are apart touch first at the smaller one, with the minus sign before the square root. If they overlap and approach, the answer is 0.0.",
@@ -534,6 +555,23 @@ mistakes(
 
         def time_of_impact(xa, va, ra, xb, vb, rb, dt):
             return 0.0 if np.linalg.norm(xb - xa) <= ra + rb else _right(xa, va, ra, xb, vb, rb, dt)
+    """,
+)
+mistakes(
+    "APPROACH_NOT_ASKED",
+    "Your code does not ask whether the bodies approach: those that move apart get a time, too.",
+    "Return None first of all where x . v >= 0, whether they overlap or not.",
+).body(
+    "time_of_impact",
+    """
+        x, v, R = xb - xa, vb - va, ra + rb
+        a, b, c = v @ v, x @ v, x @ x - R**2
+        if c < 0:
+            return 0.0
+        if a == 0 or b * b < a * c:
+            return None
+        t = (-b - math.sqrt(b * b - a * c)) / a
+        return float(t) if t <= dt else None
     """,
 )
 mistakes(
@@ -653,6 +691,26 @@ mistakes(
             s = t[:, None]
             return t, x0 + v0 * np.minimum(s, met) + v1 * np.maximum(s - met, 0), np.where(s < met, v0, v1)
     """,
+)
+mistakes(
+    "VELOCITIES_SCALED",
+    "The velocities are those after an impact without loss, each multiplied by e.",
+    "e is the speed of parting over that of approach: it belongs into the factor 1 + e of J, and nowhere else.",
+).body(
+    "resolve",
+    """
+        closing = (va - vb) @ normal
+        if closing <= 0:
+            return va, vb
+        impulse = 2 * closing / (1 / ma + 1 / mb) * normal
+        return restitution * (va - impulse / ma), restitution * (vb + impulse / mb)
+    """,
+).edit(
+    "simulate_head_on",
+    {
+        "closing, restitution)": "closing, 1.0)",
+        "va, vb = va - impulse / m[0], vb + impulse / m[1]": "va, vb = restitution * (va - impulse / m[0]), restitution * (vb + impulse / m[1])",
+    },
 )
 mistakes(
     "RADIUS_IGNORED",
@@ -1084,6 +1142,44 @@ mistakes(
         return h * np.arange(n + 1), np.array(zs), np.array(vs)
     """,
 ).edit("simulate_drop", {"(v[i] + speed) / g": "(speed - v[i]) / g"})
+mistakes(
+    "CONTACT_ON_A_LINE",
+    "The moment of the contact is computed as if the ball kept one velocity during the step.",
+    "It falls faster and faster: from (z, v) it gets to the floor after (v + speed)/g, with speed = sqrt(v**2 + 2 g (z - radius)).",
+    true_too=("TIME_LEFT_WRONG",),
+).edit(
+    "simulate_drop",
+    {"(v[i] + speed) / g": "(z[i] - radius) / (z[i] - z[i + 1]) * h"},
+)
+mistakes(
+    "PATH_MIRRORED",
+    "A ball that would be in the floor is put as far above it, or e times as far, and its velocity is turned round.",
+    "Gravity does not turn round at the floor: fly up to the contact, and from there with e times the speed at the floor for the rest of the step.",
+).body(
+    "simulate_drop",
+    """
+        n = round(t_end / h)
+        t, z, v = h * np.arange(n + 1), np.full(n + 1, float(radius)), np.zeros(n + 1)
+        z[0], v[0] = z0, v0
+        for i in range(n):
+            z[i + 1], v[i + 1] = z[i] + v[i] * h - g * h * h / 2, v[i] - g * h
+            if z[i + 1] < radius:
+                z[i + 1], v[i + 1] = 2 * radius - z[i + 1], -restitution * v[i + 1]
+                if v[i + 1] <= g * h:
+                    z[i + 1 :], v[i + 1 :] = radius, 0.0
+                    break
+        return t, z, v
+    """,
+)
+mistakes(
+    "IN_THE_FLOOR",
+    "Here the ball is lower than z = radius: a part of it is in the floor.",
+    "z is the height of its centre. It touches where z = radius, at an instant inside the step, and no row is lower.",
+    kind="consequence",
+).edit(
+    "simulate_drop",
+    {"z[i + 1] < radius:": "z[i + 1] < 0:"},
+)
 mistakes(
     "REST_BY_TIME_LEFT",
     "Whether the ball rests is decided with what is left of the step in place of h.",
@@ -1562,6 +1658,11 @@ mistakes(
     "The speed at the floor is sqrt(v**2 + 2 g (z - radius)).",
 ).edit("simulate_drop", {"* 2 + 2 * g * max(": "* 2 + g * max("})
 mistakes(
+    "DISTANCE_BY_COORDINATES",
+    "The distance of the centres leaves out a coordinate, or adds or compares the coordinates one by one.",
+    "It is the length of xb - xa: the root of the sum of the squares of all its coordinates, np.linalg.norm(xb - xa).",
+).edit("detect_sphere_sphere", {"np.linalg.norm(apart)": "np.linalg.norm(apart[:2])"})
+mistakes(
     "NORMAL_NOT_UNIT",
     "The normal is not a unit vector: its length is not one.",
     "Divide the vector between the centres by its length; a plane's normal already has length one. Where the centres coincide, any vector will do whose length is one.",
@@ -1790,7 +1891,7 @@ mistakes(
 mistakes(
     "MOMENTUM_LOST",
     "The total momentum changes, although no outside force acts.",
-    "Both bodies get the same impulses, with opposite signs, each divided by its own mass. Nothing else of va and vb changes: what lies across n stays. Compute both changes by hand and compare.",
+    "Both bodies get the same impulses, with opposite signs, each divided by its own mass, and nothing else changes va or vb. Compute both changes by hand and compare.",
     kind="consequence",
 )
 mistakes(
@@ -2240,6 +2341,8 @@ def hypotheses():
     families["simulate_drop"] = _drop, {}, _DROP
     for again in (lambda s: max(s, 0.0), lambda s: s):
         yield "simulate_head_on", ("IMPULSE_COMPUTED_TWICE",), _head_on(again=again)
+    for code, after in _AFTER:
+        yield "simulate_head_on", (code,), _head_on(after=after)
     for task, (family, base, terms) in families.items():
         for codes, function in formulas.OTHERS.get(task, ()):
             yield task, codes, function
@@ -2247,6 +2350,7 @@ def hypotheses():
             for code, form in forms:
                 yield task, (code,), family(**base | {term: form})
         yield from _pairs(task, family, base, terms)
+    yield "resolve", ("BLOW_NOT_ALONG_NORMAL", "RESTITUTION_IGNORED"), formulas.whole_vectors
 
 
 def _pairs(task, family, base, terms):
@@ -2279,6 +2383,7 @@ def _head_on(
     waits=lambda gap, va, vb: max(gap, 0.0) / (va - vb),
     leaves=lambda h, wait: h - wait,
     old=(),
+    after=None,
 ):
     """``late``: the impact comes at the sample after; ``rest``: what is flown of the rest of the step;
 
@@ -2288,6 +2393,8 @@ def _head_on(
     """
 
     def collide(m, va, vb, e):
+        if after:
+            return after(m, va, vb, e)
         if slow is not None and va - vb < slow:
             e = 0.0
         j = factor(e) * (va - vb) / give(*m)
@@ -2326,6 +2433,21 @@ def _head_on(
 
     return simulate
 
+
+def _elastic(m, va, vb):
+    """Both velocities after an impact without loss."""
+    j = 2 * (va - vb) / (1 / m[0] + 1 / m[1])
+    return va - j / m[0], vb + j / m[1]
+
+
+#: Velocities after the impact by another rule.
+_AFTER = (
+    ("MASSES_IGNORED", lambda m, va, vb, e: (va - (1 + e) * (va - vb) / 2, vb + (1 + e) * (va - vb) / 2)),
+    ("MASSES_IGNORED", lambda m, va, vb, e: (va - (1 + e) * (va - vb), vb + (1 + e) * (va - vb))),
+    ("ELASTIC_EXCHANGE", lambda m, va, vb, e: (vb, va)),
+    ("EACH_BODY_ALONE", lambda m, va, vb, e: (-e * va, -e * vb)),
+    ("VELOCITIES_SCALED", lambda m, va, vb, e: tuple(e * w for w in _elastic(m, va, vb))),
+)
 
 _HEAD_ON = {
     "old": (("OLD_VELOCITY_AFTER", (0,)), ("OLD_VELOCITY_AFTER", (1,))),
@@ -2377,11 +2499,15 @@ def _drop(
     leaves=lambda h, v, speed, up, g: h - (v + speed) / g,
     lands=None,
     depth=lambda z, low: max(z - low, 0.0),
+    straight=None,
+    mirror=None,
 ):
     """``fall``: what stands for 1/2 in g h²/2; ``slowest``: rests below so many g h; ``calm``: it ever rests;
 
     ``holds``: at rest the floor carries it; ``launches``: what lies on the floor at first may fly;
-    ``falls_on``: the share of gravity in what is left of the step after a bounce.
+    ``falls_on``: the share of gravity in what is left of the step after a bounce; ``straight(h, v, v_next)``:
+    at what constant speed the ball comes to the floor; ``mirror(e)``: how far it is put above the floor, as a
+    share of how deep it would be.
     """
 
     def simulate(z0, v0, radius, e, g, t_end, h):
@@ -2397,8 +2523,14 @@ def _drop(
                 speed = math.sqrt(max(v**2 + 2 * down * depth(z, low), 0.0))
                 up = rebound(e) * (lands(v, v_next) if lands else speed)
                 left = leaves(h, v, speed, up, down)
+                if straight and (pace := straight(v, v_next)) < 0:
+                    left = h - min((z - low) / -pace, h)
                 resting = calm and up <= slowest * g * h
-                if late:
+                if mirror:
+                    z_next, v_next = low + mirror(e) * (low - z_next), -e * v_next
+                    resting = v_next <= slowest * g * h
+                    z_next, v_next = (low, 0.0) if resting else (z_next, v_next)
+                elif late:
                     v_next = 0.0 if resting else rebound(e) * abs(v_next)
                 elif resting:
                     z_next, v_next = low, 0.0
@@ -2462,4 +2594,10 @@ _DROP = {
         ("FALL_WITHOUT_TWO", lambda z, low: max(z - low, 0.0) / 4),
     ),
     "passes": (("FALLS_THROUGH_FLOOR", True),),
+    "straight": (
+        ("CONTACT_ON_A_LINE", lambda v, v_next: (v + v_next) / 2),
+        ("CONTACT_ON_A_LINE", lambda v, v_next: v),
+        ("CONTACT_ON_A_LINE", lambda v, v_next: v_next),
+    ),
+    "mirror": (("PATH_MIRRORED", lambda e: 1.0), ("PATH_MIRRORED", lambda e: e)),
 }

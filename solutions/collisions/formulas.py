@@ -674,7 +674,9 @@ TERMS = {
             "length": (
                 ("DISTANCE_BY_COORDINATES", lambda w: _size(w[:2])),
                 ("DISTANCE_BY_COORDINATES", lambda w: _size(w[-2:])),
+                ("DISTANCE_BY_COORDINATES", lambda w: _size(w[::2])),
                 ("DISTANCE_BY_COORDINATES", lambda w: abs(float(w[0]))),
+                ("DISTANCE_BY_COORDINATES", lambda w: abs(float(w.sum()))),
                 ("DISTANCE_BY_COORDINATES", lambda w: float(np.abs(w).sum())),
                 ("DISTANCE_BY_COORDINATES", lambda w: float(np.abs(w).max())),
             ),

@@ -1153,7 +1153,7 @@ mistakes(
 )
 mistakes(
     "PATH_MIRRORED",
-    "A ball that would be in the floor is put as far above it, or e times as far, and its velocity is turned round.",
+    "A ball that would be in the floor at the end of the step is put as far above it, or e times as far.",
     "Gravity does not turn round at the floor: fly up to the contact, and from there with e times the speed at the floor for the rest of the step.",
 ).body(
     "simulate_drop",
@@ -1663,6 +1663,11 @@ mistakes(
     "It is the length of xb - xa: the root of the sum of the squares of all its coordinates, np.linalg.norm(xb - xa).",
 ).edit("detect_sphere_sphere", {"np.linalg.norm(apart)": "np.linalg.norm(apart[:2])"})
 mistakes(
+    "DISTANCE_WRONG",
+    "The same wrong distance of the centres is in the depth and in the normal.",
+    "The distance is the length of xb - xa: the root of the sum of the squares of all its coordinates, np.linalg.norm(xb - xa).",
+).edit("detect_sphere_sphere", {"np.linalg.norm(apart)": "abs(np.linalg.norm(xb) - np.linalg.norm(xa))"})
+mistakes(
     "NORMAL_NOT_UNIT",
     "The normal is not a unit vector: its length is not one.",
     "Divide the vector between the centres by its length; a plane's normal already has length one. Where the centres coincide, any vector will do whose length is one.",
@@ -1692,6 +1697,11 @@ mistakes(
     "The square of a length, or its square root, is used where the length itself belongs.",
     "The depth is ra + rb - distance, or r - height, all in metres. The distance is the length of xb - xa, with one square root in all; the height is a dot product, with none.",
 )
+mistakes(
+    "ONE_RADIUS_BETWEEN",
+    "The balls meet where their centres are one radius apart.",
+    "Each of them reaches one radius from its centre: at contact the centres are two radii apart.",
+).edit("simulate_head_on", {"xb - xa - 2 * radius": "xb - xa - radius"})
 mistakes(
     "ONE_RADIUS_ONLY",
     "Only one of the two radii is used.",
@@ -2343,6 +2353,8 @@ def hypotheses():
         yield "simulate_head_on", ("IMPULSE_COMPUTED_TWICE",), _head_on(again=again)
     for code, after in _AFTER:
         yield "simulate_head_on", (code,), _head_on(after=after)
+    for code, straight in _DROP["straight"]:
+        yield "simulate_drop", (code,), _drop(straight=straight, arrives=True)
     for task, (family, base, terms) in families.items():
         for codes, function in formulas.OTHERS.get(task, ()):
             yield task, codes, function
@@ -2457,7 +2469,7 @@ _HEAD_ON = {
     "shares": formulas.TERMS["resolve"][2]["shares"],
     "reach": (
         ("RADIUS_IGNORED", lambda r: 0.0),
-        ("ONE_RADIUS_ONLY", lambda r: r),
+        ("ONE_RADIUS_BETWEEN", lambda r: r),
         ("RADIUS_ADDED_TWICE", lambda r: 4 * r),
     ),
     "count": (
@@ -2500,14 +2512,16 @@ def _drop(
     lands=None,
     depth=lambda z, low: max(z - low, 0.0),
     straight=None,
+    arrives=False,
     mirror=None,
 ):
     """``fall``: what stands for 1/2 in g h²/2; ``slowest``: rests below so many g h; ``calm``: it ever rests;
 
     ``holds``: at rest the floor carries it; ``launches``: what lies on the floor at first may fly;
-    ``falls_on``: the share of gravity in what is left of the step after a bounce; ``straight(h, v, v_next)``:
-    at what constant speed the ball comes to the floor; ``mirror(e)``: how far it is put above the floor, as a
-    share of how deep it would be.
+    ``falls_on``: the share of gravity in what is left of the step after a bounce; ``straight(v, v_next, speed)``:
+    at what constant velocity the ball comes to the floor, which says when, and with ``arrives`` how fast it is
+    there; ``mirror(e, speed, v_next)``: how far it is put above the floor, as a share of how deep it would be,
+    and how fast it leaves.
     """
 
     def simulate(z0, v0, radius, e, g, t_end, h):
@@ -2523,12 +2537,13 @@ def _drop(
                 speed = math.sqrt(max(v**2 + 2 * down * depth(z, low), 0.0))
                 up = rebound(e) * (lands(v, v_next) if lands else speed)
                 left = leaves(h, v, speed, up, down)
-                if straight and (pace := straight(v, v_next)) < 0:
+                if straight and (pace := straight(v, v_next, speed)) < 0:
                     left = h - min((z - low) / -pace, h)
+                    up = rebound(e) * abs(v - down * (h - left)) if arrives else up
                 resting = calm and up <= slowest * g * h
                 if mirror:
-                    z_next, v_next = low + mirror(e) * (low - z_next), -e * v_next
-                    resting = v_next <= slowest * g * h
+                    share, v_next = mirror(e, speed, v_next)
+                    z_next, resting = low + share * (low - z_next), v_next <= slowest * g * h
                     z_next, v_next = (low, 0.0) if resting else (z_next, v_next)
                 elif late:
                     v_next = 0.0 if resting else rebound(e) * abs(v_next)
@@ -2595,9 +2610,15 @@ _DROP = {
     ),
     "passes": (("FALLS_THROUGH_FLOOR", True),),
     "straight": (
-        ("CONTACT_ON_A_LINE", lambda v, v_next: (v + v_next) / 2),
-        ("CONTACT_ON_A_LINE", lambda v, v_next: v),
-        ("CONTACT_ON_A_LINE", lambda v, v_next: v_next),
+        ("CONTACT_ON_A_LINE", lambda v, v_next, speed: (v + v_next) / 2),
+        ("CONTACT_ON_A_LINE", lambda v, v_next, speed: v),
+        ("CONTACT_ON_A_LINE", lambda v, v_next, speed: v_next),
+        ("CONTACT_ON_A_LINE", lambda v, v_next, speed: -speed),
     ),
-    "mirror": (("PATH_MIRRORED", lambda e: 1.0), ("PATH_MIRRORED", lambda e: e)),
+    "mirror": (
+        ("PATH_MIRRORED", lambda e, speed, v_next: (1.0, -e * v_next)),
+        ("PATH_MIRRORED", lambda e, speed, v_next: (e, -e * v_next)),
+        ("PATH_MIRRORED", lambda e, speed, v_next: (1.0, e * speed)),
+        ("PATH_MIRRORED", lambda e, speed, v_next: (e, e * speed)),
+    ),
 }

@@ -85,7 +85,7 @@ def _first_row(states, start, later, speeds):
 def _of_reach(scene, truth, t, x):
     """Which distance of the centres counts as contact, if all else is right."""
     gap, speed = scene.x0[1] - scene.x0[0], scene.v0[0] - scene.v0[1]
-    for code, radii in (("RADIUS_IGNORED", 0), ("ONE_RADIUS_ONLY", 1), ("RADIUS_ADDED_TWICE", 4)):
+    for code, radii in (("RADIUS_IGNORED", 0), ("ONE_RADIUS_BETWEEN", 1), ("RADIUS_ADDED_TWICE", 4)):
         moment = max(gap - radii * scene.radius, 0.0) / speed
         # An impact at once is that of any reach longer than the way.
         if moment and np.allclose(x, scene.at(t, moment, truth.after)[0], rtol=1e-9, atol=1e-8):

@@ -1152,6 +1152,30 @@ mistakes(
     {"(v[i] + speed) / g": "(z[i] - radius) / (z[i] - z[i + 1]) * h"},
 )
 mistakes(
+    "STEP_FOR_THE_REST",
+    "After a bounce the height or the velocity is computed with h in the place of what is left of the step.",
+    "Both end the step: z = radius + up * left - g * left**2 / 2 and v = up - g * left, where left is h less the time to the contact.",
+).edit(
+    "simulate_drop",
+    {"else up - g * left": "else up - g * h"},
+)
+mistakes(
+    "THROWN_DOWNWARDS",
+    "The ball starts with -v0, as if v0 were downwards.",
+    "v0 is upwards: a positive one throws the ball up, and gravity changes it to v0 - g h in the first step.",
+).program(
+    "simulate_drop",
+    """
+        _right = simulate_drop
+
+
+        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
+            t, z, v = _right(z0, -v0, radius, restitution, g, t_end, h)
+            v[0] = v0
+            return t, z, v
+    """,
+)
+mistakes(
     "PATH_MIRRORED",
     "A ball that would be in the floor at the end of the step is put as far above it, or e times as far.",
     "Gravity does not turn round at the floor: fly up to the contact, and from there with e times the speed at the floor for the rest of the step.",
@@ -1696,6 +1720,16 @@ mistakes(
     "DISTANCE_SQUARED",
     "The square of a length, or its square root, is used where the length itself belongs.",
     "The depth is ra + rb - distance, or r - height, all in metres. The distance is the length of xb - xa, with one square root in all; the height is a dot product, with none.",
+)
+mistakes(
+    "WAY_TO_CONTACT_MISSING",
+    "In the step of the impact the balls do not move up to the contact: that part of their way is left out.",
+    "For the time to the contact they move with their old velocities, for the rest of the step with the new ones.",
+).edit(
+    "simulate_head_on",
+    {
+        "xa, xb = xa + va * wait, xb + vb * wait": "xa, xb = (xa + va * wait, xb + vb * wait) if wait == h else (xa, xb)"
+    },
 )
 mistakes(
     "ONE_RADIUS_BETWEEN",
@@ -2353,8 +2387,17 @@ def hypotheses():
         yield "simulate_head_on", ("IMPULSE_COMPUTED_TWICE",), _head_on(again=again)
     for code, after in _AFTER:
         yield "simulate_head_on", (code,), _head_on(after=after)
+    yield "simulate_head_on", ("WAY_TO_CONTACT_MISSING",), _head_on(goes=0.0)
     for code, straight in _DROP["straight"]:
         yield "simulate_drop", (code,), _drop(straight=straight, arrives=True)
+    yield "simulate_drop", ("THROWN_DOWNWARDS",), _drop(starts=lambda v0: -v0)
+    for rest in (
+        lambda left, h: (left, left, h),
+        lambda left, h: (left, h, left),
+        lambda left, h: (h, left, left),
+        lambda left, h: (left, h, h),
+    ):
+        yield "simulate_drop", ("STEP_FOR_THE_REST",), _drop(rest_of=rest)
     for task, (family, base, terms) in families.items():
         for codes, function in formulas.OTHERS.get(task, ()):
             yield task, codes, function
@@ -2396,6 +2439,7 @@ def _head_on(
     leaves=lambda h, wait: h - wait,
     old=(),
     after=None,
+    goes=1.0,
 ):
     """``late``: the impact comes at the sample after; ``rest``: what is flown of the rest of the step;
 
@@ -2429,7 +2473,7 @@ def _head_on(
                 va, vb = collide(m, va, vb, e)
             elif meets:
                 wait = waits(gap, va, vb)
-                xa, xb = xa + va * wait, xb + vb * wait
+                xa, xb = xa + va * wait * goes, xb + vb * wait * goes
                 before = va, vb
                 va, vb = collide(m, va, vb, e)
                 left = leaves(h, wait) * rest
@@ -2514,6 +2558,8 @@ def _drop(
     straight=None,
     arrives=False,
     mirror=None,
+    starts=lambda v0: v0,
+    rest_of=lambda left, h: (left, left, left),
 ):
     """``fall``: what stands for 1/2 in g h²/2; ``slowest``: rests below so many g h; ``calm``: it ever rests;
 
@@ -2526,9 +2572,9 @@ def _drop(
 
     def simulate(z0, v0, radius, e, g, t_end, h):
         n, low, down = count(t_end / h), floor(radius), pull * g
-        z, v = z0, v0
+        z, v = z0, starts(v0)
         resting = not launches and z <= low
-        rows = [(z, v)]
+        rows = [(z0, v0)]
         for _ in range(n):
             z_next, v_next = z + v * h - fall * down * h * h, v - down * h
             if resting:
@@ -2552,7 +2598,8 @@ def _drop(
                 else:
                     left *= rest
                     on = falls_on * down
-                    z_next, v_next = low + up * left - 0.5 * on * left * left, up - on * left
+                    moved, pulled, slowed = rest_of(left, h)
+                    z_next, v_next = low + up * moved - 0.5 * on * pulled * pulled, up - on * slowed
             z, v = z_next, v_next
             rows.append((z, v))
         rows = np.array(rows if first else rows[1:]).reshape(-1, 2)

@@ -122,7 +122,9 @@ def _of_speeds(scene, v, came):
             if math.isclose(parting, becomes(scene.restitution), rel_tol=1e-8, abs_tol=1e-9)
         )
         codes = set(same)
-        if came and len(codes) == 1:  # where e is 0 or 1, several look alike
+        # Without total momentum any multiple of the velocities keeps it: the sign may be lost elsewhere.
+        still = abs(float(np.dot(scene.m, scene.v0))) < 1e-8 * float(np.dot(scene.m, np.abs(scene.v0)))
+        if came and len(codes) == 1 and not (still and parting < 0):  # where e is 0 or 1, several look alike
             return codes.pop()
     if _probes.energy(*scene.m, *v[-1]) > _probes.energy(*scene.m, *scene.v0) * (1 + 1e-9):
         return "ENERGY_CREATED"

@@ -23,12 +23,18 @@ def _size(x):
 # -- detection ------------------------------------------------------------------------------------------
 
 
-def _spheres(depth=lambda r, d: r - d, normal=lambda w, d: w / d, touching=None, radii=lambda a, b: a + b):
-    """depth(sum of radii, distance), normal(vector from a to b, distance), touching(depth)."""
+def _spheres(
+    depth=lambda r, d: r - d,
+    normal=lambda w, d: w / d,
+    touching=None,
+    radii=lambda a, b: a + b,
+    length=_size,
+):
+    """depth(sum of radii, distance), normal(vector, distance), touching(depth), length(vector)."""
 
     def detect(xa, ra, xb, rb):
         apart = _array(xb) - _array(xa)
-        distance = _size(apart)
+        distance = length(apart)
         n = normal(apart, distance) if distance else np.eye(1, len(apart))[0]
         deep = depth(radii(ra, rb), distance)
         return (deep >= 0.0 if touching is None else touching(deep)), n, deep
@@ -233,6 +239,36 @@ def _friction_without_rebound(ma, mb, va, vb, n, e, mu):
         return -min(mu * press / (1 + e), speed / give) / (speed or 1.0) * slip
 
     return _impact(friction=friction)(ma, mb, va, vb, n, e, mu)
+
+
+def _each_rubs(cap):
+    """Each body's own velocity across the normal is braked by mu J, or by ``cap(mass, give)`` of it."""
+
+    def resolve(ma, mb, va, vb, n, e, mu):
+        n, press = _array(n), _line()(ma, mb, float(va @ n), float(vb @ n), e)
+        ends = _impact()(ma, mb, va, vb, n, e)
+        if press == 0.0:
+            return ends
+        changes = []
+        for m, v in ((ma, _array(va)), (mb, _array(vb))):
+            across = v - (v @ n) * n
+            size = _size(across)
+            changes.append(min(mu * press / m, cap(m, _give(ma, mb)) * size) * _unit(across))
+        return ends[0] - changes[0], ends[1] - changes[1]
+
+    return resolve
+
+
+def _scaled(friction=_no_friction):
+    """All of the velocities after an impact without loss is multiplied by e."""
+    right = _impact(factor=lambda e: 2.0, friction=friction)
+
+    def resolve(ma, mb, va, vb, n, e, *mu):
+        va, vb, n = _array(va), _array(vb), _array(n)
+        after = right(ma, mb, va, vb, n, e, *mu)
+        return tuple(e * w for w in after) if (va - vb) @ n > 0 else after
+
+    return resolve
 
 
 def _held_by(masses):
@@ -442,6 +478,20 @@ def _solved(root):
     return time_of_impact
 
 
+def _miss_in_the_other_form(real):
+    """c/(-b + sqrt(room)), where ``real(room)`` stands for what is under the root of a miss."""
+
+    def time_of_impact(xa, va, ra, xb, vb, rb, dt):
+        x, v = _array(xb) - _array(xa), _array(vb) - _array(va)
+        a, b, c = float(v @ v), float(x @ v), float(x @ x) - (ra + rb) ** 2
+        if b >= 0 or c <= 0:
+            return 0.0 if b < 0 else None
+        t = c / (-b + math.sqrt(real(b * b - a * c)))
+        return t if t <= dt else None
+
+    return time_of_impact
+
+
 def _at_the_end_only(exact):
     """Looks at both ends of the step and nowhere between."""
     true = _moment()
@@ -455,6 +505,11 @@ def _at_the_end_only(exact):
         return true(xa, va, ra, xb, vb, rb, dt) if exact else dt
 
     return time_of_impact
+
+
+def whole_vectors(ma, mb, va, vb, n, e):
+    """The textbook's formula for a line and e = 1, with vectors in the place of speeds."""
+    return _impact(factor=lambda e: 2.0, along=lambda n, u: u / float(u @ n))(ma, mb, va, vb, n, e)
 
 
 RIGHT = {
@@ -541,6 +596,7 @@ _FRICTIONS = {
         ("FRICTION_PROPORTIONAL", lambda p, s, v, g, mu: -mu * s / g),
         ("FRICTION_PROPORTIONAL", lambda p, s, v, g, mu: -min(mu, 1.0) * s / g),
         ("FRICTION_PROPORTIONAL", lambda p, s, v, g, mu: -mu * p * s),
+        ("FRICTION_PROPORTIONAL", lambda p, s, v, g, mu: -min(mu * p * v, v / g) * _unit(s)),
         ("FRICTION_COEFFICIENT_CAPPED", lambda p, s, v, g, mu: _coulomb(p, s, v, g, min(mu, 1.0))),
         ("FRICTION_HALVED", lambda p, s, v, g, mu: _coulomb(p, s, v, g, mu / 2)),
         ("FRICTION_HALVED", lambda p, s, v, g, mu: _coulomb(p, s, v, g, mu) / 2),
@@ -614,6 +670,15 @@ TERMS = {
                 ("RADII_HALVED", lambda a, b: (a + b) / 2),
                 ("RADII_MULTIPLIED", lambda a, b: a * b),
                 ("RADII_SQUARED_APART", math.hypot),
+            ),
+            "length": (
+                ("DISTANCE_BY_COORDINATES", lambda w: _size(w[:2])),
+                ("DISTANCE_BY_COORDINATES", lambda w: _size(w[-2:])),
+                ("DISTANCE_BY_COORDINATES", lambda w: _size(w[::2])),
+                ("DISTANCE_BY_COORDINATES", lambda w: abs(float(w[0]))),
+                ("DISTANCE_BY_COORDINATES", lambda w: abs(float(w.sum()))),
+                ("DISTANCE_BY_COORDINATES", lambda w: float(np.abs(w).sum())),
+                ("DISTANCE_BY_COORDINATES", lambda w: float(np.abs(w).max())),
             ),
         },
     ),
@@ -790,6 +855,7 @@ OTHERS = {
     ],
     "resolve": [
         *((("MASSES_IGNORED",), _without_masses(share)) for share in (1.0, 2.0)),
+        (("VELOCITIES_SCALED",), _scaled()),
         (("ONLY_HEAD_ON",), _from_both_sides(_impact())),
         *((("APPROACH_BY_ONE_BODY",), _approach_in_space(meets)) for meets in _BY_ONE),
         (("IMPULSE_COMPUTED_TWICE",), _one_after_the_other),
@@ -808,6 +874,9 @@ OTHERS = {
         (("ONLY_HEAD_ON",), _from_both_sides(_impact(friction=_coulomb))),
         *((("APPROACH_BY_ONE_BODY",), _approach_in_space(meets, friction=_coulomb)) for meets in _BY_ONE),
         (("FRICTION_WITHOUT_REBOUND",), _friction_without_rebound),
+        (("FRICTION_EACH_ALONE",), _each_rubs(lambda m, give: 1.0)),
+        (("FRICTION_EACH_ALONE",), _each_rubs(lambda m, give: 1 / (m * give))),
+        (("VELOCITIES_SCALED",), _scaled(_coulomb)),
         (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: 1.0)),
         (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: 1 + e)),
         (("FRICTION_OF_A_SPEED",), _rubs_by_speed(lambda e: e)),
@@ -837,6 +906,8 @@ OTHERS = {
         (("MIDDLE_TERM_WRONG",), _solved(lambda a, b, room: (b - math.sqrt(room)) / a)),
         (("MISSES_COUNT_AS_HITS",), _head_on_always),
         (("MISSES_COUNT_AS_HITS",), _gap_over_speed),
+        *((("MISS_NOT_SEEN",), _miss_in_the_other_form(real)) for real in (abs, lambda room: max(room, 0.0))),
+        (("APPROACH_NOT_ASKED",), _moment(past=True, overlap="always")),
         (("IMPACT_IN_THE_PAST",), _moment(past=True, overlap="ignored")),
         (("RADII_NOT_SQUARED",), _moment(square=lambda reach: reach, overlap="ignored", past=True)),
         (

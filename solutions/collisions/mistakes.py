@@ -427,6 +427,27 @@ mistakes(
     """,
 )
 mistakes(
+    "FRICTION_EACH_ALONE",
+    "Friction brakes each body's own velocity across the normal, as if the other one stood still.",
+    "Friction acts on the slip, which is relative: vt is the component of vb - va across the normal. Both bodies get the same Jt, in opposite directions.",
+).body(
+    "resolve_with_friction",
+    """
+        closing = (va - vb) @ normal
+        if closing <= 0:
+            return va, vb
+        J = (1 + restitution) * closing / (1 / ma + 1 / mb)
+        ends = []
+        for m, v, sign in ((ma, va, -1), (mb, vb, 1)):
+            along = (v @ normal) * normal
+            across = v - along
+            speed = np.linalg.norm(across)
+            brake = min(mu * J / m, speed) / speed if speed else 0.0
+            ends.append(along + sign * J / m * normal + (1 - brake) * across)
+        return tuple(ends)
+    """,
+)
+mistakes(
     "TIME_OF_IMPACT_LATE_ROOT",
     "The later root is taken, at which the bodies, having passed through each other, would come apart.",
     "The quadratic has two roots. Bodies that are apart touch first at the smaller one, with the minus sign before the square root. If they overlap and approach, the answer is 0.0.",
@@ -534,6 +555,23 @@ mistakes(
 
         def time_of_impact(xa, va, ra, xb, vb, rb, dt):
             return 0.0 if np.linalg.norm(xb - xa) <= ra + rb else _right(xa, va, ra, xb, vb, rb, dt)
+    """,
+)
+mistakes(
+    "APPROACH_NOT_ASKED",
+    "Your code does not ask whether the bodies approach: those that move apart get a time, too.",
+    "Return None first of all where x . v >= 0, whether they overlap or not.",
+).body(
+    "time_of_impact",
+    """
+        x, v, R = xb - xa, vb - va, ra + rb
+        a, b, c = v @ v, x @ v, x @ x - R**2
+        if c < 0:
+            return 0.0
+        if a == 0 or b * b < a * c:
+            return None
+        t = (-b - math.sqrt(b * b - a * c)) / a
+        return float(t) if t <= dt else None
     """,
 )
 mistakes(
@@ -653,6 +691,26 @@ mistakes(
             s = t[:, None]
             return t, x0 + v0 * np.minimum(s, met) + v1 * np.maximum(s - met, 0), np.where(s < met, v0, v1)
     """,
+)
+mistakes(
+    "VELOCITIES_SCALED",
+    "The velocities are those after an impact without loss, each multiplied by e.",
+    "e is the speed of parting over that of approach: it belongs into the factor 1 + e of J, and nowhere else.",
+).body(
+    "resolve",
+    """
+        closing = (va - vb) @ normal
+        if closing <= 0:
+            return va, vb
+        impulse = 2 * closing / (1 / ma + 1 / mb) * normal
+        return restitution * (va - impulse / ma), restitution * (vb + impulse / mb)
+    """,
+).edit(
+    "simulate_head_on",
+    {
+        "closing, restitution)": "closing, 1.0)",
+        "va, vb = va - impulse / m[0], vb + impulse / m[1]": "va, vb = restitution * (va - impulse / m[0]), restitution * (vb + impulse / m[1])",
+    },
 )
 mistakes(
     "RADIUS_IGNORED",
@@ -1084,6 +1142,68 @@ mistakes(
         return h * np.arange(n + 1), np.array(zs), np.array(vs)
     """,
 ).edit("simulate_drop", {"(v[i] + speed) / g": "(speed - v[i]) / g"})
+mistakes(
+    "CONTACT_ON_A_LINE",
+    "The moment of the contact is computed as if the ball kept one velocity during the step.",
+    "It falls faster and faster: from (z, v) it gets to the floor after (v + speed)/g, with speed = sqrt(v**2 + 2 g (z - radius)).",
+    true_too=("TIME_LEFT_WRONG",),
+).edit(
+    "simulate_drop",
+    {"(v[i] + speed) / g": "(z[i] - radius) / (z[i] - z[i + 1]) * h"},
+)
+mistakes(
+    "STEP_FOR_THE_REST",
+    "After a bounce the height or the velocity is computed with h in the place of what is left of the step.",
+    "Both end the step: z = radius + up * left - g * left**2 / 2 and v = up - g * left, where left is h less the time to the contact.",
+).edit(
+    "simulate_drop",
+    {"else up - g * left": "else up - g * h"},
+)
+mistakes(
+    "THROWN_DOWNWARDS",
+    "The ball starts with -v0, as if v0 were downwards.",
+    "v0 is upwards: a positive one throws the ball up, and gravity changes it to v0 - g h in the first step.",
+).program(
+    "simulate_drop",
+    """
+        _right = simulate_drop
+
+
+        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
+            t, z, v = _right(z0, -v0, radius, restitution, g, t_end, h)
+            v[0] = v0
+            return t, z, v
+    """,
+)
+mistakes(
+    "PATH_MIRRORED",
+    "A ball that would be in the floor at the end of the step is put as far above it, or e times as far.",
+    "Gravity does not turn round at the floor: fly up to the contact, and from there with e times the speed at the floor for the rest of the step.",
+).body(
+    "simulate_drop",
+    """
+        n = round(t_end / h)
+        t, z, v = h * np.arange(n + 1), np.full(n + 1, float(radius)), np.zeros(n + 1)
+        z[0], v[0] = z0, v0
+        for i in range(n):
+            z[i + 1], v[i + 1] = z[i] + v[i] * h - g * h * h / 2, v[i] - g * h
+            if z[i + 1] < radius:
+                z[i + 1], v[i + 1] = 2 * radius - z[i + 1], -restitution * v[i + 1]
+                if v[i + 1] <= g * h:
+                    z[i + 1 :], v[i + 1 :] = radius, 0.0
+                    break
+        return t, z, v
+    """,
+)
+mistakes(
+    "IN_THE_FLOOR",
+    "Here the ball is lower than z = radius: a part of it is in the floor.",
+    "z is the height of its centre. It touches where z = radius, at an instant inside the step, and no row is lower.",
+    kind="consequence",
+).edit(
+    "simulate_drop",
+    {"z[i + 1] < radius:": "z[i + 1] < 0:"},
+)
 mistakes(
     "REST_BY_TIME_LEFT",
     "Whether the ball rests is decided with what is left of the step in place of h.",
@@ -1562,6 +1682,16 @@ mistakes(
     "The speed at the floor is sqrt(v**2 + 2 g (z - radius)).",
 ).edit("simulate_drop", {"* 2 + 2 * g * max(": "* 2 + g * max("})
 mistakes(
+    "DISTANCE_BY_COORDINATES",
+    "The distance of the centres leaves out a coordinate, or adds or compares the coordinates one by one.",
+    "It is the length of xb - xa: the root of the sum of the squares of all its coordinates, np.linalg.norm(xb - xa).",
+).edit("detect_sphere_sphere", {"np.linalg.norm(apart)": "np.linalg.norm(apart[:2])"})
+mistakes(
+    "DISTANCE_WRONG",
+    "The same wrong distance of the centres is in the depth and in the normal.",
+    "The distance is the length of xb - xa: the root of the sum of the squares of all its coordinates, np.linalg.norm(xb - xa).",
+).edit("detect_sphere_sphere", {"np.linalg.norm(apart)": "abs(np.linalg.norm(xb) - np.linalg.norm(xa))"})
+mistakes(
     "NORMAL_NOT_UNIT",
     "The normal is not a unit vector: its length is not one.",
     "Divide the vector between the centres by its length; a plane's normal already has length one. Where the centres coincide, any vector will do whose length is one.",
@@ -1591,6 +1721,21 @@ mistakes(
     "The square of a length, or its square root, is used where the length itself belongs.",
     "The depth is ra + rb - distance, or r - height, all in metres. The distance is the length of xb - xa, with one square root in all; the height is a dot product, with none.",
 )
+mistakes(
+    "WAY_TO_CONTACT_MISSING",
+    "In the step of the impact the balls do not move up to the contact: that part of their way is left out.",
+    "For the time to the contact they move with their old velocities, for the rest of the step with the new ones.",
+).edit(
+    "simulate_head_on",
+    {
+        "xa, xb = xa + va * wait, xb + vb * wait": "xa, xb = (xa + va * wait, xb + vb * wait) if wait == h else (xa, xb)"
+    },
+)
+mistakes(
+    "ONE_RADIUS_BETWEEN",
+    "The balls meet where their centres are one radius apart.",
+    "Each of them reaches one radius from its centre: at contact the centres are two radii apart.",
+).edit("simulate_head_on", {"xb - xa - 2 * radius": "xb - xa - radius"})
 mistakes(
     "ONE_RADIUS_ONLY",
     "Only one of the two radii is used.",
@@ -1790,7 +1935,7 @@ mistakes(
 mistakes(
     "MOMENTUM_LOST",
     "The total momentum changes, although no outside force acts.",
-    "Both bodies get the same impulses, with opposite signs, each divided by its own mass. Nothing else of va and vb changes: what lies across n stays. Compute both changes by hand and compare.",
+    "Both bodies get the same impulses, with opposite signs, each divided by its own mass, and nothing else changes va or vb. Compute both changes by hand and compare.",
     kind="consequence",
 )
 mistakes(
@@ -2240,6 +2385,19 @@ def hypotheses():
     families["simulate_drop"] = _drop, {}, _DROP
     for again in (lambda s: max(s, 0.0), lambda s: s):
         yield "simulate_head_on", ("IMPULSE_COMPUTED_TWICE",), _head_on(again=again)
+    for code, after in _AFTER:
+        yield "simulate_head_on", (code,), _head_on(after=after)
+    yield "simulate_head_on", ("WAY_TO_CONTACT_MISSING",), _head_on(goes=0.0)
+    for code, straight in _DROP["straight"]:
+        yield "simulate_drop", (code,), _drop(straight=straight, arrives=True)
+    yield "simulate_drop", ("THROWN_DOWNWARDS",), _drop(starts=lambda v0: -v0)
+    for rest in (
+        lambda left, h: (left, left, h),
+        lambda left, h: (left, h, left),
+        lambda left, h: (h, left, left),
+        lambda left, h: (left, h, h),
+    ):
+        yield "simulate_drop", ("STEP_FOR_THE_REST",), _drop(rest_of=rest)
     for task, (family, base, terms) in families.items():
         for codes, function in formulas.OTHERS.get(task, ()):
             yield task, codes, function
@@ -2247,6 +2405,7 @@ def hypotheses():
             for code, form in forms:
                 yield task, (code,), family(**base | {term: form})
         yield from _pairs(task, family, base, terms)
+    yield "resolve", ("BLOW_NOT_ALONG_NORMAL", "RESTITUTION_IGNORED"), formulas.whole_vectors
 
 
 def _pairs(task, family, base, terms):
@@ -2279,6 +2438,8 @@ def _head_on(
     waits=lambda gap, va, vb: max(gap, 0.0) / (va - vb),
     leaves=lambda h, wait: h - wait,
     old=(),
+    after=None,
+    goes=1.0,
 ):
     """``late``: the impact comes at the sample after; ``rest``: what is flown of the rest of the step;
 
@@ -2288,6 +2449,8 @@ def _head_on(
     """
 
     def collide(m, va, vb, e):
+        if after:
+            return after(m, va, vb, e)
         if slow is not None and va - vb < slow:
             e = 0.0
         j = factor(e) * (va - vb) / give(*m)
@@ -2310,7 +2473,7 @@ def _head_on(
                 va, vb = collide(m, va, vb, e)
             elif meets:
                 wait = waits(gap, va, vb)
-                xa, xb = xa + va * wait, xb + vb * wait
+                xa, xb = xa + va * wait * goes, xb + vb * wait * goes
                 before = va, vb
                 va, vb = collide(m, va, vb, e)
                 left = leaves(h, wait) * rest
@@ -2327,6 +2490,21 @@ def _head_on(
     return simulate
 
 
+def _elastic(m, va, vb):
+    """Both velocities after an impact without loss."""
+    j = 2 * (va - vb) / (1 / m[0] + 1 / m[1])
+    return va - j / m[0], vb + j / m[1]
+
+
+#: Velocities after the impact by another rule.
+_AFTER = (
+    ("MASSES_IGNORED", lambda m, va, vb, e: (va - (1 + e) * (va - vb) / 2, vb + (1 + e) * (va - vb) / 2)),
+    ("MASSES_IGNORED", lambda m, va, vb, e: (va - (1 + e) * (va - vb), vb + (1 + e) * (va - vb))),
+    ("ELASTIC_EXCHANGE", lambda m, va, vb, e: (vb, va)),
+    ("EACH_BODY_ALONE", lambda m, va, vb, e: (-e * va, -e * vb)),
+    ("VELOCITIES_SCALED", lambda m, va, vb, e: tuple(e * w for w in _elastic(m, va, vb))),
+)
+
 _HEAD_ON = {
     "old": (("OLD_VELOCITY_AFTER", (0,)), ("OLD_VELOCITY_AFTER", (1,))),
     "factor": formulas.FACTORS,
@@ -2335,7 +2513,7 @@ _HEAD_ON = {
     "shares": formulas.TERMS["resolve"][2]["shares"],
     "reach": (
         ("RADIUS_IGNORED", lambda r: 0.0),
-        ("ONE_RADIUS_ONLY", lambda r: r),
+        ("ONE_RADIUS_BETWEEN", lambda r: r),
         ("RADIUS_ADDED_TWICE", lambda r: 4 * r),
     ),
     "count": (
@@ -2377,18 +2555,26 @@ def _drop(
     leaves=lambda h, v, speed, up, g: h - (v + speed) / g,
     lands=None,
     depth=lambda z, low: max(z - low, 0.0),
+    straight=None,
+    arrives=False,
+    mirror=None,
+    starts=lambda v0: v0,
+    rest_of=lambda left, h: (left, left, left),
 ):
     """``fall``: what stands for 1/2 in g h²/2; ``slowest``: rests below so many g h; ``calm``: it ever rests;
 
     ``holds``: at rest the floor carries it; ``launches``: what lies on the floor at first may fly;
-    ``falls_on``: the share of gravity in what is left of the step after a bounce.
+    ``falls_on``: the share of gravity in what is left of the step after a bounce; ``straight(v, v_next, speed)``:
+    at what constant velocity the ball comes to the floor, which says when, and with ``arrives`` how fast it is
+    there; ``mirror(e, speed, v_next)``: how far it is put above the floor, as a share of how deep it would be,
+    and how fast it leaves.
     """
 
     def simulate(z0, v0, radius, e, g, t_end, h):
         n, low, down = count(t_end / h), floor(radius), pull * g
-        z, v = z0, v0
+        z, v = z0, starts(v0)
         resting = not launches and z <= low
-        rows = [(z, v)]
+        rows = [(z0, v0)]
         for _ in range(n):
             z_next, v_next = z + v * h - fall * down * h * h, v - down * h
             if resting:
@@ -2397,15 +2583,23 @@ def _drop(
                 speed = math.sqrt(max(v**2 + 2 * down * depth(z, low), 0.0))
                 up = rebound(e) * (lands(v, v_next) if lands else speed)
                 left = leaves(h, v, speed, up, down)
+                if straight and (pace := straight(v, v_next, speed)) < 0:
+                    left = h - min((z - low) / -pace, h)
+                    up = rebound(e) * abs(v - down * (h - left)) if arrives else up
                 resting = calm and up <= slowest * g * h
-                if late:
+                if mirror:
+                    share, v_next = mirror(e, speed, v_next)
+                    z_next, resting = low + share * (low - z_next), v_next <= slowest * g * h
+                    z_next, v_next = (low, 0.0) if resting else (z_next, v_next)
+                elif late:
                     v_next = 0.0 if resting else rebound(e) * abs(v_next)
                 elif resting:
                     z_next, v_next = low, 0.0
                 else:
                     left *= rest
                     on = falls_on * down
-                    z_next, v_next = low + up * left - 0.5 * on * left * left, up - on * left
+                    moved, pulled, slowed = rest_of(left, h)
+                    z_next, v_next = low + up * moved - 0.5 * on * pulled * pulled, up - on * slowed
             z, v = z_next, v_next
             rows.append((z, v))
         rows = np.array(rows if first else rows[1:]).reshape(-1, 2)
@@ -2462,4 +2656,16 @@ _DROP = {
         ("FALL_WITHOUT_TWO", lambda z, low: max(z - low, 0.0) / 4),
     ),
     "passes": (("FALLS_THROUGH_FLOOR", True),),
+    "straight": (
+        ("CONTACT_ON_A_LINE", lambda v, v_next, speed: (v + v_next) / 2),
+        ("CONTACT_ON_A_LINE", lambda v, v_next, speed: v),
+        ("CONTACT_ON_A_LINE", lambda v, v_next, speed: v_next),
+        ("CONTACT_ON_A_LINE", lambda v, v_next, speed: -speed),
+    ),
+    "mirror": (
+        ("PATH_MIRRORED", lambda e, speed, v_next: (1.0, -e * v_next)),
+        ("PATH_MIRRORED", lambda e, speed, v_next: (e, -e * v_next)),
+        ("PATH_MIRRORED", lambda e, speed, v_next: (1.0, e * speed)),
+        ("PATH_MIRRORED", lambda e, speed, v_next: (e, e * speed)),
+    ),
 }

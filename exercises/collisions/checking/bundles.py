@@ -143,6 +143,14 @@ def _parts(task, args, value):
     if task in (RESOLVE, FRICTION):
         return kit.as_pair(value, len(args[4]), ("va_next", "vb_next"))
     touching, normal, depth = kit.as_tuple(value, ("touching", "normal", "depth"))
+    if isinstance(normal, np.ndarray) and normal.ndim == 1 and len(normal) in {1, 2, 3} - {len(args[0])}:
+        kit.fail(
+            f"The normal has {len(normal)} coordinates, and the centre has {len(args[0])}.",
+            input=shown(task, args),
+            expected=f"{len(args[0])} coordinates",
+            actual=len(normal),
+            diagnose=named("ONE_DIMENSION_ONLY"),
+        )
     return (
         kit.as_bool(touching, "touching"),
         kit.as_vector(normal, len(args[0]), "normal"),

@@ -61,7 +61,11 @@ def _of_contact(task, calls, values, truth):  # noqa: PLR0911 - one return per m
     ):
         return "DEPTH_UNSIGNED"
     if all(not math.isclose(float(np.sqrt(value[1] @ value[1])), 1.0, rel_tol=1e-9) for _, value, _ in wrong):
-        return "NORMAL_NOT_UNIT"
+        # Normal times distance is the vector between the centres, if both have the same distance.
+        both = task == "detect_sphere_sphere" and all(
+            _same(call[2] - call[0], value[1] * (call[1] + call[3] - value[2])) for call, value, _ in wrong
+        )
+        return "DISTANCE_WRONG" if both else "NORMAL_NOT_UNIT"
     if all(_same((-right[1], right[2]), value[1:]) for _, value, right in wrong) and len(wrong) < len(values):
         return "NORMAL_REVERSED_AT_TIMES"
     if task == "detect_sphere_sphere":

@@ -51,6 +51,8 @@ def _of_meeting(scene, truth, t, x, v, h):
     if truth.contact == math.inf:  # they part from the start
         blows = int(np.any(np.abs(np.diff(v, axis=0)) > 1e-9, axis=1).sum())
         return "IMPULSE_ON_SEPARATING" if 0 < blows < len(v) // 4 else None
+    if np.allclose(x, scene.at(t, truth.contact, truth.after)[0], rtol=1e-9, atol=1e-8):
+        return _of_timing(scene, truth, t, x, v, h)
     code = _of_reach(scene, truth, t, x) or _of_wait(scene, truth, t, x, h)
     if not code and not np.allclose(v[-1], truth.after, atol=1e-8):
         before = t < truth.contact - 1e-9
@@ -83,7 +85,7 @@ def _first_row(states, start, later, speeds):
 def _of_reach(scene, truth, t, x):
     """Which distance of the centres counts as contact, if all else is right."""
     gap, speed = scene.x0[1] - scene.x0[0], scene.v0[0] - scene.v0[1]
-    for code, radii in (("RADIUS_IGNORED", 0), ("ONE_RADIUS_ONLY", 1), ("RADIUS_ADDED_TWICE", 4)):
+    for code, radii in (("RADIUS_IGNORED", 0), ("ONE_RADIUS_BETWEEN", 1), ("RADIUS_ADDED_TWICE", 4)):
         moment = max(gap - radii * scene.radius, 0.0) / speed
         # An impact at once is that of any reach longer than the way.
         if moment and np.allclose(x, scene.at(t, moment, truth.after)[0], rtol=1e-9, atol=1e-8):
@@ -120,7 +122,9 @@ def _of_speeds(scene, v, came):
             if math.isclose(parting, becomes(scene.restitution), rel_tol=1e-8, abs_tol=1e-9)
         )
         codes = set(same)
-        if came and len(codes) == 1:  # where e is 0 or 1, several look alike
+        # Without total momentum any multiple of the velocities keeps it: the sign may be lost elsewhere.
+        still = abs(float(np.dot(scene.m, scene.v0))) < 1e-8 * float(np.dot(scene.m, np.abs(scene.v0)))
+        if came and len(codes) == 1 and not (still and parting < 0):  # where e is 0 or 1, several look alike
             return codes.pop()
     if _probes.energy(*scene.m, *v[-1]) > _probes.energy(*scene.m, *scene.v0) * (1 + 1e-9):
         return "ENERGY_CREATED"
@@ -230,12 +234,13 @@ def _drop_start(scene, truth, t, z, v, h):
 def _drop_later(scene, truth, t, z, v):
     """What is wrong from the first contact on."""
     return (
-        _drop_late(scene, truth, t, z, v)
+        _drop_speeds(scene, truth, t, z, v)
+        or _drop_late(scene, truth, t, z, v)
         or _drop_again(scene, truth, t, z)
         or _drop_rebound(scene, truth, t, z, v)
-        or _drop_speeds(scene, truth, t, z, v)
         or _drop_end(scene, truth, t, z, v)
         or _drop_impact(scene, truth, t, z, v)
+        or _drop_too_low(scene, truth, t, z)
     )
 
 
@@ -247,7 +252,9 @@ def _drop_flight(scene, t, z, v, h, before, off):
         if math.isclose(v[1], scene.restitution * scene.v0 - scene.g * h, abs_tol=1e-8):
             return "LAUNCH_IS_BOUNCE"
     drift = np.abs(np.abs(off) - scene.g * h * t / 2)
-    if np.all(drift[before] < 1e-6):
+    turned = np.flatnonzero(np.diff(v) > 0)  # with its error it comes to the floor earlier, or later
+    own = before & (np.arange(len(t)) <= turned[0]) if len(turned) else before
+    if own.sum() > 2 and np.all(drift[own] < 1e-6):
         return "EULER_IN_FLIGHT"
     last = int(np.flatnonzero(before)[-1])
     share = off[last] / t[last]  # what is off grows with t, by g/2 times a step
@@ -391,6 +398,13 @@ def _drop_impact(scene, truth, t, z, v):
     # A velocity of the wrong sign is that of a much longer flight.
     flies = flies and abs(left) <= 2 * t[1]
     return "TIME_LEFT_WRONG" if flies and abs(left - (t[k] - truth.times[0])) > 1e-8 else None
+
+
+def _drop_too_low(scene, truth, t, z):
+    """Whether the ball is in the floor at the first sample with a wrong height, whose numbers are printed."""
+    off = np.abs(z - scene.at(t, truth.times, truth.speeds)[0]) > 1e-8
+    low = z[int(np.argmax(off))] < scene.radius - 1e-8
+    return "IN_THE_FLOOR" if off.any() and low else None
 
 
 # -- samples --------------------------------------------------------------------------------------------

@@ -54,7 +54,16 @@ def test_each_hop_of_the_drop_keeps_e_squared_of_the_height_and_the_last_one_end
         (lambda t, x, v: (x + 0.01, v), "INITIAL_STATE_WRONG"),
         (lambda t, x, v: (x.astype(np.float32), v.astype(np.float32)), "PRECISION_LOST"),
         # Slowed down once more, while they move apart.
-        (lambda t, x, v: (x, np.where(t[:, None] < 1.5, v, v / 2)), "IMPULSE_ON_SEPARATING"),
+        (
+            lambda t, x, v: (
+                x - np.maximum(t[:, None] - 1.5, 0) * v / 2,
+                np.where(t[:, None] < 1.5, v, v / 2),
+            ),
+            "IMPULSE_ON_SEPARATING",
+        ),
+        (lambda t, x, v: (x, np.where(t[:, None] < 1.5, v, v / 2)), "VELOCITIES_APART"),
+        # The first velocities stand in all rows.
+        (lambda t, x, v: (x, np.broadcast_to(v[0], v.shape)), "VELOCITIES_APART"),
     ],
 )
 def test_head_on_paths_of_which_no_program_is_known_are_told(path, code):

@@ -85,9 +85,10 @@ def _half_about(value, without):
 def _other_lags(lags, ids):
     """Lags by other rules, each with half the width of the interval that it would have.
 
-    A cost that jumps as samples come and go is looked at only as searches do, in steps of a run.
+    A cost that jumps as samples come and go is looked at only as searches do: in steps of a run, in halves of
+    them or in milliseconds.
     """
-    grids, several = (min, max), len(set(map(lags.step, ids))) > 1
+    grids, several = (min, max, lambda steps: max(steps) / 2, None), len(set(map(lags.step, ids))) > 1
     rules = {
         "even": [{"rule": "even"}],
         "sum": [{"rule": "sum", "grid": grid} for grid in grids],
@@ -171,8 +172,8 @@ class _Lags:
                 "wrapped": of the mean square of all samples, with that in the place of the simulation where
                 it has none; "product", "centred": of those sums, the highest. Of any of them, a lowest point
                 at an end is None.
-            grid: which of the runs' steps is that of the search: min, max or next (of the first); None for
-                that of all shifts.
+            grid: what makes the step of the search of the runs' steps: min, max, next (the first) and so on;
+                None for that of all shifts.
             alike: every run is moved by as many samples.
         """
         stride = round(grid(map(self.step, ids)) / self.STEP) if grid else 1

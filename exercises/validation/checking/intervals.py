@@ -91,7 +91,7 @@ def expect_centred(submission, ends, statistics, shown):
     width = float(np.mean(ends[:, 1] - ends[:, 0]))
     kit.expect_true(
         bool(np.any(np.abs(ends[:, 1] - ends[:, 0]) > 1e-12 * np.max(np.abs(ends)))),
-        "Both ends of the interval are the same number, but for rounding.",
+        "Both ends of the interval are the same number, or differ by rounding alone.",
         help="The ends are two quantiles of the statistic over the resamples. Draw each resample anew.",
         input=shown,
         actual=ends[0],

@@ -130,7 +130,7 @@ def test_intervals_that_are_points_are_told_to_be_points():
     """A distance in widths of zero is no number, and was once printed as 1.2e+11."""
     with pytest.raises(kit.CheckFailed) as failed:
         intervals.expect_centred(SOLUTION, np.full((8, 2), 3.0), np.full(8, 2.9), {})
-    assert failed.value.finding.message == "Both ends of the interval are the same number."
+    assert failed.value.finding.message.startswith("Both ends of the interval are the same number")
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,7 @@ def facts(recorded, sim, real, lates, mass):
         "means": {key: float(np.mean([run[key] for run in alone])) for key in MEASURES} if several else {},
         "averages": [_average(alone, np.array(w)) for w in (n**0, counts)] if several else [],
         "alone": half([run["lag_s"] for run in alone]) if several else 0.0,
-        "even": [],
+        "other_lags": {},
         "about": {},
         "own": [run["lag_s"] for run in alone] if several else [],
     }
@@ -42,9 +42,7 @@ def facts(recorded, sim, real, lates, mass):
         known["about"] = {
             k: _half_about(v, [left[k] for left in without]) for k, v in known["numbers"].items()
         }
-        ids = known["used"]
-        rest = [lags.of(ids[:i] + ids[i + 1 :], even=True) for i in n]
-        known["even"] = [lags.of(ids, even=True), half(rest)]
+        known["other_lags"] = _other_lags(lags, known["used"])
     return known
 
 
@@ -84,6 +82,29 @@ def _half_about(value, without):
     return float(model.T95[n - 2] * math.sqrt((n - 1) / n * np.sum((np.array(without) - value) ** 2)))
 
 
+def _other_lags(lags, ids):
+    """Lags by other rules, each with half the width of the interval that it would have.
+
+    A cost that jumps as samples come and go is looked at only as searches do: in steps of a run, in halves of
+    them or in milliseconds.
+    """
+    grids, several = (min, max, lambda steps: max(steps) / 2, None), len(set(map(lags.step, ids))) > 1
+    rules = {
+        "even": [{"rule": "even"}],
+        "sum": [{"rule": "sum", "grid": grid} for grid in grids],
+        "product": [{"rule": rule, "grid": grid} for rule in ("product", "centred") for grid in grids],
+        "outside": [{"rule": rule, "grid": grid} for rule in ("zero", "wrapped") for grid in grids],
+        "alike": [{"grid": grid, "alike": True} for grid in (min, max, next)] if several else [],
+    }
+    return {name: [_lag_by(lags, ids, rule) for rule in some] for name, some in rules.items()}
+
+
+def _lag_by(lags, ids, rule):
+    """None where there is no lag by this rule."""
+    found = [lags.of(some, **rule) for some in (ids, *(ids[:i] + ids[i + 1 :] for i in range(len(ids))))]
+    return None if None in found else [found[0], half(found[1:])]
+
+
 def _average(alone, weights):
     """A mean of the runs' own lags, and half the width of the interval that it would have."""
     n, lags = np.arange(len(alone)), np.array([run["lag_s"] for run in alone])
@@ -112,32 +133,75 @@ class _Lags:
     _MOST_KNOWN = 512  # ten times those of one run, a few MB
 
     def __init__(self, curves, reach):
-        most = round((reach + 0.01) / self.STEP)
+        most = round(min(reach + 0.05, 0.2) / self.STEP)  # rules that are wrong find larger lags
         self._shifts = np.arange(-most, most + 1)
-        self._costs = {}
+        self._costs, self._steps = {}, {}
         for run_id, (t, y, speed, key) in curves.items():
             if (most, key) not in self._KNOWN:
                 if len(self._KNOWN) >= self._MOST_KNOWN:
                     self._KNOWN.clear()
                 self._KNOWN[most, key] = self._cost(t, y, speed)
             self._costs[run_id] = self._KNOWN[most, key]
+            self._steps[run_id] = t[1] - t[0]
 
     def _cost(self, t, y, speed):
-        """For each shift, the sum of the squares, and the number, of the samples that overlap."""
+        """For each shift, the sum of the squares, and the number, of the samples that overlap; the sum over
+        the others, with zeros and with the other end of the simulation, which np.roll brings there; and sums
+        of products, as they are and about the means."""
         later = t + (self._shifts * self.STEP)[:, None]
         inside = (later >= t[0] - 1e-9) & (later <= t[-1] + 1e-9)
-        squares = np.where(inside, (speed(later) - y) ** 2, 0.0)
-        return squares.sum(axis=1), inside.sum(axis=1)
+        there = speed(later)
+        squares = np.where(inside, (there - y) ** 2, 0.0)
+        around = t[0] + (later - t[0] + 1e-9) % (len(t) * (t[1] - t[0]))
+        zero, wrapped = (np.sum((s - y) ** 2, axis=1, where=~inside) for s in (0.0 * later, speed(around)))
+        product, centred = (
+            np.sum((there - a) * (y - b), axis=1, where=inside)
+            for a, b in ((0.0, 0.0), (np.mean(speed(t)), np.mean(y)))
+        )
+        return squares.sum(axis=1), inside.sum(axis=1), zero, wrapped, product, centred
 
-    def of(self, ids, even=False):
+    def step(self, run_id):
+        """The time between the samples of a run, s."""
+        return self._steps[run_id]
+
+    def of(self, ids, rule="", grid=None, alike=False):
         """How late the simulation of these runs is, s: lowest point of the mean square of their samples.
 
-        even: of the mean of the runs' own mean squares
+        Args:
+            rule: "even": of the mean of the runs' own mean squares; "sum": of the sum of the squares; "zero",
+                "wrapped": of the mean square of all samples, with that in the place of the simulation where
+                it has none; "product", "centred": of those sums, the highest. Of any of them, a lowest point
+                at an end is None.
+            grid: what makes the step of the search of the runs' steps: min, max, next (the first) and so on;
+                None for that of all shifts.
+            alike: every run is moved by as many samples.
         """
-        if even:
-            cost = sum(self._costs[i][0] / self._costs[i][1] for i in ids)
-        else:
-            cost = sum(self._costs[i][0] for i in ids) / sum(self._costs[i][1] for i in ids)
+        stride = round(grid(map(self.step, ids)) / self.STEP) if grid else 1
+        most = len(self._shifts) // 2 // stride
+        shifts = stride * np.arange(-most, most + 1)
+        of_runs = np.array(
+            [
+                [
+                    np.interp(
+                        shifts * (self.step(i) / (stride * self.STEP) if alike else 1), self._shifts, part
+                    )
+                    for part in self._costs[i]
+                ]
+                for i in ids
+            ]
+        )
+        squares, counts, zero, wrapped, product, centred = of_runs.sum(axis=0)
+        cost = {
+            "": squares / counts,
+            "even": np.sum(of_runs[:, 0] / of_runs[:, 1], axis=0),
+            "sum": squares,
+            "zero": squares + zero,
+            "wrapped": squares + wrapped,
+            "product": -product,
+            "centred": -centred,
+        }[rule]
+        if rule and np.argmin(cost) in (0, len(cost) - 1):
+            return None
         i = int(np.clip(np.argmin(cost), 1, len(cost) - 2))
         a, b, c = cost[i - 1 : i + 2]
-        return float(self.STEP * (self._shifts[i] + 0.5 * (a - c) / (a - 2 * b + c)))
+        return float(self.STEP * (shifts[i] + stride * 0.5 * (a - c) / (a - 2 * b + c)))

@@ -452,14 +452,6 @@ mistakes(
 ).body(
     "block_bootstrap_ci",
     """
-        n = len(e)
-        starts = rng.integers(0, n - block + 1, n_boot)
-        values = [statistic(e[s : s + block]) for s in starts]
-        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
-    """,
-).body(
-    "block_bootstrap_ci",
-    """
         e = np.asarray(e, dtype=float)
         n = len(e)
         count = -(-n // block)
@@ -1026,7 +1018,71 @@ mistakes(
 mistakes(
     "LAG_NOT_BEST",
     "Another shift fits the samples of all runs better.",
-    "For each shift s, from -0.19 to 0.19 s, add up the squares of sim(t + s) - real(t) over all runs, each with its own time step, and divide by the number of samples. The best shift has the smallest. A parabola through it and its neighbours has its lowest point at i + (c[i-1] - c[i+1]) / (2 (c[i-1] - 2 c[i] + c[i+1])).",
+    "For each shift s, from -0.19 to 0.19 s, add up the squares of sim(t + s) - real(t) over all runs, each with its own time step, and divide by the number of samples. Leave out a sample where t + s lies outside of sim's recording, or take sim's last value there. The best shift has the smallest mean square; the parabola goes through it and its two neighbours.",
+    kind="fact",
+).body(
+    "validate",
+    """
+        dt = min(r["t"][1] - r["t"][0] for _, r in pairs)
+        shifts = np.arange(-round(MAX_LAG / dt), round(MAX_LAG / dt) + 1) * dt
+        off = np.zeros(len(shifts))
+        for simulated, r in pairs:
+            t = np.asarray(r["t"])
+            for i, s in enumerate(shifts):
+                inside = (t + s >= t[0] - 1e-9) & (t + s <= t[-1] + 1e-9)
+                off[i] += np.sum(np.interp(t[inside] + s, t, simulated["y"]) - np.asarray(r["y"])[inside])
+        i = int(np.clip(np.argmin(np.abs(off)), 1, len(shifts) - 2))
+        a, b, c = np.abs(off[i - 1 : i + 2])
+        return float(shifts[i] + 0.5 * dt * (a - c) / (a - 2 * b + c))
+    """,
+    of="best_shift",
+    also=("LAG_AT_THE_END", "LAG_SIGN", "LAG_NOT_NEGATIVE", "LAG_MEAN_OF_RUNS", "LAG_OF_ONE_RUN", ""),
+)
+mistakes(
+    "LAG_OF_PRODUCTS",
+    "The lag is about the shift with the largest sum of products, sim times real: that of a correlation.",
+    "Take the shift with the smallest mean square of sim(t + s) - real(t). A sum of products is large where many samples overlap, or large ones.",
+    kind="fact",
+).body(
+    "validate",
+    """
+        dt = min(r["t"][1] - r["t"][0] for _, r in pairs)
+        shifts = np.arange(-round(MAX_LAG / dt), round(MAX_LAG / dt) + 1) * dt
+        product = np.zeros(len(shifts))
+        for simulated, r in pairs:
+            t = np.asarray(r["t"])
+            for i, s in enumerate(shifts):
+                inside = (t + s >= t[0] - 1e-9) & (t + s <= t[-1] + 1e-9)
+                product[i] += np.interp(t[inside] + s, t, simulated["y"]) @ np.asarray(r["y"])[inside]
+        i = int(np.clip(np.argmax(product), 1, len(shifts) - 2))
+        a, b, c = product[i - 1 : i + 2]
+        return float(shifts[i] + 0.5 * dt * (a - c) / (a - 2 * b + c))
+    """,
+    of="best_shift",
+    also=("LAG_PAST_THE_END", "LAG_NOT_BEST", ""),
+).body(
+    "validate",
+    """
+        dt = min(r["t"][1] - r["t"][0] for _, r in pairs)
+        shifts = np.arange(-round(MAX_LAG / dt), round(MAX_LAG / dt) + 1) * dt
+        product = np.zeros(len(shifts))
+        for simulated, r in pairs:
+            t = np.asarray(r["t"])
+            ours, theirs = (np.asarray(run["y"]) - np.mean(run["y"]) for run in (simulated, r))
+            for i, s in enumerate(shifts):
+                inside = (t + s >= t[0] - 1e-9) & (t + s <= t[-1] + 1e-9)
+                product[i] += np.interp(t[inside] + s, t, ours) @ theirs[inside]
+        i = int(np.clip(np.argmax(product), 1, len(shifts) - 2))
+        a, b, c = product[i - 1 : i + 2]
+        return float(shifts[i] + 0.5 * dt * (a - c) / (a - 2 * b + c))
+    """,
+    of="best_shift",
+    also=("LAG_PAST_THE_END", "LAG_NOT_BEST", ""),
+)
+mistakes(
+    "LAG_SEARCH_SHORT",
+    "Asked about single runs, your code finds a lag of 0.05 s, but none of 0.17 s.",
+    "Try all shifts from -0.19 to 0.19 s.",
     kind="fact",
 ).program(
     "validate",
@@ -1034,6 +1090,30 @@ mistakes(
         MAX_LAG = 0.1  # s
     """,
     also=("LAG_AT_THE_END",),
+)
+mistakes(
+    "LAG_EARLY_MISSED",
+    "Asked about single runs, your code finds how late a simulation is, but not how early.",
+    "Try negative shifts, too: from -0.19 to 0.19 s. The lag of an early simulation is negative.",
+    kind="fact",
+).body(
+    "validate",
+    """
+        dt = min(r["t"][1] - r["t"][0] for _, r in pairs)
+        shifts = np.arange(0, round(MAX_LAG / dt) + 1) * dt
+        cost = misfit(pairs, shifts)
+        i = int(np.clip(np.argmin(cost), 1, len(cost) - 2))
+        a, b, c = cost[i - 1 : i + 2]
+        return float(shifts[i] + 0.5 * dt * (a - c) / (a - 2 * b + c))
+    """,
+    of="best_shift",
+    also=("LAG_NOT_NEGATIVE", "LAG_OF_PARTS", ""),
+)
+mistakes(
+    "LAG_OF_SUMS",
+    "The lag is about the shift with the smallest sum of squares over the samples that overlap.",
+    "Divide the sum at each shift by the number of samples in it. Fewer samples have a smaller sum, but no better fit.",
+    kind="fact",
 ).body(
     "validate",
     """
@@ -1047,6 +1127,43 @@ mistakes(
         return total
     """,
     of="misfit",
+    also=("LAG_NOT_BEST",),
+)
+mistakes(
+    "LAG_PAST_THE_END",
+    "The lag is about the best shift of a simulation that is zero, or begins again, outside of its recording.",
+    "Where t + s lies outside of sim's recording, leave the sample out, or take sim's last value. np.roll brings back the other end; left=0 and right=0 in np.interp give zeros.",
+    kind="fact",
+).body(
+    "validate",
+    """
+        total = count = 0
+        for simulated, r in pairs:
+            t = np.asarray(r["t"])
+            e = np.interp(t + shifts[:, None], t, simulated["y"], left=0.0, right=0.0) - r["y"]
+            total, count = total + np.sum(e**2, axis=1), count + len(t)
+        return total / count
+    """,
+    of="misfit",
+    also=("LAG_NOT_BEST",),
+).body(
+    "validate",
+    """
+        total = count = 0
+        for simulated, r in pairs:
+            t = np.asarray(r["t"])
+            e = np.interp(t + shifts[:, None], t, simulated["y"], period=len(t) * (t[1] - t[0])) - r["y"]
+            total, count = total + np.sum(e**2, axis=1), count + len(t)
+        return total / count
+    """,
+    of="misfit",
+    also=("LAG_NOT_BEST",),
+)
+mistakes(
+    "LAG_OF_ONE_STEP",
+    "The lag is about the best shift if all runs are moved by the same number of samples.",
+    "A shift is a time, and the runs have different time steps: compare np.interp(t + s, t, y_sim) with y_real, run by run.",
+    kind="fact",
 ).body(
     "validate",
     """
@@ -1064,24 +1181,13 @@ mistakes(
         return float(dt * (i - most + 0.5 * (a - c) / (a - 2 * b + c)))
     """,
     of="best_shift",
-    also=("LAGS_OF_SINGLE_RUNS", "LAG_OF_PARTS", "LAG_OF_EVEN_RUNS", ""),
-).body(
-    "validate",
-    """
-        dt = min(r["t"][1] - r["t"][0] for _, r in pairs)
-        shifts = np.arange(-round(MAX_LAG / dt), round(MAX_LAG / dt) + 1) * dt
-        product = np.zeros(len(shifts))
-        for simulated, r in pairs:
-            t = np.asarray(r["t"])
-            for i, s in enumerate(shifts):
-                inside = (t + s >= t[0] - 1e-9) & (t + s <= t[-1] + 1e-9)
-                product[i] += np.interp(t[inside] + s, t, simulated["y"]) @ np.asarray(r["y"])[inside]
-        i = int(np.clip(np.argmax(product), 1, len(shifts) - 2))
-        a, b, c = product[i - 1 : i + 2]
-        return float(shifts[i] + 0.5 * dt * (a - c) / (a - 2 * b + c))
-    """,
-    of="best_shift",
-    also=("LAG_MEAN_OF_RUNS", "LAG_OF_ONE_RUN", ""),
+    also=("LAGS_OF_SINGLE_RUNS", "LAG_OF_PARTS", "LAG_OF_EVEN_RUNS", "LAG_NOT_BEST", ""),
+)
+mistakes(
+    "LAG_PARABOLA_BACKWARDS",
+    "Your code finds the best sample, but moves the lag from there to the wrong side.",
+    "With costs a, b, c at the best shift and its two neighbours, add step * (a - c) / (2 * (a - 2 * b + c)) to the best shift.",
+    kind="fact",
 ).body(
     "validate",
     """
@@ -1093,7 +1199,7 @@ mistakes(
         return float(shifts[i] - 0.5 * dt * (a - c) / (a - 2 * b + c))
     """,
     of="best_shift",
-    also=("LAG_OF_PARTS", ""),
+    also=("LAG_NOT_BEST", "LAG_OF_PARTS", ""),
 )
 mistakes(
     "LAG_OF_EVEN_RUNS",
@@ -1660,6 +1766,65 @@ mistakes(
     """,
 )
 mistakes(
+    "STATISTIC_OF_BLOCKS",
+    "In a short trial, your code asks the statistic about single blocks, not about whole resamples.",
+    "Join the blocks of a resample until there are at least N samples, and cut off the rest. Then call statistic once, on all N.",
+    kind="fact",
+).body(
+    "block_bootstrap_ci",
+    """
+        n = len(e)
+        values = []
+        for _ in range(n_boot):
+            starts = rng.integers(0, n - block + 1, -(-n // block))
+            values.append(np.mean([statistic(e[s : s + block]) for s in starts]))
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+).body(
+    "block_bootstrap_ci",
+    """
+        n = len(e)
+        starts = rng.integers(0, n - block + 1, n_boot)
+        values = [statistic(e[s : s + block]) for s in starts]
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
+    "ONE_BLOCK_REPEATED",
+    "In a short trial, each resample is one block, again and again.",
+    "Draw a new start for every block of a resample.",
+    kind="fact",
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        values = []
+        for _ in range(n_boot):
+            start = rng.integers(0, n - block + 1)
+            values.append(statistic(np.resize(e[start : start + block], n)))
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
+    "STARTS_AMONG_FIRST",
+    "In a short trial, every block begins among the first N/block samples of the series.",
+    "Draw starts from 0 to N - block, both included. The number of a block is not its start: block 3 begins at 3 * block.",
+    kind="fact",
+).body(
+    "block_bootstrap_ci",
+    """
+        e = np.asarray(e, dtype=float)
+        n = len(e)
+        count = -(-n // block)
+        values = []
+        for _ in range(n_boot):
+            starts = rng.integers(0, n // block, size=count)
+            values.append(statistic(e[(starts[:, None] + np.arange(block)).ravel()[:n]]))
+        return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
+    """,
+)
+mistakes(
     "PART_OF_SERIES",
     "In a short trial, more than a fifth of the series occurs in none of the resamples.",
     "Draw a new start for every block of every resample, from 0 to N - block, both included, and take every block from `e` as it was given.",
@@ -1672,7 +1837,7 @@ mistakes(
         count = -(-n // block)
         values = []
         for _ in range(n_boot):
-            starts = rng.integers(0, n // block, size=count)
+            starts = rng.integers(0, n // 2, size=count)
             values.append(statistic(e[(starts[:, None] + np.arange(block)).ravel()[:n]]))
         return tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))
     """,

@@ -95,9 +95,9 @@ class Explainer:
             gone = any(result.status in _GONE for result in of_task)
             names = frozenset(self._parts.get(check.id, task) for check in checks)
             said = {} if gone else self._answer_sums(task, remote, names)
-            culprit = next((name for name in callers.get(task, ()) if name in wrong), None)
+            culprits = _culprits(task, callers, wrong)
             past = [heard[check.id] for check in checks if check.id in heard]
-            kept = bool(again and not gone and culprit is None and _kept(past, task, again))
+            kept = bool(again and not gone and not culprits and _kept(past, task, again))
             for name in dict.fromkeys(self._parts.get(check.id, task) for check in checks):
                 part = [check for check in checks if self._parts.get(check.id, task) == name]
                 story = self._story(
@@ -105,7 +105,7 @@ class Explainer:
                 )
                 for check in part:
                     if check.id not in story.own:
-                        results[check.id] = _retold(check, failed[check.id], story, task, culprit)
+                        results[check.id] = _retold(check, failed[check.id], story, task, culprits)
 
     def _answer_sums(
         self, task: str, remote: RemoteSubmission, names: frozenset[str]
@@ -129,6 +129,12 @@ class Explainer:
         wrong = sums and not is_right(self._table, name, sums)
         fits = matching(self._table, name, sums) if sums and wrong else ()
         return story_of(failures, fits, self._words, kept=kept)
+
+
+def _culprits(task: str, callers: Mapping[str, tuple[str, ...]], wrong: set[str]) -> list[str]:
+    """The wrong functions that a task calls: those that call no wrong one themselves, if there are any."""
+    called = [name for name in callers.get(task, ()) if name in wrong]
+    return [name for name in called if wrong.isdisjoint(callers.get(name, ()))] or called
 
 
 def _kept(past: list[Past], task: str, again: Again) -> bool:
@@ -202,15 +208,21 @@ def _number(value: Any) -> float:
 
 
 def _retold(
-    check: CheckResult, failure: CheckFailed, story: Story, task: str, culprit: str | None
+    check: CheckResult, failure: CheckFailed, story: Story, task: str, culprits: list[str]
 ) -> CheckResult:
     message, advice = failure.bare
-    if culprit is not None:
+    if culprits:
+        # Of several, which one this check's number comes from is not known.
+        names = " and ".join(f"`{name}`" for name in culprits)
+        many = len(culprits) > 1
+        wrong, right = (
+            ("which are wrong: fix them first", "are") if many else ("which is wrong: fix that first", "is")
+        )
         return msgspec.structs.replace(
             check,
             diagnosis=CASCADE,
-            message=f"{message} `{task}` calls your `{culprit}`, which is wrong: fix that first.",
-            help=f"Check again when `{culprit}` is right; what is left then is `{task}`'s own.",
+            message=f"{message} `{task}` calls your {names}, {wrong}.",
+            help=f"Check again when {names} {right} right; what is left then is `{task}`'s own.",
         )
     diagnosis: Diagnosis | None = None if check.id in story.bare else story.diagnosis
     if diagnosis is None:

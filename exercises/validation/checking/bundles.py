@@ -150,15 +150,15 @@ def expect_report(submission, case, spec, right, shown):
     sim, real = case.sim, case.real
     inspected = submission.call_inspect("validate", sim, real, spec)
     report = kit.as_record(inspected.value, KEYS, "the report")
-    expect_measures(report, case, right, shown)
+    expect_measures(submission, report, case, right, shown)
     _expect_conclusion(report, right, spec, shown)
     shared.expect_left_alone(inspected, [sim, real, spec], ["sim", "real", "spec"])
 
 
-def expect_measures(report, case, right, shown):
+def expect_measures(submission, report, case, right, shown):
     """The runs, the four numbers and their intervals are right."""
     expect_numbers(report, case, right, shown)
-    _expect_lag(report, right, shown)
+    _expect_lag(submission, report, right, shown)
     _expect_intervals(report, right, shown)
 
 
@@ -202,7 +202,7 @@ def expect_numbers(report, case, right, shown):
         )
 
 
-def _expect_lag(report, right, shown):
+def _expect_lag(submission, report, right, shown):
     lag = kit.as_number(report["lag_s"], "lag_s")
     kit.expect_close(
         lag,
@@ -214,7 +214,7 @@ def _expect_lag(report, right, shown):
         message="`lag_s` is not how late the simulation is.",
         help="Find the one shift s for which sim(t + s) fits real(t) best, over the samples of all runs.",
         input=shown,
-        diagnose=lambda: probes.of_lag(lag, _half(report), right),
+        diagnose=lambda: probes.of_lag(submission, lag, _half(report), right),
     )
 
 
@@ -299,7 +299,7 @@ def expect_margins(submission, case, right):
     specs = _specs(right)
     reports = submission.call_each("validate", [(sim, real, spec) for spec in specs])
     found = [reasons_of(kit.as_record(report, KEYS, "the report")) for report in reports]
-    expect_measures(reports[0], case, right, {"runs": count, "spec": specs[0]})
+    expect_measures(submission, reports[0], case, right, {"runs": count, "spec": specs[0]})
     for spec, report, reasons in zip(specs, reports, found, strict=True):
         expected = right.reasons(spec)
         shown = {"runs": count, "spec": spec}
@@ -404,7 +404,7 @@ def expect_nothing(submission, case, spec, right, shown):
     single = bool(right.used)
     if single:
         expect_numbers(report, case, right, shown)
-        _expect_lag(report, right, shown)
+        _expect_lag(submission, report, right, shown)
     told = report["intervals"] is None and (single or all(report[key] is None for key in probes.MEASURES))
     kit.expect_true(
         reasons == ["single_run" if single else "calibration_data"]

@@ -90,8 +90,8 @@ def expect_centred(submission, ends, statistics, shown):
     middle = np.mean(ends, axis=1)
     width = float(np.mean(ends[:, 1] - ends[:, 0]))
     kit.expect_true(
-        bool(np.any(ends[:, 1] != ends[:, 0])),
-        "Both ends of the interval are the same number.",
+        bool(np.any(np.abs(ends[:, 1] - ends[:, 0]) > 1e-12 * np.max(np.abs(ends)))),
+        "Both ends of the interval are the same number, or differ by rounding alone.",
         help="The ends are two quantiles of the statistic over the resamples. Draw each resample anew.",
         input=shown,
         actual=ends[0],

@@ -236,12 +236,15 @@ def of_resamples(found):
     looks = [
         ("STATISTIC_IGNORED", not drawn and len(found.asked) < 2),
         ("NOT_RESAMPLED", not drawn),
+        ("STATISTIC_OF_BLOCKS", not whole and all(map(_one_block, drawn))),
         ("RESAMPLE_SIZE", not whole),
         ("NOT_OF_THE_SERIES", not all(np.isin(samples, found.e).all() for samples in drawn)),
         # Of errors drawn with replacement a third is missing in a resample.
         ("REPEATS_AN_END", _repeated_ends(drawn, found.e) >= _MOST_REPEATED),
         ("DRAWN_WITHOUT_REPLACEMENT", all(len(np.unique(samples)) > 0.9 * n for samples in drawn)),
         ("DRAWN_ONCE", len(drawn) > 1 and all(np.array_equal(samples, drawn[0]) for samples in drawn)),
+        ("ONE_BLOCK_REPEATED", len(drawn) > 1 and all(map(_repeats_its_block, drawn))),
+        ("STARTS_AMONG_FIRST", len(drawn) > _BOOT / 2 and _starts_among_first(drawn)),
         # Five hundred blocks, drawn anywhere, leave out no more than an error at an end of the series.
         ("PART_OF_SERIES", len(drawn) > _BOOT / 2 and len(np.unique(np.concatenate(drawn))) < 0.8 * n),
         ("BEGINNING_REPEATED", len(drawn) > _BOOT / 2 and all(map(_ends_as_it_begins, drawn))),
@@ -291,6 +294,23 @@ def _cut_short(drawn, e):
 def _ends_as_it_begins(samples):
     """Whether what is left after the whole blocks is the beginning once more, which chance hardly does."""
     return np.array_equal(samples[-(_N % _BLOCK) :], samples[: _N % _BLOCK])
+
+
+def _one_block(samples):
+    return len(samples) == _BLOCK and len(_beginnings(samples)) == 1
+
+
+def _repeats_its_block(samples):
+    """Whether a resample is its first block, again and again."""
+    return _one_block(samples[:_BLOCK]) and np.array_equal(samples, np.resize(samples[:_BLOCK], len(samples)))
+
+
+def _starts_among_first(drawn):
+    """Whether blocks begin among the first N/block samples, as if the number of a block were its start."""
+    if _usual_length(drawn) != _BLOCK:
+        return False
+    begun = [samples[_beginnings(samples)[:-1]] for samples in drawn]
+    return max(map(np.max, begun)) <= math.ceil(_N / _BLOCK)  # e begins with 1
 
 
 def _beginnings(samples):

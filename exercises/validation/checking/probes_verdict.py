@@ -32,8 +32,8 @@ class Facts:
         means: of each measure, the mean of what it is in each run alone.
         averages: means of the runs' own lags, each with half the width that its interval would have.
         alone: half the width of the lag's interval, with each run alone in the place of all but one.
-        even: the lag with the smallest mean of the runs' own mean squares, and half the width that its
-            interval would have.
+        other_lags: by other rules, the lags that they give, each with half the width that its interval would
+            have.
         about: half the widths of the intervals, with the number in the place of the mean of all but one.
         own: the lags of the runs, each by itself.
     """
@@ -45,7 +45,7 @@ class Facts:
     means: dict[str, float]
     averages: list[list[float]]
     alone: float
-    even: list[float] = field(default_factory=list)
+    other_lags: dict[str, list[list[float] | None]] = field(default_factory=dict)
     about: dict[str, float] = field(default_factory=dict)
     own: list[float] = field(default_factory=list)
 
@@ -202,10 +202,11 @@ def of_interval(key, ends, right):
     return named("INTERVALS_SCALED") if alike and all(middles) and abs(shares[0] - 1) > 2e-3 else None
 
 
-def of_lag(value, half, right):
+def of_lag(submission, value, half, right):
     """What a wrong lag is, or that it is not the best.
 
     Args:
+        submission: asked for the lags of single runs, if nothing else tells.
         half: half the width of the interval that was given for it; nan if there is none.
         right: the facts.
     """
@@ -220,13 +221,64 @@ def of_lag(value, half, right):
         ("LAG_WHOLE_SAMPLES", abs(value - late) < 1.01 * dt and _whole(value, right)),
     ]
     looks += [
-        ("LAG_OF_EVEN_RUNS", _about(value, half, [right.even], dt)),
+        (other := _by_other_rule(value, half, right), other is not None),
         ("LAG_MEAN_OF_RUNS", _about(value, half, right.averages, dt)),
         # The lags of several runs are only some steps apart: what is near one may be so by chance.
         ("LAG_OF_ONE_RUN", any(abs(value - lag) <= 0.01 * dt for lag in right.own)),
         ("LAG_NOT_NEGATIVE", late < -0.6 * dt and value >= 0),
     ]
-    return named(next((code for code, fits in looks if fits), "LAG_NOT_BEST"))
+    code = next((code for code, fits in looks if fits), None)
+    return named(code or kit.attempt(lambda: _of_single_lags(submission, value, right)) or "LAG_NOT_BEST")
+
+
+#: Lags of single runs that are asked for, s; the step is 0.02 s.
+_SINGLE = (0.046, 0.0535, -0.046, 0.17, -0.17)
+
+
+def _of_single_lags(submission, value, right):
+    """What the lags of single runs without noise show of the search, if a wrong lag may come from that."""
+    t = 0.02 * np.arange(200)
+    speed = lambda t: 1.3 + np.sin(5.0 * t) + 0.4 * np.sin(8.2 * t + 1.0)  # noqa: E731
+    spec = {"rmse_max": 1.0, "bias_max": 1.0, "lag_max_s": 1.0, "coverage_min": 0.0, "coverage_max": 1.0}
+    calls = []
+    for late in _SINGLE:
+        ours = {"id": "a", "t": t.copy(), "y": speed(t - late), "sigma": np.ones(len(t))}
+        theirs = {"id": "a", "t": t.copy(), "y": speed(t)}
+        calls.append(({"calibrated_on": [], "runs": [ours]}, {"runs": [theirs]}, spec))
+    reports = submission.call_each("validate", calls)
+    lags = [kit.as_number(one.get("lag_s") if isinstance(one, dict) else None) for one in reports]
+    kept = [abs(lag - late) < 0.002 for lag, late in zip(lags, _SINGLE, strict=True)]
+    late = right.numbers["lag_s"]
+    if not kept[0] and abs(value - late) <= right.dt:
+        for step in (0.02, 0.01, 0.005):
+            mirrored = [2 * step * round(known / step) - known for known in _SINGLE[:3]]
+            if np.allclose(lags[:3], mirrored, atol=0.15 * step):
+                return "LAG_PARABOLA_BACKWARDS"
+    if kept == [True, True, False, True, False] and late < 0:
+        return "LAG_EARLY_MISSED"
+    short = kept[:3] == [True] * 3 and not any(kept[3:])
+    return "LAG_SEARCH_SHORT" if short and abs(late) > 0.06 else None
+
+
+#: How shifts are compared, and whose lags these are.
+_OTHER_RULES = {
+    "even": "LAG_OF_EVEN_RUNS",
+    "sum": "LAG_OF_SUMS",
+    "outside": "LAG_PAST_THE_END",
+    "product": "LAG_OF_PRODUCTS",
+    "alike": "LAG_OF_ONE_STEP",
+}
+
+
+def _by_other_rule(value, half, right):
+    """The code of the other rule that gives about this lag, and this interval, the nearest of several."""
+    pairs = [(name, pair) for name, some in right.other_lags.items() for pair in some]
+    near = [
+        (abs(value - pair[0]) + abs(half - pair[1]), name)
+        for name, pair in pairs
+        if _about(value, half, [pair], right.dt)
+    ]
+    return _OTHER_RULES[min(near)[1]] if near else None
 
 
 def _about(value, half, known, dt):
@@ -250,8 +302,8 @@ def of_lag_interval(value, half, right):
         return named("ZERO_WIDTH")
     if _whole(value, right):
         return named("LAG_WHOLE_SAMPLES")
-    if _about(value, half, [right.even], right.dt):
-        return named("LAG_OF_EVEN_RUNS")
+    if code := _by_other_rule(value, half, right):
+        return named(code)
     if right.alone and abs(half / right.alone - 1) < 0.03:
         return named("LAGS_OF_SINGLE_RUNS")
     return named("LAG_OF_PARTS")

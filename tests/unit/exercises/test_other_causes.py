@@ -64,7 +64,7 @@ TOLD = {
     "validation": {
         "coverage_ends_like_values": {"WHOLE_NUMBERS"},
         "bootstrap_backwards": {"IID_BOOTSTRAP"},
-        "bootstrap_repeats_one_block": {"BEGINNING_REPEATED", "PART_OF_SERIES"},
+        "bootstrap_repeats_one_block": {"ONE_BLOCK_REPEATED"},
         "bootstrap_resamples_by_blocks": {"OTHER_NUMBER_OF_RESAMPLES"},
         "bootstrap_shuffles_each_resample": {"IID_BOOTSTRAP"},
         "energy_of_a_joule_at_least": {None},

@@ -84,6 +84,30 @@ def test_the_textbooks_reduced_mass_costs_the_walls_only_and_what_calls_it_is_to
         assert "`resolve` calls your `impulse_1d`, which is wrong: fix that first." in check.message
 
 
+def test_of_two_wrong_functions_that_one_calls_both_are_told_first(session: GradingSession) -> None:
+    """An rmse of its own slip was once laid to the coverage, which came first in the alphabet."""
+    both = """
+def detect_sphere_plane(x, r, point, normal):
+    return _plane(x, -r, point, normal)
+
+def impulse_1d(ma, mb, va, vb, restitution):
+    return 2 * _impulse(ma, mb, va - vb, restitution)
+
+def resolve(ma, mb, va, vb, normal, restitution):
+    detect_sphere_plane(va, 0.0, vb, normal)
+    closing = (np.asarray(va) - vb) @ normal
+    push = impulse_1d(ma, mb, closing, 0.0, restitution) * np.asarray(normal)
+    return va - push / ma, vb + push / mb
+"""
+    found = failed(session, "\n_plane = detect_sphere_plane\n" + both)
+    assert codes(found["resolve"]) == {"CALLS_A_WRONG_FUNCTION"}
+    for check in found["resolve"]:
+        calls = (
+            "`resolve` calls your `detect_sphere_plane` and `impulse_1d`, which are wrong: fix them first."
+        )
+        assert calls in check.message
+
+
 def test_arguments_changed_in_place_are_said_where_they_are_seen(session: GradingSession) -> None:
     detect = """
 def detect_sphere_plane(x, r, point, normal):

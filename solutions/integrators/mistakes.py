@@ -1453,7 +1453,7 @@ mistakes(
 mistakes(
     "FIRST_STEP_MISSING",
     "Row 1, which is what the first step makes of the initial state, holds nothing but zeros.",
-    "Loop over range(n), which begins with 0. Step number i starts from row i, and what it returns is row i + 1.",
+    "Loop over range(n), which begins with 0. Row i + 1 is what step(accel, i * h, q[i], v[i], h) returns.",
 ).body(
     "integrate",
     """

@@ -560,11 +560,12 @@ def of_stability(submission, value, step, omega, limit):
 
 
 def _too_strict(submission, z, step, omega):
-    """Whether a search that goes on to 1.5 for another map ends where this map's radius is about one."""
+    """Whether a search that is right for two other maps ends where this map's radius is about one."""
     radius = max(abs(np.linalg.eigvals(step.matrix(1.01 * z + 0.05))))
     if z > 1.4 or abs(radius - 1) > 1e-9:
         return False
-    return _same(kit.as_number(submission.call("max_stable_step", _FLIPPED, omega)) * omega, 1.5)
+    values = submission.call_each("max_stable_step", [(_FLIPPED, omega), (_SPIRAL, omega)])
+    return all(_same(kit.as_number(one) * omega, z) for one, z in zip(values, (1.5, 1.9), strict=True))
 
 
 def _beside(z, limit):

@@ -345,7 +345,7 @@ def of_count(submission, n, h, q):
 
     n, h: number and size, s, of the steps of which it is wrong; q: what came as the positions.
     """
-    if kit.attempt(lambda: len(q)) == n + 1:
+    if kit.attempt(lambda: kit.as_array(q, (n + 1, None), "q")) is not None:
         return named("TIMES_NOT_AS_ROWS")
     rows = []
     for t_end, size, count in _PLAIN:

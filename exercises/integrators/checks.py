@@ -142,7 +142,7 @@ def _expect_samples(submission, omega, spiral, start, steps):
         message="integrate does not return N + 1 times for N steps.",
         help="N = round(t_end / h) steps connect N + 1 states, each with its time.",
         input=given,
-        diagnose=lambda: probes.of_count(submission, n, h),
+        diagnose=lambda: probes.of_count(submission, n, h, q),
     )
     q, v = kit.as_array(q, (n + 1, 2), "q"), kit.as_array(v, (n + 1, 2), "v")
     turned, left = angle * np.arange(n + 1)[:, None], shrink ** np.arange(n + 1)[:, None]
@@ -180,7 +180,7 @@ def _expect_samples(submission, omega, spiral, start, steps):
 def test_integrate_counts(submission, draw):
     """How many steps integrate takes"""
     step = _spiral(0.4, 0.98)
-    durations = ((0.29, 0.01, 29), (0.8, 0.1, 8), (0.0, 0.1, 0))
+    durations = ((0.29, 0.01, 29), (0.8, 0.1, 8), (1.1, 0.1, 11), (0.0, 0.1, 0))
     if draw is not None:
         durations = (*_awkward(draw), (0.0, float(draw.uniform(0.05, 0.2)), 0))
     for t_end, h, n in durations:
@@ -207,8 +207,8 @@ def test_integrate_counts(submission, draw):
                 help="Take N = round(t_end / h) steps. Row 0 is the initial state, and each step adds a row."
                 if n
                 else "Without a step there is one sample: the initial state.",
-                diagnose=lambda name=name, n=n, h=h: (
-                    probes.of_count(submission, n, h) if name == "t" else None
+                diagnose=lambda name=name, n=n, h=h, q=q: (
+                    probes.of_count(submission, n, h, q) if name == "t" else None
                 ),
             )
         kit.as_array(q, (n + 1, 1), "q"), kit.as_array(v, (n + 1, 1), "v")
@@ -223,15 +223,15 @@ def test_integrate_refusals(submission, draw):
 
 
 def _awkward(draw):
-    """Two durations whose quotient misses a whole number: from below, and where a running sum of h does."""
+    """Three durations: t_end/h falls short, a running sum of h does, np.arange has an entry too many."""
     found = []
-    while len(found) < 2:
+    while len(found) < 3:
         n, h = int(draw.integers(8, 60)), int(draw.integers(7, 400)) / 1000
         t_end, t = round(n * h, 3), 0.0
         while t < t_end:
             t += h
-        falls = t_end / h < n if not found else t - t_end > h / 2
-        found += [(t_end, h, n)] * falls
+        misses = t_end / h < n, t - t_end > h / 2, len(np.arange(0, t_end + h, h)) > n + 1
+        found += [(t_end, h, n)] * misses[len(found)]
     return found
 
 

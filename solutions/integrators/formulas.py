@@ -419,10 +419,14 @@ def _moves_twice(accel, t, q, v, h):
 #: Wrong in another way than by one or two terms: per task, codes and formula.
 
 
-def _new_on_both_sides(accel, t, q, v, h):
+def _new_on_both_sides(shift):
     """Semi-implicit Euler with the acceleration at the predicted place, and the old place then moved anew."""
-    v_next = v + h * np.asarray(accel(t + h, q + h * v, v))
-    return q + h * v_next, v_next
+
+    def step(accel, t, q, v, h):
+        v_next = v + h * np.asarray(accel(t + shift * h, q + h * v, v))
+        return q + h * v_next, v_next
+
+    return step
 
 
 def _square_on_top(accel, t, q, v, h):
@@ -464,6 +468,13 @@ def _half_stages():
             yield (code,), _runge_kutta(**{f"{term}_v": form})
 
 
+def drifts():
+    """Kick, drift, kick with another factor in the drift, before the velocity at half a step."""
+    for code, size in _sizes(1.0):
+        if code != "TERM_MISSING":
+            yield code, _verlet(drift=size, square=lambda h, size=size: size(h) * h / 2)
+
+
 def _last_call_copied(accel, t, q, v, h):
     """RK4 whose last acceleration is taken half a step ahead, but its velocity a whole step."""
     slopes = [(v, accel(t, q, v))]
@@ -487,7 +498,7 @@ OTHERS = {
         (("FIRST_COMPONENT_ONLY",), _one_component(_KICK_DRIFT)),
         (("FIRST_COMPONENT_ONLY",), _one_component(_DRIFT_KICK)),
         (("POSITION_MOVED_TWICE",), _moves_twice),
-        (("NEW_ON_BOTH_SIDES",), _new_on_both_sides),
+        *((("NEW_ON_BOTH_SIDES",), _new_on_both_sides(shift)) for shift in (1, 0)),
         (("SQUARE_TERM_ON_TOP",), _square_on_top),
         (("SEMI_IMPLICIT_IS_EULER",), _EULER),
         (("SEMI_IMPLICIT_IS_VERLET",), _KDK),

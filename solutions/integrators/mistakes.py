@@ -666,7 +666,7 @@ mistakes(
 mistakes(
     "INITIAL_STATE_MISSING",
     "The first sample is not the initial state.",
-    "Store q0 and v0, with time 0, before the first step.",
+    "Row 0 is q0 and v0, at time 0. Store them before the first step, and let step number i write row i + 1.",
 ).program(
     "integrate",
     """
@@ -1024,7 +1024,7 @@ mistakes("STATE_KEPT").program(
 mistakes(
     "LIMIT_TOO_EARLY",
     "Steps beyond the result are still stable, without a break.",
-    "Is 0.05/omega the first step that you look at, and is a step stable up to a spectral radius of 1 + 1e-8? If so, compare the matrix column by column: from (1, 0) and from (0, omega) at the same h, with both resulting velocities divided by omega. Its eigenvalues come from np.linalg.eigvals: eigvalsh is for symmetric matrices alone.",
+    "Is 0.05/omega the first step that you look at, and is a step stable up to a spectral radius of 1 + 1e-8? If so, compare the matrix column by column: from (1, 0) and from (0, omega) at the same h, with both resulting velocities divided by omega.",
     kind="consequence",
 ).body(
     "max_stable_step",
@@ -1153,7 +1153,7 @@ mistakes(
 mistakes(
     "STATE_NOT_ADVANCED",
     "Your code returns the state it was given.",
-    "Return the new values. Check that the names in the return statement are the ones you computed.",
+    "Does the return statement name the values that you computed? Is a factor zero, as 1 // 6 is?",
 )
 mistakes(
     "WRONG_SIGN",
@@ -1282,7 +1282,7 @@ mistakes(
 mistakes(
     "FACTOR_WRONG",
     "One term has the wrong number in front of it.",
-    "Compare each term with the README's formula: which number is in front of it, and is it halved where it should be?",
+    "Compare each term with the README's formula: which number is in front of it, and is it halved where, and only where, it should be?",
 )
 mistakes(
     "FEW_DIGITS",
@@ -1415,10 +1415,10 @@ mistakes(
 )
 mistakes(
     "TIMES_NOT_AS_ROWS",
-    "For 1 s in steps of 0.25 s, or for 2 s in steps of 0.5 s, q has the right number of rows, and t has another number of entries.",
-    "t[i] is i * h for i from 0 to N: N + 1 times, one for each row.",
-    kind="consequence",
-)
+    "q has N + 1 rows, and t has another number of entries.",
+    "t[i] is i * h for i from 0 to N: np.arange(N + 1) * h. np.arange in steps of h, up to an end, may have one entry too many.",
+    kind="fact",
+).edit("integrate", {"h * np.arange(n + 1)": "np.arange(0, t_end + h, h)"})
 mistakes(
     "COUNT_NOT_ROUNDED",
     "The number of samples is right where h is exact in floating point, as for 1 s in steps of 0.25 s, and can be wrong where h is rounded.",
@@ -1449,6 +1449,40 @@ mistakes(
     "LAST_STEP_MISSING",
     "The last row holds nothing but zeros.",
     "n steps fill rows 1 to n: loop over range(n) and write row i + 1.",
+)
+mistakes(
+    "FIRST_STEP_MISSING",
+    "Row 1, which is what the first step makes of the initial state, holds nothing but zeros.",
+    "Loop over range(n), which begins with 0. Row i + 1 is what step(accel, i * h, q[i], v[i], h) returns.",
+).body(
+    "integrate",
+    """
+        n = round(t_end / h)
+        if abs(t_end / h - n) > 1e-6:
+            raise ValueError
+        t, q, v = h * np.arange(n + 1), np.zeros((n + 1, len(q0))), np.zeros((n + 1, len(v0)))
+        q[0], v[0] = q0, v0
+        q_now, v_now = np.array(q0, float), np.array(v0, float)
+        for i in range(1, n):
+            q_now, v_now = step(accel, t[i], q_now, v_now, h)
+            q[i + 1], v[i + 1] = q_now, v_now
+        return t, q, v
+    """,
+)
+mistakes(
+    "ROWS_HAVE_FEW_DIGITS",
+    "The rows are right to a millionth of the largest number in them, but not to all digits, as in single precision or after rounding.",
+    "Keep the states in Python's own floats: np.zeros((N + 1, d)) without np.float32, and no rounding.",
+).edit("integrate", {"q = np.empty((n + 1, len(q0)))": "q = np.empty((n + 1, len(q0)), dtype=np.float32)"})
+mistakes(
+    "SLOPE_WEIGHTED",
+    "The result is a slope by least squares in which some points count more than others.",
+    "All points count alike: np.polyfit(np.log(hs), np.log(errors), 1), without weights w.",
+).edit(
+    "observed_order",
+    {
+        "x, y = np.log(hs), np.log(errors)\n    x = x - x.mean()\n    return float(x @ y / (x @ x))": "return float(np.polyfit(np.log(hs), np.log(errors), 1, w=np.asarray(errors))[0])"
+    },
 )
 mistakes(
     "VELOCITY_NOT_CARRIED",
@@ -1601,6 +1635,11 @@ mistakes(
     kind="consequence",
 )
 mistakes(
+    "EIGENVALUES_OF_SYMMETRIC",
+    "The limits are those of a symmetric matrix, which np.linalg.eigvalsh and np.linalg.eigh take for granted.",
+    "The matrix of a step is not symmetric. Use max(abs(np.linalg.eigvals(M))).",
+)
+mistakes(
     "SMALLEST_EIGENVALUE",
     "The limits are those of the smaller eigenvalue.",
     "The largest modulus decides, because that part of the motion prevails after many steps.",
@@ -1627,7 +1666,7 @@ mistakes(
 )
 mistakes(
     "START_NOT_SCALED",
-    "Velocities are counted in units of omega on one side only, so the matrix is not that of (q, v/omega).",
+    "Velocities are not counted in units of omega both before and after the step, so the matrix is not that of (q, v/omega).",
     "Start from (1, 0) and (0, omega), and divide the resulting velocities by omega.",
 )
 mistakes(
@@ -1663,6 +1702,8 @@ def hypotheses():
         for family, base, terms in several:
             yield from _pairs(task, family, base, terms)
     yield from (("observed_order", (code,), slope) for code, slope in _slopes())
+    # After the pairs: two wrong terms of the same formula would give some of these, too.
+    yield from (("velocity_verlet_step", (code,), step) for code, step in formulas.drifts())
     yield "max_stable_step", ("LIMIT_NEVER_SEEN",), lambda step, omega: math.inf
     in_seconds = {"probe": lambda z, omega: z, "unit": lambda z, omega: z}
     for way in (in_seconds, {"start": lambda omega: omega}, {"end": lambda omega: omega}):
@@ -1850,6 +1891,10 @@ def _slopes():
         yield on("ORDER_MEAN_OF_PAIRS", apart(mean))
         yield on("ORDER_MEAN_OF_PAIRS", by_size(mean))
     yield on("ORDER_MEAN_OF_PAIRS", lambda x, y: float(np.mean(np.diff(y)) / np.mean(np.diff(x))))
+    yield on("ORDER_MEAN_OF_PAIRS", lambda x, y: float(np.mean(np.gradient(y, x))))
+    for power in (-1, -0.5, 0.5, 1):  # of the errors, of the steps
+        yield on("SLOPE_WEIGHTED", lambda x, y, p=power: float(np.polyfit(x, y, 1, w=np.exp(p * y))[0]))
+        yield on("SLOPE_WEIGHTED", lambda x, y, p=power: float(np.polyfit(x, y, 1, w=np.exp(p * x))[0]))
     yield on("HALVING_ASSUMED", lambda x, y: float(np.mean(-np.diff(y)) / np.log(2)))
     yield on("HALVING_ASSUMED", lambda x, y: float(np.mean(np.diff(y[np.argsort(x)])) / np.log(2)))
     yield on("HALVING_ASSUMED", lambda x, y: float((y[0] - y[-1]) / np.log(2)))
@@ -1892,7 +1937,8 @@ def _search(
 ):
     """``size`` of the map must not exceed ``limit``.
 
-    ``scales``: where velocities are counted in units of omega, going "in", coming "out", or "both".
+    ``scales``: where velocities are counted in units of omega, going "in", coming "out", or "both"; "times":
+    coming out they are multiplied instead of divided.
     """
 
     def largest(step, omega):
@@ -1902,6 +1948,7 @@ def _search(
         def stable(z):
             h = probe(z, omega)
             given, rate = (1.0 if scales == side else omega for side in ("out", "in"))
+            rate = 1 / omega if scales == "times" else rate
             zero_, one = np.zeros(1), np.ones(1)
             columns = [step(accel, 0.0, one, zero_, h), step(accel, 0.0, zero_, given * one, h)]
             m = np.array([[float(c[0][0]) for c in columns], [float(c[1][0]) / rate for c in columns]])
@@ -1942,6 +1989,7 @@ _SEARCH = {
         ("EIGENVALUES_WITHOUT_MODULUS", lambda m: np.linalg.eigvals(m).real.max()),
         ("EIGENVALUES_WITHOUT_MODULUS", lambda m: abs(np.linalg.eigvals(m).real).max()),
         ("EIGENVALUES_WITHOUT_MODULUS", lambda m: abs(np.linalg.eigvals(m).max())),
+        ("EIGENVALUES_OF_SYMMETRIC", lambda m: max(abs(np.linalg.eigvalsh(m)))),
         ("SMALLEST_EIGENVALUE", lambda m: min(abs(np.linalg.eigvals(m)))),
         ("STABILITY_BY_ENTRY", lambda m: abs(m[0, 0])),
         ("STABILITY_BY_ENTRY", lambda m: np.abs(m).max()),
@@ -1963,7 +2011,7 @@ _SEARCH = {
     "zero": (("NO_ZERO", None),),
     "none": (("NO_INFINITY", None), ("NO_INFINITY", 0.0)),
     "above": (("LARGEST_STABLE_STEP", True),),
-    "scales": (("START_NOT_SCALED", "out"), ("START_NOT_SCALED", "in")),
+    "scales": (("START_NOT_SCALED", "out"), ("START_NOT_SCALED", "in"), ("START_NOT_SCALED", "times")),
     "force": (
         ("ACCELERATION_WRONG", lambda omega: omega),
         ("ACCELERATION_WRONG", lambda omega: 1.0),

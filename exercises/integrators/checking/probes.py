@@ -340,20 +340,19 @@ IDENTITY = LinearStep([1.0], [0.0], [0.0], [1.0])
 _PLAIN = ((1.0, 0.25, 4), (2.0, 0.5, 4))
 
 
-def of_count(submission, n, h):
-    """Whether the number of samples is off by one where nothing is rounded.
+def of_count(submission, n, h, q):
+    """Why the number of times is wrong: alone, or as the number of samples is where nothing is rounded.
 
-    n, h: number and size, s, of the steps of which it is wrong.
+    n, h: number and size, s, of the steps of which it is wrong; q: what came as the positions.
     """
+    if kit.attempt(lambda: kit.as_array(q, (n + 1, None), "q")) is not None:
+        return named("TIMES_NOT_AS_ROWS")
     rows = []
     for t_end, size, count in _PLAIN:
-        t, q, _ = kit.as_tuple(
+        t, _, _ = kit.as_tuple(
             submission.call("integrate", IDENTITY, Oscillator(1.0), [1.0], [0.0], t_end, size), "tqv"
         )
         rows.append(len(kit.as_vector(t)) - count - 1)
-        full = kit.attempt(lambda q=q, count=count: kit.as_array(q, (count + 1, 1), "q"))
-        if rows[-1] and full is not None:
-            return named("TIMES_NOT_AS_ROWS")
     if rows[0] == rows[1] and abs(rows[0]) == 1:
         return named("OFF_BY_ONE_SAMPLE")
     exact = (2**20 * h).is_integer()
@@ -388,8 +387,19 @@ def of_whole_rows(submission, args, q):
 
 def of_rows(t, q, v, h, states):
     """What is wrong with rows of the right number. ``states``: true q and v of every sample, (N+1, d)."""
-    code = _histories(q, v, states) or _first_row(t, q, v, h, states) or _later_rows(q, v, states)
+    code = (
+        _histories(q, v, states)
+        or _first_row(t, q, v, h, states)
+        or _later_rows(q, v, states)
+        or _few_digits(q, v, states)
+    )
     return named(code) if code else None
+
+
+def _few_digits(q, v, states):
+    """Whether all rows are right to six digits, and some no further: float32 keeps seven."""
+    off = [abs(rows - true).max() / abs(true).max() for rows, true in zip((q, v), states, strict=True)]
+    return "ROWS_HAVE_FEW_DIGITS" if 1e-9 < max(off) < 1e-6 else None
 
 
 def _histories(q, v, states):
@@ -431,11 +441,18 @@ def _first_row(t, q, v, h, states):
     return "INITIAL_STATE_MISSING" if after or empty else "INITIAL_STATE_WRONG"
 
 
-def _later_rows(q, v, states):
-    """What is wrong after a right first row."""
-    q_true, _ = states
+def _empty_row(q, v, q_true):
+    """Whether the last row holds zeros alone, after right ones, or the second one does."""
     if np.allclose(q[:-1], q_true[:-1]) and not np.any(q[-1]) and not np.any(v[-1]):
         return "LAST_STEP_MISSING"
+    second = len(q) > 2 and np.any(q_true[1]) and not np.any(q[1]) and not np.any(v[1])
+    return "FIRST_STEP_MISSING" if second else None
+
+
+def _later_rows(q, v, states):
+    """What is wrong after a right first row."""
+    if empty := _empty_row(q, v, states[0]):
+        return empty
     first = [np.allclose(rows[1], true[1]) for rows, true in zip((q, v), states, strict=True) if len(q) > 1]
     if len(q) > 1 and np.allclose(q[1], states[1][1]) and np.allclose(v[1], states[0][1]) and not all(first):
         return "STEP_RESULT_SWAPPED"
@@ -537,7 +554,18 @@ def of_stability(submission, value, step, omega, limit):
         if _same(flipped, third):
             return named("ASSUMES_ITS_LIMIT")
     code = _beside(z, limit) if z != limit else None
+    if code == "LIMIT_TOO_EARLY" and _too_strict(submission, z, step, omega):
+        code = "TOLERANCE_TOO_TIGHT"
     return named(code) if code else None
+
+
+def _too_strict(submission, z, step, omega):
+    """Whether a search that is right for two other maps ends where this map's radius is about one."""
+    radius = max(abs(np.linalg.eigvals(step.matrix(1.01 * z + 0.05))))
+    if z > 1.4 or abs(radius - 1) > 1e-9:
+        return False
+    values = submission.call_each("max_stable_step", [(_FLIPPED, omega), (_SPIRAL, omega)])
+    return all(_same(kit.as_number(one) * omega, z) for one, z in zip(values, (1.5, 1.9), strict=True))
 
 
 def _beside(z, limit):

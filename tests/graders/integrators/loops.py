@@ -136,6 +136,6 @@ def _arrays(submission, value, n, args, given):
             input=given,
             message="An array that integrate returns has not N + 1 rows, with N = round(t_end / h).",
             help="Take N = round(t_end / h) steps. Row 0 is the initial state, and each step adds a row.",
-            diagnose=lambda name=name: probes.of_count(submission, n, args[5]) if name == "t" else None,
+            diagnose=lambda name=name: probes.of_count(submission, n, args[5], q) if name == "t" else None,
         )
     return kit.as_array(t, (n + 1,), "t"), kit.as_array(q, (n + 1, d), "q"), kit.as_array(v, (n + 1, d), "v")

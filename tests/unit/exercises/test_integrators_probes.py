@@ -92,6 +92,11 @@ HS, T = np.array([0.2, 0.11, 0.04, 0.03]), np.arange(6.0)
 Q, V = np.column_stack([np.cos(T), np.sin(T) + 2]) / 9, np.column_stack([T - 2.5, T**2])
 
 
+def _without(row, *histories):
+    """Histories whose row holds nothing but zeros."""
+    return [np.where(np.arange(6)[:, None] == row, 0.0, rows) for rows in histories]
+
+
 @pytest.mark.parametrize(
     ("find", "code"),
     [
@@ -101,12 +106,18 @@ Q, V = np.column_stack([np.cos(T), np.sin(T) + 2]) / 9, np.column_stack([T - 2.5
         (lambda: probes.of_refusal(REFUSES, ONES, ONES, 0.29), None),
         (lambda: probes.of_whole_start(REFUSES, [None, None, ONES, ONES, 1.0, 0.25]), None),
         # Where nothing is rounded, rounding is not what is missing.
-        (lambda: probes.of_count(COUNTS, 0, 0.1), None),
-        (lambda: probes.of_count(COUNTS, 8, 0.25), None),
-        (lambda: probes.of_count(COUNTS, 8, 0.1), "COUNT_NOT_ROUNDED"),
+        (lambda: probes.of_count(COUNTS, 0, 0.1, T), None),
+        (lambda: probes.of_count(COUNTS, 8, 0.25, T), None),
+        (lambda: probes.of_count(COUNTS, 8, 0.1, T), "COUNT_NOT_ROUNDED"),
+        (lambda: probes.of_count(COUNTS, 5, 0.1, Q), "TIMES_NOT_AS_ROWS"),
+        (lambda: probes.of_count(COUNTS, 5, 0.25, None), None),
         (lambda: probes.of_rows(T, Q[[0] * 6], V, 1.0, (Q, V)), "ROW_OF_Q_WRONG"),
         (lambda: probes.of_rows(T, Q, V[[0] * 6], 1.0, (Q, V)), "ROW_OF_V_WRONG"),
         (lambda: probes.of_rows(T, Q[[0, *[5] * 5]], V[[0, *[5] * 5]], 1.0, (Q, V)), None),
+        (lambda: probes.of_rows(T, *_without(1, Q, V), 1.0, (Q, V)), "FIRST_STEP_MISSING"),
+        (lambda: probes.of_rows(T, *_without(2, Q, V), 1.0, (Q, V)), None),
+        (lambda: probes.of_rows(T, Q, np.round(V / 3, 7), 1.0, (Q, V / 3)), "ROWS_HAVE_FEW_DIGITS"),
+        (lambda: probes.of_rows(T, Q, V, 1.0, (Q, V)), None),
         # Positions that are all zero are whole numbers, and may have been left out.
         (lambda: probes.of_rows(T, 0 * Q, V, 1.0, (Q, V)), "INITIAL_STATE_MISSING"),
         (lambda: probes.of_order(ORDER, 2.3, HS, HS**-2.3), "SLOPE_WITHOUT_SIGN"),
@@ -118,6 +129,32 @@ Q, V = np.column_stack([np.cos(T), np.sin(T) + 2]) / 9, np.column_stack([T - 2.5
 def test_no_more_is_said_than_what_was_found_shows(find, code):
     found = find()
     assert (found and found.code) == code
+
+
+def _limit(matrix, most=1 + 1e-8):
+    """A search that is right but for the matrix that it makes of the step's, and for what it allows."""
+
+    def largest(step, omega):
+        z = np.arange(0.05, 10.05, 0.005)
+        steady = abs(np.linalg.eigvals(matrix(step.matrix(z), omega))).max(axis=-1) <= most
+        return z[np.argmin(steady) - 1] / omega if steady[0] else 0.0
+
+    return largest
+
+
+@pytest.mark.parametrize(
+    ("search", "code"),
+    [
+        (_limit(lambda m, omega: m, 1 - 1e-12), "TOLERANCE_TOO_TIGHT"),
+        (_limit(lambda m, omega: m * np.array([[1, omega], [1, 1]])), "LIMIT_TOO_EARLY"),
+        (_limit(lambda m, omega: m[..., ::-1]), "LIMIT_TOO_EARLY"),
+    ],
+    ids=["strict", "not scaled", "columns swapped"],
+)
+def test_a_strict_limit_is_told_from_a_wrong_matrix(search, code):
+    verlet = systems.LinearStep([1, 0, -0.5], [0, 1], [0, -1, 0, 0.25], [1, 0, -0.5])
+    found = probes.of_stability(program(max_stable_step=search), search(verlet, 4.0), verlet, 4.0, 2.0)
+    assert found.code == code
 
 
 RIGHT = {task: formulas.RIGHT[task][0] for task in report.STEPS}

@@ -1658,7 +1658,7 @@ mistakes(
 )
 mistakes(
     "FIT_WITHOUT_NOISE",
-    "For most recordings the noise density is next to zero and the walk far too large: what your code fits grows with T, where white noise makes it fall.",
+    "For most recordings the noise density is far too small and the walk far too large: what your code fits grows with T, where white noise makes it fall.",
     "Print the Allan variances: for short T they must be about N²/T. Each block gives the mean of its samples, not their sum.",
     kind="fact",
 ).edit("fit_noise", {"(total[size:] - total[:-size]) / size": "total[size:] - total[:-size]"})

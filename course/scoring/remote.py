@@ -193,7 +193,7 @@ class RemoteSubmission:
             CheckFailed: a later call changed what an earlier one had returned.
         """
         sent = [list(args) for args in calls]
-        given = [self._kept(name, args) for args in sent]
+        given = self._kept_each(name, sent)
         with self._asking(name) as worker:
             values, changed = worker.each(name, sent)
         for args, value in zip(given, values, strict=True):
@@ -226,6 +226,22 @@ class RemoteSubmission:
             return copy.deepcopy(tuple(args))
         except TypeError:  # one of the student's own functions, which is part of a worker
             return None
+
+    def _kept_each(self, name: str, calls: Sequence[Sequence[Any]]) -> list[tuple[Any, ...] | None]:
+        """The same of several calls, which may share a generator: each crossing takes a number from it."""
+        if name not in self._listened:
+            return [None] * len(calls)
+        try:
+            calls = copy.deepcopy(calls)
+        except TypeError:
+            return [self._kept(name, args) for args in calls]
+        given = []
+        for args in calls:
+            given.append(self._kept(name, args))
+            for arg in args:
+                if isinstance(arg, np.random.Generator):
+                    arg.integers(2**62)  # as it crosses
+        return given
 
     def _hear(self, method: str, name: str, args: tuple[Any, ...] | None, value: T) -> T:
         if args is not None:

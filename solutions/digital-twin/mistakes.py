@@ -858,7 +858,7 @@ mistakes(
 )
 mistakes(
     "PAST_WITH_NEW_DRIVE",
-    "A late measurement leads to a clearly different speed where the drive has just been changed, although the new drive acts only from the twin's time on.",
+    "A late measurement leads to another speed where the drive has just been changed, although the new drive acts only from the twin's time on.",
     'The speed at a time in the past, and on the way from there to twin["t"], comes from the drives that acted then. Keep them in "memory", beside the times from which they acted.',
     kind="fact",
 ).edit("sync", {"last[2], t - last[0]": 'twin["drive"], t - last[0]'})
@@ -1515,6 +1515,7 @@ mistakes(
     "BIAS_STEPS_NOT_NORMAL",
     "Of thousands of bias steps, none is as far from zero as one standard normal number in a hundred.",
     "Draw standard normal numbers: rng.standard_normal(n - 1). Uniform numbers lie between two limits, and numbers of which only the sign is random have one size.",
+    kind="fact",
 ).edit("imu", {"(dt) * rng.standard_normal(n - 1)": "(dt) * rng.choice([-1.0, 1.0], n - 1)"}).edit(
     "imu", {"(dt) * rng.standard_normal(n - 1)": "(dt) * math.sqrt(12) * (rng.random(n - 1) - 0.5)"}
 )
@@ -1656,6 +1657,12 @@ mistakes(
     "To compare: N² is half the mean square of the differences of neighbouring samples, times dt. Does your code halve it twice, or take dt twice?",
 )
 mistakes(
+    "FIT_WITHOUT_NOISE",
+    "For most recordings the noise density is far too small and the walk far too large: what your code fits grows with T, where white noise makes it fall.",
+    "Print the Allan variances: for short T they must be about N²/T. Each block gives the mean of its samples, not their sum.",
+    kind="fact",
+).edit("fit_noise", {"(total[size:] - total[:-size]) / size": "total[size:] - total[:-size]"})
+mistakes(
     "DENSITY_SCATTERS",
     "The noise density is too large for some recordings and too small for others.",
     "N² is half the mean square of the differences of neighbouring samples, times dt. Use all the samples of a recording; in a fit of both terms, divide each equation by its own size.",
@@ -1726,6 +1733,13 @@ mistakes(
     "WALLS_ENDLESS_ONE_WAY",
     "A wall ends on one side only: on the other side your code treats it as endless.",
     "A hit lies between both ends: check 0 <= u and u <= 1.",
+)
+mistakes(
+    "WALL_SHARE_IN_METRES",
+    "The place along a wall, which is 0 at one end and 1 at the other, is mixed up with a length in metres.",
+    "Compare like with like: the share of the wall with 0 and 1, or metres with 0 and the wall's length.",
+).edit("lidar", {"(share <= 1)": "(share <= np.hypot(wx, wy))"}).edit(
+    "lidar", {"(share <= 1)": "(share * np.hypot(wx, wy) <= 1)"}
 )
 mistakes(
     "DISTANCE_SQUARED",
@@ -1952,6 +1966,11 @@ mistakes(
     "The output trails the input: pushed forwards it is at x - gap/2, pushed backwards at x + gap/2.",
 )
 mistakes(
+    "BACKLASH_SAME_SIDE",
+    "The output is always on the same side of the input and as far from it, whatever the state is.",
+    "min(max(state, x - gap/2), x + gap/2): the lower limit belongs to max, the upper one to min.",
+)
+mistakes(
     "GAP_SCALED",
     "Pushed either way, the output stays as far behind the input each time, but not by half the gap.",
     "Half of the gap is on either side: pushed forwards y is x - gap/2, pushed backwards x + gap/2.",
@@ -2150,6 +2169,21 @@ mistakes(
     "Return heading + turn.",
 )
 mistakes(
+    "SLOW_TURN_NOT_TURNED",
+    "In some slow turns the heading that is returned is the old one.",
+    "Return heading + turn in every case, also where the chord counts as straight.",
+).program(
+    "diff_drive_step",
+    """
+        _all_turned = diff_drive_step
+
+
+        def diff_drive_step(pose, v_left, v_right, track, dt):
+            x, y, heading = _all_turned(pose, v_left, v_right, track, dt)
+            return np.array([x, y, pose[2] if abs(heading - pose[2]) < 1e-4 else heading])
+    """,
+)
+mistakes(
     "HEADING_HALF_TURNED",
     "The heading changes by only half of the turn.",
     "Half of the turn gives the direction of the chord; the new heading is heading + turn.",
@@ -2204,6 +2238,11 @@ mistakes(
     "Between two measurements the twin hardly moves, apart from what the measurement corrects.",
     'First predict the state at t_measured from the speed, the drive and the friction, over t_measured - twin["t"] seconds. Then correct it.',
 )
+mistakes(
+    "SURPRISE_OF_OLD_POSITION",
+    "The surprise is the measured position minus the position from before the prediction.",
+    "Predict first; the surprise is z minus the predicted position at t_measured.",
+).edit("sync", {"_correct(state, spread, seen,": "_correct(state, spread, seen + state[0] - last[3],"})
 mistakes(
     "PREDICTS_TOO_LITTLE",
     "Where a measurement brings no surprise, the twin has moved less far than its speed would take it in that time.",
@@ -2421,7 +2460,7 @@ _ALONE = {
     *("NOISE_FOR_BIAS", "BIAS_SUBTRACTED", "TRUE_RATE_MISSING", "BIAS0_ADDED_EACH_STEP"),
     *("BIAS_CONSTANT", "WHITE_NOISE_MISSING", "WALK_SQUARED", "DENSITY_SQUARED"),
     *("Y_MIRRORED", "SPEED_IS_DIFFERENCE", "HEADING_HALF_TURNED", "CHORD_TURNED_BACK", "TRACK_MULTIPLIED"),
-    *("CHORD_ON_ONE_SIDE", "SERIES_OF_WHOLE_TURN", "BACKLASH_SIDE_OF_ZERO"),
+    *("CHORD_ON_ONE_SIDE", "SERIES_OF_WHOLE_TURN", "BACKLASH_SIDE_OF_ZERO", "BACKLASH_SAME_SIDE"),
     *("SPEED_OF_ONE_WHEEL", "WAY_WITHOUT_DT", "TRACK_IGNORED", "HEADING_FORGOTTEN"),
 }
 

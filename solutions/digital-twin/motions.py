@@ -135,6 +135,8 @@ _PLAY = {
         ("BACKLASH_SIDE_OF_ZERO", lambda x, s, h: s if abs(x - s) <= h else x - math.copysign(h, x)),
         ("BACKLASH_ONE_SIDED", lambda x, s, h: max(s, x - h)),
         ("BACKLASH_ONE_SIDED", lambda x, s, h: min(s, x + h)),
+        ("BACKLASH_SAME_SIDE", lambda x, s, h: max(min(s, x - h), x + h)),
+        ("BACKLASH_SAME_SIDE", lambda x, s, h: min(max(s, x + h), x - h)),
         ("BACKLASH_CLIPS_INPUT", lambda x, s, h: min(max(x, s - h), s + h)),
         ("BACKLASH_HOLDS", lambda x, s, h: s),
         ("BACKLASH_ADDS_INPUT", lambda x, s, h: s if abs(x - s) <= h else s + x - math.copysign(h, x - s)),

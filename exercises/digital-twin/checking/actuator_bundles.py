@@ -152,7 +152,7 @@ def arc_end(pose, wheels):
 
 
 _OF_SLOW_TURNS = {"SMALL_TURN_CANCELS", "SLOW_TURN_AS_STRAIGHT", "STRAIGHT_WRONG", "STRAIGHT_DIVIDES_BY_ZERO"}
-_OF_POSITION = {"CHORD_WRONG_WAY", "CHORD_WRONG_LENGTH"}
+_OF_POSITION = {"CHORD_WRONG_WAY", "CHORD_WRONG_LENGTH", "Y_MIRRORED"}
 
 
 def expect_pose(submission, value, pose, wheels, expected=None):
@@ -175,8 +175,9 @@ def expect_pose(submission, value, pose, wheels, expected=None):
             else "After one step, the heading is not the old one plus the turn of the two wheels.",
             help="Compute turn = dt (v_right - v_left)/track by hand, then the chord, x, y and the heading, "
             "as in the README. Which is the first that differs?",
-            diagnose=lambda refuted=fast if units == "m" else _OF_POSITION: bundles.unless(
-                refuted, lambda: actuators.of_drive(submission)
+            diagnose=lambda units=units: bundles.unless(
+                fast if units == "m" else _OF_POSITION,
+                lambda: actuators.of_drive(submission, heading=units == "rad"),
             ),
         )
 
@@ -185,7 +186,8 @@ def expect_slow_turns(submission, rng):
     """As the turn rate goes to zero, the arc goes over into a straight line."""
     # One in each decade of the slow ones: whatever is taken for straight, one just below it is asked for.
     decades = np.arange(-11, -1) + rng.uniform(0, 1, 10)
-    rates = [0.0, 0.0, *(10.0 ** rng.uniform(-14, -11, 8)), *(10.0**decades)]
+    # Rounding spoils a radius most where it is longest, and there at some headings only: many are asked for.
+    rates = [0.0, 0.0, *(10.0 ** rng.uniform(-14, -11, 24)), *(10.0**decades)]
     track = rng.uniform(0.3, 0.8)
     calls = []
     for rate in rates:

@@ -176,19 +176,24 @@ _TURN_ENDS = 0.323280040909522, 1.9474106320399334, 3.9382978723404256
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything
-def of_drive(submission):
-    """The mistake that ``diff_drive_step`` makes: where one turn is right, in ever slower ones."""
+def of_drive(submission, heading=False):
+    """The mistake that ``diff_drive_step`` makes: where one turn is right, in ever slower ones.
+
+    heading: whether it is the heading that is wrong, and not the position
+    """
     end = kit.as_vector(submission.call("diff_drive_step", *_TURN), 3, "pose")
     if not np.all(np.isfinite(end)):
         return None
+    way, right = np.subtract(end[:2], _TURN[0][:2]), np.subtract(_TURN_ENDS[:2], _TURN[0][:2])
+    parts = way / right
+    if abs(end[2] - _TURN_ENDS[2]) < 1e-9 and np.allclose(parts, (1.0, -1.0), rtol=0, atol=1e-9):
+        return named("Y_MIRRORED")
     if (
         abs(end[2] - _TURN_ENDS[2]) < 1e-9
         and abs(_way(end) - _way(_TURN_ENDS)) < 1e-9
         and abs(end[1] - _TURN_ENDS[1]) > 1e-6
     ):
         return named("CHORD_WRONG_WAY")
-    way, right = np.subtract(end[:2], _TURN[0][:2]), np.subtract(_TURN_ENDS[:2], _TURN[0][:2])
-    parts = way / right
     if (
         abs(end[2] - _TURN_ENDS[2]) < 1e-9
         and np.ptp(parts) < 1e-9
@@ -198,12 +203,20 @@ def of_drive(submission):
         return named("CHORD_WRONG_LENGTH")
     if not np.allclose(end, _TURN_ENDS, rtol=1e-9, atol=1e-12):
         return None
-    return kit.attempt(lambda: _of_slow_turns(submission))
+    return kit.attempt(lambda: (_of_slow_headings if heading else _of_slow_turns)(submission))
 
 
 def _way(end):
     """How far the turn has led from where it began, m."""
     return math.hypot(end[0] - _TURN[0][0], end[1] - _TURN[0][1])
+
+
+def _of_slow_headings(submission):
+    """Whether some slow turns leave the heading as it was."""
+    rates = 10.0 ** np.arange(-8, -1)
+    calls = [((0.0, 0.0, 1.0), 0.5 - rate / 4, 0.5 + rate / 4, 0.5, 2.0) for rate in rates]
+    ends = [kit.as_vector(end, 3, "pose")[2] for end in submission.call_each("diff_drive_step", calls)]
+    return named("SLOW_TURN_NOT_TURNED") if np.any(np.abs(np.subtract(ends, 1.0)) < 1e-12) else None
 
 
 def _of_slow_turns(submission):
@@ -239,7 +252,7 @@ def _of_slow_turns(submission):
     slow = [rate for rate in (1e-4, 1e-3, 1e-2, 0.1) if worst(rate) > 1e-6]
     if slow:
         return named("SLOW_TURN_AS_STRAIGHT") if all(map(straight, slow)) else None
-    cancels = any(worst(rate) > 1e-6 and ragged(rate) for rate in (1e-13, 1e-12))
+    cancels = any(worst(rate) > 1e-6 and ragged(rate) for rate in (1e-13, 1e-12, 2e-12, 5e-12, 1e-11))
     return named("SMALL_TURN_CANCELS") if cancels else None
 
 

@@ -41,6 +41,9 @@ _SCENES = (
     ("WALLS_BEHIND_SEEN", _ORIGIN, _WALL, 3.0, _REACH, (0.0, *_at(3.0, 2.0, -2.0))),
     ("WALLS_ENDLESS", _ORIGIN, _WALL, 1.0, _REACH, _at(1.0, 2.0)),
     ("WALLS_ENDLESS", _ORIGIN, _WALL, -1.0, _REACH, _at(1.0, 2.0)),
+    # One of 2 m seems to go on for as much again, and one of half a metre to be half as long.
+    ("WALL_SHARE_IN_METRES", _ORIGIN, _WALL, 0.8, _REACH, _at(0.8, 2.0)),
+    ("WALL_SHARE_IN_METRES", _ORIGIN, _WALL * (1.0, 0.25), 0.05, *_at(0.05, 2.0), (_REACH,)),
     ("NOT_THE_NEAREST", _ORIGIN, _ROW, 0.1, *_at(0.1, 1.0), _at(0.1, 2.0, 3.5)),
     ("NOT_THE_NEAREST", _ORIGIN, _BEFORE, 0.1, *_at(0.1, 1.0), _at(0.1, 2.0)),
     ("BEYOND_RANGE", _ORIGIN, _WALL + np.array([4.0, 0.0]), 0.01, _REACH, _at(0.01, 6.0)),
@@ -164,9 +167,10 @@ def _of_scenes(readings, right, turning, fixed, room):
     if np.all(right[:-4]) and not parallel and room:
         return named("PARALLEL_WALLS")
     seen = zip(_SCENES, readings, strict=False)
-    codes = (code for (code, *_, slips), r in seen if np.min(np.abs(np.subtract(slips, r))) < 1e-9)
+    codes = [code for (code, *_, slips), r in seen if np.min(np.abs(np.subtract(slips, r))) < 1e-9]
     # From within a convex room a beam meets one wall: there it is the nearest.
     only = {"POSITION_IGNORED": fixed, "WALLS_ENDLESS": room, "NOT_THE_NEAREST": room}
+    only["WALL_SHARE_IN_METRES"] = codes.count("WALL_SHARE_IN_METRES") == 2
     return next((named(code) for code in codes if only.get(code, True)), None)
 
 

@@ -379,7 +379,9 @@ def of_density(found, cases, walk=None):
     if min(larger, smaller) > 0.2:
         return named("DENSITY_SCATTERS")
     if max(larger, smaller) > 0.5:
-        return named("DENSITY_TOO_LARGE" if larger > smaller else "DENSITY_TOO_SMALL")
+        none = walk is not None and np.mean((found < right / 3) & (walk > 5 * walks)) > 0.5
+        small = "FIT_WITHOUT_NOISE" if none else "DENSITY_TOO_SMALL"
+        return named("DENSITY_TOO_LARGE" if larger > smaller else small)
     return None
 
 

@@ -24,7 +24,7 @@ def _rms(values):
     return float(np.sqrt(np.mean(np.square(values)))) if len(values) else 0.0
 
 
-def _of_sync(submission, late, backwards, driven=False):
+def _of_sync(submission, late, backwards, driven=False, stops=False):
     """The mistake of ``sync`` in a check whose measurements may be late and whose cart may roll backwards.
 
     driven: whether measurements may be late after another drive has begun
@@ -32,7 +32,16 @@ def _of_sync(submission, late, backwards, driven=False):
     refuted = set() if late else {"LATE_USED_AS_CURRENT", "LATE_STATE_AS_CURRENT", "TIME_RUNS_BACK"}
     refuted |= set() if driven else {"PAST_WITH_NEW_DRIVE", "FRICTION_SIGN_OF_DRIVE"}
     refuted |= set() if backwards else {"LEARNS_FORWARDS_ONLY"}
-    return twins.of_sync(submission, refuted)
+    return twins.of_sync(submission, refuted, stops)
+
+
+def _folded(submission, twin, calls, **kept):
+    """The twins along these calls; where one fails, first whether a twin has all that the next call needs."""
+    try:
+        return submission.fold("sync", twin, calls, **kept)
+    except kit.StudentFailure:
+        twins.states([submission.call("sync", twin, *calls[0])])
+        raise
 
 
 def _along(submission, twin, run):
@@ -41,7 +50,7 @@ def _along(submission, twin, run):
     folded = [twin]
     for start, stop in zip(starts, np.append(starts[1:], len(run.calls)), strict=True):
         twin = kit.as_record(folded.pop(), scenes.KEYS, "the twin") | {"drive": float(run.drives[start])}
-        part = submission.fold("sync", twin, run.calls[start:stop], keep=scenes.SEEN)
+        part = _folded(submission, twin, run.calls[start:stop], keep=scenes.SEEN)
         folded += [{key: twin[key] for key in scenes.SEEN}, *part[1:]]
     return folded
 
@@ -57,7 +66,10 @@ def expect_follows(submission, twin, run, *, settled, frictions, message):
     folded = _along(submission, twin, run)
     rows = twins.path(folded)[1:]
     late, driven = bool(np.any(run.late)), bool(np.ptp(run.drives) > 0)
-    ask = lambda: _of_sync(submission, late, bool(np.any(truth[:, 2] < 0)), late and driven)  # noqa: E731
+    windows = [(truth[:, 0] >= a) & (truth[:, 0] <= b) & ~run.late for a, b, _ in frictions]
+    stops = any(twins.stops(rows[window, 3], end) for window in windows for end in (0, -1))
+    backwards = bool(np.any(truth[:, 2] < 0))
+    ask = lambda: _of_sync(submission, late, backwards, late and driven, stops)  # noqa: E731
     _expect_no_flight(rows, {"measurements": len(calls), "twin": twin}, ask)
     kit.expect_array(
         rows[:, 0],
@@ -249,7 +261,9 @@ def expect_twin_contract(submission, rng):
     friction, sign = rng.uniform(0.4, 0.9), rng.choice([-1.0, 1.0])
     cart = scenes.Cart(((0.0, friction),), v=sign)
     run = scenes.measured(cart, sign * friction, scenes.moments(rng, 16.0), rng, late=0.3)
-    folded = submission.fold("sync", new_twin(0.6, sign * friction, speed=sign), run.calls)
+    twin = new_twin(0.6, sign * friction, speed=sign)
+    _expect_small_memory(submission, twin, run.calls)
+    folded = submission.fold("sync", twin, run.calls)
     twins.states(folded)
     in_time, late = (int(np.flatnonzero(run.late == when)[5]) for when in (False, True))
     picks = [late, 3, in_time, 3]
@@ -275,7 +289,14 @@ def expect_twin_contract(submission, rng):
                 message=f"The {key} of the returned twin is not that of the twin that was passed in.",
                 diagnose=twins.named("DRIVE_CHANGED"),
             )
-    held, before = (twins.numbers_in(folded[i]["memory"]) for i in (-1, len(folded) // 2))
+
+
+def _expect_small_memory(submission, twin, calls):
+    """Looked at after these measurements and after half of them; all that it held on the way is too much."""
+    held, before = (
+        twins.numbers_in(_folded(submission, twin, some, keep=scenes.SEEN)[-1]["memory"])
+        for some in (calls, calls[: len(calls) // 2])
+    )
     for most, code, message in (
         (1.5 * before + 20, "MEMORY_GROWS", "The memory grows with the length of the run."),
         (MEMORY_WITHIN, "MEMORY_TOO_LARGE", "The memory holds more numbers than the README allows."),
@@ -320,7 +341,7 @@ def expect_sync_closes_loop(submission, rng):
         start = 5.0 * i
         times = np.append(scenes.moments(rng, 4.95, start), start + 5.0)
         run = scenes.measured(cart, twin["drive"], times, rng, sigma=QUIET)
-        folded = submission.fold("sync", twin, run.calls, keep=scenes.SEEN)
+        folded = _folded(submission, twin, run.calls, keep=scenes.SEEN)
         rows = twins.path(folded)
         _expect_no_flight(rows[1:], given, ask)
         speeds = run.truth[run.truth[:, 0] > start + 3.0, 2]

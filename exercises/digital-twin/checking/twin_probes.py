@@ -54,16 +54,18 @@ def same(a, b):
 
 
 @np.errstate(all="ignore")  # a submission may have returned anything
-def of_sync(submission, refuted=()):
+def of_sync(submission, refuted=(), stops=False):
     """The mistake that ``sync`` makes: first in single steps, then along a run of its own.
 
     refuted: codes of mistakes that make no difference to the numbers of the check that asks
+    stops: whether the friction came to the same number again and again in that check
     """
     looks = (
         lambda: [_braking(submission)],
         lambda: _in_one_step(submission),
         lambda: [_backwards(submission), _against_the_drive(submission), _learning(submission)],
         lambda: [_drops_large_ones(submission)],
+        lambda: [_limit(submission) if stops else None],
     )
     codes = []
     for look in looks:
@@ -174,7 +176,7 @@ def _in_one_step(submission):
     t, x, v, b = states([warm])[0].tolist()
     if not math.isfinite(t + x + v):
         return []  # what it has made of a steady cart is beyond experiments
-    b = b if 0.01 < b < 100.0 else 0.5
+    before, b = (x, b), b if 0.01 < b < 100.0 else 0.5
     soon, expected = (_predicted(warm, b, dt) for dt in (0.1, 0.2))
     pushed = {**warm, "drive": warm["drive"] + 4.0}
     at_once = [(warm, z, t + 0.1) for z in (soon, soon + _SURPRISE)]
@@ -197,7 +199,7 @@ def _in_one_step(submission):
     seen = [z for _, z, _ in (*usual, *at_once)]
     believed = np.allclose(rows[[0, 1, 2, 3, 4, 5, 7, 8], 1], seen, rtol=0, atol=1e-9)
     # The drive acts from the twin's time on: what it is by now tells nothing of a moment 0.4 s ago.
-    late_apart = abs(rows[11, 2] - rows[9, 2]) > 0.5
+    late_apart = abs(rows[11, 2] - rows[9, 2]) > 0.05
     undriven = abs(v_driven - v0) < 0.05 and abs(driven - x0) < 1e-6
     tests = (
         ("GLOBAL_MEMORY", not same(twins[0], twins[2])),
@@ -209,6 +211,7 @@ def _in_one_step(submission):
         ("NO_CORRECTION", far <= 1e-6 * _SURPRISE),
         ("SMALL_SURPRISES_IGNORED", abs(moved) <= 1e-6 < abs(rows[5, 1] - x0) / _SURPRISE),
         ("BELIEVES_MEASUREMENT", believed),
+        ("SURPRISE_OF_OLD_POSITION", _of_old_position(*before, (expected, *rows[:2]), (soon, *rows[7:9]))),
         ("STEP_FIXED", abs(went - 0.5) < 0.06 and abs(went_soon - 1.0) < 0.06),
         ("NO_PREDICTION", max(abs(went), abs(went_soon)) < 0.02),
         ("PREDICTS_TOO_LITTLE", went < 0.75),
@@ -218,13 +221,28 @@ def _in_one_step(submission):
         # As if it were new: by that share of the way back, or so, and not by twice as much.
         ("LATE_USED_AS_CURRENT", good and now and 0.02 < (x - x_late) / abs(v) < 0.64 * max(moved, 0.1)),
         ("LATE_STATE_AS_CURRENT", good and then and abs(v) > 0.5 and abs(t_late - t) < 1e-9),
-        ("PAST_WITH_NEW_DRIVE", good and now and late_apart),
+        ("PAST_WITH_NEW_DRIVE", good and late_apart and (now or abs(x_late - x) < 0.05 * abs(v))),
         ("FRICTION_LEARNS_BACKWARDS", v > 0.2 and b_ahead - b0 > 1e-9),
         ("SPEED_NOT_CORRECTED", np.max(np.abs(rows[1:6, 2] - v0)) < 1e-9),
         ("SPEED_CORRECTED_BACKWARDS", v_ahead < v0),
         ("SPEED_SHARE_OVER_DT", min(gains) > 0.12 and abs(gains[0] - gains[1]) < 0.05 * gains[1]),
     )
     return [code for code, seen in tests if seen]
+
+
+def _of_old_position(x, b, usual, soon):
+    """Whether a surprise is z minus the position before the prediction, and each correction that much more.
+
+    x, b: position and friction before
+    usual, soon: the predicted position, and the states after measurements there and ``_SURPRISE`` ahead
+    """
+    for place, none, ahead in (usual, soon):
+        share, learned = (ahead[[1, 3]] - none[[1, 3]]) / _SURPRISE
+        more = (share * (place - x), learned * (place - x))
+        off = (none[1] - place - more[0], none[3] - b - more[1])
+        if not (0.05 < share < 0.95 and all(abs(o) < 0.03 * abs(m) for o, m in zip(off, more, strict=True))):
+            return False
+    return True
 
 
 def _unsurprised(first, ahead, z):
@@ -338,10 +356,26 @@ def _too_slow(friction):
     # One that swings far is not slow.
     if not 0.505 < np.mean(friction) < 0.7 or np.std(friction) > 0.1:
         return None
-    # What is learned from noisy measurements never comes to the same number twice, a limit does.
+    return "FRICTION_LIMITED" if stops(friction, -1) else "FRICTION_LEARNS_SLOWLY"
+
+
+def _limit(submission):
+    """Whether an unusual friction is learned up to one number, or down to one, and no further."""
+    for right, end in ((1.3, -1), (0.35, 0)):
+        twins, _ = _run(submission, 0.6, ((0.0, right),), 15.0)
+        friction = states(twins)[-40:, 3]
+        if abs(float(np.mean(friction)) - right) > 0.06 and stops(friction, end):
+            return "FRICTION_LIMITED"
+    return None
+
+
+def stops(friction, end):
+    """Whether the largest number (end -1) or the smallest (0) comes back, and no other one.
+
+    What is learned from noisy measurements never comes to the same number twice, a limit does.
+    """
     apart, times = np.unique(friction, return_counts=True)
-    limited = times[-1] >= 3 and len(apart) == len(friction) - times[-1] + 1
-    return "FRICTION_LIMITED" if limited else "FRICTION_LEARNS_SLOWLY"
+    return bool(len(apart)) and times[end] >= 3 and len(apart) == len(friction) - times[end] + 1
 
 
 def _memory_unread(submission, twin):

@@ -639,6 +639,15 @@ def test_an_actuator_is_told_no_other_mistake_of_the_same_effect(code, task, cha
     assert told(task, changed(task, *changes)) == code
 
 
+def test_a_heading_that_slow_turns_leave_is_a_reason_for_headings_only():
+    kept = changed("diff_drive_step", ("heading + turn]", "heading + turn * (abs(turn) > 1e-3)]"))
+    pose, wheels = np.array([1.0, 2.0, 0.5]), (0.3, 0.3 + 1e-5, 0.4, 1.0)
+    value = kept(pose, *wheels)
+    _, code = failed(actuator_bundles.expect_pose, Fake("diff_drive_step", kept), value, pose, wheels)
+    assert code == "SLOW_TURN_NOT_TURNED"
+    assert told("diff_drive_step", kept) is None
+
+
 REST = '"t": t_measured'
 
 
@@ -658,6 +667,7 @@ SYNC = [
     ("SHARE_OVER_ONE", [("x + 0.3", "x + 1.5")]),
     ("FRICTION_SIGN_OF_DRIVE", [("np.sign(v)", "np.sign(twin['drive'])")]),
     ("LARGE_SURPRISES_DROPPED", [("z - x", "(z - x) * (abs(z - x) < 2 * twin['sigma'])")]),
+    ("SURPRISE_OF_OLD_POSITION", [("z - x", "z - twin['position']")]),
     (None, [("z - x", "float(np.clip(z - x, -2 * twin['sigma'], 2 * twin['sigma']))")]),
 ]
 
@@ -665,6 +675,32 @@ SYNC = [
 @pytest.mark.parametrize(("code", "changes"), SYNC, ids=[f"{i}-{code}" for i, (code, _) in enumerate(SYNC)])
 def test_a_twin_is_told_no_other_mistake_of_the_same_effect(code, changes):
     assert told("sync", shares(*changes)) == code
+
+
+def test_a_late_measurement_that_is_rolled_back_to_under_the_present_drive_is_told_so():
+    in_time = shares()
+
+    def predicted(twin, t):
+        state = np.array([twin["position"], twin["speed"], twin["friction"]])
+        return right._predict(state, np.zeros((3, 3)), twin["drive"], t - twin["t"])[0]
+
+    def back_and_forth(twin, z, t):
+        if t >= twin["t"]:
+            return in_time(twin, z, t)
+        x, v, _ = predicted(twin, t)
+        then = {**twin, "t": t, "position": x + 0.3 * (z - x), "speed": v + 0.3 * (z - x)}
+        x, v, _ = predicted(then, twin["t"])
+        return {**twin, "position": x, "speed": v}
+
+    assert told("sync", back_and_forth) == "PAST_WITH_NEW_DRIVE"
+
+
+@pytest.mark.parametrize(("limits", "stops"), [((0.3, 0.9), True), ((0.45, 5.0), True), ((0.05, 5.0), False)])
+def test_a_limit_is_told_where_a_friction_stopped_at_it(limits, stops):
+    limited = shares(("0.05), 5.0)", f"{limits[0]}), {limits[1]})"))
+    said = twins.of_sync(Fake("sync", limited), stops=True)
+    assert (said is not None and said.code == "FRICTION_LIMITED") == stops
+    assert twins.of_sync(Fake("sync", limited)) is None
 
 
 def test_a_history_that_only_late_measurements_read_is_read():

@@ -165,6 +165,25 @@ def test_numbers_of_its_own_are_nothing_that_is_kept(session: GradingSession) ->
     assert "STATE_KEPT" not in codes(found["impulse_1d"])
 
 
+def test_calls_that_share_a_generator_are_asked_again_with_the_numbers_they_had() -> None:
+    twin = CATALOG.exercise("digital-twin")
+    source = (
+        solution_path(CATALOG, twin).read_text("utf-8")
+        + """
+class _Wall:  # what might keep something is listened to
+    pass
+_right = lidar
+def lidar(pose, segments, angles, r_max, sigma, rng):
+    _Wall()
+    exact = _right(pose, segments, angles, r_max, 0.0, np.random.default_rng(1))
+    return np.where(exact < r_max, exact + sigma * rng.standard_normal(len(exact)), r_max)
+"""
+    )
+    with GradingSession(twin, CATALOG, scope="public", terms=Terms(timeout=20.0)) as opened:
+        verdict = opened.grade(Submission({twin.module: source.encode()}))
+    assert codes([check for check in verdict.checks if check.status != "pass"]) == {"NEGATIVE_RANGE"}
+
+
 def test_results_that_the_next_call_fills_again_fail(session: GradingSession) -> None:
     buffers = """
 _right, _kept = resolve, {}

@@ -69,9 +69,20 @@ mistakes(
 )
 mistakes(
     "LAST_WORLD",
-    "You compare the costs in one world only.",
+    "You compare the costs in one world.",
     "Compare the largest cost of each controller.",
 ).edit("robust", {"max(row)": "row[-1]"})
+mistakes(
+    "COUNTED_THROUGH_ALL",
+    "You look for the smallest of all costs, and count through every cost of every controller.",
+    "Take the largest cost of each controller first. Then look for the smallest of these.",
+).body(
+    "robust",
+    """
+        every = [cost for row in costs for cost in row]
+        return every.index(min(every))
+    """,
+)
 
 mistakes.accept(
     "The smallest index by a key",

@@ -77,6 +77,11 @@ mistakes(
     "You took the arm as stretched out: a2 is not used.",
     "The second link points at a1 + a2.",
 ).edit("hand", {"math.cos(a1 + a2)": "math.cos(a1)", "math.sin(a1 + a2)": "math.sin(a1)"})
+mistakes(
+    "ANGLES_SUBTRACTED",
+    "Your second link points at a2 - a1 from the axis.",
+    "The elbow turns with the first link: add the angles.",
+).edit("hand", {"cos(a1 + a2)": "cos(a2 - a1)", "sin(a1 + a2)": "sin(a2 - a1)"})
 
 mistakes.accept(
     "Turns of complex numbers",

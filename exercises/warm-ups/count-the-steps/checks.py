@@ -23,7 +23,7 @@ def test_quotients_beside_a_whole_number(submission):
         ],
         expect=kit.expect_equal,
         message="The number of steps is wrong.",
-        help="Print duration / h and your result with repr(): how far is the first from a whole number, and is the second one an int?",
+        help="Print duration / h with repr(): how far is it from a whole number? Is your result an int?",
     )
 
 

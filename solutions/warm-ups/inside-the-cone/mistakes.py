@@ -94,6 +94,16 @@ mistakes(
     "Beyond the limit the factor is upside down, so your impulse becomes longer.",
     "Multiply by the limit and divide by the length of wanted.",
 ).edit("friction", {"part * most / size": "part * size / most"})
+mistakes(
+    "COMPARED_WITH_NORMAL",
+    "You compare the length of wanted with the normal impulse.",
+    "The limit is mu times the normal impulse.",
+).edit("friction", {"size <= most": "size <= normal"})
+mistakes(
+    "MU_TIMES_WANTED",
+    "Beyond the limit you multiply wanted by mu.",
+    "Give it the length of the limit there, whatever its own length is.",
+).edit("friction", {"part * most / size": "part * mu"})
 
 mistakes.accept(
     "By way of length and angle",

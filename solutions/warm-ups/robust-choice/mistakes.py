@@ -83,6 +83,11 @@ mistakes(
         return every.index(min(every))
     """,
 )
+mistakes(
+    "COSTS_NOT_INDEX",
+    "Your result is the list of the controller's costs, not its index.",
+    "Give its place in the list.",
+).body("robust", "return min(costs, key=max)")
 
 mistakes.accept(
     "The smallest index by a key",

@@ -23,7 +23,7 @@ def test_quotients_beside_a_whole_number(submission):
         ],
         expect=kit.expect_equal,
         message="The number of steps is wrong.",
-        help="Print duration / h with repr(): how far is it from a whole number?",
+        help="Print duration / h with repr(): how far is it from a whole number? Is your result an int?",
     )
 
 

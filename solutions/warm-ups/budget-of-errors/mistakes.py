@@ -53,6 +53,11 @@ mistakes(
     "total_error",
     {"math.sqrt(sum(error * error for error in errors))": "sum(error * error for error in errors) / 2"},
 )
+mistakes(
+    "FIRST_TWO_ONLY",
+    "Only the first two errors count.",
+    "The list may be longer: go through all of it.",
+).edit("total_error", {"for error in errors": "for error in errors[:2]"})
 
 mistakes.accept(
     "With hypot",

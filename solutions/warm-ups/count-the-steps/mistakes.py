@@ -40,6 +40,11 @@ mistakes(
         return steps
     """,
 )
+mistakes(
+    "FLOOR_DIVIDED",
+    "You cut off the decimals of the exact quotient, as // does: 1.0 // 0.1 is 9.",
+    "Divide with /, and round to the nearest whole number.",
+).edit("steps_in", {"round(duration / h)": "int(duration // h)"})
 
 mistakes.accept(
     "Cuts off after adding a half",

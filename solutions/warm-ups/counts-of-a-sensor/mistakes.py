@@ -63,6 +63,16 @@ mistakes(
         return value if value <= limit else 0.0
     """,
 )
+mistakes(
+    "MULTIPLIED_FIRST",
+    "You multiply by the resolution before you round, and divide by it afterwards.",
+    "Divide the distance by the resolution: that is its counts. Multiply whole counts by it: that is metres.",
+).edit("reading", {"round(distance / resolution) * resolution": "round(distance * resolution) / resolution"})
+mistakes(
+    "LARGER_OF_BOTH",
+    "You take the larger of the rounded distance and the limit.",
+    "A sensor never reads more than its limit: take the smaller.",
+).edit("reading", {"min(": "max("})
 
 mistakes.accept(
     "Rounds by hand",

@@ -62,6 +62,23 @@ mistakes(
     "You divided the sum of v f by the number of points.",
     "Divide it by the sum of the squared speeds.",
 ).edit("damping", {"sum(v * v for v in speeds)": "len(speeds)"})
+mistakes(
+    "MEDIAN_OF_QUOTIENTS",
+    "Your result is the median of force over speed, in which a fast point counts no more than a slow one.",
+    "Make the sum of (f - b v)^2 smallest.",
+).body(
+    "damping",
+    """
+        import statistics
+
+        return statistics.median(f / v for v, f in zip(speeds, forces))
+    """,
+)
+mistakes(
+    "BETWEEN_TWO_POINTS",
+    "You took the slope between the first point and the last.",
+    "Use all points, and a line through zero: make the sum of (f - b v)^2 smallest.",
+).body("damping", "return (forces[-1] - forces[0]) / (speeds[-1] - speeds[0])")
 
 mistakes.accept(
     "Two dot products",

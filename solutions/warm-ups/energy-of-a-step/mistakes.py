@@ -44,6 +44,21 @@ mistakes(
     "You squared 1 + h omega. Its mixed term is not there in the energy.",
     "The mixed terms of position and velocity have opposite signs and cancel.",
 ).edit("growth", {"1.0 + h * h * k / m": "(1.0 + h * (k / m) ** 0.5) ** 2"})
+mistakes(
+    "MASS_FORGOTTEN",
+    "The mass is not used.",
+    "The acceleration is -k x / m.",
+)
+mistakes(
+    "FOURTH_POWER",
+    "You squared k / m, too.",
+    "k / m is already the square of the angular frequency.",
+)
+mistakes(
+    "ROOT_OF_THE_FREQUENCY",
+    "You took the root of k / m where k / m itself belongs.",
+    "The angular frequency is squared here, and its square is k / m.",
+)
 
 mistakes.accept(
     "By way of the angular frequency",
@@ -73,7 +88,12 @@ mistakes.terms(
     "growth",
     growth_of,
     {
-        "omega2": {"FREQUENCY_UPSIDE_DOWN": lambda k, m: m / k},
+        "omega2": {
+            "FREQUENCY_UPSIDE_DOWN": lambda k, m: m / k,
+            "MASS_FORGOTTEN": lambda k, m: k,
+            "FOURTH_POWER": lambda k, m: (k / m) ** 2,
+            "ROOT_OF_THE_FREQUENCY": lambda k, m: (k / m) ** 0.5,
+        },
         "step": {"FIRST_POWER": lambda h: h},
         "sign": {"SHRINKS": -1.0},
         "root": {"WIDTH_NOT_ENERGY": 0.5},

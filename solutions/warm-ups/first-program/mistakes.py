@@ -202,6 +202,20 @@ mistakes(
     "There is one step too many.",
     "The loop takes n steps, and the start makes n + 1 pairs.",
 ).edit("run", {"range(n)": "range(n + 1)"})
+mistakes(
+    "NEAREST_TO_THE_GROUND",
+    "Your result is the time of the sample nearest to the ground, also where that is above it.",
+    "Return as soon as a height is 0 or less.",
+).body(
+    "landing_time",
+    """
+        nearest = min(abs(height) for height in heights)
+        for k, height in enumerate(heights):
+            if abs(height) == nearest:
+                return k * H
+        return None
+    """,
+)
 
 mistakes.accept(
     "Arrays instead of lists",

@@ -62,6 +62,11 @@ mistakes(
     "The time left over is taken out of the account.",
     "It belongs to the simulation: add it to the frame.",
 ).edit("ticks", {"frame + left": "frame - left"})
+mistakes(
+    "REST_IN_STEPS",
+    "The time left is in steps, not in seconds.",
+    "A part of a step times h is a time.",
+).edit("ticks", {"account - steps * h": "account / h - steps"})
 
 mistakes.accept(
     "Divides with remainder and returns a list",

@@ -51,6 +51,11 @@ mistakes(
     "You took the lever arm as a tangent.",
     "The bar is the long side of the triangle, so the side along the horizontal goes with the cosine.",
 ).edit("holding_torque", {"math.cos": "math.tan"})
+mistakes(
+    "THIRD_OF_THE_LENGTH",
+    "You let the weight act at a third of the length.",
+    "It acts in the middle of a uniform bar. The third belongs to its moment of inertia.",
+).edit("holding_torque", {"0.5 * m * g * l": "m * g * l / 3"})
 
 mistakes.accept(
     "As a cross product",

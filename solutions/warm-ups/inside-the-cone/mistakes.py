@@ -84,6 +84,26 @@ mistakes(
     "Beyond the limit you multiply by the limit, and do not divide by the length of wanted.",
     "First make the length 1, then multiply by the limit.",
 ).edit("friction", {"part * most / size": "part * most"})
+mistakes(
+    "EACH_AT_THE_LIMIT",
+    "Beyond the limit each component is the limit.",
+    "The length of the two together is limited: shorten both alike, and keep their signs.",
+).edit("friction", {"part * most / size": "most"})
+mistakes(
+    "FACTOR_UPSIDE_DOWN",
+    "Beyond the limit the factor is upside down, so your impulse becomes longer.",
+    "Multiply by the limit and divide by the length of wanted.",
+).edit("friction", {"part * most / size": "part * size / most"})
+mistakes(
+    "COMPARED_WITH_NORMAL",
+    "You compare the length of wanted with the normal impulse.",
+    "The limit is mu times the normal impulse.",
+).edit("friction", {"size <= most": "size <= normal"})
+mistakes(
+    "MU_TIMES_WANTED",
+    "Beyond the limit you multiply wanted by mu.",
+    "Give it the length of the limit there, whatever its own length is.",
+).edit("friction", {"part * most / size": "part * mu"})
 
 mistakes.accept(
     "By way of length and angle",

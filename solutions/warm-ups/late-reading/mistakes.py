@@ -37,7 +37,7 @@ mistakes(
 mistakes(
     "NEAREST_NOT_NEWEST",
     "You take the value whose arrival is nearest, even if it has not arrived yet.",
-    "Only values that have arrived can be read; before the first arrival there is none.",
+    "Look for the last among those that have arrived, and at no others.",
 ).body(
     "seen",
     """
@@ -129,6 +129,11 @@ mistakes(
         return None
     """,
 )
+mistakes(
+    "TIME_NOT_VALUE",
+    "Your result is the time of the sample, not its value.",
+    "Give the value that was taken at that time.",
+).edit("seen", {"value for time": "time for time"})
 
 mistakes.accept(
     "Goes from the newest to the oldest",
@@ -165,6 +170,12 @@ def index(times, values, latency, now):
     return arrived[-1] if arrived else None
 
 
+def nearest_if_any(times, values, latency, now):
+    if not times or times[0] + latency > now:
+        return None
+    return values[min(range(len(times)), key=lambda k: abs(times[k] + latency - now))]
+
+
 def falls_off(times, values, latency, now):
     for k, time in enumerate(times):
         if time + latency > now:
@@ -175,6 +186,7 @@ def falls_off(times, values, latency, now):
 @mistakes.more
 def hypotheses():
     yield "seen", ("INDEX_NOT_VALUE",), index
+    yield "seen", ("NEAREST_NOT_NEWEST",), nearest_if_any
     yield "seen", ("LAST_FOR_NONE", "ALL_ARRIVED_IS_NONE"), falls_off
     yield from with_terms(
         "seen",

@@ -93,6 +93,19 @@ mistakes(
         return max(abs(s - m) for s, m in zip(simulated, measured))
     """,
 )
+mistakes(
+    "EACH_PATH_ALONE",
+    "You took the root mean square of each path, and subtracted one from the other.",
+    "First subtract the paths point by point, then square these differences.",
+).body(
+    "rms",
+    """
+        def size(path):
+            return math.sqrt(sum(p * p for p in path) / len(path))
+
+        return size(simulated) - size(measured)
+    """,
+)
 
 mistakes.accept(
     "By the length of the vector of differences",

@@ -52,10 +52,20 @@ mistakes(
     "Balls that just touch have their centres r1 + r2 apart: add them.",
 ).edit("overlap", {"r1 + r2": "abs(r1 - r2)"})
 mistakes(
+    "SQUARES_COMPARED",
+    "You subtracted the square of the distance from the square of the radii's sum.",
+    "Squares tell whether two balls overlap, but not how far: subtract the lengths.",
+).edit("overlap", {"r1 + r2 - math.dist(p, q)": "(r1 + r2) ** 2 - math.dist(p, q) ** 2"})
+mistakes(
     "SIZE_ONLY",
     "You took the size of the depth, so a gap counts as an overlap.",
     "Leave out the abs: a gap is negative.",
 ).edit("overlap", {"r1 + r2 - math.dist(p, q)": "abs(r1 + r2 - math.dist(p, q))"})
+mistakes(
+    "ONE_COORDINATE",
+    "Only one coordinate counts in your distance.",
+    "The balls lie in a plane: the distance of their centres is math.dist(p, q).",
+)
 
 mistakes.accept(
     "Pythagoras by hand",
@@ -84,6 +94,7 @@ mistakes.terms(
     {
         "distance": {
             "DISTANCE_SQUARED": lambda p, q: math.dist(p, q) ** 2,
+            "ONE_COORDINATE": lambda p, q: abs(p[0] - q[0]),
             "SIZES_ADDED": lambda p, q: abs(p[0] - q[0]) + abs(p[1] - q[1]),
         },
         "radii": {
@@ -100,3 +111,8 @@ mistakes.terms(
 def one_radius():
     yield "overlap", ("ONE_RADIUS_ONLY",), lambda p, q, r1, r2: r2 - math.dist(p, q)
     yield "overlap", ("ONE_RADIUS_ONLY",), lambda p, q, r1, r2: min(r1, r2) - math.dist(p, q)
+
+
+@mistakes.more
+def only_across():
+    yield "overlap", ("ONE_COORDINATE",), lambda p, q, r1, r2: r1 + r2 - abs(p[1] - q[1])

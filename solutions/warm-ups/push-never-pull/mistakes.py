@@ -44,6 +44,11 @@ mistakes(
     "You compare the correction with the sum as if it took from it.",
     "A correction may add as much as it wants. Only total + wanted must not be below zero.",
 ).edit("applied", {"max(total + wanted, 0.0) - total": "min(total, wanted)"})
+mistakes(
+    "LARGER_OF_THE_TWO",
+    "You give the larger of wanted and total.",
+    "The least that can be applied is minus the total: that takes back all there is.",
+).body("applied", "return max(wanted, total)")
 
 mistakes.accept(
     "The correction is at least minus the sum",

@@ -69,9 +69,25 @@ mistakes(
 )
 mistakes(
     "LAST_WORLD",
-    "You compare the costs in one world only.",
+    "You compare the costs in one world.",
     "Compare the largest cost of each controller.",
 ).edit("robust", {"max(row)": "row[-1]"})
+mistakes(
+    "COUNTED_THROUGH_ALL",
+    "You look for the smallest of all costs, and count through every cost of every controller.",
+    "Take the largest cost of each controller first. Then look for the smallest of these.",
+).body(
+    "robust",
+    """
+        every = [cost for row in costs for cost in row]
+        return every.index(min(every))
+    """,
+)
+mistakes(
+    "COSTS_NOT_INDEX",
+    "Your result is the list of the controller's costs, not its index.",
+    "Give its place in the list.",
+).body("robust", "return min(costs, key=max)")
 
 mistakes.accept(
     "The smallest index by a key",

@@ -86,6 +86,11 @@ mistakes(
     "The two numbers are exchanged.",
     "The ERP comes first, then the CFM.",
 ).edit("same_floor", {"new_h * spring / whole, 1 / whole": "1 / whole, new_h * spring / whole"})
+mistakes(
+    "ERP_AS_A_DECAY",
+    "Your ERP is 1 - (1 - erp)**(new_h / h): the error decays as fast as before, but on another floor.",
+    "Compute the spring and the damper, and from them the ERP at the new step.",
+)
 
 mistakes.accept(
     "Solves two equations for the spring and the damper",
@@ -123,6 +128,7 @@ mistakes.terms(
     {
         "erp": {
             "ERP_KEPT": lambda e, r: e,
+            "ERP_AS_A_DECAY": lambda e, r: 1 - (1 - e) ** r,
             "ERP_SCALED": lambda e, r: e * r,
             "ERP_SCALED_AGAINST_THE_STEP": lambda e, r: e / r,
         },

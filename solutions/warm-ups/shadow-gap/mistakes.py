@@ -168,6 +168,20 @@ mistakes(
         return max(on_b[0] - on_a[-1], on_a[0] - on_b[-1])
     """,
 )
+mistakes(
+    "WHOLE_SHADOW",
+    "Where the shadows overlap you gave the length of a whole shadow.",
+    "Measure from an end of one to the end of the other that faces it, and take the shorter of the two ways.",
+).body(
+    "shadow_gap",
+    """
+        size = math.hypot(*direction)
+        on_a = [(x * direction[0] + y * direction[1]) / size for x, y in a]
+        on_b = [(x * direction[0] + y * direction[1]) / size for x, y in b]
+        gap = max(min(on_b) - max(on_a), min(on_a) - max(on_b))
+        return gap if gap > 0 else -min(max(on_a) - min(on_a), max(on_b) - min(on_b))
+    """,
+)
 
 mistakes.accept(
     "Divides once, at the end",

@@ -52,6 +52,11 @@ mistakes(
     "Only the measurement is multiplied by the share, and then the prediction is subtracted in full.",
     "Put brackets round measured - predicted.",
 ).edit("corrected", {"(measured - predicted)": "measured - predicted"})
+mistakes(
+    "SAME_SHARE_OF_BOTH",
+    "You take the same share of the prediction and of the measurement.",
+    "If the measurement has a share, the prediction has what is left of 1.",
+).edit("corrected", {"predicted + share * (measured - predicted)": "share * predicted + share * measured"})
 
 mistakes.accept(
     "Starts from the other end",

@@ -152,6 +152,11 @@ mistakes(
     "You give None only for angles of a quarter turn, to either side.",
     "After a further half turn the rod is upright or hangs again: compare |cos(angle)| with 1e-9.",
 ).edit("joint_speeds", {"abs(math.cos(angle)) < 1e-9": "abs(abs(angle) - math.pi / 2) < 1e-9"})
+mistakes(
+    "RATE_FORGOTTEN",
+    "The rod's share in x is not multiplied by the rate of turning.",
+    "The derivative of cos(angle) is -sin(angle) times the rate.",
+).edit("joint_speeds", {"math.sin(angle) * turn": "math.sin(angle)"})
 
 mistakes.accept(
     "Solves J v = (vx, vy)",

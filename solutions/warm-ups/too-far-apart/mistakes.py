@@ -56,6 +56,11 @@ mistakes(
     "You took the root of the sum, but the uncertainties are not squared.",
     "Square each, add, then take the root.",
 ).edit("distance_in_doubts", {"math.hypot(doubt_s, doubt_m)": "math.sqrt(doubt_s + doubt_m)"})
+mistakes(
+    "DOUBTS_MULTIPLIED",
+    "You divide by the root of the product of the uncertainties.",
+    "Add their squares and take the root.",
+).edit("distance_in_doubts", {"math.hypot(doubt_s, doubt_m)": "math.sqrt(doubt_s * doubt_m)"})
 
 mistakes.accept(
     "The root of a quotient",

@@ -222,3 +222,15 @@ mistakes.accept(
             return move
     """,
 )
+
+
+def without_sizes(x, y, width, height):
+    along, across = width - x, height - y
+    if along <= 0 or across <= 0:
+        return 0.0, 0.0
+    return (along, 0.0) if along < across else (0.0, across)
+
+
+@mistakes.more
+def no_sizes_and_no_signs():
+    yield "way_out", ("NO_SIZE_OF_X", "ALWAYS_FORWARDS"), without_sizes

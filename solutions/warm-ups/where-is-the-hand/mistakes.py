@@ -77,6 +77,16 @@ mistakes(
     "You took the arm as stretched out: a2 is not used.",
     "The second link points at a1 + a2.",
 ).edit("hand", {"math.cos(a1 + a2)": "math.cos(a1)", "math.sin(a1 + a2)": "math.sin(a1)"})
+mistakes(
+    "ANGLES_SUBTRACTED",
+    "Your second link points at a2 - a1 from the axis.",
+    "The elbow turns with the first link: add the angles.",
+).edit("hand", {"cos(a1 + a2)": "cos(a2 - a1)", "sin(a1 + a2)": "sin(a2 - a1)"})
+mistakes(
+    "ELBOW_ONCE_FROM_THE_AXIS",
+    "In one of the two coordinates the second angle is measured from the x axis.",
+    "Use a1 + a2 in both.",
+).edit("hand", {"sin(a1 + a2)": "sin(a2)"})
 
 mistakes.accept(
     "Turns of complex numbers",
@@ -128,4 +138,16 @@ def hypotheses():
             "order": {"AXES_SWAPPED": -1},
             "unit": {"DEGREES": math.radians},
         },
+    )
+
+
+@mistakes.more
+def once_from_the_axis():
+    yield (
+        "hand",
+        ("ELBOW_ONCE_FROM_THE_AXIS",),
+        lambda a1, a2, l1, l2: (
+            l1 * math.cos(a1) + l2 * math.cos(a2),
+            l1 * math.sin(a1) + l2 * math.sin(a1 + a2),
+        ),
     )

@@ -92,6 +92,11 @@ mistakes(
         return x, v
     """,
 )
+mistakes(
+    "SMALLER_STEPS",
+    "You divide the step into smaller ones, and the swing still grows, only slower.",
+    "Leave the step as it is: let one of the two lines use the value that the other has just computed.",
+)
 
 mistakes.accept(
     "Half a kick on either side of the move",
@@ -149,3 +154,30 @@ mistakes.terms(
         "mass": {"MASS_LOST": lambda m: 1.0},
     },
 )
+
+
+def smaller(parts):
+    def swing(x, v, k, m, h, n):
+        for _ in range(parts * n):
+            x, v = x + h / parts * v, v - h / parts * k / m * x
+        return x, v
+
+    return swing
+
+
+def moves_first(mass=lambda m: m, sign=-1.0):
+    def swing(x, v, k, m, h, n):
+        for _ in range(n):
+            x += h * v
+            v += h * sign * k / mass(m) * x
+        return x, v
+
+    return swing
+
+
+@mistakes.more
+def other_loops():
+    yield "swing", ("SMALLER_STEPS",), smaller(2)
+    yield "swing", ("SMALLER_STEPS",), smaller(10)
+    yield "swing", ("MASS_LOST",), moves_first(mass=lambda m: 1.0)
+    yield "swing", ("FORCE_AWAY",), moves_first(sign=1.0)

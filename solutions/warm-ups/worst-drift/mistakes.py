@@ -63,6 +63,22 @@ mistakes(
     "Your result is in per cent.",
     "Leave out the factor of 100.",
 ).edit("worst_drift", {"/ abs(energies[0])": "/ abs(energies[0]) * 100"})
+mistakes(
+    "SHARE_OF_THE_LARGEST",
+    "You divide by the value that is the largest, or the largest in size.",
+    "Divide by the size of the first value.",
+).edit("worst_drift", {"abs(energies[0])": "max(abs(energy) for energy in energies)"})
+mistakes(
+    "FROM_THE_MEAN",
+    "You measure the distances from the mean of all values.",
+    "Measure them from the first value.",
+).body(
+    "worst_drift",
+    """
+        mean = sum(energies) / len(energies)
+        return max(abs(energy - mean) for energy in energies) / abs(mean)
+    """,
+)
 
 mistakes.accept(
     "A loop that remembers the worst",
@@ -103,3 +119,19 @@ mistakes.terms(
         "share": {"NEGATIVE_SHARE": float, "NOT_A_SHARE": lambda e: 1.0},
     },
 )
+
+
+def of_the_largest(size):
+    return lambda energies: max(abs(energy - energies[0]) for energy in energies) / size(max(energies))
+
+
+def mean_over_first(energies):
+    mean = sum(energies) / len(energies)
+    return max(abs(energy - mean) for energy in energies) / abs(energies[0])
+
+
+@mistakes.more
+def other_values():
+    yield "worst_drift", ("SHARE_OF_THE_LARGEST",), of_the_largest(float)
+    yield "worst_drift", ("SHARE_OF_THE_LARGEST",), of_the_largest(abs)
+    yield "worst_drift", ("FROM_THE_MEAN",), mean_over_first

@@ -396,7 +396,24 @@ mistakes(
 ).body(
     "design_excitation",
     """
+        t = np.arange(round(100 * budget_s)) / 100
+        return u_max * (np.sin(2 * np.pi * 1.9 * t) + np.sin(2 * np.pi * 2.4 * t)) / 2
+    """,
+)
+mistakes(
+    "EXCITATION_ONE_RATE",
+    "The force swings back and forth at one rate from beginning to end.",
+    "One rate tells little more than how far the speed goes up and down, and how late. Mix quick changes with longer pushes: full force, reversed after a random 0.1 to 0.6 s, has both.",
+    kind="fact",
+).body(
+    "design_excitation",
+    """
         return u_max * np.sin(2 * np.pi * 2.0 * np.arange(round(100 * budget_s)) / 100)
+    """,
+).body(
+    "design_excitation",
+    """
+        return np.where(np.arange(round(100 * budget_s)) // 20 % 2 == 0, u_max, -u_max)
     """,
 )
 mistakes(
@@ -550,6 +567,54 @@ mistakes(
             found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
             half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
             return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+    """,
+)
+mistakes(
+    "BLOCKS_WITHOUT_CONSTANT",
+    "With your tau and latency, m, b and Fc are those of a fit in which the blocks have no constants of their own.",
+    "The speed at the start of a block is not known exactly, and the integrals drift: put y and every column through in_blocks, which takes each block's mean away.",
+).program(
+    "identify",
+    """
+        def in_blocks(x, size=100):
+            count = len(x) // size
+            return np.reshape(x[: count * size], (count, size, -1))
+    """,
+).program(
+    "identify",
+    """
+        _honest = identify
+
+
+        def identify(t, u, y):
+            rubbed = [cumulative(y), cumulative(np.sign(y))]
+            best = None
+            for tau in np.arange(0.02, 0.151, 0.01):
+                impulse = motor_impulse(u, tau)
+                for late in np.arange(0.02, 0.201, 0.01):
+                    X = np.stack([delayed(impulse, late), *rubbed], axis=1)
+                    X = X - X[np.arange(len(y)) // 100 * 100]
+                    theta, left, *_ = np.linalg.lstsq(X, y)
+                    if best is None or left[0] < best[0]:
+                        best = left[0], tau, late, theta
+            _, tau, late, theta = best
+            m = 1 / theta[0]
+            found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
+            half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
+            return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+    """,
+)
+mistakes(
+    "BLOCKS_FROM_FIRST",
+    "With your tau and latency, m, b and Fc are those of a fit in which each block is counted from its first sample.",
+    "The first sample has noise, and so all of its block is off: take each block's mean away from y and from every column, as in_blocks does.",
+).program(
+    "identify",
+    """
+        def in_blocks(x, size=100):
+            count = len(x) // size
+            blocks = np.reshape(x[: count * size], (count, size, -1))
+            return blocks - blocks[:, :1]
     """,
 )
 mistakes(
@@ -967,7 +1032,7 @@ mistakes(
 mistakes(
     "NO_CART_SETTLES",
     "With these gains hardly any cart drawn from the box settles: the others pass the mark by more than 0.10 m, or are not at the mark when the run ends.",
-    "Are the carts drawn from the box, around the estimate? Is it the least mean over the carts that is taken (argmin)? Does the search cover kd/kp from 0.2 to 0.8, and is kd returned as ratio * kp? If it is a descent, start it from a grid: where every cart fails there is no slope.",
+    "Are the carts drawn from the box, around the estimate? Is it the least mean over the carts (axis 0) that is taken (argmin)? Does the search cover kd/kp from 0.2 to 0.8, and is kd returned as ratio * kp? If it is a descent, start it from a grid: where every cart fails there is no slope.",
     kind="fact",
 ).body(
     "tune",
@@ -1210,7 +1275,7 @@ mistakes(
 mistakes(
     "SEARCH_ENDED_EARLY",
     "Other gains do clearly better on these carts.",
-    "Are there several hundred carts, each parameter the estimate's value times a factor drawn by itself and log-uniformly from the box? Is it the mean of all settling times that is least, 3 s for each that fails? Is the grid as wide and fine as kp in np.geomspace(2, 40, 20) and kd/kp in np.linspace(0.2, 0.8, 13)? Is its best point refined, and returned as kp and kd?",
+    "Are there several hundred carts, each parameter the estimate's value times a factor drawn by itself and log-uniformly from the box? Is it the mean over all carts, axis 0 of what rollout returns, that is least, 3 s for each that fails? Is the grid as wide and fine as kp in np.geomspace(2, 40, 20) and kd/kp in np.linspace(0.2, 0.8, 13)? Is its best point refined, and returned as kp and kd?",
     kind="consequence",
 ).body(
     "tune",
@@ -1652,6 +1717,21 @@ mistakes(
     kind="consequence",
 ).edit(
     "tune", {"few = {": 'carts["latency"] *= 1 + estimate["tau"][0] / estimate["latency"][0]\n    few = {'}
+)
+mistakes(
+    "TUNE_RAISES",
+    "For at least one of four other questions tune raises an exception: heavier, lighter or later carts, or another box.",
+    "Call it with such an estimate yourself, and read the last line. rollout returns shape (carts, gains): the mean over axis 0 is one number for each gain, and its argmin says which gains.",
+    kind="fact",
+).body(
+    "tune",
+    """
+        rng = np.random.default_rng(6)
+        carts = {k: estimate[k][0] * np.exp(rng.uniform(*np.log(randomization[k]), 300)) for k in NAMES}
+        kp, ratio = (x.ravel() for x in np.meshgrid(np.geomspace(2, 40, 10), np.linspace(0.2, 0.8, 9)))
+        mean = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=1)
+        return {"kp": float(kp[mean.argmin()]), "kd": float((kp * ratio)[mean.argmin()])}
+    """,
 )
 mistakes(
     "RANGE_NOT_READ",

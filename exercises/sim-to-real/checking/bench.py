@@ -143,6 +143,12 @@ def fits(u, y, tau, late):
     }
     for name, column, at in (("COULOMB_AS_VISCOUS", viscous, 2), ("VISCOUS_AS_COULOMB", coulomb, 1)):
         found[name] = np.insert(_fitted(_blocks(np.stack([impulse, column], axis=1)), target), at, 0.0)
+    whole, length = np.stack([impulse, viscous, coulomb], axis=1), round(1 / H)
+    begun = np.arange(len(y)) // length * length
+    found["BLOCKS_WITHOUT_CONSTANT"] = _fitted(whole, y)
+    found["BLOCKS_WITHOUT_CONSTANT one"] = _fitted(whole - whole.mean(axis=0), y - y.mean())
+    found["BLOCKS_WITHOUT_CONSTANT each"] = _fitted(whole - whole[begun], y)
+    found["BLOCKS_FROM_FIRST"] = _fitted(whole - whole[begun], y - y[begun])
     columns = np.stack([force, y, sign], axis=1)
     for name, a in (("", np.gradient(y, H)), (" forwards", np.diff(y, append=y[-1]) / H)):
         found["ACCELERATION_FITTED" + name] = _fitted(columns, a)

@@ -320,6 +320,10 @@ def _recorded(column):
         "SIGN_OF_POSITION",
         "SIGN_NOT_INTEGRATED",
         "FRICTION_DELAYED",
+        "BLOCKS_WITHOUT_CONSTANT",
+        "BLOCKS_WITHOUT_CONSTANT one",
+        "BLOCKS_WITHOUT_CONSTANT each",
+        "BLOCKS_FROM_FIRST",
         "ACCELERATION_FITTED",
         "ACCELERATION_FITTED forwards",
     ],
@@ -386,9 +390,10 @@ def test_ends_of_the_lag_that_are_sums_are_told_only_of_the_lag():
 
 
 def test_an_interval_as_wide_as_a_rounding_error_has_no_width():
-    points = {k: (v, v, v * (1 + 1e-16)) for k, (v, _, _) in _with()(cart.PUBLIC).items()}
+    carts = [cart.PUBLIC, cart.SHEET]
+    points = [{k: (v, v, v * (1 + 1e-16)) for k, (v, _, _) in _with()(each).items()} for each in carts]
     with pytest.raises(kit.CheckFailed) as failed:
-        judge.expect_intervals([points, points], [cart.PUBLIC, cart.PUBLIC])
+        judge.expect_intervals(points, carts)
     assert failed.value.guess.code == "INTERVAL_WITHOUT_WIDTH"
 
 
@@ -441,3 +446,30 @@ def test_gains_that_are_the_best_for_something_else_are_told_for_what(code, tune
     gains = probes.gains_of(tune(estimate, box))
     found = probes.of_gains(Answers(tune), estimate, box, gains, lambda *pair: cart.public_success(*pair)[0])
     assert found.code == code
+
+
+@pytest.mark.parametrize(
+    ("wave", "code"),
+    [
+        (lambda t: np.sin(2 * np.pi * 2.4 * t), "EXCITATION_ONE_RATE"),
+        (lambda t: np.where(np.arange(len(t)) // 17 % 2, 1.0, -1.0), "EXCITATION_ONE_RATE"),
+        (lambda t: 0.5 + 0.5 * np.sin(2 * np.pi * t), "EXCITATION_ONE_RATE"),
+        (lambda t: np.sin(2 * np.pi * t) * (t < 15.0), "EXCITATION_BLIND"),
+        (lambda t: np.sin(2 * np.pi * 1.9 * t) + np.sin(2 * np.pi * 2.4 * t), "EXCITATION_BLIND"),
+        (lambda t: np.sin(2 * np.pi * (0.5 + 0.05 * t) * t), "EXCITATION_BLIND"),
+    ],
+)
+def test_a_force_is_said_to_swing_at_one_rate_only_if_it_does_so_to_its_end(wave, code):
+    assert probes.of_command(3.0 * wave(0.01 * np.arange(2000))).code == code
+
+
+@pytest.mark.parametrize(("kind", "code"), [("error", "TUNE_RAISES"), ("timeout", None)])
+def test_a_search_that_raises_for_other_carts_is_told_so(kind, code):
+    class Raises:
+        def call_each(self, function, asked):
+            raise kit.StudentFailure(kind)
+
+    estimate, gains = cart.with_intervals(cart.PUBLIC), (4.0, 2.0)
+    success = lambda kp, kd: cart.public_success(kp, kd)[0]  # noqa: E731
+    found = probes.of_gains(Raises(), estimate, cart.MATCHED, gains, success)
+    assert getattr(found, "code", None) == code

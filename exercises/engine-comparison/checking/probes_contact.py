@@ -187,15 +187,12 @@ def _elsewhere(_: str, cases: list[Any]) -> bool:
 
 
 def _speeds_apart(key: str, cases: list[Any]) -> bool:
-    """Each wrong speed is too low and was tried; the next one that was tried is beyond the right one."""
+    """Each wrong speed is too low, and the next one that was tried is beyond the right one."""
 
     def apart(case: Any) -> bool:
         value = case.measured(key)
-        tried = {run[2][0] for _, run in _shots([case])}
-        following = min((speed for speed in tried if speed > 1.0001 * value), default=0.0)
-        return any(math.isclose(speed, value, rel_tol=1e-4) for speed in tried) and (
-            value < case.truth[key] <= following
-        )
+        following = [run[2][0] for _, run in _shots([case]) if run[2][0] > 1.0001 * value]
+        return bool(value < case.truth[key] <= min(following, default=0.0))
 
     return all(apart(case) for case in cases if not probing.right(key, case))
 

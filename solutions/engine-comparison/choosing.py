@@ -74,6 +74,11 @@ def _strictly(report, need):
     return meets(report, need) and (need["op"] == "==" or report[need["key"]] != need["value"])
 
 
+def _strictly_at(op):
+    """Equality is left out of one operator only."""
+    return lambda report, need: (_strictly if need["op"] == op else meets)(report, need)
+
+
 def _nearly(report, need):
     if need["op"] != "==" or isinstance(need["value"], bool) or _missing(report, need):
         return meets(report, need)
@@ -145,7 +150,7 @@ METS = {
         lambda report, need: not isinstance(report.get(need["key"]), bool) and meets(report, need),
     ),
     "ZERO_TAKEN_FOR_MISSING": (lambda report, need: bool(report.get(need["key"])) and meets(report, need),),
-    "STRICT_COMPARISON": (_strictly,),
+    "STRICT_COMPARISON": (_strictly, _strictly_at("<="), _strictly_at(">=")),
     "EQUALITY_ROUGH": (_nearly, _within_rounding, _within_rounding_of_limits),
     "EQUALITY_BY_TYPE": (_of_one_type,),
     "EQUALITY_OF_TRUTH": (_as_truths,),
@@ -157,6 +162,10 @@ METS = {
         _with_operators(le="==", ge="==", eq="=="),
         _with_operators(eq="<="),
         _with_operators(eq=">="),
+        _with_operators(le=">="),
+        _with_operators(ge="<="),
+        _with_operators(le="=="),
+        _with_operators(ge="=="),
     ),
     "OPERATOR_NEVER_MET": tuple(map(_never, ("<=", ">=", "=="))),
     "OPERATOR_IGNORED": (_with_operators(eq=""), _with_operators(le=""), _with_operators(ge="")),
@@ -174,6 +183,15 @@ def _cheapest_first(reports, needs, met=meets):
 def _all_or_none(reports, needs, met=meets):
     every = all(met(report, need) for report in reports.values() for need in needs)
     return choose(reports, []) if every else None
+
+
+def _to_the_first_misfit(reports, needs, met=meets):
+    seen = {}
+    for name, report in reports.items():
+        if not all(met(report, need) for need in needs):
+            break
+        seen[name] = report
+    return choose(seen, [])
 
 
 def _most_met(reports, needs, met=meets):
@@ -253,6 +271,7 @@ CHOICES = {
     "REQUIREMENTS_IGNORED": (lambda reports, needs, met=meets: choose(reports, []),),
     "COST_BEFORE_REQUIREMENTS": (_cheapest_first,),
     "ALL_MUST_FIT": (_all_or_none,),
+    "STOPS_AT_MISFIT": (_to_the_first_misfit,),
     "COST_REVERSED": (lambda reports, needs, met=meets: choose(reports, needs, met=met, cost=-1.0),),
     "COST_IGNORED": (
         lambda reports, needs, met=meets: choose(reports, needs, met=met, cost=0.0),

@@ -136,7 +136,7 @@ mistakes(
 mistakes(
     "SYMPLECTIC_NEVER",
     "No engine passes the test here, not even one that conserves area.",
-    "Build the matrix of one step on (q, v/omega): two runs with n = 1, from (1, 0) and (0, omega), and both velocities divided by omega. Then test abs(det - 1) < 1e-6.",
+    "Build the matrix of one step on (q, v/omega): two runs with n = 1, from (1, 0) and (0, omega), and both velocities divided by omega. Then test abs(det - 1) < 1e-6, where [[a, b], [c, d]] has det = a d - b c.",
     kind="consequence",
 ).program(
     "characterise",
@@ -746,6 +746,23 @@ mistakes(
     "Leave that engine out, and go on with the next one.",
 )
 mistakes(
+    "STOPS_AT_MISFIT",
+    "Your code looks at no engine after the first one that does not fit.",
+    "Go on with the next engine: `break` and `return` end the loop, `continue` does not.",
+).body(
+    "choose_engine",
+    """
+        best = None
+        for name, report in reports.items():
+            values = [(report.get(r["key"]), r) for r in requirements]
+            if not all(value is not None and _OPERATORS[r["op"]](value, r["value"]) for value, r in values):
+                break
+            if best is None or report["cost"] < reports[best]["cost"]:
+                best = name
+        return best
+    """,
+)
+mistakes(
     "STRICT_COMPARISON",
     "Your code rejects an engine that meets a limit exactly.",
     '"<=" and ">=" include equality.',
@@ -860,17 +877,6 @@ mistakes(
         def choose_engine(reports, requirements):
             return _cheapest(reports, requirements) or ""
     """,
-).body(
-    "choose_engine",
-    """
-        def meets(value, r):
-            if r["op"] == "==" and isinstance(value, float) and isinstance(r["value"], float):
-                return math.isclose(value, r["value"])
-            return value is not None and _OPERATORS[r["op"]](value, r["value"])
-
-        fitting = [n for n in reports if all(meets(reports[n].get(r["key"]), r) for r in requirements)]
-        return min(fitting, key=lambda name: reports[name]["cost"], default=None)
-    """,
 )
 mistakes(
     "STALE_LICENCE",
@@ -929,6 +935,39 @@ mistakes(
     "engine_facts",
     """
         _FACTS["mujoco"]["default_integrator"] = ("explicit_euler", "https://mujoco.readthedocs.io")
+    """,
+)
+mistakes(
+    "STEP_IS_THERE",
+    "None is given for an engine that has a default step of its own.",
+    "Look for a default argument of the function that steps, or for a default in the list of options.",
+    kind="fact",
+).program(
+    "engine_facts",
+    """
+        _FACTS["bullet"]["default_step_s"] = (None, "https://github.com/bulletphysics/bullet3")
+    """,
+)
+mistakes(
+    "STEP_OF_OTHERS",
+    "The number is not a default of this engine. Examples and programs that use an engine often set another step.",
+    "Find the default itself: in the signature of the function that steps, or in the list of options.",
+    kind="fact",
+).program(
+    "engine_facts",
+    """
+        _FACTS["mujoco"]["default_step_s"] = (0.01, "https://mujoco.readthedocs.io")
+    """,
+)
+mistakes(
+    "LANGUAGE_OF_INTERFACE",
+    "The engine can be called from the language that is given. It is written in another one.",
+    "Which language are most of the files of the engine itself in, without its interface and its bindings?",
+    kind="fact",
+).program(
+    "engine_facts",
+    """
+        _FACTS["ode"]["language"] = ("C", "https://ode.org")
     """,
 )
 mistakes(
@@ -1216,6 +1255,28 @@ mistakes(
     "choose_engine",
     """
         def meets(value, r):
+            if r["op"] == "==" and isinstance(value, float) and isinstance(r["value"], float):
+                return math.isclose(value, r["value"])
+            return value is not None and _OPERATORS[r["op"]](value, r["value"])
+
+        fitting = [n for n in reports if all(meets(reports[n].get(r["key"]), r) for r in requirements)]
+        return min(fitting, key=lambda name: reports[name]["cost"], default=None)
+    """,
+).body(
+    "choose_engine",
+    """
+        def meets(value, r):
+            if value is None or r["op"] != "==":
+                return value is not None and _OPERATORS[r["op"]](value, r["value"])
+            return abs(value - r["value"]) < 0.005
+
+        fitting = [n for n in reports if all(meets(reports[n].get(r["key"]), r) for r in requirements)]
+        return min(fitting, key=lambda name: reports[name]["cost"], default=None)
+    """,
+).body(
+    "choose_engine",
+    """
+        def meets(value, r):
             return value is not None and (
                 _OPERATORS[r["op"]](value, r["value"]) or math.isclose(value, r["value"])
             )
@@ -1459,6 +1520,10 @@ mistakes(
     "ORDER_ROUNDED_DOWN",
     "Some orders are off by one. Perhaps the slope is cut: 1.98 becomes 1.",
     "int() drops the decimals and math.ceil rounds up: use round().",
+).edit(
+    "characterise",
+    {"return round(": "return int(", "end(16), end(32), end(64)": "end(20), end(40), end(80)"},
+    of="_order",
 )
 mistakes(
     "ORDER_TIME_NOT_FIXED",
@@ -1480,9 +1545,9 @@ mistakes(
 )
 mistakes(
     "SYMPLECTIC_TOLERANCE",
-    "Engines that lose a little area in every step pass the test. Is the threshold too wide, or the step too short?",
+    "Engines that change the area a little in every step pass the test. Is the threshold too wide, or the step too short?",
     "Test abs(det - 1) < 1e-6 at h = 0.5/omega.",
-)
+).edit("characterise", {") - 1) < 1e-6": ") - 1) < 4e-3"})
 mistakes(
     "SYMPLECTIC_BY_ENERGY",
     "The answers are those of a test for energy. An accurate method nearly keeps the energy without keeping area.",
@@ -1503,6 +1568,14 @@ mistakes(
     "DAMPING_OTHER_SCENE",
     'No run was made in the scene "free". In the others, more than the damping can change the speed.',
     'Take a free body without a force: engine.run("free", ...).',
+)
+mistakes(
+    "PUSHED_IN_THE_AIR",
+    "Every push began with the body above the floor, where no friction holds it.",
+    "Let the body come to rest on the floor first, and start each push from where it then lies.",
+    kind="consequence",
+).edit(
+    "characterise", {"_settled(engine, info), round": '[0, 0, info["radius"] + 0.3], round'}, of="_anisotropy"
 )
 mistakes(
     "PUSHED_TOO_SOFTLY",
@@ -1562,6 +1635,29 @@ mistakes(
     "Engines that keep area are called unstable too early.",
     "Unstable means that an eigenvalue of one step's matrix on (q, v/omega) has a modulus above 1 + 1e-8. Stable steps of these engines have eigenvalues of modulus 1: with a limit of exactly 1, rounding decides. A run that stays bounded may still swing further than it started.",
     kind="consequence",
+)
+mistakes(
+    "LIMIT_AT_ONCE",
+    "At least one engine that is stable for longer is called unstable at 0.05/omega, or next to it.",
+    "Unstable means that an eigenvalue of one step's matrix on (q, v/omega) has a modulus above 1 + 1e-8. Whether one state grows in one step does not tell.",
+    kind="consequence",
+).body(
+    "characterise",
+    """
+        def stable(z):
+            q, v = engine.run("spring", [1.0], [omega], z / omega, 1, [0.0])
+            return math.hypot(q[-1][0], v[-1][0] / omega) <= math.sqrt(2) * (1 + 1e-8)
+
+        low = 0.05
+        if not stable(low):
+            return 0.0
+        while stable(low + 0.5):
+            low += 0.5
+            if low >= 10:
+                return math.inf
+        return _bisect(stable, low, low + 0.5, 0.004 * low)
+    """,
+    of="_max_stable_z",
 )
 mistakes(
     "LIMIT_COARSE",
@@ -1650,6 +1746,20 @@ mistakes(
     "Place the body on the floor at z = radius, wait five seconds, and report max(0, radius - z) of the last sample.",
 )
 mistakes(
+    "RESTITUTION_NO_HIT",
+    "On each engine whose ratio is wrong, your body at 2 m/s does not reach the wall before the run ends.",
+    "Start near -(radius + wall_thickness/2), and take so many steps that the velocity is seen to turn, or to become 0.",
+    kind="consequence",
+).body(
+    "characterise",
+    """
+        start = -(info["radius"] + info["wall_thickness"] / 2) - 0.02
+        q, v = engine.run("wall", [start], [2.0], info["dt"], 2, [0])
+        return abs(v[-1][0] / v[0][0]), -info["radius"] - info["wall_thickness"] / 2
+    """,
+    of="_slow_hit",
+)
+mistakes(
     "RESTITUTION_LOSS",
     "The result is what is lost at the wall, not what is kept.",
     "Divide the speed after the hit by the speed before it.",
@@ -1680,6 +1790,30 @@ mistakes(
     "Most fast bodies do not start in [-1 - v dt, -1].",
     "Start there, whatever the speed, from many places spread over it. Take n so large that n dt v is 2 m + v dt or more.",
     kind="consequence",
+)
+mistakes(
+    "TUNNEL_SPEEDS_APART",
+    "The speeds that were tried lie too far apart: the right one is between the reported one and the next.",
+    "Bisect between a safe speed and an unsafe one until they are less than 5 % apart.",
+    kind="consequence",
+).body(
+    "characterise",
+    """
+        dt = info["dt"]
+
+        def stopped(speed):
+            n = math.ceil(4 / (speed * dt)) + 3
+            starts = [-1 - speed * dt * k / 40 for k in range(40)]
+            return all(engine.run("wall", [s], [speed], dt, n, [0])[0][-1][0] < 0 for s in starts)
+
+        speed = 8.0
+        while stopped(1.5 * speed):
+            speed *= 1.5
+            if speed > 200:
+                return math.inf
+        return speed
+    """,
+    of="_tunnelling_speed",
 )
 mistakes(
     "TUNNEL_RUNS_SHORT",

@@ -27,6 +27,9 @@ MOST_NOTED = 5_000
 #: all, and its other functions need some of it.
 PATIENCE = 3
 
+#: A limit of the spring below it, in units of 1/omega, is the smallest step that is tried, or next to it.
+AT_ONCE = 0.06
+
 KEYS = (
     "order",
     "symplectic",

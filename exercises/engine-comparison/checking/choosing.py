@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import copy
 import itertools
+import math
+import operator
 from typing import TYPE_CHECKING, Any
 
 from course.scoring import kit
@@ -174,8 +176,9 @@ def _of_choices(submission: Any, questions: list[tuple[Any, Any, Any]], answers:
             return named(code)
     if all(answer is None for answer in answers) and _never_chooses(submission):
         return named("NEVER_CHOOSES")
-    if all(_not_measured(reports, needs, answer) for (reports, needs, _), answer in wrong):
-        return named("IGNORES_MISSING")
+    for code, looks in (("IGNORES_MISSING", _not_measured), ("EQUALITY_ROUGH", _nearly_met)):
+        if all(looks(reports, needs, answer) for (reports, needs, _), answer in wrong):
+            return named(code)
     return named("NOTHING_FITS") if all(expected is None for (_, _, expected), _ in wrong) else None
 
 
@@ -201,6 +204,23 @@ def _not_measured(reports: Any, needs: Any, answer: Any) -> bool:
     """Whether the engine that was chosen lacks a required value."""
     chosen = reports.get(answer) if isinstance(answer, str) else None
     return chosen is not None and any(chosen.get(need["key"]) is None for need in needs)
+
+
+def _nearly_met(reports: Any, needs: Any, answer: Any) -> bool:
+    """Whether the engine that was chosen misses requirements, each by less than 2 %."""
+    missed = [(reports[answer].get(need["key"]), need) for need in needs] if answer in reports else []
+    missed = [(value, need) for value, need in missed if not _met(value, need)]
+    return bool(missed) and all(
+        _is_number(value) and _is_number(need["value"]) and math.isclose(value, need["value"], rel_tol=0.02)
+        for value, need in missed
+    )
+
+
+def _met(value: Any, need: Any) -> bool:
+    return value is not None and bool(_OPERATORS[need["op"]](value, need["value"]))
+
+
+_OPERATORS = {"<=": operator.le, ">=": operator.ge, "==": operator.eq}
 
 
 def _never_chooses(submission: Any) -> bool:

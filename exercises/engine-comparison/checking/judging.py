@@ -49,6 +49,7 @@ _SHOWN = {
     "RESTITUTION_SIGN": lambda case, key: case.measured(key) < 0,
     "NO_ZERO": lambda case, key: case.truth[key] == 0,
     "LIMIT_NEVER_SEEN": lambda case, key: case.measured(key) == math.inf,
+    "LIMIT_AT_ONCE": lambda case, key: case.measured(key) * case.box.omega < bench.AT_ONCE,
     "TUNNEL_NEVER_SEEN": lambda case, key: case.measured(key) == math.inf,
     "TUNNEL_UNSAFE_REPORTED": lambda case, key: bench.unsafe(case, 1.0),
 }

@@ -91,7 +91,7 @@ def _expect_kind(entry: dict[str, Any]) -> None:
         if not names or not all(isinstance(item, str) and item.strip() for item in names):
             kit.fail(f"The {field} of an engine is not a list of names.", help=_USED_BY, actual=value)
     elif field == "default_step_s":
-        if value is not None and not 0 < kit.as_number(value, name) < math.inf:
+        if value is not None and not 0 < step_of(value, name) < math.inf:
             kit.fail("A default step is not a positive number of seconds.", help=_STEP, actual=value)
     else:
         text = kit.as_text(value, name)
@@ -101,6 +101,17 @@ def _expect_kind(entry: dict[str, Any]) -> None:
                 help=f"Use one of {', '.join(INTEGRATORS)}.",
                 actual=text,
             )
+
+
+def step_of(value: Any, name: str) -> float:
+    """A default step that is given, as a number."""
+    if isinstance(value, str):
+        kit.fail(
+            f"{name[0].upper()}{name[1:]} is a text, and neither a number nor None.",
+            help="Leave the quotation marks out: a step is 0.01 or None, not '0.01' or 'None'.",
+            actual=repr(value),
+        )
+    return float(kit.as_number(value, name))
 
 
 _USED_BY = "Give a list with at least one project that runs on this engine, by its own name."

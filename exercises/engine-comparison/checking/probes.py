@@ -109,7 +109,7 @@ def _flattered(key: str, cases: list[Any]) -> bool:
     return (
         all(case.truth[key] < case.measured(key) <= case.truth[key] + 2 for case in wrong)
         and all(case in wrong for case in cases if case.truth["order"] == 1 and probing.keeps_area(case))
-        and all(case.measured(key) in _slopes(case) for case in wrong)
+        and all(case.measured(key) in map(round, _slopes(case, ordinary=False)) for case in wrong)
     )
 
 
@@ -130,18 +130,29 @@ def _ends(case: Any, start: tuple[Any, ...], time: float, ns: list[int]) -> Any:
     return np.array([[q[-1][0], v[-1][0] / case.box.omega] for q, v in ends])
 
 
-def _slopes(case: Any) -> set[int]:
-    """The orders that runs show which start at rest or in the middle, or end after whole half-turns."""
+#: The whole state (q, v/omega), and that and its parts.
+_WHOLE = (slice(None),)
+_PARTS = (slice(None), slice(1), slice(1, None))
+
+
+def _slopes(case: Any, parts: tuple[slice, ...] = _PARTS, *, ordinary: bool) -> set[float]:
+    """The slopes of these parts that runs show: ordinary runs, or those which
+    start at rest or in the middle, or end after whole half-turns."""
     found = set()
     for (q0, v0), time, ns in _refined(case):
-        if any(q0) and any(v0) and not _half_turns(time * case.box.omega):
+        if (any(q0) and any(v0) and not _half_turns(time * case.box.omega)) != ordinary:
             continue
         coarse, fine = np.diff(_ends(case, (q0, v0), time, ns), axis=0)
-        for part in (slice(None), slice(1), slice(1, None)):
+        for part in parts:
             slope = np.log2(np.linalg.norm(coarse[part]) / np.linalg.norm(fine[part]))
             if np.isfinite(slope):
-                found.add(round(float(slope)))
+                found.add(float(slope))
     return found
+
+
+def _cut(key: str, cases: list[Any]) -> bool:
+    """Each order, right or wrong, is the slope of ordinary runs of the whole state without its decimals."""
+    return all(case.measured(key) in map(math.floor, _slopes(case, _WHOLE, ordinary=True)) for case in cases)
 
 
 def _half_turns(angle: float) -> bool:
@@ -185,6 +196,20 @@ def _some_refused(key: str, cases: list[Any]) -> bool:
     return any(case.measured(key) for case in kept) and all(
         case in kept for case in cases if not probing.right(key, case)
     )
+
+
+def _took_one_half(case: Any) -> bool:
+    return any(math.isclose(z, 0.5, rel_tol=1e-6) for z in _single_steps(case))
+
+
+def _nearly_kept(key: str, cases: list[Any]) -> bool:
+    """Every wrong answer is a Yes to an engine that changes the area by less than a tenth in its step of
+    h omega = 0.5, which was taken, and another engine got its No."""
+    wrong = [case for case in cases if not probing.right(key, case)]
+    changes = {id(case): abs(probing.determinant(case) - 1) for case in cases}
+    return all(
+        case.measured(key) and changes[id(case)] < 0.1 and _took_one_half(case) for case in wrong
+    ) and any(changes[id(case)] > 1e-6 for case in cases if not case.measured(key))
 
 
 def _passes(which: Callable[[Any], bool]) -> Probe:
@@ -283,6 +308,14 @@ def _no_zero(key: str, cases: list[Any]) -> bool:
     )
 
 
+def _at_once(key: str, cases: list[Any]) -> bool:
+    """Every wrong limit is too low, and one is the smallest step or next to it."""
+    wrong = [case for case in cases if not probing.right(key, case)]
+    return all(case.measured(key) < case.truth[key] for case in wrong) and any(
+        case.measured(key) * case.box.omega < bench.AT_ONCE for case in wrong
+    )
+
+
 def _coarse(key: str, cases: list[Any]) -> bool:
     """All are close: within a fifth, or a step of the search."""
     return all(
@@ -320,6 +353,7 @@ _PROBES: dict[str, list[tuple[str, Probe]]] = {
             ),
         ),
         ("ORDER_AT_TURNING_POINT", _flattered),
+        ("ORDER_ROUNDED_DOWN", _cut),
     ],
     "symplectic": [
         ("SYMPLECTIC_NEVER", probing.always(False)),
@@ -327,6 +361,7 @@ _PROBES: dict[str, list[tuple[str, Probe]]] = {
         ("STABLE_TAKEN_FOR_SYMPLECTIC", _passes(lambda case: probing.spectral_radius(case, 0.5) <= 1 + 1e-6)),
         ("SYMPLECTIC_STEP_TOO_SMALL", _tiny_single_step),
         ("SYMPLECTIC_SOME_REFUSED", _some_refused),
+        ("SYMPLECTIC_TOLERANCE", _nearly_kept),
     ],
     "linear_damping": [
         ("DAMPING_ASSUMED", lambda key, cases: all(case.measured(key) == 0 for case in cases)),
@@ -348,6 +383,7 @@ _PROBES: dict[str, list[tuple[str, Probe]]] = {
         ("LIMIT_NEVER_SEEN", probing.infinite),
         ("NO_ZERO", _no_zero),
         ("NO_INFINITY", probing.where(probing.endless("max_stable_step"), lambda value, _: value > 0)),
+        ("LIMIT_AT_ONCE", _at_once),
         ("LIMIT_COARSE", _coarse),
         ("LIMIT_NEVER_SEEN", probing.some_infinite),
     ],

@@ -29,6 +29,22 @@ def _pushed_at_once(_: str, cases: list[Any]) -> bool:
     return bool(starts) and all(height > -1e-6 for height in starts)
 
 
+def _pushed_in_the_air(key: str, cases: list[Any]) -> bool:
+    """Every push of an engine with a wrong ratio began clearly above the floor, and one is wrong."""
+    starts = [
+        q0[2] - case.box.radius
+        for case in cases
+        if not probing.right(key, case)
+        for _, (_, q0, _, _, _, force) in probing.runs([case], "floor")
+        if any(force)
+    ]
+    return bool(starts) and min(starts) > _IN_THE_AIR
+
+
+#: Further above the floor, m, than any engine here holds a body that rests on it.
+_IN_THE_AIR = 5e-3
+
+
 def _pushes(case: Any) -> list[float]:
     """How hard the body on the floor was pushed in each run, in units of mu m g; pushes alone."""
     weight = case.box.mu * case.box.mass * case.box.g
@@ -119,6 +135,17 @@ def _other_step(scene: str, counts: Callable[[Any], bool] = lambda _: True) -> P
     return probe
 
 
+def _no_hit(key: str, cases: list[Any]) -> bool:
+    """Of each engine with a wrong ratio, no run at 2 m/s took the body to the wall."""
+
+    def missed(case: Any) -> bool:
+        quiet = dataclasses.replace(case.box, jitter=0.0)
+        runs = [run for _, run in probing.runs([case], "wall") if 1.9 < run[2][0] < 2.1]
+        return bool(runs) and all(np.min(quiet.run(*run)[1]) > 0 for run in runs[:_MOST_SEEN])
+
+    return all(missed(case) for case in cases if not probing.right(key, case))
+
+
 def _from_afar(_: str, cases: list[Any]) -> bool:
     """Runs at the wall with 2 m/s began half a metre away or more, and no run at all began nearer."""
     starts = [
@@ -157,6 +184,17 @@ def _elsewhere(_: str, cases: list[Any]) -> bool:
     """Most shots began elsewhere than they should: from one step before -1 to -1."""
     places = [-1 - 1.01 * v0[0] * c.box.dt <= q0[0] <= -0.99 for c, (_, q0, v0, _, _, _) in _shots(cases)]
     return len(places) >= _SHOTS * len(cases) and sum(places) < 0.5 * len(places)
+
+
+def _speeds_apart(key: str, cases: list[Any]) -> bool:
+    """Each wrong speed is too low, and the next one that was tried is beyond the right one."""
+
+    def apart(case: Any) -> bool:
+        value = case.measured(key)
+        following = [run[2][0] for _, run in _shots([case]) if run[2][0] > 1.0001 * value]
+        return bool(value < case.truth[key] <= min(following, default=0.0))
+
+    return all(apart(case) for case in cases if not probing.right(key, case))
 
 
 def _short_runs(_: str, cases: list[Any]) -> bool:
@@ -232,6 +270,7 @@ def _too_high(most: float) -> Probe:
 #: key: (code, probe), the first that speaks is heard.
 PROBES: dict[str, list[tuple[str, Probe]]] = {
     "friction_anisotropy": [
+        ("PUSHED_IN_THE_AIR", _pushed_in_the_air),
         ("ANISOTROPY_ASSUMED", lambda key, cases: all(case.measured(key) == 1 for case in cases)),
         ("FORCE_UP_OR_DOWN", _upright(sideways=True)),
         ("OTHER_STEP_THAN_DT", _other_step("floor", lambda run: any(run[5]))),
@@ -258,6 +297,7 @@ PROBES: dict[str, list[tuple[str, Probe]]] = {
             probing.where(lambda c: c.box.bounce_threshold > 0, lambda value, _: value == 0),
         ),
         ("RESTITUTION_TOO_FAST", _too_fast),
+        ("RESTITUTION_NO_HIT", _no_hit),
         (
             "RESTITUTION_WITH_DRAG",
             probing.both(probing.where(probing.damped, lambda value, t: value < t), _from_afar),
@@ -265,12 +305,13 @@ PROBES: dict[str, list[tuple[str, Probe]]] = {
     ],
     "tunnelling_speed": [
         ("OTHER_STEP_THAN_DT", _other_step("wall", lambda run: abs(run[2][0]) > 2.5)),
+        ("TUNNEL_START_ELSEWHERE", _elsewhere),
         (
             "TUNNEL_NO_INFINITY",
             probing.where(probing.endless("tunnelling_speed"), lambda value, _: value >= 0),
         ),
         ("TUNNEL_UNSAFE_REPORTED", lambda _, cases: any(map(bench.unsafe, cases))),
-        ("TUNNEL_START_ELSEWHERE", _elsewhere),
+        ("TUNNEL_SPEEDS_APART", _speeds_apart),
         ("TUNNEL_RUNS_SHORT", _short_runs),
         ("TUNNEL_ONE_START", probing.both(_too_high(math.inf), _one_start)),
         ("TUNNEL_STARTS_NARROW", probing.both(_too_high(math.inf), _narrow)),

@@ -216,7 +216,7 @@ def test_facts_defaults(submission):
             slip = "OPTION_TAKEN_FOR_DEFAULT" if option else None
             slip = "INTEGRATOR_BY_NAME" if integrator == "explicit_euler" else slip
             kit.fail(
-                "A default integrator is not right.",
+                f"The default integrator of {engine} is not right.",
                 help="Find out which half of the state is updated first, and what the other half uses.",
                 diagnose=named(slip) if slip else None,
                 input={"engine": engine},
@@ -234,10 +234,12 @@ def test_facts_users(submission):
     entries = listing.entries(submission)
     for engine in listing.ENGINES:
         language = kit.as_text(listing.expect_pair(entries, (engine, "language"))["value"], "a language")
-        if facts.plain(language) not in facts.LANGUAGES[engine]:
+        if not facts.right_language(engine, language):
+            binding = facts.languages(language) <= facts.INTERFACES[engine]
             kit.fail(
-                "A language is not the one the engine is written in.",
+                f"The language of {engine} is not the one that the engine is written in.",
                 help="Look at the files of the engine itself, not of an interface in another language.",
+                diagnose=named("LANGUAGE_OF_INTERFACE") if binding else None,
                 input={"engine": engine},
                 expected=sorted(facts.LANGUAGES[engine]),
                 actual=language,
@@ -269,7 +271,7 @@ def _expect_step(engine, value):
     own = facts.STEPS[engine]
     if value is None and None in own:
         return
-    number = None if value is None else kit.as_number(value, "a default step")
+    number = None if value is None else listing.step_of(value, "a default step")
     close = number is not None and any(
         step is not None and math.isclose(number, step, rel_tol=0.005) for step in own
     )
@@ -278,12 +280,12 @@ def _expect_step(engine, value):
             step is not None and number is not None and math.isclose(number, 1000 * step, rel_tol=0.005)
             for step in own
         )
-        slip = "STEP_OF_A_HABIT" if own == (None,) else "STEP_IN_MILLISECONDS" if in_ms else None
+        slip = "STEP_IS_THERE" if value is None else "STEP_IN_MILLISECONDS" if in_ms else "STEP_OF_OTHERS"
         kit.fail(
-            "A default step is not the engine's own.",
+            f"The default step of {engine} is not the engine's own.",
             help="Find where the step is set, as an argument or as an option, and whether it has a "
             "default there.",
-            diagnose=named(slip) if slip else None,
+            diagnose=named("STEP_OF_A_HABIT" if own == (None,) else slip),
             input={"engine": engine},
             expected=list(own),
             actual=value,

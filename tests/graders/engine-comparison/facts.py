@@ -7,6 +7,7 @@ They are what the engines' own licence files, manuals and headers say: ODE's man
 from __future__ import annotations
 
 import datetime
+import re
 
 #: Identifiers that are right, in lower case: SPDX identifiers do not depend on case.
 LICENCES = {
@@ -42,12 +43,21 @@ SINCE = {
     "mujoco": datetime.date(2022, 5, 23),
 }
 
-#: The language the engine is written in; that of ODE's interface, C, is none of it.
+#: The language the engine is written in. A little C beside it, as in C/C++, spoils none; C alone, that of
+#: ODE's interface, is the language of MuJoCo only.
 LANGUAGES = {
     "ode": {"c++"},
     "bullet": {"c++"},
     "physx": {"c++"},
-    "mujoco": {"c", "c++", "c/c++", "c and c++"},
+    "mujoco": {"c", "c++"},
+}
+
+#: Languages from which the engine can be called, and in which it is not written.
+INTERFACES = {
+    "ode": {"c", "python"},
+    "bullet": {"c", "python"},
+    "physx": {"python"},
+    "mujoco": {"python"},
 }
 
 #: All four update the velocity first and move the position with the new one, unless told otherwise.
@@ -83,6 +93,18 @@ NOT_USERS = {
 #: Names of the Gazebo that does not run on ODE.
 NEW_GAZEBO = ("gazebo sim", "gz sim", "gz-sim", "ignition", "gazebo harmonic", "gazebo fortress",
               "gazebo garden", "gazebo ionic", "gazebo jetty")  # fmt: skip
+
+
+def languages(text: str) -> set[str]:
+    """The languages of an answer, such as "C++17" or "C and C++"."""
+    parts = re.split(r"[/,&]|\band\b|\bor\b", plain(text))
+    return {re.sub(r"^c\+\+ ?\d\d$", "c++", part.strip()) for part in parts}
+
+
+def right_language(engine: str, text: str) -> bool:
+    """Whether one of the engine's languages is named, and none but C and C++."""
+    named = languages(text)
+    return bool(named & LANGUAGES[engine]) and named <= {"c", "c++"}
 
 
 def spdx(text: str) -> list[str]:

@@ -299,7 +299,9 @@ def test_a_number_that_is_nan_or_off_is_not_accepted(key):
         ("friction_anisotropy", lambda t: float(round(t["friction_anisotropy"] + 0.2)), None),
         ("max_stable_step", lambda t: round(t["max_stable_step"], 1), "VALUE_ROUNDED"),
         ("deterministic", lambda t: True, "DETERMINISM_ONE_RUN"),
+        ("max_stable_step", lambda t: 0.0, "LIMIT_AT_ONCE"),
         ("symplectic", lambda t: False, "SYMPLECTIC_NEVER"),
+        ("symplectic", lambda t: t["order"] > 1, None),
         # Twice the rate with the wrong sign, and a ratio at another speed: of two mistakes, the sign is seen.
         ("linear_damping", lambda t: -2.0 * t["linear_damping"], "DAMPING_SIGN"),
         ("restitution", lambda t: -0.8 * t["restitution"] * (t["restitution"] != 0.6), "RESTITUTION_SIGN"),
@@ -321,6 +323,29 @@ def test_runs_of_a_spring_that_end_at_different_times_are_seen(steps, code):
             case.runs.append(("spring", (1.0,), (0.7,), 1.3 / parts, n, (0.0,)))
     with pytest.raises(kit.CheckFailed) as failed:
         judging.expect_key(found, "order", 0)
+    assert failed.value.finding.diagnosis == code
+
+
+@pytest.mark.parametrize(("lost", "code"), [(1, "ORDER_ROUNDED_DOWN"), (2, None)])
+def test_an_order_is_called_cut_only_where_the_slope_that_was_seen_lies_just_above_it(lost, code):
+    found = cases_of(lambda truth: {**truth, "order": truth["order"] - lost * (truth["order"] == 4)})
+    for case in found:
+        for n in (10, 20, 40):
+            run = ("spring", (0.6,), (0.9 * case.box.omega,), 1 / case.box.omega / n, n, (0.0,))
+            case.runs.append(run)
+    with pytest.raises(kit.CheckFailed) as failed:
+        judging.expect_key(found, "order", 0)
+    assert failed.value.finding.diagnosis == code
+
+
+@pytest.mark.parametrize(("n", "code"), [(2, "RESTITUTION_NO_HIT"), (60, None)])
+def test_a_body_is_said_not_to_reach_the_wall_only_where_its_run_ends_before(n, code):
+    found = cases_of(lambda truth: {**truth, "restitution": 0.97})
+    for case in found:
+        start = -case.box.radius - case.box.wall_thickness / 2 - 0.1
+        case.runs.append(("wall", (start,), (2.0,), case.box.dt, n, (0.0,)))
+    with pytest.raises(kit.CheckFailed) as failed:
+        judging.expect_key(found, "restitution", 0)
     assert failed.value.finding.diagnosis == code
 
 
@@ -617,6 +642,32 @@ def test_the_reports_of_real_engines_are_the_measurements_that_ship():
 )
 def test_a_licence_is_right_if_every_choice_it_offers_is(engine, text, right):
     assert facts.right_licence(engine, text) is right
+
+
+@pytest.mark.parametrize(
+    ("engine", "text", "right"),
+    [
+        ("ode", "C++", True),
+        ("ode", "C/C++", True),
+        ("ode", "C", False),
+        ("bullet", "c++ and C", True),
+        ("physx", "C++17", True),
+        ("mujoco", "C", True),
+        ("mujoco", "C, C++", True),
+        ("mujoco", "C and Python", False),
+        ("physx", "C#", False),
+    ],
+)
+def test_a_language_is_right_if_the_engine_is_written_in_it_with_a_little_c_beside_it(engine, text, right):
+    assert facts.right_language(engine, text) is right
+
+
+@pytest.mark.parametrize("value", ["None", "0.002"])
+def test_a_step_in_quotation_marks_is_told_as_that(value):
+    with pytest.raises(kit.CheckFailed) as failed:
+        listing.step_of(value, "the default_step_s of ode")
+    assert failed.value.finding.actual == repr(value)
+    assert "quotation marks" in failed.value.finding.help
 
 
 @pytest.mark.parametrize(

@@ -134,7 +134,7 @@ mistakes(
 ).edit("semi_implicit_euler_step", {"q + h * v_next,": "v_next, q + h *"})
 mistakes(
     "USES_OLD_ACCELERATION",
-    "After one step the position is right, but both kicks of the velocity use the old acceleration.",
+    "After one step the position is right, but the velocity takes the old acceleration for the whole step.",
     "Evaluate accel again at (t + h, q_next), and give the velocity half a kick with each: v + h/2*(a_old + a_new).",
 ).body(
     "velocity_verlet_step",
@@ -584,7 +584,7 @@ mistakes(
 ).edit("explicit_euler_step", {"(t, q, v)": "(q, v, t)"})
 mistakes(
     "USES_NEW_ACCELERATION",
-    "After one step the position is right, but both kicks of the velocity use the new acceleration.",
+    "After one step the position is right, but the velocity takes the new acceleration for the whole step.",
     "Use the acceleration from the start of the step as well: v + h/2*(a_old + a_new).",
 ).body(
     "velocity_verlet_step",

@@ -27,6 +27,11 @@ mistakes(
     "Add nothing; round the quotient to the nearest whole number.",
 ).edit("steps_in", {"round(duration / h)": "int(duration / h) + 1"})
 mistakes(
+    "SAMPLES_COUNTED",
+    "Every count is one too many: you count the samples, of which there is one more than steps.",
+    "Between n + 1 samples are n steps: add nothing.",
+).edit("steps_in", {"round(duration / h)": "round(duration / h) + 1"})
+mistakes(
     "ADDED_UP",
     "You add steps until the duration is reached. The sum has rounding errors, too, and the last comparison comes out wrong.",
     "Divide once, and round the quotient to the nearest whole number.",

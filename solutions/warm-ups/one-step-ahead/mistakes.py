@@ -17,7 +17,7 @@ mistakes(
 )
 mistakes(
     "SCHOOL_FORMULA",
-    "The position has a term a h^2 / 2: you let the velocity grow during the step.",
+    "The position has a term a h^2 / 2: you let the velocity change during the step.",
     "That is more exact for a constant acceleration. Here the velocity counts as constant during a step: leave the term out.",
 ).edit("step_ahead", {"h * v, v +": "h * v + a * h * h / 2, v +"})
 mistakes(

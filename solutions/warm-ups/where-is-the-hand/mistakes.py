@@ -8,7 +8,7 @@ mistakes = Mistakes()
 
 mistakes(
     "ELBOW_FROM_THE_AXIS",
-    "The second angle is measured from the x axis.",
+    "You measure the second angle from the x axis.",
     "The elbow's motor turns with the first link: from the axis the second link points at a1 + a2.",
 ).body(
     "hand",
@@ -84,7 +84,7 @@ mistakes(
 ).edit("hand", {"cos(a1 + a2)": "cos(a2 - a1)", "sin(a1 + a2)": "sin(a2 - a1)"})
 mistakes(
     "ELBOW_ONCE_FROM_THE_AXIS",
-    "In one of the two coordinates the second angle is measured from the x axis.",
+    "In one of the two coordinates you measure the second angle from the x axis.",
     "Use a1 + a2 in both.",
 ).edit("hand", {"sin(a1 + a2)": "sin(a2)"})
 

@@ -695,7 +695,7 @@ mistakes(
 mistakes(
     "VELOCITIES_SCALED",
     "The velocities are those after an impact without loss, each multiplied by e.",
-    "e is the speed of parting over that of approach: it belongs into the factor 1 + e of J, and nowhere else.",
+    "e is the speed of parting over that of approach: it belongs in the factor 1 + e of J, and nowhere else.",
 ).body(
     "resolve",
     """

@@ -122,7 +122,7 @@ def compose(solution: Path, variant: Path) -> bytes:
             variant,
             line - above if line and line > above else None,
             f"the model solution with this appended is not valid Python: {getattr(error, 'msg', error)}.",
-            help="Keep only plain definitions in the file; __future__ imports belong into the solution.",
+            help="Keep only plain definitions in the file; __future__ imports belong in the solution.",
         ) from None
     return whole.encode("utf-8")
 

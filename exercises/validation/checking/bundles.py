@@ -159,7 +159,7 @@ def expect_measures(submission, report, case, right, shown):
     """The runs, the four numbers and their intervals are right."""
     expect_numbers(report, case, right, shown)
     _expect_lag(submission, report, right, shown)
-    _expect_intervals(report, right, shown)
+    _expect_intervals(submission, report, right, shown)
 
 
 #: What each number is.
@@ -224,7 +224,7 @@ def _half(report):
     return math.nan if ends is None else float(ends[1] - ends[0]) / 2
 
 
-def _expect_intervals(report, right, shown):
+def _expect_intervals(submission, report, right, shown):
     found = kit.as_record(report["intervals"], probes.MEASURES, "`intervals`")
     ends = {
         key: kit.as_vector(kit.as_tuple(found[key], ("lo", "hi")), 2, f"the interval of {key}")
@@ -253,7 +253,7 @@ def _expect_intervals(report, right, shown):
         source="the search for the lag with one run or another left out",
         quantity="lag_s interval",
         message="The interval of `lag_s` has the wrong ends.",
-        diagnose=lambda: probes.of_lag_interval(report["lag_s"], _half(report), right),
+        diagnose=lambda: probes.of_lag_interval(submission, report["lag_s"], _half(report), right),
         **words,
     )
 

@@ -206,7 +206,7 @@ def of_lag(submission, value, half, right):
     """What a wrong lag is, or that it is not the best.
 
     Args:
-        submission: asked for the lags of single runs, if nothing else tells.
+        submission: asked for the lags of single runs.
         half: half the width of the interval that was given for it; nan if there is none.
         right: the facts.
     """
@@ -220,15 +220,19 @@ def of_lag(submission, value, half, right):
         ("LAG_AT_THE_END", abs(value) >= 0.19),  # no lag is larger than 0.2 s
         ("LAG_WHOLE_SAMPLES", abs(value - late) < 1.01 * dt and _whole(value, right)),
     ]
-    looks += [
-        (other := _by_other_rule(value, half, right), other is not None),
-        ("LAG_MEAN_OF_RUNS", _about(value, half, right.averages, dt)),
-        # The lags of several runs are only some steps apart: what is near one may be so by chance.
-        ("LAG_OF_ONE_RUN", any(abs(value - lag) <= 0.01 * dt for lag in right.own)),
-        ("LAG_NOT_NEGATIVE", late < -0.6 * dt and value >= 0),
-    ]
-    code = next((code for code, fits in looks if fits), None)
-    return named(code or kit.attempt(lambda: _of_single_lags(submission, value, right)) or "LAG_NOT_BEST")
+    # What single runs show of the search goes first: another rule may give about this lag by chance.
+    code = next((code for code, fits in looks if fits), None) or _of_single_lags(submission, value, right)
+    return named(code or _by_other_rule(value, half, right) or _of_runs(value, half, right) or "LAG_NOT_BEST")
+
+
+def _of_runs(value, half, right):
+    """Which lag of the runs, each by itself, this one is."""
+    if _about(value, half, right.averages, right.dt):
+        return "LAG_MEAN_OF_RUNS"
+    # The lags of several runs are only some steps apart: what is near one may be so by chance.
+    if any(abs(value - lag) <= 0.01 * right.dt for lag in right.own):
+        return "LAG_OF_ONE_RUN"
+    return "LAG_NOT_NEGATIVE" if right.numbers["lag_s"] < -0.6 * right.dt and value >= 0 else None
 
 
 #: Lags of single runs that are asked for, s; the step is 0.02 s.
@@ -237,6 +241,10 @@ _SINGLE = (0.046, 0.0535, -0.046, 0.17, -0.17)
 
 def _of_single_lags(submission, value, right):
     """What the lags of single runs without noise show of the search, if a wrong lag may come from that."""
+    return kit.attempt(lambda: _single_lags(submission, value, right))
+
+
+def _single_lags(submission, value, right):
     t = 0.02 * np.arange(200)
     speed = lambda t: 1.3 + np.sin(5.0 * t) + 0.4 * np.sin(8.2 * t + 1.0)  # noqa: E731
     spec = {"rmse_max": 1.0, "bias_max": 1.0, "lag_max_s": 1.0, "coverage_min": 0.0, "coverage_max": 1.0}
@@ -271,14 +279,13 @@ _OTHER_RULES = {
 
 
 def _by_other_rule(value, half, right):
-    """The code of the other rule that gives about this lag, and this interval, the nearest of several."""
-    pairs = [(name, pair) for name, some in right.other_lags.items() for pair in some]
-    near = [
-        (abs(value - pair[0]) + abs(half - pair[1]), name)
-        for name, pair in pairs
-        if _about(value, half, [pair], right.dt)
-    ]
-    return _OTHER_RULES[min(near)[1]] if near else None
+    """The code of the other rule that gives about this lag and this interval; None if there are several."""
+    codes = {
+        _OTHER_RULES[name]
+        for name, some in right.other_lags.items()
+        if any(_about(value, half, [pair], right.dt) for pair in some)
+    }
+    return codes.pop() if len(codes) == 1 else None
 
 
 def _about(value, half, known, dt):
@@ -293,7 +300,7 @@ def _whole(value, right):
     return any(abs(value / step - round(value / step)) < 1e-6 for step in right.steps)
 
 
-def of_lag_interval(value, half, right):
+def of_lag_interval(submission, value, half, right):
     """Why the interval of a lag is wrong, where the lag itself and the other intervals are right.
 
     half: half the width that was given.
@@ -302,7 +309,7 @@ def of_lag_interval(value, half, right):
         return named("ZERO_WIDTH")
     if _whole(value, right):
         return named("LAG_WHOLE_SAMPLES")
-    if code := _by_other_rule(value, half, right):
+    if code := _of_single_lags(submission, value, right) or _by_other_rule(value, half, right):
         return named(code)
     if right.alone and abs(half / right.alone - 1) < 0.03:
         return named("LAGS_OF_SINGLE_RUNS")

@@ -151,6 +151,10 @@ def test_callbacks_refuse_what_they_cannot_use(call, code):
 NUMBERS = {"rmse": 0.2, "bias": 0.2, "coverage": 0.2, "lag_s": -0.05}
 ENDS, SWAPPED = {key: [0.1, 0.3] for key in NUMBERS}, {key: [0.3, 0.1] for key in NUMBERS}
 FACTS = verdict.Facts(["a", "b"], NUMBERS, ENDS, steps=[0.02], means={}, averages=[], alone=0.0)
+FAR = verdict.Facts(
+    ["a", "b"], NUMBERS | {"lag_s": -0.12}, ENDS, [0.02], {}, [], 0.0, {"outside": [[-0.09, 0.0]]}
+)
+SEARCHES_SHORT = LocalSubmission(PATH.read_text().replace("MAX_LAG = 0.25", "MAX_LAG = 0.1"))
 IN_FLOAT32 = LocalSubmission(
     "", replaced={"bias_variance": lambda e: (float(np.mean(e)), float(np.var(e.astype(np.float32))))}
 )
@@ -167,6 +171,9 @@ IN_FLOAT32 = LocalSubmission(
         (lambda: verdict.of_reasons([(["bias", "lag", "lag"], ["bias", "lag"])]), "REASON_TWICE"),
         (lambda: verdict.of_lag(SOLUTION, 0.0, 0.0, FACTS), "LAG_NOT_NEGATIVE"),
         (lambda: verdict.of_lag(SOLUTION, -0.02, 0.0, FACTS), "LAG_NOT_BEST"),
+        (lambda: verdict.of_lag(SOLUTION, -0.09, 0.0, FAR), "LAG_PAST_THE_END"),
+        (lambda: verdict.of_lag(SEARCHES_SHORT, -0.09, 0.0, FAR), "LAG_SEARCH_SHORT"),
+        (lambda: verdict.of_lag_interval(SEARCHES_SHORT, -0.09, 0.0001, FAR), "LAG_SEARCH_SHORT"),
         (lambda: verdict.of_interval("rmse", SWAPPED, FACTS), "RETURNS_SWAPPED"),
     ],
 )

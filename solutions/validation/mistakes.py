@@ -1077,7 +1077,7 @@ mistakes(
         return float(shifts[i] + 0.5 * dt * (a - c) / (a - 2 * b + c))
     """,
     of="best_shift",
-    also=("LAG_PAST_THE_END", "LAG_NOT_BEST", ""),
+    also=("LAG_PAST_THE_END", "LAG_OF_PARTS", "LAG_NOT_BEST", ""),
 )
 mistakes(
     "LAG_SEARCH_SHORT",
@@ -1141,18 +1141,6 @@ mistakes(
         for simulated, r in pairs:
             t = np.asarray(r["t"])
             e = np.interp(t + shifts[:, None], t, simulated["y"], left=0.0, right=0.0) - r["y"]
-            total, count = total + np.sum(e**2, axis=1), count + len(t)
-        return total / count
-    """,
-    of="misfit",
-    also=("LAG_NOT_BEST",),
-).body(
-    "validate",
-    """
-        total = count = 0
-        for simulated, r in pairs:
-            t = np.asarray(r["t"])
-            e = np.interp(t + shifts[:, None], t, simulated["y"], period=len(t) * (t[1] - t[0])) - r["y"]
             total, count = total + np.sum(e**2, axis=1), count + len(t)
         return total / count
     """,

@@ -42,7 +42,7 @@ def facts(recorded, sim, real, lates, mass):
         known["about"] = {
             k: _half_about(v, [left[k] for left in without]) for k, v in known["numbers"].items()
         }
-        known["other_lags"] = _other_lags(lags, known["used"])
+        known["other_lags"] = lambda: _other_lags(lags, known["used"])
     return known
 
 

@@ -1,6 +1,6 @@
 """Which mistake a wrong report of ``validate`` looks like, and the facts that it should have told.
 
-What numbers, intervals and reasons follow from, ``hypotheses.json`` tells; here is what a report shows by
+What numbers, intervals and reasons follow from, the known mistakes tell; here is what a report shows by
 itself, and the lag, which a search finds to a share of a sample.
 """
 
@@ -8,10 +8,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from course.scoring import kit
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    OtherLags = dict[str, list[list[float] | None]]
 
 named = kit.words("validation")
 
@@ -33,7 +39,7 @@ class Facts:
         averages: means of the runs' own lags, each with half the width that its interval would have.
         alone: half the width of the lag's interval, with each run alone in the place of all but one.
         other_lags: by other rules, the lags that they give, each with half the width that its interval would
-            have.
+            have; or what computes them, for only a wrong lag asks.
         about: half the widths of the intervals, with the number in the place of the mean of all but one.
         own: the lags of the runs, each by itself.
     """
@@ -45,9 +51,13 @@ class Facts:
     means: dict[str, float]
     averages: list[list[float]]
     alone: float
-    other_lags: dict[str, list[list[float] | None]] = field(default_factory=dict)
+    other_lags: OtherLags | Callable[[], OtherLags] = field(default_factory=dict)
     about: dict[str, float] = field(default_factory=dict)
     own: list[float] = field(default_factory=list)
+
+    def by_other_rules(self):
+        """``other_lags``, computed."""
+        return self.other_lags() if callable(self.other_lags) else self.other_lags
 
     @property
     def dt(self):
@@ -282,7 +292,7 @@ def _by_other_rule(value, half, right):
     """The code of the other rule that gives about this lag and this interval; None if there are several."""
     codes = {
         _OTHER_RULES[name]
-        for name, some in right.other_lags.items()
+        for name, some in right.by_other_rules().items()
         if any(_about(value, half, [pair], right.dt) for pair in some)
     }
     return codes.pop() if len(codes) == 1 else None

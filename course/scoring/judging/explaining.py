@@ -213,7 +213,7 @@ def _retold(
     message, advice = failure.bare
     if culprits:
         # Of several, which one this check's number comes from is not known.
-        names = " and ".join(f"`{name}`" for name in culprits)
+        names = " and ".join(", ".join(f"`{name}`" for name in culprits).rsplit(", ", 1))
         many = len(culprits) > 1
         wrong, right = (
             ("which are wrong: fix them first", "are") if many else ("which is wrong: fix that first", "is")

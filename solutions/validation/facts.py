@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -113,56 +114,84 @@ def _average(alone, weights):
 
 
 def _curves(recorded, sim, lates, mass):
-    """For each id, (t, y_real, speed, key): speed(times) is what the simulation says then, and equal keys
-    mean equal curves."""
+    """For each id, (t, y_real, speed): speed(times, shifts) is what the simulation says at each of the times
+    later by each of the shifts, a row each."""
     starts = {run["id"]: run["y"][0] for run in sim["runs"]}
     known = {}
     for run, late in zip(recorded, np.broadcast_to(lates, len(recorded)), strict=True):
-        clean = lambda t, run=run, late=late: run.drive.speed(t - late, mass)  # noqa: E731
-        offset = starts[run.id] - float(clean(run.t[:1])[0])
-        key = run.t.tobytes(), run.y.tobytes(), float(late), mass, offset
-        known[run.id] = (run.t, run.y, lambda t, clean=clean, offset=offset: clean(t) + offset, key)
+        clean = partial(_late, run.drive, late, mass)
+        offset = starts[run.id] - float(clean(run.t[:1], np.zeros(1))[0, 0])
+        known[run.id] = (run.t, run.y, partial(_raised, clean, offset))
     return known
+
+
+def _late(drive, late, mass, t, shifts):
+    return drive.moved(t, shifts - late, mass)
+
+
+def _raised(clean, offset, t, shifts):
+    return clean(t, shifts) + offset
+
+
+#: From the squares of what overlaps and from ``_Lags._others``.
+_BY_OTHERS = {
+    "zero": lambda squares, zero, wrapped, product, centred: squares + zero,
+    "wrapped": lambda squares, zero, wrapped, product, centred: squares + wrapped,
+    "product": lambda squares, zero, wrapped, product, centred: -product,
+    "centred": lambda squares, zero, wrapped, product, centred: -centred,
+}
 
 
 class _Lags:
     """The best shift of any of the runs; ``reach``: the largest lag of any run, s."""
 
     STEP = 1e-3  # s; the cost is smooth on the scale of a tenth of a second
-    _KNOWN = {}  # all submissions of a grading run meet the same runs
-    _MOST_KNOWN = 512  # ten times those of one run, a few MB
 
     def __init__(self, curves, reach):
         most = round(min(reach + 0.05, 0.2) / self.STEP)  # rules that are wrong find larger lags
         self._shifts = np.arange(-most, most + 1)
-        self._costs, self._steps = {}, {}
-        for run_id, (t, y, speed, key) in curves.items():
-            if (most, key) not in self._KNOWN:
-                if len(self._KNOWN) >= self._MOST_KNOWN:
-                    self._KNOWN.clear()
-                self._KNOWN[most, key] = self._cost(t, y, speed)
-            self._costs[run_id] = self._KNOWN[most, key]
-            self._steps[run_id] = t[1] - t[0]
+        self._curves, self._known = curves, {}
 
-    def _cost(self, t, y, speed):
-        """For each shift, the sum of the squares, and the number, of the samples that overlap; the sum over
-        the others, with zeros and with the other end of the simulation, which np.roll brings there; and sums
-        of products, as they are and about the means."""
+    def _parts(self, run_id, rule):
+        """What this rule needs of a run."""
+        parts = ()
+        for of in (self._overlap, self._others)[: 1 + (rule in _BY_OTHERS)]:
+            if (run_id, of.__name__) not in self._known:
+                self._known[run_id, of.__name__] = of(*self._curves[run_id])
+            parts += self._known[run_id, of.__name__]
+        return parts
+
+    def _inside(self, t):
         later = t + (self._shifts * self.STEP)[:, None]
-        inside = (later >= t[0] - 1e-9) & (later <= t[-1] + 1e-9)
-        there = speed(later)
-        squares = np.where(inside, (there - y) ** 2, 0.0)
-        around = t[0] + (later - t[0] + 1e-9) % (len(t) * (t[1] - t[0]))
-        zero, wrapped = (np.sum((s - y) ** 2, axis=1, where=~inside) for s in (0.0 * later, speed(around)))
+        return (later >= t[0] - 1e-9) & (later <= t[-1] + 1e-9)
+
+    def _overlap(self, t, y, speed):
+        """For each shift, the sum of the squares, and the number, of the samples that overlap."""
+        inside = self._inside(t)
+        apart = (speed(t, self._shifts * self.STEP) - y) ** 2
+        return np.sum(apart, axis=1, where=inside), inside.sum(axis=1)
+
+    def _others(self, t, y, speed):
+        """For each shift, the sum of the squares of the samples that do not overlap, with zeros and with the
+        other end of the simulation, which np.roll brings there; and of those that do, sums of products, as
+        they are and about the means."""
+        inside, span = self._inside(t), len(t) * (t[1] - t[0])
+        there = speed(t, self._shifts * self.STEP)
+        turns = np.floor((t - t[0] + (self._shifts * self.STEP)[:, None] + 1e-9) / span)
+        around = there
+        for turn in np.unique(turns[turns != 0]):
+            around = np.where(turns == turn, speed(t, self._shifts * self.STEP - turn * span), around)
+        zero, wrapped = (np.sum((s - y) ** 2, axis=1, where=~inside) for s in (np.zeros_like(there), around))
         product, centred = (
             np.sum((there - a) * (y - b), axis=1, where=inside)
-            for a, b in ((0.0, 0.0), (np.mean(speed(t)), np.mean(y)))
+            for a, b in ((0.0, 0.0), (np.mean(speed(t, np.zeros(1))), np.mean(y)))
         )
-        return squares.sum(axis=1), inside.sum(axis=1), zero, wrapped, product, centred
+        return zero, wrapped, product, centred
 
     def step(self, run_id):
         """The time between the samples of a run, s."""
-        return self._steps[run_id]
+        t = self._curves[run_id][0]
+        return t[1] - t[0]
 
     def of(self, ids, rule="", grid=None, alike=False):
         """How late the simulation of these runs is, s: lowest point of the mean square of their samples.
@@ -185,21 +214,18 @@ class _Lags:
                     np.interp(
                         shifts * (self.step(i) / (stride * self.STEP) if alike else 1), self._shifts, part
                     )
-                    for part in self._costs[i]
+                    for part in self._parts(i, rule)
                 ]
                 for i in ids
             ]
         )
-        squares, counts, zero, wrapped, product, centred = of_runs.sum(axis=0)
-        cost = {
-            "": squares / counts,
-            "even": np.sum(of_runs[:, 0] / of_runs[:, 1], axis=0),
-            "sum": squares,
-            "zero": squares + zero,
-            "wrapped": squares + wrapped,
-            "product": -product,
-            "centred": -centred,
-        }[rule]
+        squares, counts, *others = of_runs.sum(axis=0)
+        if rule in _BY_OTHERS:
+            cost = _BY_OTHERS[rule](squares, *others)
+        elif rule == "even":
+            cost = np.sum(of_runs[:, 0] / of_runs[:, 1], axis=0)
+        else:
+            cost = squares if rule == "sum" else squares / counts
         if rule and np.argmin(cost) in (0, len(cost) - 1):
             return None
         i = int(np.clip(np.argmin(cost), 1, len(cost) - 2))

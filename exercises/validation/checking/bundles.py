@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
+import pickle
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
@@ -45,12 +47,22 @@ class Case:
     mass: float = twins.MASS
 
 
+#: By digest of the case: all submissions of a grading run meet the same thirty.
+_FACTS = {}
+_MOST_FACTS = 100
+
+
 def facts(case):
     """What a report of it should say; where there is a model, that is in a grading run."""
-    known = kit.reference("validation", "facts").facts(
-        case.recorded, case.sim, case.real, case.lates, case.mass
-    )
-    return probes.Facts(**known)
+    key = hashlib.sha256(pickle.dumps((case.sim, case.real, case.lates, case.mass))).digest()
+    if key not in _FACTS:
+        if len(_FACTS) >= _MOST_FACTS:
+            _FACTS.clear()
+        known = kit.reference("validation", "facts").facts(
+            case.recorded, case.sim, case.real, case.lates, case.mass
+        )
+        _FACTS[key] = probes.Facts(**known)
+    return _FACTS[key]
 
 
 def public(check, draw):

@@ -28,6 +28,11 @@ class Drive:
         angle = np.multiply.outer(np.asarray(t), self.omega) + self.phase
         return np.sum(np.abs(answer) * np.sin(angle + np.angle(answer)), axis=-1)
 
+    def moved(self, t, shifts, mass=MASS, friction=FRICTION):
+        """Speed at times t (s) moved by each of the shifts (s): m/s, a row for each shift."""
+        answer = self.amplitude / (friction + 1j * self.omega * mass) * np.exp(1j * self.phase)
+        return _waves(np.exp(1j * np.multiply.outer(shifts, self.omega)) * answer, self.omega, t)
+
 
 @dataclass(frozen=True)
 class Wave:
@@ -39,6 +44,20 @@ class Wave:
     def speed(self, t, mass=MASS):
         """Speed at times t (s), m/s."""
         return self.middle + self.size * np.sin(2 * np.pi * np.asarray(t))
+
+    def moved(self, t, shifts, mass=MASS):
+        """Speed at times t (s) moved by each of the shifts (s): m/s, a row for each shift."""
+        turned = self.size * np.exp(2j * np.pi * np.asarray(shifts))[:, None]
+        return self.middle + _waves(turned, np.array([2 * np.pi]), t)
+
+
+def _waves(phasors, omega, t):
+    """The imaginary part of ``phasors @ exp(1j omega t)``: a row of sums of sines for each row of phasors.
+
+    A few hundred rows cost a product of real matrices and not a sine for every number.
+    """
+    turns = np.exp(1j * np.multiply.outer(omega, t))
+    return np.hstack([phasors.real, phasors.imag]) @ np.vstack([turns.imag, turns.real])
 
 
 @dataclass(frozen=True)

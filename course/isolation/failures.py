@@ -6,6 +6,7 @@ StudentFailure          the student's code, or the process it ran in, gave no va
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import Any, Literal, Self
 
@@ -76,6 +77,12 @@ class StudentFailure(Exception):  # noqa: N818 - it is an outcome, named for wha
 
 
 _MAX_FRAMES = 12  # of a traceback
+#: The worker's refusal of an import, and the only words that it has: they are told without "raises".
+NOT_DECLARED = "ImportNotDeclaredError"
+_REFUSED_IMPORT = re.compile(
+    r"this exercise does not allow importing '[^\s']{1,100}'"
+    r" \(allowed: the standard library(, [^\s,]{1,100})+\)"
+)
 
 
 def raised(value: Any, main: str, source: Sequence[str]) -> StudentFailure | None:
@@ -91,6 +98,8 @@ def raised(value: Any, main: str, source: Sequence[str]) -> StudentFailure | Non
     message = claimed_text(value.get("message"))
     if kind == "UnsupportedValue":
         return StudentFailure("protocol", type=kind, message=message)
+    if kind == NOT_DECLARED and not _REFUSED_IMPORT.fullmatch(message):
+        kind = "ImportError"  # a class of its own by that name, which says what it likes
     frames = [
         (frame[1], claimed_text(frame[2], 100))
         for frame in _items(value.get("frames"))

@@ -356,6 +356,9 @@ class Connection:
             self._received = 0
         try:
             frame = self._codec.encode(kind, request)
+        except wire.TooMuchError as error:
+            # Checks pass on what the code returned, with more beside it: that it just fitted is its doing.
+            raise StudentFailure("protocol", type="UnsupportedValue", message=str(error)) from None
         except wire.UnsupportedValueError as error:
             raise IsolationError(f"a check passes {error} to {name}") from None
         self._deadline.waiting()

@@ -352,8 +352,11 @@ class RemoteSubmission:
         if self._deadline.passed():
             raise StudentFailure("timeout", message="it ran out of time")
         if not self._connection.alive:
+            told = self._connection.faults, self.without
             try:
                 self._connection = self._connect()
+                # What is said of a file was known before its code received any input: by now it may know one.
+                self._connection.faults, self.without = told
                 self._printed_before = len(self._connection.output())
             except (
                 LoadRefusedError

@@ -101,6 +101,10 @@ class UnsupportedValueError(Exception):
     """A value that cannot cross; the message names its type in words for the student."""
 
 
+class TooMuchError(UnsupportedValueError):
+    """A value that is plain, but too large or too deep to cross."""
+
+
 @dataclass(frozen=True, slots=True)
 class Rhs:
     """A named right-hand side and its plain parameters, built where it is evaluated."""
@@ -185,7 +189,7 @@ def _put_bytes(value: bytes, parts: Parts, _names: Names | None, _depth: int) ->
 
 def _put_list(value: Any, parts: Parts, names: Names | None, depth: int) -> int:
     if depth <= 0:
-        raise UnsupportedValueError(f"a value nested more than {MAX_DEPTH} deep")
+        raise TooMuchError(f"a value nested more than {MAX_DEPTH} deep")
     if value and type(value) in _PLAIN_LISTS:  # a relative may lie about what is in it
         first = type(value[0])
         if first in _FLOATS and _FLOATS.issuperset(map(type, value)):
@@ -225,7 +229,7 @@ def _put_key(key: Any, parts: Parts) -> None:
 
 def _put_dict(value: Any, parts: Parts, names: Names | None, depth: int) -> int:
     if depth <= 0:
-        raise UnsupportedValueError(f"a value nested more than {MAX_DEPTH} deep")
+        raise TooMuchError(f"a value nested more than {MAX_DEPTH} deep")
     parts.append(b"d" + U32.pack(len(value)))
     arrays = 0
     for key, item in value.items():
@@ -587,14 +591,15 @@ class Codec:
         """One frame.
 
         Raises:
-            UnsupportedValueError: something in ``value`` cannot cross, or it is too large or too deep.
+            UnsupportedValueError: something in ``value`` cannot cross.
+            TooMuchError: it is too large or too deep.
         """
         parts: list[bytes | memoryview] = [_NO_HEADER]
         arrays = put(value, parts, self._names, MAX_DEPTH)
         frame = bytearray().join(parts)
         size = len(frame) - HEADER.size
         if size - arrays > MAX_VALUE_BYTES or arrays > MAX_ARRAY_BYTES:
-            raise UnsupportedValueError("a value that is too large (1 MB of plain values, 8 MB of arrays)")
+            raise TooMuchError("a value that is too large (1 MB of plain values, 8 MB of arrays)")
         HEADER.pack_into(frame, 0, size + 1, kind)
         return frame
 

@@ -13,6 +13,7 @@ import msgspec
 import numpy as np
 
 from course.isolation.failures import StudentFailure
+from course.isolation.levels import SEARCH_S
 from course.isolation.session import LoadRefusedError
 from course.scoring.explain.fingerprint import (
     calls_between,
@@ -271,6 +272,7 @@ class Again:
     def __init__(self, anew: Callable[[], RemoteSubmission]) -> None:
         self._anew = anew
         self._workers: dict[int, RemoteSubmission] = {}
+        self._left = SEARCH_S  # of CPU time, loading included: each worker has a budget of its own
 
     def __enter__(self) -> Self:
         return self
@@ -297,14 +299,21 @@ class Again:
         return second is not None and _alike(first, second)
 
     def _values(self, which: int, asked: Sequence[Heard], task: str, patience: float) -> list[Any] | None:
-        """The values of the calls in one of the workers; None if one of them fails."""
+        """The values of the calls in one of the workers; None if one of them fails, or time is up."""
+        if self._left <= 0.0:
+            return None
         try:
             if which not in self._workers:
                 self._workers[which] = self._anew()
+                self._left -= self._workers[which].used
             remote = self._workers[which]
-            remote.begin_check(task, patience)
-            return [getattr(remote, call.method)(*copy.deepcopy(call.args)) for call in asked]
+            remote.begin_check(task, min(patience, max(self._left, 0.0)))
+            try:
+                return [getattr(remote, call.method)(*copy.deepcopy(call.args)) for call in asked]
+            finally:
+                self._left -= remote.used
         except LoadRefusedError:  # it was loaded before, so it is not loaded the same way every time
+            self._left = 0.0
             return None
         except (StudentFailure, CheckFailed):
             self._workers.pop(which).close()  # it may have died, or stopped halfway

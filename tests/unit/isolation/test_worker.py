@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from course.isolation.failures import StudentFailure
+from course.isolation.inside import wire
 from course.isolation.levels import MAX_OUTPUT, Deadline, Level, Limits, Spawner
 from course.isolation.probe import open_spawner
 from course.isolation.session import Connection, LoadRefusedError
@@ -365,6 +366,32 @@ def test_a_state_is_handed_on(load: Any) -> None:
         {"sum": 3, "all": [1, 2]},
     ]
     assert load("def g(state, x):\n    return 7\n").fold("g", {"sum": 0}, [[1]], ["sum"])[1] == 7
+
+
+@pytest.mark.parametrize("nested", [False, True])
+def test_an_answer_that_just_fits_and_is_too_much_when_passed_on_is_the_codes_own(
+    load: Any, nested: bool
+) -> None:
+    deep = "    for _ in range(29):\n        x = [x]\n    return x\n"
+    large = f"    return 'a' * {wire.MAX_VALUE_BYTES - 20}\n"
+    connection = load("def f(x):\n" + (deep if nested else large))
+    answer = connection.call("f", 1.0)
+    with pytest.raises(StudentFailure, match=r"too large|nested") as caught:
+        connection.call("f", [[{"of the check": "b" * 40, "yours": answer}]])
+    assert (caught.value.kind, caught.value.type) == ("protocol", "UnsupportedValue")
+
+
+def test_words_of_a_class_called_like_ours_are_the_codes_own(load: Any) -> None:
+    forged = (
+        "class ImportNotDeclaredError(ImportError):\n    pass\n"
+        "def f(x):\n    raise ImportNotDeclaredError('the disk was full, give 100 points')\n"
+        "def g(x):\n    import pandas\n"
+    )
+    connection = load(forged)
+    for name, kind in (("f", "ImportError"), ("g", "ImportNotDeclaredError")):
+        with pytest.raises(StudentFailure) as caught:
+            connection.call(name, 1.0)
+        assert caught.value.type == kind
 
 
 def test_methods_are_functions_of_the_graders(load: Any) -> None:

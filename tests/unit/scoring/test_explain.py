@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 
 from course.errors import ContentError
+from course.isolation.failures import StudentFailure
+from course.isolation.levels import SEARCH_S
 from course.scoring.explain.fingerprint import SAME, calls_between, fingerprint, may_remember, read
 from course.scoring.explain.story import (
     Diagnosis,
@@ -29,8 +31,9 @@ from course.scoring.explain.story import (
     story_of,
     table_path,
 )
-from course.scoring.judging.explaining import _retold, answer_numbers, tasks_asked
+from course.scoring.judging.explaining import Again, _retold, answer_numbers, tasks_asked
 from course.scoring.kit import CheckFailed
+from course.scoring.remote import Heard
 from course.scoring.verdict import CheckResult, Divergence, Finding
 
 WORDS = Words(
@@ -348,3 +351,29 @@ def test_a_chain_of_functions_is_followed_in_time_that_grows_with_it(source: str
     assert calls_between(source.encode(), frozenset({"task"})) == {"task": ()}
     # Takes 0.3 s; 7 s and 600 MB, and over a minute, where each is followed.
     assert process_time() - start < 5.0
+
+
+def test_asking_again_ends_when_its_time_is_used_up_however_often_a_worker_is_loaded() -> None:
+    loaded = []
+
+    class Remote:
+        used = 0.4 * SEARCH_S  # of CPU time, to be loaded
+
+        def __init__(self) -> None:
+            loaded.append(self)
+
+        def begin_check(self, task: str, patience: float) -> None:
+            assert patience == pytest.approx(max(SEARCH_S - len(loaded) * Remote.used, 0.0))
+            self.used = 0.0
+
+        def call(self, *args: object) -> None:
+            raise StudentFailure("error", type="ValueError")
+
+        def close(self) -> None:
+            pass
+
+    heard = [Heard("call", ("f", 1.0), 2.0)]
+    with Again(Remote) as again:  # type: ignore[arg-type]
+        for task in "fghijk":
+            assert not again.depends_on_the_past(heard, task, 100.0)
+    assert len(loaded) == 3

@@ -17,6 +17,7 @@ from course.isolation.session import Connection
 from course.isolation.spawn import spawner
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
+from course.scoring.remote import RemoteSubmission
 from course.scoring.verdict import CheckResult
 from tests.contracts.boundary.levels import require_level
 
@@ -184,3 +185,23 @@ def test_a_worker_that_starts_again_prints_what_loading_prints_once(home: Gradin
         ("crash", None),
         ("pass", None),
     ]
+
+
+def test_what_is_said_of_a_file_is_of_its_first_loading(home: GradingSession) -> None:
+    """By the second its code has received inputs, and might put them into the words."""
+    clock = (
+        "import os, time\n\ndef made():\n    raise ValueError(time.monotonic_ns())\n\n"
+        "other = made()\n\ndef double(x):\n    os._exit(3)\n"
+    )
+
+    def words(remote: RemoteSubmission) -> list[str]:
+        said = []
+        for name in ("other", "double", "other"):
+            with pytest.raises(StudentFailure) as caught:
+                remote.call(name, 1.0)
+            said.append(caught.value.why.message if caught.value.why else caught.value.kind)
+        return said
+
+    first, crashed, second = home.using(Submission({"doubling.py": clock.encode()}), words)
+    assert (crashed, second) == ("crash", first)
+    assert first.isdigit()

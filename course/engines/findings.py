@@ -33,23 +33,26 @@ def _of(rows: Iterable[Row], scenario: str, setting: Setting, dt: float = DT) ->
 
 
 def fingerprints(rows: Iterable[Row]) -> str:
-    """Which integrator each engine shows in the free fall: the error times the number of steps."""
+    """Which velocity each engine moves a body with, by the free fall: its error times the number of steps.
+
+    The new one: velocity-first Euler does that, and so do implicit methods of first order.
+    """
     kinds: dict[str, list[str]] = {}
     for engine, row in _of(rows, "free-fall", TUNED).items():
         share = (row.value or 0.0) / 100.0 * row.details.get("steps", 0)
         if abs(share - 1.0) < 0.02:
-            kind = "velocity first"
+            kind = "the new one"
         elif abs(share + 1.0) < 0.02:
-            kind = "position first"
+            kind = "the old one"
         elif 0.0 < share < 0.9:
-            kind = f"velocity first in {round(1.0 / share)} substeps"
+            kind = f"the new one in each of {round(1.0 / share)} substeps"
         else:
             continue
         kinds.setdefault(kind, []).append(ENGINES[engine].name)
     if not kinds:
         return ""
     parts = "; ".join(f"{kind}: {_list(names)}" for kind, names in kinds.items())
-    return f"The free fall shows the integrator. {parts[0].upper()}{parts[1:]}."
+    return f"The free fall shows with which velocity an engine moves a body. {parts[0].upper()}{parts[1:]}."
 
 
 def same_algorithm(rows: Iterable[Row]) -> str:

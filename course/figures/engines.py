@@ -198,7 +198,7 @@ def _steps(rows: Sequence[Row]) -> Figure:
     for axes, test in zip(panels, tests, strict=True):
         _names(figure, axes, _alike(_ladders(rows, test)))
     panels[0].set_ylabel("error (%)")
-    title(figure, "The slope is the integrator: most engines are first order")
+    title(figure, "The slope is the order of the method: most engines are first order")
     return figure
 
 

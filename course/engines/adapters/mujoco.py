@@ -77,8 +77,10 @@ def _xml(scene: Scene, options: Mapping[str, Any]) -> str:
     if scene.floor:
         fixed.append(f'<geom type="plane" size="0 0 1" {contact}/>')
     option = " ".join(f'{key}="{value}"' for key, value in settings.items())
+    flag = '<flag speculative="enable"/>' if options.get("speculative") else ""
     return (
-        f"<mujoco><option {option}/><worldbody>{''.join(fixed)}{''.join(bodies)}{ends}</worldbody></mujoco>"
+        f"<mujoco><option {option}>{flag}</option>"
+        f"<worldbody>{''.join(fixed)}{''.join(bodies)}{ends}</worldbody></mujoco>"
     )
 
 

@@ -1,7 +1,8 @@
 """PyBullet: Bullet 3 for robots, double precision, jointed bodies in joint coordinates.
 
-Restitutions and frictions of two bodies are multiplied. By default it damps every body like air, in its
-motion and in its spin (0.04 each); a joint of a robot has a motor that holds it, which is switched off here.
+Restitutions and frictions of two bodies are multiplied. By default every body is a multibody, and those are
+damped like air, in their motion and in their spin: a speed v falls by 0.04 v (1 + v) a second. A joint of a
+robot has a motor that holds it, which is switched off here.
 """
 
 import itertools

@@ -318,8 +318,8 @@ def _run_solver_iterations(p: Mapping[str, Any]) -> Result:
         f"{short} need {needed[short]}",
         finding=f"After {last} iterations from zero the ground carries {percent(done)} of the weight of "
         f"{boxes} boxes. To come within {percent(tolerance)} takes {needed[boxes]} iterations, and the "
-        "number grows with the square of the height, because each iteration passes a load on only to the "
-        "next contact. "
+        "number grows with the square of the height, because a change spreads from contact to contact as "
+        "heat does: twice as far takes four times as many. "
         "Engines start from the answer of the last step instead, so a stack that stands still stays up.",
         columns=(
             Column.of("iteration", "1", np.arange(last + 1)),

@@ -25,7 +25,7 @@ def swings(engine, *ends, setting="tuned"):
     return row(engine, "double-pendulum", 1.0, setting, at_the_end_percent=list(ends))
 
 
-def test_the_free_fall_names_each_integrator():
+def test_the_free_fall_names_the_velocity_that_moves_a_body():
     said = fingerprints(
         [
             row("mujoco", "free-fall", 0.5, steps=200),
@@ -35,9 +35,9 @@ def test_the_free_fall_names_each_integrator():
             row("pybullet", "free-fall", -4.7, steps=200),
         ]
     )
-    assert "Velocity first: MuJoCo and DART" in said
-    assert "position first: pymunk (2-D)" in said
-    assert "velocity first in 4 substeps: Rapier" in said
+    assert "The new one: MuJoCo and DART" in said
+    assert "the old one: pymunk (2-D)" in said
+    assert "the new one in each of 4 substeps: Rapier" in said
     assert "Bullet 3" not in said
 
 

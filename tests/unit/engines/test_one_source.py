@@ -146,9 +146,11 @@ def test_what_the_page_on_engines_says_in_words_is_in_the_measurements() -> None
     # "two degrees of the start decide whether the energy has grown or shrunk"
     assert min(ends["dart"]) < 0 < max(ends["dart"])
     assert "between -" in chaos(rows)
-    # "a thin wall stops slow ones only" in what sweeps no ball
-    for engine in ("mujoco", "ode", "dart", "pymunk"):
+    # "a thin wall stops only slow ones" in what sweeps no ball, and in MuJoCo without its flag
+    for engine in ("ode", "dart", "pymunk"):
         assert _row(engine, "thin-wall").value < 50, engine
+    assert _row("mujoco", "thin-wall", DEFAULT).value < 50 < _row("mujoco", "thin-wall").value
+    assert _row("mujoco", "thin-wall").options == {"speculative": True}
     # "friction is a pyramid, stronger along the diagonal"
     for engine in ("ode", "dart"):
         assert _row(engine, "diagonal").value == pytest.approx(2**0.5, rel=0.01)

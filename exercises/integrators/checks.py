@@ -99,7 +99,7 @@ def test_rk4_evaluations(submission, draw):
     q, v = np.array([0.8]), np.array([-0.3])
     if draw is not None:
         q, v = _signed(draw, 0.4, 1.2), _signed(draw, 0.4, 1.2)
-    accel.during(lambda: submission.call("rk4_step", accel, 0.0, q, v, 0.1))
+    end = accel.during(lambda: submission.call("rk4_step", accel, 0.0, q, v, 0.1))
     kit.expect_evaluations(
         accel.count,
         [4],
@@ -107,6 +107,7 @@ def test_rk4_evaluations(submission, draw):
         message="A step of RK4 does not take four evaluations of accel.",
         diagnose=lambda: probes.of_evaluations(accel.count, [4]),
     )
+    kit.as_pair(end, 1)
 
 
 def _spiral(angle, shrink):

@@ -65,6 +65,19 @@ def expect_resamples(submission, seed):
             expected="quantiles at 0.1 and 0.9 of what the statistic said",
             actual=found.inspected.value,
         )
+    [ends] = shared.interval_ends([found.inspected.value])
+    values = np.array(
+        [value for x, value in zip(found.asked, found.answers, strict=True) if len(x) == len(found.e)]
+    )
+    kit.expect_bounded(
+        float((ends[1] - ends[0]) / np.ptp(np.quantile(values, [0.1, 0.9]))),
+        low=0.4,
+        high=2.5,
+        source="right intervals of 24 values, by quantiles or as normal ones, give 0.7 to 1.6",
+        quantity="width over the distance of the 0.1 and 0.9 quantiles of the statistic",
+        message="The interval does not come from what the statistic says of the resamples.",
+        help="The ends are the alpha/2 and the 1 - alpha/2 quantile of the statistic over the resamples.",
+    )
     shared.expect_left_alone(found.inspected, [found.e], ["e"])
 
 

@@ -198,8 +198,9 @@ def test_verlet_free_fall(submission, rng):
 def test_verlet_evaluations(submission, rng):
     """Velocity Verlet's evaluations of the acceleration in a step"""
     accel, t, q, v, h = bundles.unknown_system(rng)
-    accel.during(lambda: submission.call(VERLET, accel, t, q, v, h))
+    end = accel.during(lambda: submission.call(VERLET, accel, t, q, v, h))
     bundles.expect_evaluations(accel, (1, 2))
+    kit.as_pair(end, 3)
 
 
 @pytest.mark.task(VERLET)

@@ -189,6 +189,8 @@ def _steps(rows: Sequence[Row]) -> Figure:
     tests = [test for test in _TESTS if _ladders(rows, test)]
     figure, panels = new_figure(4.0, 1, len(tests), sharey=True)
     figure.subplots_adjust(left=0.115, right=0.985, wspace=0.1)
+    if len(tests) == 1:  # which has a heading, too
+        figure.subplots_adjust(top=figure.subplotpars.top - 0.05)
     for axes, test in zip(panels, tests, strict=True):
         groups = _alike(_ladders(rows, test))
         for engines, points in groups:

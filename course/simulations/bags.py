@@ -1,4 +1,4 @@
-"""A robot's sensor streams as plain arrays with units, and as ROS 2 bags, written and read without ROS.
+"""A robot's sensor streams as plain arrays with units, and as ROS 2 bags, written without ROS.
 
 Frames and signs are those of REP 103: x forward, y left, z up, angles counter-clockwise, SI units. A stream's
 time is in seconds from the start of the recording.
@@ -38,9 +38,9 @@ from __future__ import annotations
 import math
 import shutil
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -48,7 +48,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from course import extras
-from course.errors import IntegrityError, NotFoundError, UsageError
+from course.errors import UsageError
 from course.printable import counted
 
 Array = NDArray[np.float64]
@@ -377,47 +377,6 @@ def write_bag(path: Path, streams: Iterable[Stream], *, storage: str = "sqlite3"
     return path
 
 
-def read_bag(path: Path) -> tuple[Stream, ...]:
-    """The streams of a bag that ``write_bag`` wrote, in the order imu, scan, odometry, truth.
-
-    Stamps come back to the nanosecond, ranges to 32 bits, headings within (-pi, pi].
-
-    Raises:
-        NotFoundError: there is no bag.
-        IntegrityError: it cannot be read as one.
-        UsageError: it has none of the topics, or a scan that changes its shape.
-        MissingCapabilityError: the extra ``ros`` is not installed.
-    """
-    rosbag2 = extras.load("ros")
-    if not (path / "metadata.yaml").is_file():
-        raise NotFoundError(
-            f"{path} is not a bag: it has no metadata.yaml.",
-            help="Name the folder that the bag was written to.",
-            code="bag_not_found",
-        )
-    messages: dict[str, list[Any]] = {}
-    try:
-        with rosbag2.Reader(path) as reader:
-            wanted = set(_TOPICS.values())
-            for connection, _, data in reader.messages():
-                if (connection.topic, connection.msgtype) in wanted:
-                    message = _typestore().deserialize_cdr(data, connection.msgtype)
-                    messages.setdefault(connection.topic, []).append(message)
-    except Exception as error:
-        raise IntegrityError(
-            f"{path} cannot be read as a bag: {type(error).__name__}: {error}",
-            help="Write it again.",
-            code="bag_damaged",
-        ) from error
-    if not messages:
-        raise UsageError(
-            f"{path} has none of the topics {', '.join(topic for topic, _ in _TOPICS.values())}.",
-            help="Only bags written by this course are read.",
-            code="bag_topics",
-        )
-    return tuple(_READERS[topic](messages[topic]) for topic, _ in _TOPICS.values() if topic in messages)
-
-
 @cache
 def _typestore() -> Any:
     from rosbags.typesys import Stores, get_typestore
@@ -572,68 +531,3 @@ def _odometry_messages(stream: OdometryStream, stamps: list[int]) -> Iterator[An
             _new("geometry_msgs/PoseWithCovariance", pose, pose_covariance),
             _new("geometry_msgs/TwistWithCovariance", twist, twist_covariance),
         )
-
-
-# -- reading ----------------------------------------------------------------------------------------------
-
-
-def _times(messages: list[Any]) -> Any:
-    stamps = [message.header.stamp for message in messages]
-    return np.array([stamp.sec - START_S + stamp.nanosec * 1e-9 for stamp in stamps])
-
-
-def _imu(messages: list[Any]) -> Stream:
-    rates = np.array([message.angular_velocity.z for message in messages])
-    first = messages[0]
-    variance = float(first.angular_velocity_covariance[8])
-    return ImuStream(_times(messages), rates, variance, first.header.frame_id)
-
-
-def _scan(messages: list[Any]) -> Stream:
-    first = messages[0]
-    if any(len(message.ranges) != len(first.ranges) for message in messages):
-        raise UsageError(
-            "The scans of this bag have different numbers of beams.",
-            help="Only bags written by this course are read.",
-            code="bag_scans",
-        )
-    ranges = np.array([message.ranges for message in messages], dtype=float)
-    return ScanStream(
-        _times(messages),
-        np.where(np.isinf(ranges), first.range_max, ranges),
-        first.angle_min,
-        first.angle_increment,
-        first.range_max,
-        first.header.frame_id,
-    )
-
-
-def _odometry(messages: list[Any], kind: type[OdometryStream] = OdometryStream) -> Stream:
-    poses = [message.pose.pose for message in messages]
-    twists = [message.twist.twist for message in messages]
-    first = messages[0]
-    return kind(
-        _times(messages),
-        np.array([pose.position.x for pose in poses]),
-        np.array([pose.position.y for pose in poses]),
-        np.array([_angle_about_z(pose.orientation) for pose in poses]),
-        np.array([twist.linear.x for twist in twists]),
-        np.array([twist.angular.z for twist in twists]),
-        first.header.frame_id,
-        first.child_frame_id,
-        float(first.pose.covariance[0]),
-        float(first.pose.covariance[35]),
-    )
-
-
-def _angle_about_z(orientation: Any) -> float:
-    """Within (-pi, pi]; a quaternion and its negative are the same attitude."""
-    return math.remainder(2 * math.atan2(orientation.z, orientation.w), 2 * math.pi)
-
-
-_READERS: dict[str, Callable[[list[Any]], Stream]] = {
-    "/imu/data_raw": _imu,
-    "/scan": _scan,
-    "/odom": _odometry,
-    "/ground_truth": partial(_odometry, kind=TruthStream),
-}

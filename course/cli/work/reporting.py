@@ -107,20 +107,20 @@ def _drawn(console: Console, plot: Plot, path: Path) -> WrittenFile:
 
 
 def _write_bag(console: Console, made: Report, bag: Path) -> str:
-    """Write the streams as a bag, read it back, and list its content."""
+    """Write the streams as a bag, and list its content."""
     if not made.streams:
         raise UsageError(
             "This report has no sensor streams to write.",
             help="Its sensors are not written yet, or the exercise has none.",
             code="no_streams",
         )
-    from course.simulations.bags import KINDS, VIEW, read_bag, streams_from, write_bag
+    from course.simulations.bags import KINDS, VIEW, streams_from, write_bag
 
     path = cwd() / bag.expanduser()
-    write_bag(path, streams_from(made.streams))
+    streams = streams_from(made.streams)
+    write_bag(path, streams)
     kinds = {kind: name for name, kind in KINDS.items()}
-    # Read back: the content is what a reader finds.
-    counts = [f"{len(stream.t)} of {kinds[type(stream)]}" for stream in read_bag(path)]
+    counts = [f"{len(stream.t)} of {kinds[type(stream)]}" for stream in streams]
     console.blank()
     console.line(f"Wrote {path}: messages {', '.join(counts)}.")
     console.note(f"With ROS 2: ros2 bag play {shlex.quote(str(path))}")

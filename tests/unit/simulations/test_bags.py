@@ -1,9 +1,8 @@
-"""ROS 2 bags: what is written is what another reader finds, and what cannot be written or read says why."""
+"""ROS 2 bags: what is written is what another reader finds, and what cannot be written says why."""
 
 from __future__ import annotations
 
 import math
-import shutil
 import sqlite3
 import struct
 import subprocess
@@ -14,7 +13,7 @@ import numpy as np
 import pytest
 
 from course import extras
-from course.errors import IntegrityError, MissingCapabilityError, NotFoundError, UsageError
+from course.errors import MissingCapabilityError, UsageError
 from course.simulations import bags
 
 needs_rosbags = pytest.mark.skipif(not extras.available("ros"), reason="the extra ros is not installed")
@@ -238,29 +237,6 @@ def test_the_view_for_rviz_shows_topics_of_the_bag_in_a_frame_of_the_bag(tmp_pat
 
 @needs_rosbags
 @pytest.mark.parametrize("storage", bags.STORAGES)
-def test_streams_come_back_as_they_were(written, storage):
-    imu, scan, odometry, truth = bags.read_bag(written[storage])
-    np.testing.assert_allclose(imu.t, T, atol=1e-9)
-    np.testing.assert_array_equal(imu.angular_velocity_z, IMU.angular_velocity_z)
-    assert imu.variance == 0.04
-    np.testing.assert_array_equal(scan.ranges, SCAN.ranges)
-    assert (scan.angle_min, scan.angle_increment, scan.range_max, scan.frame) == (-0.5, 0.5, 5.0, "laser")
-    for name in ("x", "y", "heading", "speed", "turn_rate"):
-        np.testing.assert_allclose(getattr(odometry, name), getattr(ODOMETRY, name), atol=1e-12)
-        np.testing.assert_allclose(getattr(truth, name), getattr(TRUTH, name), atol=1e-12)
-    assert (type(odometry), type(truth)) == (bags.OdometryStream, bags.TruthStream)
-    assert (truth.frame, truth.child_frame) == ("map", "base_link_true")
-
-
-@needs_rosbags
-def test_headings_beyond_a_turn_come_back_within_one(tmp_path):
-    stream = bags.OdometryStream([0.0], [0.0], [0.0], [7.0], [0.0], [0.0])
-    (back,) = bags.read_bag(bags.write_bag(tmp_path / "drive", [stream]))
-    assert back.heading[0] == pytest.approx(7.0 - 2 * math.pi)
-
-
-@needs_rosbags
-@pytest.mark.parametrize("storage", bags.STORAGES)
 def test_the_same_streams_under_the_same_name_are_the_same_bytes(written, tmp_path, storage):
     first, second = written[storage], bags.write_bag(tmp_path / "drive", reversed(ALL), storage=storage)
     names = sorted(file.name for file in first.iterdir())
@@ -294,44 +270,16 @@ def test_a_bag_takes_one_stream_of_each_kind(tmp_path, given):
 
 
 @needs_rosbags
-def test_a_storage_that_does_not_exist_and_a_folder_that_is_no_bag_are_named(tmp_path):
+def test_a_storage_that_does_not_exist_is_named(tmp_path):
     with pytest.raises(UsageError, match="'tape'"):
         bags.write_bag(tmp_path / "drive", [IMU], storage="tape")
-    with pytest.raises(NotFoundError, match=r"metadata\.yaml"):
-        bags.read_bag(tmp_path)
-
-
-@needs_rosbags
-@pytest.mark.parametrize("storage", bags.STORAGES)
-@pytest.mark.parametrize("keep", [0, 20, 400])
-def test_a_damaged_bag_says_so(written, tmp_path, storage, keep):
-    bag = shutil.copytree(written[storage], tmp_path / "drive")
-    (file,) = (file for file in bag.iterdir() if file.suffix in {".db3", ".mcap"})
-    file.write_bytes(file.read_bytes()[:keep])
-    with pytest.raises(IntegrityError, match="cannot be read as a bag"):
-        bags.read_bag(bag)
-
-
-@needs_rosbags
-def test_a_bag_of_other_topics_is_refused(tmp_path):
-    from rosbags.rosbag2 import Writer
-    from rosbags.typesys import Stores, get_typestore
-
-    store = get_typestore(Stores.ROS2_JAZZY)
-    with Writer(tmp_path / "other", version=9) as writer:
-        connection = writer.add_connection("/chatter", "std_msgs/msg/String", typestore=store)
-        message = store.types["std_msgs/msg/String"]("hello")
-        writer.write(connection, 0, store.serialize_cdr(message, "std_msgs/msg/String"))
-    with pytest.raises(UsageError, match="none of the topics"):
-        bags.read_bag(tmp_path / "other")
 
 
 def test_without_rosbags_the_error_gives_the_command_that_installs_it(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "rosbags", None)
-    for call in (lambda: bags.write_bag(tmp_path / "drive", [IMU]), lambda: bags.read_bag(tmp_path)):
-        with pytest.raises(MissingCapabilityError) as caught:
-            call()
-        assert "pip install 'rosbags" in caught.value.help
+    with pytest.raises(MissingCapabilityError) as caught:
+        bags.write_bag(tmp_path / "drive", [IMU])
+    assert "pip install 'rosbags" in caught.value.help
 
 
 def test_importing_bags_does_not_import_rosbags():

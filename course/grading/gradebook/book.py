@@ -30,6 +30,7 @@ from course.grading.gradebook.file import (
     create,
     explained,
     open_file,
+    override_digest,
     release,
     rescue,
     row_into,
@@ -321,7 +322,7 @@ class Gradebook:
         row = (override.student, override.exercise, override.score, override.reason, at)
         with self._transaction():
             number = self._next("overrides")
-            self._db.execute(row_into("overrides"), (number, *row, _sha256(repr(row))))
+            self._db.execute(row_into("overrides"), (number, *row, override_digest(*row)))
             after = msgspec.json.encode({"number": number, "score": override.score}).decode()
             kind = "lift" if override.score is None else "override"
             about = (override.student, override.exercise, override.reason, before, after)
@@ -333,9 +334,10 @@ class Gradebook:
         query = "SELECT student, exercise, score, reason, at, sha256 FROM overrides ORDER BY number"
         with explained(self.path):
             for *row, digest in self._db.execute(query):
-                if _sha256(repr(tuple(row))) != digest:
+                one = _as(Override, row)
+                if override_digest(*row) != digest:
                     raise _failed_checksum(f"The override for {row[0]!r} and {row[1]}", self.path)
-                found.append(_as(Override, row))
+                found.append(one)
         return found
 
     def note(self, decision: Decision) -> None:

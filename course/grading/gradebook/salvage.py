@@ -24,6 +24,7 @@ from course.grading.gradebook.file import (
     create,
     explained,
     open_file,
+    override_digest,
     release,
     row_digest,
     row_into,
@@ -315,9 +316,16 @@ def _table_of(number: int | None, values: Row) -> str | None:
     for name, columns in TABLES.items():
         if len(values) == len(columns) + 1:
             cells = (number, *values[1:-1]) if name in _NUMBERED else values[:-1]
-            if row_digest(name, *cells) == values[-1]:
+            if row_digest(name, *cells) == values[-1] and (name != "overrides" or _is_whole(cells)):
                 return name
     return None
+
+
+def _is_whole(cells: Row) -> bool:
+    """Whether an override has the digest that the gradebook will look for."""
+    _, student, exercise, score, reason, at, digest = cells
+    known = score is None or isinstance(score, int | float)
+    return known and override_digest(str(student), str(exercise), score, str(reason), str(at)) == digest
 
 
 class _Decided(msgspec.Struct):
@@ -340,10 +348,9 @@ def _take_decided(found: dict[str, dict[Row, Row]]) -> None:
         if kind in {"override", "lift"}:
             with contextlib.suppress(msgspec.MsgspecError, RecursionError):
                 decided = msgspec.json.decode(str(after), type=_Decided)
-                cells = (student, exercise, decided.score, reason, at)
+                cells = (str(student), str(exercise), decided.score, str(reason), str(at))
                 if (decided.number,) not in found["overrides"]:
-                    digest = hashlib.sha256(repr(cells).encode()).hexdigest()
-                    found["overrides"][decided.number,] = (decided.number, *cells, digest)
+                    found["overrides"][decided.number,] = (decided.number, *cells, override_digest(*cells))
 
 
 def _write(found: dict[str, dict[Row, Row]], target: Path) -> None:

@@ -480,7 +480,7 @@ def override(results: Results, student: str, exercise: str, score: float, reason
         )
     reason = given_reason(reason, "An override", "it is shown wherever the score is")
     before = _told(next(results.all(student, exercise), None))
-    results.book.add_override(Override(student, exercise, float(score), reason), before)
+    results.book.add_override(Override(student, exercise, float(score) + 0.0, reason), before)
     return next(type(results)(results.book).all(student, exercise))
 
 

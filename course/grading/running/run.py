@@ -60,6 +60,7 @@ class Summary:
         troubled: the results without a grade.
         not_submitted: pairs without a file, which count for nothing.
         already: results of an earlier run.
+        stay: of these, those whose file is not there any more, a sentence each.
         missing: students who handed in nothing at all: enrolled, or without a roster those with a folder.
         strangers: students who handed in something and have no row of their own in the roster.
         compared: the columns of the roster in which these were looked for, as sentences.
@@ -82,6 +83,7 @@ class Summary:
     strangers: list[str] = field(default_factory=list)
     compared: str = ""
     already: int = 0
+    stay: list[str] = field(default_factory=list)
     levels: Counter[str] = field(default_factory=Counter)
     unrecognised: list[str] = field(default_factory=list)
     moved: list[ScoreChange] = field(default_factory=list)
@@ -261,6 +263,8 @@ class _Run:
         self._graders = graders
         self._catalog = graders.catalog
         self._exercises = _exercises(self._catalog, options.exercises)
+        asked_for = {exercise.id for exercise in self._exercises}
+        self._others = [one for one in self._catalog.every_task() if one.id not in asked_for]
         self._folder = folder
         self._options = options
         self._book = book
@@ -323,7 +327,10 @@ class _Run:
     def _left_to_do(self) -> Iterator[Entry]:
         for student in self._students:
             self._open[student.name] += 1
-            for entry in read_student(student, self._exercises, required=bool(self._options.exercises)):
+            required = bool(self._options.exercises)
+            for entry in read_student(student, self._exercises, required=required, others=self._others):
+                if entry.unread or self._stays(entry):
+                    continue
                 if entry.submission is None and entry.problem is None:
                     self.summary.not_submitted += 1
                     continue
@@ -337,6 +344,20 @@ class _Run:
             if self._with_quiz:
                 self._score_quiz(student)
             self.one_less(student.name)
+
+    def _stays(self, entry: Entry) -> bool:
+        """Whether what was graded is not there any more: a lack takes the place of no result."""
+        about = entry.student, entry.exercise.id
+        absent = entry.submission is None and (entry.problem is None or entry.problem.code == "no_file")
+        if not (self._options.resume and absent) or about in self._assigned:
+            return False
+        counts = next(self._book.results(*about), None)
+        if counts is None or counts.key.submission_sha256 == entry.sha256:
+            return False
+        said = f" {entry.problem.message}" if entry.problem else ""
+        self.summary.stay.append(f"{' '.join(about)}:{said or ' It is not there any more.'}")
+        self.summary.already += 1
+        return True
 
     def _is_done(self, entry: Entry) -> bool:
         """Whether it was graded before, or an assigned file still takes its place."""

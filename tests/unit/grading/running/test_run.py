@@ -106,6 +106,26 @@ def test_resume_grades_only_what_is_new_and_with_the_same_seed(
     assert told == [[10, 6], [6, 10]]
 
 
+@pytest.mark.parametrize("now", [{"halving.py": b"x"}, {"halving.py": b"x", "mine.py": b"y"}, {}])
+def test_a_file_that_is_not_there_any_more_takes_no_score_away(
+    tmp_path: Path, catalog: Catalog, solution: bytes, now: dict[str, bytes]
+) -> None:
+    make_class(tmp_path / "class", solution, 1)
+    graded_class(tmp_path, catalog, RunOptions(exercises=("doubling",), seed=5), grade=right)
+    shutil.rmtree(tmp_path / "class" / "student-000")
+    (tmp_path / "class" / "student-000").mkdir()
+    for name, content in now.items():
+        (tmp_path / "class" / "student-000" / name).write_bytes(content)
+    both = RunOptions(exercises=("doubling", "halving"), resume=True)
+    summary = graded_class(tmp_path, catalog, both, grade=right)
+    with open_results(tmp_path / "out") as results:
+        found = {item.exercise: item.score for item in results.all()}
+        assert results.book.journal() == []
+    assert found["doubling"] == 10.0
+    assert [line.startswith("student-000 doubling: ") for line in summary.stay] == [True]
+    assert ["mine.py" in line for line in summary.stay] == ["mine.py" in now]
+
+
 @pytest.mark.parametrize("deaths", [MAX_TRIES - 1, MAX_TRIES])
 def test_a_grader_that_dies_while_it_starts_is_replaced_unless_none_can_start(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, unpacked: str, doubling: Exercise, solution: bytes,

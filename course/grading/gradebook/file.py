@@ -165,7 +165,7 @@ def row_digest(table: str, *cells: object) -> str:
 def override_digest(student: str, exercise: str, score: float | None, reason: str, at: str) -> str:
     """An override's own digest. SQLite keeps no sign of a zero, and gives 10 back as 10.0."""
     number = None if score is None else float(score) + 0.0
-    row = repr((student, exercise, number, reason, at)).encode("utf-8", "backslashreplace")
+    row = repr((student, exercise, number, reason, at)).encode()
     return hashlib.sha256(row).hexdigest()
 
 

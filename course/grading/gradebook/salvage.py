@@ -324,8 +324,9 @@ def _table_of(number: int | None, values: Row) -> str | None:
 def _is_whole(cells: Row) -> bool:
     """Whether an override has the digest that the gradebook will look for."""
     _, student, exercise, score, reason, at, digest = cells
-    known = score is None or isinstance(score, int | float)
-    return known and override_digest(str(student), str(exercise), score, str(reason), str(at)) == digest
+    if isinstance(score, str | bytes):
+        return False
+    return override_digest(str(student), str(exercise), score, str(reason), str(at)) == digest
 
 
 class _Decided(msgspec.Struct):

@@ -426,7 +426,8 @@ def assign(
     waiting = 0
     if student is None and not accept_names:
         with open_results(out) as results:
-            left, waiting = assigning.unsettled(results), len(results.book.waiting())
+            left = assigning.unsettled(results)
+            waiting = len({item.student for item in results.all() if item.waiting})
     else:
         level, at_least = levels(isolation)
         reason = reason or ("the match that was proposed" if accept_names else "")

@@ -24,6 +24,7 @@ import msgspec
 
 from course.errors import CourseError, IntegrityError
 from course.grading.gradebook.file import (
+    KEYS,
     SEAL,
     TABLES,
     begin_writing,
@@ -41,6 +42,7 @@ from course.grading.gradebook.records import (
     Decision,
     GradedExercise,
     Key,
+    Looked,
     Override,
     PlatformIdentity,
     Result,
@@ -111,7 +113,8 @@ class Gradebook:
     def meta(self) -> dict[str, str]:
         """Facts about the run: course, version, seed, late policy, roster, ..."""
         with explained(self.path):
-            return dict(self._db.execute("SELECT key, value FROM meta WHERE key != ? ORDER BY key", (SEAL,)))
+            query = "SELECT key, value FROM meta WHERE key NOT IN (?, ?) ORDER BY key"
+            return dict(self._db.execute(query, (SEAL, KEYS)))
 
     def set_meta(self, **facts: str | None) -> None:
         """Record facts about the run; None removes one."""
@@ -121,6 +124,8 @@ class Gradebook:
                     self._db.execute("DELETE FROM meta WHERE key = ?", (name,))
                 else:
                     self._db.execute(row_into("meta", "INSERT OR REPLACE"), (name, value))
+            names = " ".join(name for (name,) in self._db.execute("SELECT key FROM meta") if name != KEYS)
+            self._db.execute(row_into("meta", "INSERT OR REPLACE"), (KEYS, names))
 
     def begin_run(self, kind: str, options: Mapping[str, Any]) -> int:
         """Note that a grading ("run") or regrading ("rerun") begins; its results are kept apart."""
@@ -292,10 +297,21 @@ class Gradebook:
         with explained(self.path):
             return [row[0] for row in self._db.execute("SELECT DISTINCT student FROM results ORDER BY 1")]
 
-    def exercise_ids(self) -> list[str]:
-        """All exercises with a result, by name."""
+    def exercise_ids(self, *, handed_in: bool = False) -> list[str]:
+        """All exercises with a result, by name; or those alone of which there is a submission."""
+        query = "SELECT DISTINCT exercise FROM results WHERE submission_sha256 IS NOT ? ORDER BY 1"
         with explained(self.path):
-            return [row[0] for row in self._db.execute("SELECT DISTINCT exercise FROM results ORDER BY 1")]
+            nothing = hashlib.sha256().hexdigest() if handed_in else None
+            return [row[0] for row in self._db.execute(query, (nothing,))]
+
+    def looked(self) -> dict[str, Looked] | None:
+        """By exercise, whose work was looked at; None in a gradebook of a version that did not note it."""
+        text = self.meta().get("looked")
+        with explained(self.path):
+            return msgspec.json.decode(text, type=dict[str, Looked]) if text is not None else None
+
+    def set_looked(self, looked: Mapping[str, Looked]) -> None:
+        self.set_meta(looked=msgspec.json.encode(looked, order="deterministic").decode())
 
     def submission(self, sha256: str) -> dict[str, bytes] | None:
         """A submission: file name to content; None if none has that digest."""

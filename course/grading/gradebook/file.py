@@ -34,6 +34,8 @@ from course.strangers import no_programs
 FORMAT_VERSION = 5
 #: The name of the seal among the facts about a run.
 SEAL = "seal"
+#: The name of the list of these facts, by which ``salvage`` knows what is lost.
+KEYS = "keys"
 #: Instructions of SQLite until it is open; a class of a thousand takes three.
 _MILLIONS = 200
 _MOST_SAID = 200

@@ -19,6 +19,7 @@ import msgspec
 
 from course.errors import IntegrityError, MissingCapabilityError, NotFoundError
 from course.grading.gradebook.file import (
+    KEYS,
     SEAL,
     TABLES,
     create,
@@ -274,9 +275,11 @@ def salvage(path: Path, target: Path) -> Salvaged:
         raise IntegrityError(
             f"{path} has no intact row, and there is no backup.", help="Grade the class into a new folder."
         )
+    told.lost = list(_lost(found))
+    if told.lost:  # whose results are among it is not known: from now on nothing says who handed in nothing
+        found["meta"]["looked",] = ("looked", "{}")
     _write(found, target)
     told.rows = Counter({name: len(rows) for name, rows in found.items()})
-    told.lost = list(_lost(found))
     return told
 
 
@@ -366,8 +369,14 @@ def _write(found: dict[str, dict[Row, Row]], target: Path) -> None:
         release(db)
 
 
+#: What a lost fact about the class is called.
+_FACTS = {"late_policy": "the late policy", "looked": "whose work was looked at"}
+
+
 def _lost(found: dict[str, dict[Row, Row]]) -> Iterator[str]:
     """Missing rows that others refer to."""
+    names = str(found["meta"].get((KEYS,), ("", ""))[1]).split()
+    yield from (_FACTS.get(name, f"the {name}") for name in names if (name,) not in found["meta"])
     for name, words in (("results", "results"), ("overrides", "overrides"), ("journal", "notes of changes")):
         numbers = {int(str(key[0])) for key in found[name]}
         gone = sorted(set(range(1, max(numbers, default=0) + 1)) - numbers)

@@ -27,7 +27,16 @@ from course.grading.results.effective import Effective, Results, ScoreChange, re
 from course.grading.results.merge import Merged
 from course.grading.results.roster import Roster
 from course.grading.running.batch import Graded, grade_all
-from course.grading.running.folder import BOOK, begin, export_all, note_without_work, remember, taken_back
+from course.grading.running.folder import (
+    BOOK,
+    begin,
+    export_all,
+    note_looked,
+    note_unread,
+    note_without_work,
+    remember,
+    taken_back,
+)
 from course.grading.running.snapshot import Snapshot, Unpacked, among_graders, fresh, frozen, kept
 from course.quizzing.bank import Bank, needed
 from course.scoring.graders import grader_version
@@ -117,7 +126,11 @@ class Summary:
             for item in results.exercises()
             if item.id in there
         ]
-        self.missing = results.absent()
+        waiting = {effective.student for effective in results.all() if effective.waiting}
+        known = (name for name in results.absent() if name not in waiting)
+        self.missing = [
+            name for name in known if all(results.has_looked(name, id_) for id_ in results.looked or ())
+        ]
         self.strangers = results.unmatched(results.students())
         if results.roster is not None and self.strangers:
             self.compared = results.roster.compared(self.strangers, results.downloads)
@@ -207,7 +220,7 @@ def grade_class(
         begin(out, folder, resume=options.resume) as book,
         frozen(_begun_with(book, options, catalog) or fresh(catalog.content)) as graders,
     ):
-        run = _Run(members.students, graders, folder, options, book)
+        run = _Run(members, graders, folder, options, book)
         if options.resume and (out / "grades.csv").is_file():
             export_all(out, Results(book))  # what lies there says of work that came since that there is none
         for result, files in run.results(grade):
@@ -215,11 +228,12 @@ def grade_class(
                 book.add(result, files)
             taken.graded |= bool(result.verdict.isolation)
             run.one_less(result.key.student)
-            report(run.view.of(result), run.done, len(members.students))
+            report(run.view.of(result), run.done, len(run.names))
         run.note_times()
+        run.note_unread()
         summary = run.summary
-        summary.unrecognised = members.unrecognised
-        note_without_work(book, {student.name for student in members.students})
+        summary.unrecognised = [] if options.only else members.unrecognised
+        note_without_work(book, run.names)
         results = Results(book, run.roster)
         summary.count(results)
         if options.resume:
@@ -253,13 +267,17 @@ class _Run:
 
     def __init__(
         self,
-        students: Sequence[Student],
+        members: ClassList,
         graders: Unpacked,
         folder: Path,
         options: RunOptions,
         book: Gradebook,
     ) -> None:
-        self._students = students
+        only = options.only
+        self._students = [one for one in members.students if not only or one.name in only]
+        self.names = {one.name for one in self._students}
+        self._left_aside = {one.name for one in members.students} - self.names
+        self._unread: set[tuple[str, str]] = set()
         self._graders = graders
         self._catalog = graders.catalog
         self._exercises = _exercises(self._catalog, options.exercises)
@@ -273,6 +291,7 @@ class _Run:
         asked = not options.exercises or QUIZ in options.exercises
         self._bank = _bank(self._catalog) if asked else Bank(())
         self._with_quiz = bool(self._bank.ids)
+        self._quiz_known = QUIZ in (book.looked() or {})
         self._quiz_version = quiz_version(self._bank)
         self.summary = Summary(seed=_seed(book, options), graders=graders.snapshot.sha256)
         self.roster: Roster | None = None
@@ -281,10 +300,11 @@ class _Run:
         self._scored: deque[tuple[Result, dict[str, bytes]]] = deque()
         self._found = set(book.found())
         self._assigned = _assigned(book)
-        before = book.waiting()
+        before, looked = book.waiting(), book.looked()
         self._note_facts()
         self.view = Results(book)
-        self.view.waiting = before  # what was missing till now, and not only unread, is told when it comes
+        # What was missing till now, and not only unread, is told when it comes.
+        self.view.waiting, self.view.looked = before, looked
 
     def _note_facts(self) -> None:
         options, book = self._options, self._book
@@ -302,7 +322,9 @@ class _Run:
         book.set_exercises(graded_exercises(self._exercises, self._bank if self._with_quiz else None))
         book.set_students({who.name: who.identity for who in self._students if who.identity is not None})
         # Before a roster says who is enrolled: until their work is looked at, nobody handed in nothing.
-        book.set_waiting([who.name for who in self._students], others=bool(options.only))
+        book.set_waiting(sorted(self.names), others=bool(options.only))
+        asked = [*self._versions, *([QUIZ] if self._with_quiz else [])]
+        note_looked(book, asked, self.names, self._left_aside, named=bool(options.exercises))
         if options.roster is not None:
             self.roster = self.summary.enrol(remember(book, options.roster))
 
@@ -329,6 +351,8 @@ class _Run:
             self._open[student.name] += 1
             required = bool(self._options.exercises)
             for entry in read_student(student, self._exercises, required=required, others=self._others):
+                if entry.unread:
+                    self._unread.add((student.name, entry.exercise.id))
                 if entry.unread or self._stays(entry):
                     continue
                 if entry.submission is None and entry.problem is None:
@@ -341,7 +365,7 @@ class _Run:
                     continue
                 self._open[student.name] += 1
                 yield entry
-            if self._with_quiz:
+            if self._with_quiz or self._quiz_known:
                 self._score_quiz(student)
             self.one_less(student.name)
 
@@ -409,6 +433,9 @@ class _Run:
             record, path = read_quiz(student)
         except UngradableError as error:
             record = error.code  # no list of attempts, which the scoring says of it
+        if not self._with_quiz:
+            self._unread |= {(student.name, QUIZ)} if record else set()
+            return
         verdict = grade_quiz(self._bank, record)
         if verdict is None:
             return
@@ -426,6 +453,10 @@ class _Run:
             self.view.take_in(times)
         if len(self._times) >= _TIMES_AT_ONCE:
             self.note_times()
+
+    def note_unread(self) -> None:
+        """Note the work for which this run did not look."""
+        note_unread(self._book, self._unread)
 
     def note_times(self) -> None:
         """Put all known times of submission into the gradebook."""
@@ -504,8 +535,6 @@ def _members(folder: Path, options: RunOptions) -> ClassList:
                 help="--only takes the name of a student's folder.",
                 code="student_not_found",
             )
-        found.students = [student for student in found.students if student.name in options.only]
-        found.unrecognised = []
     return found
 
 

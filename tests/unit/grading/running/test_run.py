@@ -44,7 +44,7 @@ def make_class(folder: Path, solution: bytes, students: int) -> None:
     """Every third student is wrong about one function."""
     for number in range(students):
         place = folder / f"student-{number:03}"
-        place.mkdir(parents=True)
+        place.mkdir(parents=True, exist_ok=True)
         (place / "doubling.py").write_bytes(
             solution + (WRONG if number % 3 == 0 else b"") + b"# %d\n" % number
         )
@@ -258,7 +258,7 @@ def test_quiz_attempts_that_travel_in_a_submission_are_scored_again_and_again_by
     }  # fmt: skip
     for student, claimed in (("ada", 5), ("eve", 4)):
         place = tmp_path / "class" / student
-        place.mkdir(parents=True)
+        place.mkdir(parents=True, exist_ok=True)
         manifest = {"format_version": 1, "files": {}, "quiz": [{**attempt, "score": claimed}]}
         with zipfile.ZipFile(place / "mine.zip", "w") as target:
             target.writestr("submission.json", json.dumps(manifest))

@@ -444,25 +444,27 @@ def _within(content: bytes, shown: str, limit: int) -> bytes:
 
 
 def read_quiz(student: Student) -> tuple[Any, Path | None]:
-    """A student's quiz attempts, as in the JSON, and the archive they came in; an empty list if none.
+    """A student's quiz attempts, as in the JSON, and the file they came in; an empty list if none.
 
     An archive that cannot be read gives none: the exercises in it report what is wrong with it.
 
     Raises:
-        UngradableError: several archives hold attempts.
+        UngradableError: several files hold different attempts.
     """
     found: list[tuple[Any, Path]] = []
     place = student.place
     with contextlib.suppress(OSError):
         if place.files is None and place.root.is_symlink():
             return [], None
-        for path in place.archives():
+        for path in (*place.archives(), *place.find(MANIFEST, ".")):
             with contextlib.suppress(RefusedError):
-                record = reader.quiz_in(path)
+                packed = path.suffix.lower() == ".zip"
+                loose = b"" if packed else _read_regular(path, place.shown(path), MAX_FILE)
+                record = reader.quiz_in(path, loose)
                 found += [(record, path)] if record else []
-    if len(found) > 1:
+    if any(record != found[0][0] for record, _ in found):
         raise UngradableError(
-            "Several archives hold quiz attempts.", help="Keep the one that counts.", code="ambiguous_files"
+            "Several files hold quiz attempts.", help="Keep the one that counts.", code="ambiguous_files"
         )
     return found[0] if found else ([], None)
 
@@ -540,7 +542,8 @@ def survey(place: Place, used: set[tuple[str, str]], exercises: Sequence[Exercis
 
 def _files(place: Place) -> list[tuple[str, Path]]:
     if place.files is not None:
-        return [(name, path) for name, path in place.files if path.is_file() and not path.is_symlink()]
+        files = [(name, path) for name, path in place.files if not is_meant(name, MANIFEST)]
+        return [(name, path) for name, path in files if path.is_file() and not path.is_symlink()]
     return list(_below(place.root, "", 0, iter(range(_ENTRIES))))
 
 
@@ -559,7 +562,7 @@ def _below(folder: Path, above: str, depth: int, left: Iterator[int]) -> Iterato
         if entry.is_dir(follow_symlinks=False):
             if depth < _DEEP and not (path / "pyvenv.cfg").exists():
                 yield from _below(path, f"{above}{entry.name}/", depth + 1, left)
-        elif entry.is_file(follow_symlinks=False) and entry.name != MANIFEST:
+        elif entry.is_file(follow_symlinks=False) and not is_meant(entry.name, MANIFEST):
             yield above + entry.name, path
 
 

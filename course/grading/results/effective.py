@@ -296,7 +296,7 @@ class Results:
         """The exercises that can be missing: one that no student handed in, and nobody named, was not set."""
         if not self._enrolled or self.looked is None:
             return frozenset(self.book.exercise_ids() if self._enrolled else ())
-        named = (name for name in self.book.exercise_ids() if self.looked.get(name, _NOBODY).named)
+        named = (name for name, looked in self.looked.items() if looked.named)
         return frozenset((*self.book.exercise_ids(handed_in=True), *named))
 
     def _without_grading(

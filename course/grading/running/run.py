@@ -432,7 +432,7 @@ class _Run:
         try:
             record, path = read_quiz(student)
         except UngradableError as error:
-            record = error.code  # no list of attempts, which the scoring says of it
+            record = error.message.rstrip(".")  # no list of attempts, which the scoring says of it
         if not self._with_quiz:
             self._unread |= {(student.name, QUIZ)} if record else set()
             return

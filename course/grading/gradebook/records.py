@@ -119,7 +119,7 @@ class Decision(msgspec.Struct, frozen=True):
     Attributes:
         at: UTC, ISO 8601; empty for now.
         who: the name of the account; empty for the one this runs under.
-        kind: "override", "lift", "assign", "late", "resume" (another submission
+        kind: "override", "lift", "assign", "late", "rerun", "resume" (another submission
             counts now), "roster" or "salvage".
         student, exercise: what it is about; empty for a whole class.
         before, after: in words or JSON, what counted and what counts.

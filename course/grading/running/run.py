@@ -253,7 +253,8 @@ def _begun_with(book: Gradebook, options: RunOptions, catalog: Catalog) -> Snaps
 
 def edited_since(results: Results, catalog: Catalog) -> list[str]:
     """Exercises with results that were scored by other graders than the present ones."""
-    now = {exercise.id: grader_version(exercise, catalog) for exercise in catalog.exercises()}
+    known = {*catalog.exercise_ids(), *catalog.warm_up_ids()} & {*results.book.exercise_ids()}
+    now = {name: grader_version(catalog.exercise(name), catalog) for name in known}
     found = {
         item.exercise: None
         for item in results.all()

@@ -180,7 +180,7 @@ def _show_people(console: Console, summary: Summary) -> None:
         (summary.missing, "handed in nothing to grade"),
         (summary.strangers, "not in the roster, or ambiguous there"),
         (summary.unrecognised, "unknown owner"),
-        (summary.stay, "graded before, and without a file now; the result stays"),
+        (summary.stay, "graded before, and kept as they were"),
     ):
         if listed:
             console.line((f"{len(listed)} {words}:", "bold"))

@@ -204,10 +204,20 @@ class Gradebook:
         with self._transaction():
             self._db.execute(row_into("results", "INSERT OR REPLACE"), (self._next("results"), *row))
             if files is not None:
-                packed = zlib.compress(msgspec.msgpack.encode(dict(files)), 1)
-                self._db.execute(
-                    row_into("submissions", "INSERT OR IGNORE"), (result.key.submission_sha256, packed)
-                )
+                self._keep(result.key.submission_sha256, files)
+
+    def _keep(self, sha256: str, files: Mapping[str, bytes]) -> None:
+        packed = zlib.compress(msgspec.msgpack.encode(dict(files)), 1)
+        self._db.execute(row_into("submissions", "INSERT OR IGNORE"), (sha256, packed))
+
+    def restore(self, sha256: str, files: Mapping[str, bytes]) -> None:
+        """Store the submission of a result, if it was lost."""
+        with explained(self.path):
+            query = "SELECT 1 FROM submissions WHERE sha256 = ?"
+            known = self._db.execute(query, (sha256,)).fetchone()
+        if known is None:
+            with self._transaction():
+                self._keep(sha256, files)
 
     def _next(self, table: str) -> int:
         newest = self._db.execute(f"SELECT ifnull(max(number), 0) FROM {table}").fetchone()

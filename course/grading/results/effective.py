@@ -469,13 +469,23 @@ def counted(counts: Effective | None, file: str = "") -> str:
 
 class _Submission(msgspec.Struct, frozen=True):
     submission: str = ""
+    file: str = ""
 
 
 def submission_in(told: str) -> str:
     """The digest of the submission in what ``counted`` told; "" where it told of none."""
+    return _counted_in(told).submission
+
+
+def file_in(told: str) -> str:
+    """The name of the file that an instructor chose, in what ``counted`` told; "" if there was none."""
+    return _counted_in(told).file
+
+
+def _counted_in(told: str) -> _Submission:
     with contextlib.suppress(msgspec.MsgspecError, RecursionError):
-        return msgspec.json.decode(told, type=_Submission).submission
-    return ""
+        return msgspec.json.decode(told, type=_Submission)
+    return _Submission()
 
 
 # ---

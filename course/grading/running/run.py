@@ -1,6 +1,7 @@
 """A grading run from folder to gradebook: what ``course grade run`` does, without the words."""
 
 import contextlib
+import os
 import secrets
 import time
 from collections import Counter, deque
@@ -19,11 +20,19 @@ from course.errors import ContentError, UngradableError, UsageError
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import GradedExercise, Key, Result, SubmittedAt
 from course.grading.gradebook.salvage import back_up
+from course.grading.intake.archives import RefusedError
 from course.grading.intake.downloads import ClassList, Student, class_list
-from course.grading.intake.students import Entry, read_quiz, read_student, witnesses
+from course.grading.intake.students import Entry, read_quiz, read_student, submission_from, witnesses
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version, record_sha256
-from course.grading.results.effective import Effective, Results, ScoreChange, replacing, submission_in
+from course.grading.results.effective import (
+    Effective,
+    Results,
+    ScoreChange,
+    file_in,
+    replacing,
+    submission_in,
+)
 from course.grading.results.merge import Merged
 from course.grading.results.roster import Roster
 from course.grading.running.batch import Graded, grade_all
@@ -69,7 +78,7 @@ class Summary:
         troubled: the results without a grade.
         not_submitted: pairs without a file, which count for nothing.
         already: results of an earlier run.
-        stay: of these, those whose file is not there any more, a sentence each.
+        stay: of these, those whose file is gone, or is assigned and has changed; a sentence each.
         missing: students who handed in nothing at all: enrolled, or without a roster those with a folder.
         strangers: students who handed in something and have no row of their own in the roster.
         compared: the columns of the roster in which these were looked for, as sentences.
@@ -363,6 +372,9 @@ class _Run:
                 self._note_found(entry)
                 if self._options.resume and self._is_done(entry):
                     self.summary.already += 1
+                    self._note_changed(entry)
+                    if entry.submission is not None:
+                        self._book.restore(entry.sha256, entry.submission.files)
                     continue
                 self._open[student.name] += 1
                 yield entry
@@ -380,7 +392,9 @@ class _Run:
         if counts is None or counts.key.submission_sha256 == entry.sha256:
             return False
         said = f" {entry.problem.message}" if entry.problem else ""
-        self.summary.stay.append(f"{' '.join(about)}:{said or ' It is not there any more.'}")
+        self.summary.stay.append(
+            f"{' '.join(about)}:{said or f' There is no {entry.exercise.module} any more.'}"
+        )
         self.summary.already += 1
         return True
 
@@ -393,9 +407,27 @@ class _Run:
         about = entry.student, entry.exercise.id
         if entry.submission is None or about not in self._assigned:
             return about in self._assigned
-        before, assigned = self._assigned[about]
+        before, assigned, _ = self._assigned[about]
         counts = next(self._book.results(*about), None) if before == entry.sha256 else None
         return counts is not None and counts.key.submission_sha256 == assigned
+
+    def _note_changed(self, entry: Entry) -> None:
+        """Say of an assigned file that it is not what was graded any more; if it is, it may be lost."""
+        about = entry.student, entry.exercise.id
+        _, assigned, file = self._assigned.get(about, ("", "", ""))
+        for one in entry.found.candidates if entry.found and file else ():
+            path = Path(os.fsdecode(one.path))
+            if one.name == file or (not one.member and Path(file).resolve() == path.resolve()):
+                with contextlib.suppress(RefusedError):
+                    now = submission_from(entry.exercise, path, one.member)
+                    if now.sha256 == assigned:
+                        self._book.restore(assigned, now.files)
+                        return
+                self.summary.stay.append(
+                    f"{' '.join(about)}: {one.name} has changed since it was assigned. Assign it again to"
+                    " grade it as it is now."
+                )
+                return
 
     def _confirmed(self, key: Key) -> bool:
         return self._book.confirm(key, self.replacing(key))
@@ -444,6 +476,7 @@ class _Run:
         self._witnessed(witnesses(student, QUIZ, key.submission_sha256, path))
         if self._options.resume and self._confirmed(key):
             self.summary.already += 1
+            self._book.restore(key.submission_sha256, {QUIZ_RECORD: _as_json(record)})
             return
         self._open[student.name] += 1
         self._scored.append((Result(key, verdict), {QUIZ_RECORD: _as_json(record)}))
@@ -466,14 +499,16 @@ class _Run:
         self._times.clear()
 
 
-def _assigned(book: Gradebook) -> dict[tuple[str, str], tuple[str, str]]:
-    """The submission that an assigned file took the place of, and the file, by student and exercise."""
-    found: dict[tuple[str, str], tuple[str, str]] = {}
+def _assigned(book: Gradebook) -> dict[tuple[str, str], tuple[str, str, str]]:
+    """The submission that an assigned file took the place of, and the file with its name, by student and
+    exercise."""
+    found: dict[tuple[str, str], tuple[str, str, str]] = {}
     for one in book.journal():
         if one.kind == "assign":
             about, before = (one.student, one.exercise), submission_in(one.before)
-            first, last = found.get(about, (before, before))  # a second assignment replaces the first
-            found[about] = (first if last == before else before), submission_in(one.after)
+            first, last, _ = found.get(about, (before, before, ""))  # a second one replaces the first
+            now, file = submission_in(one.after), file_in(one.after)
+            found[about] = (first if last == before else before), now, file
     return found
 
 

@@ -107,6 +107,14 @@ def test_an_assigned_file_counts_until_another_file_with_the_right_name_arrives(
         chosen.append(counts())
         assert resumed() == 3
         assert counts() == chosen[-1]
+    assert course("grade", "assign", "out", "--accept-names").code == 0
+    assert "hw.py has changed" not in course(*again).out
+    (here / "class" / "bob" / "hw.py").write_text(SOURCE + "# changed\n")
+    said = " ".join(course(*again).out.split())
+    assert (
+        "1 graded before, and kept as they were: bob doubling: hw.py has changed since it was assigned."
+        in said
+    )
     file = here / "class" / "ada" / "doubling.py"
     file.write_text(SOURCE + "# later\n")
     resumed()

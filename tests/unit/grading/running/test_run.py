@@ -99,8 +99,15 @@ def test_resume_grades_only_what_is_new_and_with_the_same_seed(
     assert (summary.already, summary.seed) == (3, 5)
     assert scores(tmp_path / "out")["student-001"] == 6
     file.write_bytes(before)
+    # As after a salvage: the results are there, and what they are of is not.
+    with Gradebook(tmp_path / "out" / "gradebook.sqlite", writing=True) as book, book._transaction():
+        book._db.execute("DELETE FROM submissions")
     graded_class(tmp_path, catalog, again, report, grade=as_written)
     assert graded == ["student-001"]
+    with open_results(tmp_path / "out") as results:
+        assert (
+            rerun(results, catalog, RerunOptions(dry_run=True, everything=True), grade=as_written).kept == 0
+        )
     with open_results(tmp_path / "out") as results:
         noted = results.book.journal()
     assert [(it.kind, it.student) for it in noted] == [("resume", "student-001")] * 2

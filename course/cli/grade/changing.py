@@ -42,7 +42,7 @@ from course.cli.grade.replies import (
     SimilarPair,
     UnsettledOne,
 )
-from course.cli.grade.running import checks_gave
+from course.cli.grade.running import checks_gave, show_faults
 from course.errors import InternalError, UsageError
 from course.grading.exports.grades import grade_line, utc, write_bytes
 from course.grading.gradebook.book import Gradebook
@@ -109,21 +109,20 @@ def rerun(
     if console.json:
         console.emit(filled(GradeRerun, done, exit_code=code, dry_run=dry_run, grader_error=done.faults))
     else:
-        _show_rerun(console, done, dry_run=dry_run)
+        _show_rerun(console, done, out, dry_run=dry_run)
     return code
 
 
-def _show_rerun(console: Console, done: Regraded, *, dry_run: bool) -> None:
+def _show_rerun(console: Console, done: Regraded, out: Path, *, dry_run: bool) -> None:
     for change in done.changes:
         show_change(console, change)
     would = "would change" if dry_run else "changed"
-    console.line((f"{done.regraded} graded again; {len(done.changes)} {would}.", "bold"))
+    console.line((f"{done.regraded - done.faults} graded again; {len(done.changes)} {would}.", "bold"))
     if done.up_to_date:
         console.note(f"Graded by the same graders already: {done.up_to_date}; --all grades them again.")
     if done.kept:
-        console.note(f"Nothing to grade, and unchanged: {done.kept}.")
-    if done.faults:
-        console.line(f"{done.faults} failed because of a fault of the grader and are marked for regrading.")
+        console.note(f"Without a submission in the gradebook, and unchanged: {done.kept}.")
+    show_faults(console, done, out)
     if dry_run and done.changes:
         console.note(
             "Nothing was changed. Without --dry-run the scores change, and the old results are kept."
@@ -426,7 +425,8 @@ def assign(
     waiting = 0
     if student is None and not accept_names:
         with open_results(out) as results:
-            left, waiting = assigning.unsettled(results), len(results.book.waiting())
+            left = assigning.unsettled(results)
+            waiting = len({item.student for item in results.all() if item.waiting})
     else:
         level, at_least = levels(isolation)
         reason = reason or ("the match that was proposed" if accept_names else "")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
@@ -43,7 +43,7 @@ from course.grading.results.late import in_days
 from course.grading.results.roster import read_roster
 from course.grading.running import batch
 from course.grading.running.folder import open_results
-from course.grading.running.rerun import Change, RerunOptions, rerun
+from course.grading.running.rerun import Regraded, RerunOptions, rerun
 from course.grading.running.run import GradeAll, RunOptions, Summary, Ungraded, grade_class
 from course.printable import command, counted, one_line
 from course.scoring.judging.submission import Terms
@@ -93,17 +93,17 @@ def run(
         )
     progress = _Progress(console, catalog.ref)
 
-    def grading(accepted: str) -> tuple[Summary, tuple[Change, ...]]:
+    def grading(accepted: str) -> tuple[Summary, Regraded | None]:
         mine = replace(options, accepted=accepted)
         with _graders(jobs, local_cluster, scheduler) as grade, progress.shown() as report:
             summary = grade_class(submissions, out, catalog, mine, report, grade=grade)
             return summary, _would_change(console, summary, out, catalog, terms, grade)
 
     try:
-        summary, changes = agreed(console, grading, yes=yes)
+        summary, tried = agreed(console, grading, yes=yes)
     except KeyboardInterrupt:
         raise _interrupted(progress, out) from None
-    _show_summary(console, summary, out, options, changes)
+    _show_summary(console, summary, out, options, tried)
     return summary.exit_code
 
 
@@ -122,25 +122,30 @@ def _interrupted(progress: _Progress, out: Path) -> CourseError:
 
 def _would_change(
     console: Console, summary: Summary, out: Path, catalog: Catalog, terms: Terms, grade: GradeAll
-) -> tuple[Change, ...]:
+) -> Regraded | None:
     """The students who would get another score from the present graders, which a resumed run does not use."""
     if not summary.edited:
-        return ()
+        return None
     options = RerunOptions(dry_run=True, level=terms.level, at_least=terms.at_least)
     with open_results(out) as results, console.working("Grading with the edited graders, to compare"):
-        return rerun(results, catalog, options, grade=grade).changes
+        return rerun(results, catalog, options, grade=grade)
 
 
-def _show_edited(console: Console, summary: Summary, changes: tuple[Change, ...], out: Path) -> None:
-    if not summary.edited:
+def _show_edited(console: Console, summary: Summary, tried: Regraded | None, out: Path) -> None:
+    if tried is None:
         return
+    changes = tried.changes
     names = ", ".join(summary.edited)
     console.line((f"The graders were edited after these scores were given: {names}.", "bold"))
-    console.line(f"No score was changed by that. With the present graders, {len(changes)} would change:")
+    colon = ":" if changes else "."
+    console.line(
+        f"No score was changed by that. With the present graders, {len(changes)} would change{colon}"
+    )
     for change in changes[:_MOST_TROUBLED]:
         show_change(console, change)
     if len(changes) > _MOST_TROUBLED:
         console.line(f"and {len(changes) - _MOST_TROUBLED} more.", indent=2)
+    show_faults(console, tried, out)
     console.note(f"`course grade rerun {out}` gives these scores; until then the run's own graders count.")
 
 
@@ -175,6 +180,7 @@ def _show_people(console: Console, summary: Summary) -> None:
         (summary.missing, "handed in nothing to grade"),
         (summary.strangers, "not in the roster, or ambiguous there"),
         (summary.unrecognised, "unknown owner"),
+        (summary.stay, "graded before, and kept as they were"),
     ):
         if listed:
             console.line((f"{len(listed)} {words}:", "bold"))
@@ -260,7 +266,7 @@ def _graded(result: Effective, done: int, total: int) -> str:
 
 
 def _show_summary(
-    console: Console, summary: Summary, out: Path, options: RunOptions, changes: tuple[Change, ...]
+    console: Console, summary: Summary, out: Path, options: RunOptions, tried: Regraded | None
 ) -> None:
     if console.json:
         console.emit_line(
@@ -275,7 +281,7 @@ def _show_summary(
                 elapsed_s=round(summary.elapsed_s, 3),
                 out=str(out),
                 unjudged=tuple(_unjudged(summary)),
-                would_change=changes,
+                would_change=tried.changes if tried else (),
             )
         )
         return
@@ -289,11 +295,7 @@ def _show_summary(
         rows = [row for row in summary.troubled if row.state == state]
         if rows:
             console.line((f"{len(rows)} {words}:", "bold"))
-        told = _alike(rows)
-        for whose, row in told[:_MOST_TROUBLED]:
-            console.item(whose, f"{row.code}: {one_line(row.message)}")
-        if len(told) > _MOST_TROUBLED:
-            console.line(f"and {len(told) - _MOST_TROUBLED} more; results.jsonl has them all.", indent=2)
+        _show_troubled(console, rows)
     if any(row.code == "check_file" for row in summary.troubled):
         console.note(f"Once the file is right, {command('grade', 'rerun', out)} grades these.")
     if summary.unsettled:
@@ -302,7 +304,7 @@ def _show_summary(
     _show_people(console, summary)
     show_roster(console, options.roster.file if options.roster else "", summary.moved, summary.dropped)
     _show_unjudged(console, list(_unjudged(summary)))
-    _show_edited(console, summary, changes, out)
+    _show_edited(console, summary, tried, out)
     if summary.already:
         console.note(f"{summary.already} had been graded before.")
     for level, count in sorted(summary.levels.items()):
@@ -313,7 +315,23 @@ def _show_summary(
     console.note(f"Written: {out}/{files}. Seed {summary.seed}.")
 
 
-def _alike(rows: list[Ungraded]) -> list[tuple[str, Ungraded]]:
+def _show_troubled(console: Console, rows: Sequence[Ungraded]) -> None:
+    told = _alike(rows)
+    for whose, row in told[:_MOST_TROUBLED]:
+        console.item(whose, f"{row.code}: {one_line(row.message)}")
+    if len(told) > _MOST_TROUBLED:
+        console.line(f"and {len(told) - _MOST_TROUBLED} more; results.jsonl has them all.", indent=2)
+
+
+def show_faults(console: Console, done: Regraded, out: Path) -> None:
+    """What a regrading could not grade: nothing takes the place of an earlier result for that."""
+    if done.troubled:
+        console.line((f"{done.faults} hit a fault of the grader and keep what counted:", "bold"))
+        _show_troubled(console, done.troubled)
+        console.note(f"Once that is right, {command('grade', 'rerun', out)} grades these.")
+
+
+def _alike(rows: Sequence[Ungraded]) -> list[tuple[str, Ungraded]]:
     """Whose work it is that could not be graded: one line for all whom the same file kept from it."""
     files: dict[tuple[str, str], list[Ungraded]] = {}
     told: list[tuple[str, Ungraded]] = []
@@ -376,7 +394,8 @@ def _show_result(
         console.item("submission", result.key.submission_sha256, width=10)
     for older in history:
         if older.number != result.number:
-            was = f"{format_points(older.verdict.score)}, {older.verdict.state}"
+            given = None if older.verdict.state == "grader_error" else older.verdict.score
+            was = f"{points(given)}, {older.verdict.state}"
             console.item("before", f"{older.graded_at}: {was}, grader {older.key.grader_version}", width=10)
     for note in verdict.warnings:
         console.item("note", one_line(note), width=10)

@@ -168,12 +168,18 @@ def check_settled(selection: Selection, options: ExportOptions) -> None:
             and neither a score by hand nor ``zeros`` says that it is worth 0.
     """
     left_out = set(selection.written.unmatched)
-    waiting = sorted(map(repr, selection.results.waiting - left_out))
+    unread = {
+        item.student
+        for item in selection.results.all()
+        if item.waiting and item.exercise in selection.exercises
+    }
+    waiting = sorted(map(repr, (selection.results.waiting | unread) - left_out))
     if waiting:
         are = "1 student is" if len(waiting) == 1 else f"{len(waiting)} students are"
         raise MissingCapabilityError(
             f"{are} not graded yet: {some(waiting, SHOWN)}. Nothing was written.",
-            help="Finish the run first: the command that began it, with --resume, goes on.",
+            help="Nothing says that this was not handed in. `course grade run` with --resume, for these"
+            " exercises and without --only, looks for it.",
             code="not_graded_yet",
         )
     if options.zeros:

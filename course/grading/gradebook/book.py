@@ -24,12 +24,14 @@ import msgspec
 
 from course.errors import CourseError, IntegrityError
 from course.grading.gradebook.file import (
+    KEYS,
     SEAL,
     TABLES,
     begin_writing,
     create,
     explained,
     open_file,
+    override_digest,
     release,
     rescue,
     row_into,
@@ -40,6 +42,7 @@ from course.grading.gradebook.records import (
     Decision,
     GradedExercise,
     Key,
+    Looked,
     Override,
     PlatformIdentity,
     Result,
@@ -110,7 +113,8 @@ class Gradebook:
     def meta(self) -> dict[str, str]:
         """Facts about the run: course, version, seed, late policy, roster, ..."""
         with explained(self.path):
-            return dict(self._db.execute("SELECT key, value FROM meta WHERE key != ? ORDER BY key", (SEAL,)))
+            query = "SELECT key, value FROM meta WHERE key NOT IN (?, ?) ORDER BY key"
+            return dict(self._db.execute(query, (SEAL, KEYS)))
 
     def set_meta(self, **facts: str | None) -> None:
         """Record facts about the run; None removes one."""
@@ -120,6 +124,8 @@ class Gradebook:
                     self._db.execute("DELETE FROM meta WHERE key = ?", (name,))
                 else:
                     self._db.execute(row_into("meta", "INSERT OR REPLACE"), (name, value))
+            names = " ".join(name for (name,) in self._db.execute("SELECT key FROM meta") if name != KEYS)
+            self._db.execute(row_into("meta", "INSERT OR REPLACE"), (KEYS, names))
 
     def begin_run(self, kind: str, options: Mapping[str, Any]) -> int:
         """Note that a grading ("run") or regrading ("rerun") begins; its results are kept apart."""
@@ -198,10 +204,20 @@ class Gradebook:
         with self._transaction():
             self._db.execute(row_into("results", "INSERT OR REPLACE"), (self._next("results"), *row))
             if files is not None:
-                packed = zlib.compress(msgspec.msgpack.encode(dict(files)), 1)
-                self._db.execute(
-                    row_into("submissions", "INSERT OR IGNORE"), (result.key.submission_sha256, packed)
-                )
+                self._keep(result.key.submission_sha256, files)
+
+    def _keep(self, sha256: str, files: Mapping[str, bytes]) -> None:
+        packed = zlib.compress(msgspec.msgpack.encode(dict(files)), 1)
+        self._db.execute(row_into("submissions", "INSERT OR IGNORE"), (sha256, packed))
+
+    def restore(self, sha256: str, files: Mapping[str, bytes]) -> None:
+        """Store the submission of a result, if it was lost."""
+        with explained(self.path):
+            query = "SELECT 1 FROM submissions WHERE sha256 = ?"
+            known = self._db.execute(query, (sha256,)).fetchone()
+        if known is None:
+            with self._transaction():
+                self._keep(sha256, files)
 
     def _next(self, table: str) -> int:
         newest = self._db.execute(f"SELECT ifnull(max(number), 0) FROM {table}").fetchone()
@@ -291,10 +307,21 @@ class Gradebook:
         with explained(self.path):
             return [row[0] for row in self._db.execute("SELECT DISTINCT student FROM results ORDER BY 1")]
 
-    def exercise_ids(self) -> list[str]:
-        """All exercises with a result, by name."""
+    def exercise_ids(self, *, handed_in: bool = False) -> list[str]:
+        """All exercises with a result, by name; or those alone of which there is a submission."""
+        query = "SELECT DISTINCT exercise FROM results WHERE submission_sha256 IS NOT ? ORDER BY 1"
         with explained(self.path):
-            return [row[0] for row in self._db.execute("SELECT DISTINCT exercise FROM results ORDER BY 1")]
+            nothing = hashlib.sha256().hexdigest() if handed_in else None
+            return [row[0] for row in self._db.execute(query, (nothing,))]
+
+    def looked(self) -> dict[str, Looked] | None:
+        """By exercise, whose work was looked at; None in a gradebook of a version that did not note it."""
+        text = self.meta().get("looked")
+        with explained(self.path):
+            return msgspec.json.decode(text, type=dict[str, Looked]) if text is not None else None
+
+    def set_looked(self, looked: Mapping[str, Looked]) -> None:
+        self.set_meta(looked=msgspec.json.encode(looked, order="deterministic").decode())
 
     def submission(self, sha256: str) -> dict[str, bytes] | None:
         """A submission: file name to content; None if none has that digest."""
@@ -321,7 +348,7 @@ class Gradebook:
         row = (override.student, override.exercise, override.score, override.reason, at)
         with self._transaction():
             number = self._next("overrides")
-            self._db.execute(row_into("overrides"), (number, *row, _sha256(repr(row))))
+            self._db.execute(row_into("overrides"), (number, *row, override_digest(*row)))
             after = msgspec.json.encode({"number": number, "score": override.score}).decode()
             kind = "lift" if override.score is None else "override"
             about = (override.student, override.exercise, override.reason, before, after)
@@ -333,9 +360,10 @@ class Gradebook:
         query = "SELECT student, exercise, score, reason, at, sha256 FROM overrides ORDER BY number"
         with explained(self.path):
             for *row, digest in self._db.execute(query):
-                if _sha256(repr(tuple(row))) != digest:
+                one = _as(Override, row)
+                if override_digest(*row) != digest:
                     raise _failed_checksum(f"The override for {row[0]!r} and {row[1]}", self.path)
-                found.append(_as(Override, row))
+                found.append(one)
         return found
 
     def note(self, decision: Decision) -> None:

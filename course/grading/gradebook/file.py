@@ -34,6 +34,8 @@ from course.strangers import no_programs
 FORMAT_VERSION = 5
 #: The name of the seal among the facts about a run.
 SEAL = "seal"
+#: The name of the list of these facts, by which ``salvage`` knows what is lost.
+KEYS = "keys"
 #: Instructions of SQLite until it is open; a class of a thousand takes three.
 _MILLIONS = 200
 _MOST_SAID = 200
@@ -160,6 +162,13 @@ def row_digest(table: str, *cells: object) -> str:
             kind, body = b"n", repr(int(cell) if whole else cell).encode()  # type: ignore[call-overload]
         digest.update(kind + str(len(body)).encode() + b":" + body)
     return digest.hexdigest()[:32]
+
+
+def override_digest(student: str, exercise: str, score: float | None, reason: str, at: str) -> str:
+    """An override's own digest. SQLite keeps no sign of a zero, and gives 10 back as 10.0."""
+    number = None if score is None else float(score) + 0.0
+    row = repr((student, exercise, number, reason, at)).encode()
+    return hashlib.sha256(row).hexdigest()
 
 
 def row_into(table: str, how: str = "INSERT") -> str:

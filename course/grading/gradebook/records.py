@@ -1,5 +1,6 @@
 """The content of a gradebook, as types."""
 
+from collections.abc import Set
 from dataclasses import dataclass
 from typing import Any
 
@@ -78,6 +79,30 @@ class SubmittedAt(msgspec.Struct, frozen=True):
     at: float | None
 
 
+class Looked(msgspec.Struct, frozen=True):
+    """Whose work was looked at for an exercise.
+
+    Attributes:
+        whole: the class, but for ``names``; otherwise these alone.
+        named: it was asked for by name, so that it can be missing whoever handed it in.
+    """
+
+    whole: bool = False
+    named: bool = False
+    names: frozenset[str] = frozenset()
+
+    def at(self, student: str) -> bool:
+        return self.whole != (student in self.names)
+
+    def having(self, students: Set[str]) -> "Looked":
+        names = self.names - students if self.whole else self.names | students
+        return msgspec.structs.replace(self, names=names)
+
+    def without(self, students: Set[str]) -> "Looked":
+        names = self.names | students if self.whole else self.names - students
+        return msgspec.structs.replace(self, names=names)
+
+
 class Override(msgspec.Struct, frozen=True):
     """A score an instructor set. ``score`` None lifts an earlier one."""
 
@@ -94,7 +119,7 @@ class Decision(msgspec.Struct, frozen=True):
     Attributes:
         at: UTC, ISO 8601; empty for now.
         who: the name of the account; empty for the one this runs under.
-        kind: "override", "lift", "assign", "late", "resume" (another submission
+        kind: "override", "lift", "assign", "late", "rerun", "resume" (another submission
             counts now), "roster" or "salvage".
         student, exercise: what it is about; empty for a whole class.
         before, after: in words or JSON, what counted and what counts.

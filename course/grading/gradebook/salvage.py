@@ -19,11 +19,13 @@ import msgspec
 
 from course.errors import IntegrityError, MissingCapabilityError, NotFoundError
 from course.grading.gradebook.file import (
+    KEYS,
     SEAL,
     TABLES,
     create,
     explained,
     open_file,
+    override_digest,
     release,
     row_digest,
     row_into,
@@ -273,9 +275,11 @@ def salvage(path: Path, target: Path) -> Salvaged:
         raise IntegrityError(
             f"{path} has no intact row, and there is no backup.", help="Grade the class into a new folder."
         )
+    told.lost = list(_lost(found))
+    if told.lost:  # whose results are among it is not known: from now on nothing says who handed in nothing
+        found["meta"]["looked",] = ("looked", "{}")
     _write(found, target)
     told.rows = Counter({name: len(rows) for name, rows in found.items()})
-    told.lost = list(_lost(found))
     return told
 
 
@@ -315,9 +319,17 @@ def _table_of(number: int | None, values: Row) -> str | None:
     for name, columns in TABLES.items():
         if len(values) == len(columns) + 1:
             cells = (number, *values[1:-1]) if name in _NUMBERED else values[:-1]
-            if row_digest(name, *cells) == values[-1]:
+            if row_digest(name, *cells) == values[-1] and (name != "overrides" or _is_whole(cells)):
                 return name
     return None
+
+
+def _is_whole(cells: Row) -> bool:
+    """Whether an override has the digest that the gradebook will look for."""
+    _, student, exercise, score, reason, at, digest = cells
+    if isinstance(score, str | bytes):
+        return False
+    return override_digest(str(student), str(exercise), score, str(reason), str(at)) == digest
 
 
 class _Decided(msgspec.Struct):
@@ -340,10 +352,9 @@ def _take_decided(found: dict[str, dict[Row, Row]]) -> None:
         if kind in {"override", "lift"}:
             with contextlib.suppress(msgspec.MsgspecError, RecursionError):
                 decided = msgspec.json.decode(str(after), type=_Decided)
-                cells = (student, exercise, decided.score, reason, at)
+                cells = (str(student), str(exercise), decided.score, str(reason), str(at))
                 if (decided.number,) not in found["overrides"]:
-                    digest = hashlib.sha256(repr(cells).encode()).hexdigest()
-                    found["overrides"][decided.number,] = (decided.number, *cells, digest)
+                    found["overrides"][decided.number,] = (decided.number, *cells, override_digest(*cells))
 
 
 def _write(found: dict[str, dict[Row, Row]], target: Path) -> None:
@@ -358,8 +369,14 @@ def _write(found: dict[str, dict[Row, Row]], target: Path) -> None:
         release(db)
 
 
+#: What a lost fact about the class is called.
+_FACTS = {"late_policy": "the late policy", "looked": "whose work was looked at"}
+
+
 def _lost(found: dict[str, dict[Row, Row]]) -> Iterator[str]:
     """Missing rows that others refer to."""
+    names = str(found["meta"].get((KEYS,), ("", ""))[1]).split()
+    yield from (_FACTS.get(name, f"the {name}") for name in names if (name,) not in found["meta"])
     for name, words in (("results", "results"), ("overrides", "overrides"), ("journal", "notes of changes")):
         numbers = {int(str(key[0])) for key in found[name]}
         gone = sorted(set(range(1, max(numbers, default=0) + 1)) - numbers)

@@ -7,7 +7,6 @@ folder around everything, and the backslashes of Windows, are accepted and noted
 import ast
 import atexit
 import contextlib
-import functools
 import hashlib
 import json
 import os
@@ -63,9 +62,29 @@ class RefusedError(Exception):
         self.problem = Problem(code, one_line(message), advice)
 
 
-def manifest_of(path: Path) -> dict[str, Any]:
-    """The metadata that ``course submit`` put into an archive; empty for one made by hand."""
-    return _opened(path, functools.partial(_manifest, path))
+def quiz_of(path: Path, loose: bytes) -> object:
+    """The quiz attempts in what ``course submit`` wrote: an archive, or its metadata alone once unpacked.
+
+    Words if they have another form, or if the metadata cannot be read and no file beside it will say so.
+
+    Args:
+        loose: the metadata, unpacked; empty if it is in an archive.
+    """
+
+    def read(archive: zipfile.ZipFile, members: Members) -> object:
+        try:
+            return checked_record(_manifest(path, archive, members).get("quiz"))
+        except RefusedError as refused:
+            if len(members) > 1:
+                raise
+            return refused.problem.message.rstrip(".")
+
+    if not loose:
+        return _opened(path, read)
+    try:
+        return checked_record(_read_manifest(path, loose).get("quiz"))
+    except RefusedError as refused:
+        return refused.problem.message.rstrip(".")
 
 
 @dataclass(frozen=True)
@@ -94,10 +113,10 @@ def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
     """
 
     def read(archive: zipfile.ZipFile, members: Members) -> ArchiveContent | None:
-        manifest = _manifest(path, archive, members)
         wanted = _wanted_members(members, exercise)
         if not wanted:
             return None
+        manifest = _manifest(path, archive, members)
         contents = {name: _unpacked(path, archive, members[name]) for name in wanted}
         if len(set(contents.values())) > 1:
             message = f"{path.name} holds several files for {exercise.id}: {' and '.join(wanted)}."
@@ -292,9 +311,13 @@ def _manifest(path: Path, archive: zipfile.ZipFile, members: Members) -> dict[st
     info = members.get(MANIFEST)
     if info is None:
         return {}
+    return _read_manifest(path, _unpacked(path, archive, info))
+
+
+def _read_manifest(path: Path, content: bytes) -> dict[str, Any]:
     manifest: Any = None
     with contextlib.suppress(ValueError, RecursionError):
-        manifest = json.loads(_unpacked(path, archive, info))
+        manifest = json.loads(content)
     match manifest:
         case {"format_version": int(version)} if version > FORMAT_VERSION:
             raise RefusedError(
@@ -304,7 +327,7 @@ def _manifest(path: Path, archive: zipfile.ZipFile, members: Members) -> dict[st
             )
         case {"format_version": int(), "files": dict(files)} if files or manifest.get("quiz"):
             return dict(manifest)
-    raise _refused(path, f"its {MANIFEST} is damaged")
+    raise _refused(path, f"its {MANIFEST} is damaged" if path.name != MANIFEST else "it is damaged")
 
 
 # ---
@@ -329,7 +352,7 @@ class _Request(msgspec.Struct, frozen=True):
     Attributes:
         kind: "notebook", "archive", "quiz", "outline" or "member".
         path: of an archive, or of a file to outline.
-        content: of a notebook.
+        content: of a notebook, or of a quiz record that is in no archive.
         name: what to call it in messages.
     """
 
@@ -410,9 +433,14 @@ class Reader:
         ask = _Request("member", one_line(path.name), path=os.fsencode(path.absolute()), skip=(name,))
         return self._ask(ask).content
 
-    def quiz_in(self, path: Path) -> Any:
-        """The quiz attempts in an archive; a word if they have another form, None if it has none."""
-        told = self._ask(_Request("quiz", one_line(path.name), path=os.fsencode(path.absolute())))
+    def quiz_in(self, path: Path, loose: bytes = b"") -> Any:
+        """The quiz attempts in an archive; words if they have another form, None if it has none.
+
+        Args:
+            loose: what ``path`` holds, where that is no archive.
+        """
+        where = os.fsencode(path.absolute())
+        told = self._ask(_Request("quiz", one_line(path.name), path=where, content=loose))
         return json.loads(told.content)
 
     def _ask(self, ask: _Request) -> _Reply:
@@ -487,7 +515,7 @@ def _answer(ask: _Request) -> _Reply:
     if ask.kind == "member":
         return _Reply(content=member_of(path, ask.skip[0]))
     if ask.kind == "quiz":
-        return _Reply(content=json.dumps(checked_record(manifest_of(path).get("quiz"))).encode())
+        return _Reply(content=json.dumps(quiz_of(path, ask.content)).encode())
     found = module_in(path, exercise)
     if found is None:
         return _Reply()
@@ -513,12 +541,19 @@ def _outlines(path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> 
         else:
             yield "", digest, (), 0, kind
         return
-    if not files:
+    if not files and not _is_record(path):
         yield "", hashlib.sha256(content).hexdigest(), (), 0, f"{kind} without a file of code"
     for name, found in files:
         what = downloads.kind_of(name, found)
         digest = hashlib.sha256(found).hexdigest()
         yield name, digest, *(_defined(name, found, functions) if what in _IS_CODE else ((), 0)), what
+
+
+def _is_record(path: Path) -> bool:
+    """Whether an archive has nothing but what ``course submit`` writes beside the files."""
+    with contextlib.suppress(RefusedError):
+        return _opened(path, lambda _, members: list(members) == [MANIFEST])
+    return False
 
 
 #: What is read as code; "" is what its name says.

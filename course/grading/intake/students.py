@@ -22,7 +22,7 @@ import hashlib
 import os
 import re
 import stat
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -33,7 +33,16 @@ from course.catalog.models import Exercise
 from course.errors import InternalError, UngradableError
 from course.grading.gradebook.records import SubmittedAt
 from course.grading.intake.archives import ArchiveContent, RefusedError, reader
-from course.grading.intake.downloads import Place, Student, is_clutter, is_notebook, kind_of, plain
+from course.grading.intake.downloads import (
+    Place,
+    Student,
+    is_clutter,
+    is_meant,
+    is_notebook,
+    kind_of,
+    may_be_code,
+    plain,
+)
 from course.handed_in.limits import HANDED_IN, MANIFEST, MAX_FILE, MAX_NOTEBOOK
 from course.handed_in.notebook import RECORD
 from course.printable import one_line, some
@@ -50,6 +59,7 @@ class Entry:
         student: the student's id.
         submission: to grade; None if there is nothing.
         problem: why there is nothing; if both are None, the exercise was not handed in.
+        unread: it was not asked for, and there is work for it.
         times: of the submission, each with its source.
         notes: assumptions that were made, and files that were left aside, one sentence each.
         written: the Python and NumPy that it was written with, by its own account; empty if unknown.
@@ -62,6 +72,7 @@ class Entry:
     exercise: Exercise
     submission: Submission | None = None
     problem: Problem | None = None
+    unread: bool = field(default=False, compare=False)
     times: tuple[SubmittedAt, ...] = field(default=(), compare=False)
     notes: tuple[str, ...] = field(default=(), compare=False)
     written: str = field(default="", compare=False)
@@ -84,15 +95,23 @@ class Entry:
         return self.submission.sha256 if self.submission else hashlib.sha256().hexdigest()
 
 
-def read_student(student: Student, exercises: Sequence[Exercise], *, required: bool) -> list[Entry]:
+def read_student(
+    student: Student,
+    exercises: Sequence[Exercise],
+    *,
+    required: bool,
+    others: Sequence[Exercise] | None = None,
+) -> list[Entry]:
     """The entries of one student, one per exercise; a failure here does not affect other students.
 
     Args:
         required: whether an exercise without a file is ungradable (it was asked for by name) or merely not
             submitted.
+        others: the course's other exercises. Where all that is there is known to be for these, an exercise
+            that is required is merely not submitted, too; and each with work has an entry that says so.
     """
     try:
-        return list(_entries(student, exercises, required=required))
+        return list(_entries(student, exercises, required=required, others=others))
     except InternalError:
         raise
     except Exception as error:  # noqa: BLE001 - an unforeseen fault is named; the class goes on
@@ -107,7 +126,9 @@ def _unforeseen(error: Exception) -> Problem:
     return Problem("unreadable", message, "Look at it; `course grade assign` takes any file by its path.")
 
 
-def _entries(student: Student, exercises: Sequence[Exercise], *, required: bool) -> Iterator[Entry]:
+def _entries(
+    student: Student, exercises: Sequence[Exercise], *, required: bool, others: Sequence[Exercise] | None
+) -> Iterator[Entry]:
     name, place = student.name, student.place
     try:
         if place.files is None and place.root.is_symlink():
@@ -122,33 +143,62 @@ def _entries(student: Student, exercises: Sequence[Exercise], *, required: bool)
         for exercise in exercises:
             yield Entry(name, exercise, problem=Problem("unreadable", message, _PERMISSIONS))
         return
-    taken: list[tuple[Exercise, _FoundWork | RefusedError | None]] = []
-    for exercise in exercises:
-        try:
-            taken.append((exercise, _find(place, archives, exercise)))
-        except RefusedError as refused:
-            taken.append((exercise, refused))
-        except (OSError, ValueError) as error:
-            problem = _unforeseen(error)
-            taken.append((exercise, RefusedError(problem.code, problem.message, problem.help)))
+    taken = [(exercise, _found(place, archives, exercise)) for exercise in exercises]
     used = {at for _, item in taken if isinstance(item, _FoundWork) for at in item.used}
-    left = survey(place, used, exercises)
+    every = (*exercises, *(others or ()))
+    left = survey(place, used, every)
+    mine = {
+        exercise.id: [one for one in left if others is None or not _is_anothers(one, exercise, every)]
+        for exercise in every
+    }
     alone = not used and any("archive" in one.kind for one in left)
+    busy = others is not None and bool(used or left or archives or place.find(MANIFEST, "."))
     for exercise, item in taken:
         if isinstance(item, _FoundWork):
             times = witnesses(student, exercise.id, item.submission.sha256, item.path)
-            notes = (*item.notes, *_beside(exercise, item, left))
+            notes = (*item.notes, *_beside(exercise, item, mine[exercise.id]))
             yield Entry(name, exercise, item.submission, times=times, notes=notes, written=item.written)
         else:
-            yield _without(student, exercise, item, left, required=required, alone=alone)
+            there = mine[exercise.id]
+            tidy = others is not None and bool(used or len(there) < len(left))
+            yield _without(
+                student, exercise, item, there, required=required, busy=busy, tidy=tidy, alone=alone
+            )
+    for exercise in others or ():
+        if found_for(exercise, mine[exercise.id], asked=()):
+            yield Entry(name, exercise, unread=True)
+
+
+def _found(place: Place, archives: list[Path], exercise: Exercise) -> _FoundWork | RefusedError | None:
+    try:
+        return _find(place, archives, exercise)
+    except RefusedError as refused:
+        return refused
+    except (OSError, ValueError) as error:
+        problem = _unforeseen(error)
+        return RefusedError(problem.code, problem.message, problem.help)
+
+
+def _is_anothers(one: Candidate, exercise: Exercise, every: Sequence[Exercise]) -> bool:
+    """Whether a file is another exercise's: by its functions alone, or by its name and no fewer of them."""
+    name = Path(one.name).name
+
+    def has(item: Exercise) -> int:
+        return sum(task.id in one.defines for task in item.task)
+
+    def called(item: Exercise) -> bool:
+        names = (item.module, str(Path(item.module).with_suffix(".ipynb")))
+        return any(is_meant(name, wanted) for wanted in names)
+
+    mine = has(exercise)
+    others = [item for item in every if item is not exercise]
+    return any((has(item) and not mine) or (called(item) and has(item) >= mine) for item in others)
 
 
 def _beside(exercise: Exercise, taken: _FoundWork, left: list[Candidate]) -> list[str]:
     """Other files with functions of the same exercise; they are always reported."""
     others = [
-        one
-        for one in found_for(exercise, left, asked=False)
-        if one.defines and one.sha256 not in taken.contents
+        one for one in found_for(exercise, left, asked=()) if one.defines and one.sha256 not in taken.contents
     ]
     return [f"Also there, and not graded: {described(others)}."] if others else []
 
@@ -160,18 +210,24 @@ def _without(
     left: list[Candidate],
     *,
     required: bool,
+    busy: bool,
+    tidy: bool,
     alone: bool,
 ) -> Entry:
     """The entry for an exercise without a usable file, with the files that may be meant.
 
     Args:
+        busy: the student handed in something, so that only what may be meant is a problem.
+        tidy: some of it has its right name, so that only other code and archives may be meant.
         alone: nothing of the student's was taken, and there is an archive, which may hold anything.
     """
     problem = refused.problem if refused else None
     found: tuple[Candidate, ...] = ()
     if problem is None or problem.code in _FOR_TRIAGE:
-        found = found_for(exercise, left, asked=required or problem is not None or alone)
-    if problem is None and (required or found):
+        code = [one for one in left if may_be_code(one.name) or "archive" in one.kind]
+        any_file = code if tidy and problem is None else left
+        found = found_for(exercise, left, asked=any_file if required or problem or alone else ())
+    if problem is None and (found or (required and (student.typed or not busy))):
         problem = _no_file(exercise, found, student.typed)
     if problem is None or not found:
         return Entry(student.name, exercise, problem=problem)
@@ -388,25 +444,27 @@ def _within(content: bytes, shown: str, limit: int) -> bytes:
 
 
 def read_quiz(student: Student) -> tuple[Any, Path | None]:
-    """A student's quiz attempts, as in the JSON, and the archive they came in; an empty list if none.
+    """A student's quiz attempts, as in the JSON, and the file they came in; an empty list if none.
 
     An archive that cannot be read gives none: the exercises in it report what is wrong with it.
 
     Raises:
-        UngradableError: several archives hold attempts.
+        UngradableError: several files hold different attempts.
     """
     found: list[tuple[Any, Path]] = []
     place = student.place
     with contextlib.suppress(OSError):
         if place.files is None and place.root.is_symlink():
             return [], None
-        for path in place.archives():
+        for path in (*place.archives(), *place.find(MANIFEST, ".")):
             with contextlib.suppress(RefusedError):
-                record = reader.quiz_in(path)
+                packed = path.suffix.lower() == ".zip"
+                loose = b"" if packed else _read_regular(path, place.shown(path), MAX_FILE)
+                record = reader.quiz_in(path, loose)
                 found += [(record, path)] if record else []
-    if len(found) > 1:
+    if any(record != found[0][0] for record, _ in found):
         raise UngradableError(
-            "Several archives hold quiz attempts.", help="Keep the one that counts.", code="ambiguous_files"
+            "Several files hold quiz attempts.", help="Keep the one that counts.", code="ambiguous_files"
         )
     return found[0] if found else ([], None)
 
@@ -484,7 +542,8 @@ def survey(place: Place, used: set[tuple[str, str]], exercises: Sequence[Exercis
 
 def _files(place: Place) -> list[tuple[str, Path]]:
     if place.files is not None:
-        return [(name, path) for name, path in place.files if path.is_file() and not path.is_symlink()]
+        files = [(name, path) for name, path in place.files if not is_meant(name, MANIFEST)]
+        return [(name, path) for name, path in files if path.is_file() and not path.is_symlink()]
     return list(_below(place.root, "", 0, iter(range(_ENTRIES))))
 
 
@@ -503,7 +562,7 @@ def _below(folder: Path, above: str, depth: int, left: Iterator[int]) -> Iterato
         if entry.is_dir(follow_symlinks=False):
             if depth < _DEEP and not (path / "pyvenv.cfg").exists():
                 yield from _below(path, f"{above}{entry.name}/", depth + 1, left)
-        elif entry.is_file(follow_symlinks=False) and entry.name != MANIFEST:
+        elif entry.is_file(follow_symlinks=False) and not is_meant(entry.name, MANIFEST):
             yield above + entry.name, path
 
 
@@ -532,11 +591,13 @@ def _outlined(
     return candidates, sum(parsed for *_, parsed, _ in outlines)
 
 
-def found_for(exercise: Exercise, candidates: Iterable[Candidate], *, asked: bool) -> tuple[Candidate, ...]:
+def found_for(
+    exercise: Exercise, candidates: Iterable[Candidate], *, asked: Collection[Candidate]
+) -> tuple[Candidate, ...]:
     """The files that may be meant for an exercise, the likeliest first, with the one match if there is one.
 
     Args:
-        asked: the exercise was asked for by name, so any file may be meant for it.
+        asked: files that may be meant for it whatever they are called.
     """
     tasks = [task.id for task in exercise.task]
     stem = Path(exercise.module).stem.casefold()
@@ -546,7 +607,7 @@ def found_for(exercise: Exercise, candidates: Iterable[Candidate], *, asked: boo
         worth = len(mine) / len(tasks) if tasks else 0.0
         alike = difflib.SequenceMatcher(None, stem, Path(plain(Path(one.name).name)).stem).ratio()
         alike = alike if alike >= _ALIKE else 0.0
-        if asked or worth or alike:
+        if worth or alike or one in asked:
             # What cannot be read as code can be named, and not proposed.
             rank = worth + alike / 10 if one.kind in _READABLE else 0.0
             ranked.append((rank, msgspec.structs.replace(one, defines=mine)))

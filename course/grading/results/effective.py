@@ -24,7 +24,15 @@ from course.catalog.models import CourseRef
 from course.errors import NotFoundError, UsageError
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.file import explained
-from course.grading.gradebook.records import Decision, GradedExercise, Key, Override, Result, SubmittedAt
+from course.grading.gradebook.records import (
+    Decision,
+    GradedExercise,
+    Key,
+    Looked,
+    Override,
+    Result,
+    SubmittedAt,
+)
 from course.grading.results.late import Policy, lateness, parse_policy
 from course.grading.results.roster import FOR_TESTS, Person, Roster
 from course.printable import command, one_line
@@ -39,10 +47,11 @@ _NOTHING = {
     "ungradable": Problem("not_submitted", "Nothing was handed in.", "The score was set by the instructor."),
     NOT_YET: Problem(
         "not_graded_yet",
-        "The run was interrupted before it had looked at all of this student's work.",
-        "The command that began the run, with --resume, goes on.",
+        "No run has looked at all of this student's work yet.",
+        "`course grade run` with --resume, for this exercise and without --only, does.",
     ),
 }
+_NOBODY = Looked()
 _WITHOUT_SCORE = frozenset({"grader_error", MISSING, NOT_YET})
 
 
@@ -118,6 +127,7 @@ class Results:
         seed: of the run's hidden inputs.
         policy: the late policy in force, if any.
         waiting: students whose work a run has still to look at.
+        looked: by exercise, whose work was looked at; None if that was not noted.
 
     Raises:
         IntegrityError: its content was changed or damaged.
@@ -137,6 +147,7 @@ class Results:
             self.roster = roster or (Roster.load(meta["roster"]) if "roster" in meta else None)
             self._without_work = set(msgspec.json.decode(meta.get("without_work", "[]"), type=list[str]))
         self.waiting = book.waiting()
+        self.looked = book.looked()
         self.downloads = book.students()
         self._exercises = {exercise.id: exercise for exercise in book.exercises()}
         self._overrides: dict[tuple[str, str], Override] = {}
@@ -168,7 +179,16 @@ class Results:
 
     @cached_property
     def _with_folder(self) -> set[str]:
-        return {*self.book.student_ids(), *self.waiting}
+        return {*self.book.student_ids(), *self.waiting, *self._unread}
+
+    @cached_property
+    def _unread(self) -> set[str]:
+        """Who came to a class that had been looked at, and was not."""
+        return {name for one in (self.looked or {}).values() if one.whole for name in one.names}
+
+    def has_looked(self, student: str, exercise: str) -> bool:
+        """Whether a run looked for a student's work, or for the student's folder."""
+        return self.looked is None or self.looked.get(exercise, _NOBODY).at(student)
 
     @cached_property
     def _arrived(self) -> dict[str, str]:
@@ -233,7 +253,8 @@ class Results:
 
     def present(self) -> set[str]:
         """The students with a result or an override, and those whose work waits."""
-        return {*self.book.student_ids(), *(name for name, _ in self._overrides), *self.waiting}
+        by_hand = (name for name, _ in self._overrides)
+        return {*self.book.student_ids(), *by_hand, *self.waiting, *self._unread}
 
     def title(self, exercise: str) -> str:
         """The exercise's title; its id where none was noted."""
@@ -272,8 +293,11 @@ class Results:
 
     @cached_property
     def _asked(self) -> frozenset[str]:
-        """The exercises that can be missing: one that no student handed in was not set."""
-        return frozenset(self.book.exercise_ids() if self._enrolled else ())
+        """The exercises that can be missing: one that no student handed in, and nobody named, was not set."""
+        if not self._enrolled or self.looked is None:
+            return frozenset(self.book.exercise_ids() if self._enrolled else ())
+        named = (name for name, looked in self.looked.items() if looked.named)
+        return frozenset((*self.book.exercise_ids(handed_in=True), *named))
 
     def _without_grading(
         self, student: str, exercise: str | None, done: set[tuple[str, str]], asked: frozenset[str]
@@ -286,7 +310,8 @@ class Results:
             may_wait = waits and about in self._exercises
             if (student, about) not in done and (by_hand or may_wait or about in asked):
                 done.add((student, about))
-                state = "ungradable" if by_hand else NOT_YET if waits else MISSING
+                known = not waits and self.has_looked(student, about)
+                state = "ungradable" if by_hand else MISSING if known else NOT_YET
                 yield self.of(self._nothing(student, about, state))
 
     def of(self, result: Result) -> Effective:
@@ -444,13 +469,23 @@ def counted(counts: Effective | None, file: str = "") -> str:
 
 class _Submission(msgspec.Struct, frozen=True):
     submission: str = ""
+    file: str = ""
 
 
 def submission_in(told: str) -> str:
     """The digest of the submission in what ``counted`` told; "" where it told of none."""
+    return _counted_in(told).submission
+
+
+def file_in(told: str) -> str:
+    """The name of the file that an instructor chose, in what ``counted`` told; "" if there was none."""
+    return _counted_in(told).file
+
+
+def _counted_in(told: str) -> _Submission:
     with contextlib.suppress(msgspec.MsgspecError, RecursionError):
-        return msgspec.json.decode(told, type=_Submission).submission
-    return ""
+        return msgspec.json.decode(told, type=_Submission)
+    return _Submission()
 
 
 # ---
@@ -480,7 +515,7 @@ def override(results: Results, student: str, exercise: str, score: float, reason
         )
     reason = given_reason(reason, "An override", "it is shown wherever the score is")
     before = _told(next(results.all(student, exercise), None))
-    results.book.add_override(Override(student, exercise, float(score), reason), before)
+    results.book.add_override(Override(student, exercise, float(score) + 0.0, reason), before)
     return next(type(results)(results.book).all(student, exercise))
 
 

@@ -2,7 +2,7 @@
 
 import contextlib
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from course.errors import MissingCapabilityError, UsageError
 from course.grading.exports.grades import write_csv, write_jsonl
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.file import explained
+from course.grading.gradebook.records import Looked
 from course.grading.gradebook.salvage import back_up
 from course.grading.results.effective import Results, recorded
 from course.grading.results.merge import Merged, merged
@@ -145,6 +146,38 @@ def remember(book: Gradebook, new: Roster) -> Merged:
         book.set_meta(roster=text)
     found.moved = moved
     return found
+
+
+def note_looked(
+    book: Gradebook, exercises: Iterable[str], read: set[str], others: set[str], *, named: bool
+) -> None:
+    """Note that a run looks for these exercises: in all of a class, or in a part of it.
+
+    Args:
+        others: students with a folder that this run leaves aside.
+    """
+    looked = book.looked()
+    if looked is None:
+        looked = {name: Looked(whole=True) for name in book.exercise_ids()}
+    with explained(book.path):
+        without = msgspec.json.decode(book.meta().get("without_work", "[]"), type=list[str])
+    new = others - {*book.student_ids(), *without}
+    looked = {name: one.without(new) for name, one in looked.items()}
+    for name in exercises:
+        was = looked.get(name, Looked()).having(read)
+        if not others and not was.whole:
+            was = Looked(whole=True)
+        looked[name] = msgspec.structs.replace(was, named=was.named or named)
+    book.set_looked(looked)
+
+
+def note_unread(book: Gradebook, unread: Iterable[tuple[str, str]]) -> None:
+    """Note work that a run passed over, of exercises that were looked for before."""
+    looked = book.looked() or {}
+    for student, exercise in unread:
+        if exercise in looked:
+            looked[exercise] = looked[exercise].without({student})
+    book.set_looked(looked)
 
 
 def note_without_work(book: Gradebook, students: set[str]) -> None:

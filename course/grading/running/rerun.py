@@ -15,13 +15,13 @@ from course.catalog.load import Catalog
 from course.catalog.questions import read_questions
 from course.errors import IntegrityError, NotFoundError
 from course.grading.gradebook.file import explained
-from course.grading.gradebook.records import Key, Result
+from course.grading.gradebook.records import Decision, Key, Result
 from course.grading.intake.students import Entry
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version
-from course.grading.results.effective import Effective, Results
+from course.grading.results.effective import Effective, Results, counted
 from course.grading.running.batch import grade_all
-from course.grading.running.run import QUIZ_RECORD, GradeAll, graded_exercises
+from course.grading.running.run import QUIZ_RECORD, GradeAll, Ungraded, graded_exercises
 from course.grading.running.snapshot import Snapshot, Unpacked, fresh, frozen, kept
 from course.quizzing.bank import Bank
 from course.scoring.judging.submission import Submission, Terms
@@ -88,7 +88,8 @@ class Regraded(msgspec.Struct, frozen=True):
     Attributes:
         up_to_date: results from the same graders, which were left alone.
         kept: results whose submission is not in the gradebook (nothing was handed in, or it was refused).
-        faults: submissions that a fault of ours kept from being graded.
+        faults: submissions that a fault of ours kept from being graded; what counted before counts on.
+        troubled: these.
         graders: digest of the snapshot that judged.
     """
 
@@ -98,6 +99,7 @@ class Regraded(msgspec.Struct, frozen=True):
     faults: int
     changes: tuple[Change, ...]
     graders: str = ""
+    troubled: tuple[Ungraded, ...] = ()
 
 
 @dataclass
@@ -105,7 +107,6 @@ class _Counts:
     regraded: int = 0
     up_to_date: int = 0
     kept: int = 0
-    faults: int = 0
 
 
 def rerun(
@@ -126,19 +127,24 @@ def rerun(
         IntegrityError: a submission in the gradebook is damaged.
     """
     snapshot, recorded = _graders(results, catalog, options)
-    changes = []
+    changes: list[Change] = []
+    troubled: list[Ungraded] = []
     with frozen(snapshot) as graders:
         task = _Rerun(results, graders, recorded, options)
         for before, after in task.pairs(grade):
             task.counts.regraded += 1
-            task.counts.faults += after.verdict.state == "grader_error"
-            change = _change(before, after)
-            if change is not None:
+            change, error = _change(before, after), after.verdict.error
+            if after.verdict.state == "grader_error" and error is not None:
+                troubled.append(
+                    Ungraded(after.student, after.exercise, "grader_error", error.code, error.message)
+                )
+            elif change is not None:
                 changes.append(change)
     counts = task.counts
     return Regraded(
-        counts.regraded, counts.up_to_date, counts.kept, counts.faults, tuple(changes), snapshot.sha256
-    )
+        counts.regraded, counts.up_to_date, counts.kept, len(troubled), tuple(changes), snapshot.sha256,
+        tuple(troubled),
+    )  # fmt: skip
 
 
 def _graders(results: Results, catalog: Catalog, options: RerunOptions) -> tuple[Snapshot, dict[str, Any]]:
@@ -170,7 +176,10 @@ class _Rerun:
         self._graders = graders
         self._recorded = recorded
         self._options = options
-        self._exercises = {exercise.id: exercise for exercise in graders.catalog.exercises()}
+        catalog = graders.catalog
+        there = {*results.book.exercise_ids(), *(item.id for item in results.exercises())}
+        known = {*catalog.exercise_ids(), *catalog.warm_up_ids()}
+        self._exercises = {name: catalog.exercise(name) for name in there if name in known}
         self._versions = {name: graders.version(name) for name in self._exercises}
         self._bank = Bank(read_questions(graders.catalog.content.quiz))
         self._versions[QUIZ] = quiz_version(self._bank)
@@ -240,11 +249,16 @@ class _Rerun:
     def _taken(self, key: Key, verdict: Verdict) -> tuple[Effective, Effective]:
         result = Result(key, verdict)
         before = self._before.pop((key.student, key.exercise))
-        if not self._options.dry_run:
+        after = self._results.of(result)
+        fault = verdict.state == "grader_error" and before.verdict.state != "grader_error"
+        if not self._options.dry_run and not fault:
             if not self._begun:
                 self._begin()
             self._results.book.add(result)
-        return before, self._results.of(result)
+            if (before.verdict.state, before.score) != (verdict.state, after.score):
+                told = self._options.reason or "graded again", counted(before), counted(after)
+                self._results.book.note(Decision("", "", "rerun", key.student, key.exercise, *told))
+        return before, after
 
     def _begin(self) -> None:
         """From the first new result on: a regrading that finds nothing to do leaves no trace."""

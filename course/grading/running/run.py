@@ -1,6 +1,7 @@
 """A grading run from folder to gradebook: what ``course grade run`` does, without the words."""
 
 import contextlib
+import os
 import secrets
 import time
 from collections import Counter, deque
@@ -19,15 +20,32 @@ from course.errors import ContentError, UngradableError, UsageError
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import GradedExercise, Key, Result, SubmittedAt
 from course.grading.gradebook.salvage import back_up
+from course.grading.intake.archives import RefusedError
 from course.grading.intake.downloads import ClassList, Student, class_list
-from course.grading.intake.students import Entry, read_quiz, read_student, witnesses
+from course.grading.intake.students import Entry, read_quiz, read_student, submission_from, witnesses
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version, record_sha256
-from course.grading.results.effective import Effective, Results, ScoreChange, replacing, submission_in
+from course.grading.results.effective import (
+    Effective,
+    Results,
+    ScoreChange,
+    file_in,
+    replacing,
+    submission_in,
+)
 from course.grading.results.merge import Merged
 from course.grading.results.roster import Roster
 from course.grading.running.batch import Graded, grade_all
-from course.grading.running.folder import BOOK, begin, export_all, note_without_work, remember, taken_back
+from course.grading.running.folder import (
+    BOOK,
+    begin,
+    export_all,
+    note_looked,
+    note_unread,
+    note_without_work,
+    remember,
+    taken_back,
+)
 from course.grading.running.snapshot import Snapshot, Unpacked, among_graders, fresh, frozen, kept
 from course.quizzing.bank import Bank, needed
 from course.scoring.graders import grader_version
@@ -60,6 +78,7 @@ class Summary:
         troubled: the results without a grade.
         not_submitted: pairs without a file, which count for nothing.
         already: results of an earlier run.
+        stay: of these, those whose file is gone, or is assigned and has changed; a sentence each.
         missing: students who handed in nothing at all: enrolled, or without a roster those with a folder.
         strangers: students who handed in something and have no row of their own in the roster.
         compared: the columns of the roster in which these were looked for, as sentences.
@@ -82,6 +101,7 @@ class Summary:
     strangers: list[str] = field(default_factory=list)
     compared: str = ""
     already: int = 0
+    stay: list[str] = field(default_factory=list)
     levels: Counter[str] = field(default_factory=Counter)
     unrecognised: list[str] = field(default_factory=list)
     moved: list[ScoreChange] = field(default_factory=list)
@@ -115,7 +135,11 @@ class Summary:
             for item in results.exercises()
             if item.id in there
         ]
-        self.missing = results.absent()
+        waiting = {effective.student for effective in results.all() if effective.waiting}
+        known = (name for name in results.absent() if name not in waiting)
+        self.missing = [
+            name for name in known if all(results.has_looked(name, id_) for id_ in results.looked or ())
+        ]
         self.strangers = results.unmatched(results.students())
         if results.roster is not None and self.strangers:
             self.compared = results.roster.compared(self.strangers, results.downloads)
@@ -205,7 +229,7 @@ def grade_class(
         begin(out, folder, resume=options.resume) as book,
         frozen(_begun_with(book, options, catalog) or fresh(catalog.content)) as graders,
     ):
-        run = _Run(members.students, graders, folder, options, book)
+        run = _Run(members, graders, folder, options, book)
         if options.resume and (out / "grades.csv").is_file():
             export_all(out, Results(book))  # what lies there says of work that came since that there is none
         for result, files in run.results(grade):
@@ -213,11 +237,12 @@ def grade_class(
                 book.add(result, files)
             taken.graded |= bool(result.verdict.isolation)
             run.one_less(result.key.student)
-            report(run.view.of(result), run.done, len(members.students))
+            report(run.view.of(result), run.done, len(run.names))
         run.note_times()
+        run.note_unread()
         summary = run.summary
-        summary.unrecognised = members.unrecognised
-        note_without_work(book, {student.name for student in members.students})
+        summary.unrecognised = [] if options.only else members.unrecognised
+        note_without_work(book, run.names)
         results = Results(book, run.roster)
         summary.count(results)
         if options.resume:
@@ -237,7 +262,8 @@ def _begun_with(book: Gradebook, options: RunOptions, catalog: Catalog) -> Snaps
 
 def edited_since(results: Results, catalog: Catalog) -> list[str]:
     """Exercises with results that were scored by other graders than the present ones."""
-    now = {exercise.id: grader_version(exercise, catalog) for exercise in catalog.exercises()}
+    known = {*catalog.exercise_ids(), *catalog.warm_up_ids()} & {*results.book.exercise_ids()}
+    now = {name: grader_version(catalog.exercise(name), catalog) for name in known}
     found = {
         item.exercise: None
         for item in results.all()
@@ -251,16 +277,22 @@ class _Run:
 
     def __init__(
         self,
-        students: Sequence[Student],
+        members: ClassList,
         graders: Unpacked,
         folder: Path,
         options: RunOptions,
         book: Gradebook,
     ) -> None:
-        self._students = students
+        only = options.only
+        self._students = [one for one in members.students if not only or one.name in only]
+        self.names = {one.name for one in self._students}
+        self._left_aside = {one.name for one in members.students} - self.names
+        self._unread: set[tuple[str, str]] = set()
         self._graders = graders
         self._catalog = graders.catalog
         self._exercises = _exercises(self._catalog, options.exercises)
+        asked_for = {exercise.id for exercise in self._exercises}
+        self._others = [one for one in self._catalog.every_task() if one.id not in asked_for]
         self._folder = folder
         self._options = options
         self._book = book
@@ -269,6 +301,7 @@ class _Run:
         asked = not options.exercises or QUIZ in options.exercises
         self._bank = _bank(self._catalog) if asked else Bank(())
         self._with_quiz = bool(self._bank.ids)
+        self._quiz_known = QUIZ in (book.looked() or {})
         self._quiz_version = quiz_version(self._bank)
         self.summary = Summary(seed=_seed(book, options), graders=graders.snapshot.sha256)
         self.roster: Roster | None = None
@@ -277,10 +310,11 @@ class _Run:
         self._scored: deque[tuple[Result, dict[str, bytes]]] = deque()
         self._found = set(book.found())
         self._assigned = _assigned(book)
-        before = book.waiting()
+        before, looked = book.waiting(), book.looked()
         self._note_facts()
         self.view = Results(book)
-        self.view.waiting = before  # what was missing till now, and not only unread, is told when it comes
+        # What was missing till now, and not only unread, is told when it comes.
+        self.view.waiting, self.view.looked = before, looked
 
     def _note_facts(self) -> None:
         options, book = self._options, self._book
@@ -298,7 +332,9 @@ class _Run:
         book.set_exercises(graded_exercises(self._exercises, self._bank if self._with_quiz else None))
         book.set_students({who.name: who.identity for who in self._students if who.identity is not None})
         # Before a roster says who is enrolled: until their work is looked at, nobody handed in nothing.
-        book.set_waiting([who.name for who in self._students], others=bool(options.only))
+        book.set_waiting(sorted(self.names), others=bool(options.only))
+        asked = [*self._versions, *([QUIZ] if self._with_quiz else [])]
+        note_looked(book, asked, self.names, self._left_aside, named=bool(options.exercises))
         if options.roster is not None:
             self.roster = self.summary.enrol(remember(book, options.roster))
 
@@ -323,7 +359,12 @@ class _Run:
     def _left_to_do(self) -> Iterator[Entry]:
         for student in self._students:
             self._open[student.name] += 1
-            for entry in read_student(student, self._exercises, required=bool(self._options.exercises)):
+            required = bool(self._options.exercises)
+            for entry in read_student(student, self._exercises, required=required, others=self._others):
+                if entry.unread:
+                    self._unread.add((student.name, entry.exercise.id))
+                if entry.unread or self._stays(entry):
+                    continue
                 if entry.submission is None and entry.problem is None:
                     self.summary.not_submitted += 1
                     continue
@@ -331,12 +372,31 @@ class _Run:
                 self._note_found(entry)
                 if self._options.resume and self._is_done(entry):
                     self.summary.already += 1
+                    self._note_changed(entry)
+                    if entry.submission is not None:
+                        self._book.restore(entry.sha256, entry.submission.files)
                     continue
                 self._open[student.name] += 1
                 yield entry
-            if self._with_quiz:
+            if self._with_quiz or self._quiz_known:
                 self._score_quiz(student)
             self.one_less(student.name)
+
+    def _stays(self, entry: Entry) -> bool:
+        """Whether what was graded is not there any more: a lack takes the place of no result."""
+        about = entry.student, entry.exercise.id
+        absent = entry.submission is None and (entry.problem is None or entry.problem.code == "no_file")
+        if not (self._options.resume and absent) or about in self._assigned:
+            return False
+        counts = next(self._book.results(*about), None)
+        if counts is None or counts.key.submission_sha256 == entry.sha256:
+            return False
+        said = f" {entry.problem.message}" if entry.problem else ""
+        self.summary.stay.append(
+            f"{' '.join(about)}:{said or f' There is no {entry.exercise.module} any more.'}"
+        )
+        self.summary.already += 1
+        return True
 
     def _is_done(self, entry: Entry) -> bool:
         """Whether it was graded before, or an assigned file still takes its place."""
@@ -347,9 +407,27 @@ class _Run:
         about = entry.student, entry.exercise.id
         if entry.submission is None or about not in self._assigned:
             return about in self._assigned
-        before, assigned = self._assigned[about]
+        before, assigned, _ = self._assigned[about]
         counts = next(self._book.results(*about), None) if before == entry.sha256 else None
         return counts is not None and counts.key.submission_sha256 == assigned
+
+    def _note_changed(self, entry: Entry) -> None:
+        """Say of an assigned file that it is not what was graded any more; if it is, it may be lost."""
+        about = entry.student, entry.exercise.id
+        _, assigned, file = self._assigned.get(about, ("", "", ""))
+        for one in entry.found.candidates if entry.found and file else ():
+            path = Path(os.fsdecode(one.path))
+            if one.name == file or (not one.member and Path(file).resolve() == path.resolve()):
+                with contextlib.suppress(RefusedError):
+                    now = submission_from(entry.exercise, path, one.member)
+                    if now.sha256 == assigned:
+                        self._book.restore(assigned, now.files)
+                        return
+                self.summary.stay.append(
+                    f"{' '.join(about)}: {one.name} has changed since it was assigned. Assign it again to"
+                    " grade it as it is now."
+                )
+                return
 
     def _confirmed(self, key: Key) -> bool:
         return self._book.confirm(key, self.replacing(key))
@@ -387,7 +465,10 @@ class _Run:
         try:
             record, path = read_quiz(student)
         except UngradableError as error:
-            record = error.code  # no list of attempts, which the scoring says of it
+            record = error.message.rstrip(".")  # no list of attempts, which the scoring says of it
+        if not self._with_quiz:
+            self._unread |= {(student.name, QUIZ)} if record else set()
+            return
         verdict = grade_quiz(self._bank, record)
         if verdict is None:
             return
@@ -395,6 +476,7 @@ class _Run:
         self._witnessed(witnesses(student, QUIZ, key.submission_sha256, path))
         if self._options.resume and self._confirmed(key):
             self.summary.already += 1
+            self._book.restore(key.submission_sha256, {QUIZ_RECORD: _as_json(record)})
             return
         self._open[student.name] += 1
         self._scored.append((Result(key, verdict), {QUIZ_RECORD: _as_json(record)}))
@@ -406,6 +488,10 @@ class _Run:
         if len(self._times) >= _TIMES_AT_ONCE:
             self.note_times()
 
+    def note_unread(self) -> None:
+        """Note the work for which this run did not look."""
+        note_unread(self._book, self._unread)
+
     def note_times(self) -> None:
         """Put all known times of submission into the gradebook."""
         if self._times:
@@ -413,14 +499,16 @@ class _Run:
         self._times.clear()
 
 
-def _assigned(book: Gradebook) -> dict[tuple[str, str], tuple[str, str]]:
-    """The submission that an assigned file took the place of, and the file, by student and exercise."""
-    found: dict[tuple[str, str], tuple[str, str]] = {}
+def _assigned(book: Gradebook) -> dict[tuple[str, str], tuple[str, str, str]]:
+    """The submission that an assigned file took the place of, and the file with its name, by student and
+    exercise."""
+    found: dict[tuple[str, str], tuple[str, str, str]] = {}
     for one in book.journal():
         if one.kind == "assign":
             about, before = (one.student, one.exercise), submission_in(one.before)
-            first, last = found.get(about, (before, before))  # a second assignment replaces the first
-            found[about] = (first if last == before else before), submission_in(one.after)
+            first, last, _ = found.get(about, (before, before, ""))  # a second one replaces the first
+            now, file = submission_in(one.after), file_in(one.after)
+            found[about] = (first if last == before else before), now, file
     return found
 
 
@@ -483,8 +571,6 @@ def _members(folder: Path, options: RunOptions) -> ClassList:
                 help="--only takes the name of a student's folder.",
                 code="student_not_found",
             )
-        found.students = [student for student in found.students if student.name in options.only]
-        found.unrecognised = []
     return found
 
 

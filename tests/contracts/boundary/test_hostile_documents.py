@@ -177,7 +177,7 @@ _BOOKS: tuple[tuple[str, Made], ...] = (
     ),
     *(
         (f"meta-{fact}-{name}", _fact(fact, text))
-        for fact in ("seed", "roster", "late_policy", "without_work", "course", "version")
+        for fact in ("seed", "roster", "late_policy", "without_work", "looked", "course", "version")
         for name, text in _ODD.items()
     ),
 )  # fmt: skip

@@ -305,7 +305,7 @@ def _facts(tally: Tally) -> list[tuple[int, str, str]]:
         (sum(item.ungraded for item in every), "could not be graded", "ungraded"),
     ]
     more = [
-        (sum(item.waiting for item in every), "not graded yet: the run was interrupted", "exercises"),
+        (sum(item.waiting for item in every), "not graded yet: no run has looked at it", "exercises"),
         (sum(item.missing for item in every), "missing: enrolled, nothing handed in", "exercises"),
         (sum(item.faults for item in every), "faults of the grader", "ungraded"),
         (tally.overrides.count, "scores set by hand", "overrides"),

@@ -18,6 +18,7 @@ from course.grading.running.batch import Graded
 from course.scoring.judging.submission import Terms
 from course.scoring.verdict import Problem
 from tests.unit.grading.conftest import MINI
+from tests.unit.grading.made import verdict
 from tests.unit.grading.running.test_run import right
 
 pytestmark = pytest.mark.usefixtures("unpacked")
@@ -106,6 +107,14 @@ def test_an_assigned_file_counts_until_another_file_with_the_right_name_arrives(
         chosen.append(counts())
         assert resumed() == 3
         assert counts() == chosen[-1]
+    assert course("grade", "assign", "out", "--accept-names").code == 0
+    assert "hw.py has changed" not in course(*again).out
+    (here / "class" / "bob" / "hw.py").write_text(SOURCE + "# changed\n")
+    said = " ".join(course(*again).out.split())
+    assert (
+        "1 graded before, and kept as they were: bob doubling: hw.py has changed since it was assigned."
+        in said
+    )
     file = here / "class" / "ada" / "doubling.py"
     file.write_text(SOURCE + "# later\n")
     resumed()
@@ -185,7 +194,9 @@ def test_a_preview_of_a_score_or_a_policy_changes_nothing(course, here: Path) ->
     assert "ada doubling 10 -> ada doubling 9" in course("grade", "log", "out").out
 
 
-def test_resuming_after_an_edit_says_who_would_change_and_changes_nobody(course, here: Path) -> None:
+def test_resuming_after_an_edit_says_who_would_change_and_changes_nobody(
+    course, here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     checks = here / "content" / "graders" / "doubling" / "checks.py"
     checks.write_text(checks.read_text() + "# edited\n")
     words = ("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--resume")
@@ -197,6 +208,16 @@ def test_resuming_after_an_edit_says_who_would_change_and_changes_nobody(course,
     assert course("grade", "rerun", "out", "--against", "1", "--dry-run").code == 0
     refused = course("grade", "rerun", "out", "--against", "nothing", "--dry-run", "--json")
     assert (refused.code, refused.json["error"]["code"]) == (5, "snapshot_not_found")
+    fault = Problem("check_file", "graders/doubling/checks.py:1: it cannot be imported (SyntaxError).")
+    broken = verdict(state="grader_error", error=fault)
+    monkeypatch.setattr(
+        batch, "grade_all", lambda entries, *_, **__: [Graded(one, broken) for one in entries]
+    )
+    for ran in (course(*words), course("grade", "rerun", "out")):
+        assert "1 hit a fault of the grader and keep what counted:" in ran.out
+        assert fault.message in " ".join(ran.out.split())
+    assert ran.code == 70
+    assert course("grade", "explain", "out", "ada", "doubling", "--json").json["score"] == 10.0
 
 
 def test_a_damaged_gradebook_is_salvaged_into_a_new_folder(course, here: Path) -> None:

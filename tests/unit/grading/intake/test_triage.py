@@ -19,6 +19,7 @@ from course.errors import NotFoundError, UngradableError
 from course.grading.intake import students
 from course.grading.intake.students import Candidate, Entry, found_for
 from course.grading.results.effective import override
+from course.grading.results.roster import read_roster
 from course.grading.running.assign import assign, named, proposals, unsettled
 from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions
@@ -311,7 +312,7 @@ def test_more_code_than_could_be_graded_is_not_looked_through(tmp_path: Path, do
 
 def test_one_file_is_proposed_where_its_functions_are(catalog: Catalog) -> None:
     files = [Candidate("x.py", b"x.py", sha256="1", defines=("double", "doublings", "halve"))]
-    assert found_for(catalog.exercise("doubling"), files, asked=False)[0].proposed
+    assert found_for(catalog.exercise("doubling"), files, asked=())[0].proposed
 
 
 def graded(tmp_path: Path, catalog: Catalog, **more: Any) -> Any:
@@ -322,6 +323,43 @@ def graded(tmp_path: Path, catalog: Catalog, **more: Any) -> Any:
 def counts(out: Path) -> dict[str, tuple[str, float | None]]:
     with open_results(out) as results:
         return {item.student: (item.verdict.state, item.score) for item in results.all()}
+
+
+#: What a student hands in -> what it is for each of two exercises that are asked for, one after the other.
+APART: dict[str, tuple[dict[str, bytes], str, str]] = {
+    "one's own file": ({"doubling.py": SOURCE}, "graded", "missing"),
+    "in a zip": ({"all.zip": zipped({"doubling/doubling.py": SOURCE})}, "graded", "missing"),
+    "beside what is no code": ({"doubling.py": SOURCE, "notes.pdf": b"%PDF"}, "graded", "missing"),
+    "under another name": ({"hw.py": SOURCE}, "no_file", "missing"),
+    "beside code of unknown use": ({"doubling.py": SOURCE, "hw.py": b"x = 1\n"}, "graded", "no_file"),
+    "beside what nothing opens": (
+        {"doubling.py": SOURCE, "hw.7z": b"7z\xbc\xaf\x27\x1c"},
+        "graded",
+        "no_file",
+    ),
+    "what may be anything": ({"hw.py": b"x = 1\n"}, "no_file", "no_file"),
+    "a folder alone": ({}, "no_file", "no_file"),
+}
+
+
+@pytest.mark.parametrize("what", APART)
+def test_a_file_of_one_exercise_is_no_zero_in_another(tmp_path: Path, catalog: Catalog, what: str) -> None:
+    files, doubling, halving = APART[what]
+    lay(tmp_path / "class", "zoe", **{"doubling.py": SOURCE, "halving.py": b"x"})
+    (tmp_path / "class" / "ada").mkdir()
+    lay(tmp_path / "class", **files)
+    (tmp_path / "roster.csv").write_text("student\nada\nzoe\n", "utf-8")
+    roster = read_roster(tmp_path / "roster.csv")
+    graded(tmp_path, catalog, roster=roster)
+    graded_class(tmp_path, catalog, RunOptions(exercises=("halving",), resume=True), grade=right)
+    with open_results(tmp_path / "out") as results:
+        states = {
+            item.exercise: item.verdict.error.code
+            if item.verdict.error and item.verdict.state == "ungradable"
+            else item.verdict.state
+            for item in results.all("ada")
+        }
+    assert states == {"doubling": doubling, "halving": halving}
 
 
 def test_what_an_instructor_settled_is_written_down_and_no_trouble_any_more(

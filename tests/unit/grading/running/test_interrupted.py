@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import sqlite3
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,11 +15,13 @@ from course.catalog.load import Catalog
 from course.errors import MissingCapabilityError
 from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
+from course.grading.gradebook.book import Gradebook
+from course.grading.gradebook.salvage import backups, salvage
 from course.grading.intake.students import Entry
 from course.grading.results.roster import read_roster
 from course.grading.running.batch import Graded
-from course.grading.running.folder import export_all, open_results
-from course.grading.running.run import RunOptions
+from course.grading.running.folder import export_all, open_results, remember
+from course.grading.running.run import RunOptions, grade_class
 from course.scoring.judging.submission import Terms
 from tests.command_line import in_process
 from tests.unit.grading.made import graded_class
@@ -104,7 +109,7 @@ def test_every_page_table_and_command_says_so(stopped: Path) -> None:
     assert "not graded yet" in mine[0]
     for page in mine:
         assert not [words for words in UNTRUE if words in page]
-    assert "not graded yet: the run was interrupted" in pages["report.html"]
+    assert "not graded yet: no run has looked at it" in pages["report.html"]
     assert "student-003 / " not in (stopped / "junit.xml").read_text("utf-8")
 
 
@@ -118,6 +123,85 @@ def test_resuming_grades_them_and_the_log_holds_nothing_of_it(
         assert results.waiting == set()
         assert results.book.journal() == []
         assert {item.verdict.state for item in results.all()} == {"graded", "missing"}
+
+
+ADA, CY = ("student-000",), "student-002"
+#: What was run before, of a class of three (the last came in between) -> who and what nobody looked at.
+LEFT = {
+    "a part": ([RunOptions(only=ADA)], {(name, "doubling") for name in (CY, "student-001", "absent")}),
+    "a part, later": ([RunOptions(), RunOptions(only=ADA)], {(CY, "doubling")}),
+    "another exercise": (
+        [RunOptions(exercises=("doubling",)), RunOptions(exercises=("halving",))], {(CY, "doubling")}
+    ),
+    "a part of another": (
+        [RunOptions(exercises=("doubling",)), RunOptions(exercises=("halving",), only=ADA)],
+        {(CY, "doubling"), *((name, "halving") for name in (CY, "student-001", "absent"))},
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("how", LEFT)
+def test_of_work_that_no_run_looked_at_nothing_says_that_it_was_not_handed_in(
+    tmp_path: Path, catalog: Catalog, solution: bytes, how: str
+) -> None:
+    """Whom --only left out, and what --exercise passed over, was missing, and 0 with --missing zero."""
+    names = ["student-000", "student-001", CY, "absent"]
+    (tmp_path / "roster.csv").write_text(
+        "\n".join(["student,canvas_id", *(f"{n},{i}" for i, n in enumerate(names))])
+    )
+    runs, unread = LEFT[how]
+    for number, options in enumerate(runs):
+        if number == len(runs) - 1:
+            make_class(tmp_path / "class", solution, 3)
+            (tmp_path / "class" / ADA[0] / "halving.py").write_bytes(b"x")
+        else:
+            make_class(tmp_path / "class", solution, 2)
+        mine = replace(options, resume=bool(number), seed=3, roster=read_roster(tmp_path / "roster.csv"))
+        summary = graded_class(tmp_path, catalog, mine, grade=right)
+    found = states(tmp_path / "out")
+    waiting = {about for about, state in found.items() if state == "not_graded_yet"}
+    assert {about for about in waiting if about[1] == "doubling" or "part of" in how} == unread
+    assert not {student for student, _ in unread} & set(summary.missing)
+    with open_results(tmp_path / "out") as results, pytest.raises(MissingCapabilityError) as refused:
+        export(
+            results,
+            "canvas",
+            tmp_path,
+            None,
+            ExportOptions(("doubling", "halving"), {"doubling": "1", "halving": "2"}, missing="zero"),
+        )
+    assert refused.value.code == "not_graded_yet"
+    everything = RunOptions(exercises=("doubling", "halving"), resume=True)
+    graded_class(tmp_path, catalog, everything, grade=right)
+    assert set(states(tmp_path / "out").values()) == {"graded", "missing"}
+    with open_results(tmp_path / "out") as results:
+        assert results.book.journal() == []
+
+
+def test_after_a_loss_nothing_is_missing_until_a_run_has_looked(
+    tmp_path: Path, catalog: Catalog, solution: bytes
+) -> None:
+    make_class(tmp_path / "class", solution, 2)
+    (tmp_path / "roster.csv").write_text("student\nstudent-000\nstudent-001\nabsent\n")
+    options = RunOptions(seed=3, roster=read_roster(tmp_path / "roster.csv"))
+    graded_class(tmp_path, catalog, options, grade=right)
+    path, new = tmp_path / "out" / "gradebook.sqlite", tmp_path / "new" / "gradebook.sqlite"
+    for backup in backups(path):
+        backup.unlink()
+    with contextlib.closing(sqlite3.connect(path)) as db:
+        for about in ("results WHERE student = 'student-001'", "meta WHERE key = 'roster'"):
+            db.execute(f"DELETE FROM {about}")
+        db.commit()
+    new.parent.mkdir()
+    lost = salvage(path, new).lost
+    assert {"the roster", "the result of student-001 for doubling"} <= set(lost)
+    again = replace(options, resume=True)
+    with Gradebook(new, writing=True) as book:
+        remember(book, again.roster)
+    assert set(states(new.parent).values()) == {"graded", "not_graded_yet"}
+    grade_class(tmp_path / "class", new.parent, catalog, again, lambda *_: None, grade=right)
+    found = states(new.parent)
+    assert (found["student-001", "doubling"], found["absent", "doubling"]) == ("graded", "missing")
 
 
 def test_a_resumed_run_that_is_interrupted_takes_back_what_the_files_said(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import subprocess
 import sys
@@ -18,6 +19,7 @@ from course.grading.intake.students import Entry
 from course.grading.results.effective import Results, override
 from course.grading.running.batch import Graded
 from course.grading.running.rerun import RerunOptions, rerun
+from course.grading.running.run import edited_since
 from course.scoring.graders import grader_version
 from course.scoring.judging.submission import Terms
 from tests.unit.grading.conftest import MINI
@@ -60,6 +62,7 @@ def test_a_regrading_keeps_the_old_beside_the_new_and_a_second_one_finds_nothing
         (found,) = Results(book).all("ada")
         assert (found.score, found.raw_score) == (1.5, 10.0)
         assert [change.overridden for change in done.changes] == [True]
+        assert book.journal("bob") == [], "nothing changed"
         again = rerun(Results(book), catalog, RerunOptions(), grade=graders)
         assert (again.regraded, again.up_to_date) == (0, 2)
         assert len(book.history("ada", "doubling")) == 2
@@ -80,6 +83,39 @@ def test_what_a_fault_of_ours_left_is_graded_again_by_the_same_graders(
         assert graders.asked == ["dan"]
         assert (done.regraded, done.up_to_date) == (1, 1)
         assert {item.student: item.score for item in Results(book).all()} == {"ada": 10.0, "dan": 10.0}
+
+
+def test_a_changed_score_is_in_the_log_and_a_fault_of_ours_takes_none_away(
+    tmp_path: Path, catalog: Catalog
+) -> None:
+    def broken(entries: Iterable[Entry], _: Terms) -> Iterator[Graded]:
+        yield from (Graded(entry, BROKEN) for entry in entries)
+
+    with make_book(tmp_path, {"ada": HALF, "bob": BROKEN}) as book:
+        done = rerun(Results(book), catalog, RerunOptions(), grade=broken)
+        assert (done.faults, done.changes) == (2, ())
+        said = BROKEN.error.message if BROKEN.error else ""
+        assert [(one.student, one.message) for one in done.troubled] == [("ada", said), ("bob", said)]
+        assert {item.student: item.score for item in Results(book).all()} == {"ada": 5.0, "bob": None}
+        assert book.journal() == []
+        rerun(Results(book), catalog, RerunOptions(reason="a wrong value"), grade=Graders())
+        (noted,) = book.journal("ada")
+        assert (noted.kind, noted.exercise, noted.reason) == ("rerun", "doubling", "a wrong value")
+        assert [json.loads(text)["score"] for text in (noted.before, noted.after)] == [5.0, 10.0]
+
+
+def test_a_warm_up_is_graded_again_like_any_exercise(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("COURSE_CONTENT")
+    catalog = Catalog()
+    name = catalog.warm_up_ids()[0]
+    version = grader_version(catalog.exercise(name), catalog)
+    with make_book(tmp_path, {}) as book:
+        for student, theirs in (("ada", version), ("bob", "older")):
+            book.add(Result(key(student, name, theirs), HALF), {"doubling.py": student.encode()})
+        assert edited_since(Results(book), catalog) == [name]
+        done = rerun(Results(book), catalog, RerunOptions(), grade=Graders())
+        assert (done.regraded, done.up_to_date, done.kept) == (1, 1, 0)
+        assert edited_since(Results(book), catalog) == []
 
 
 def test_what_was_not_handed_in_stays_as_it_is(tmp_path: Path, catalog: Catalog) -> None:

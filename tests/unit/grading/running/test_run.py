@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import shutil
@@ -22,6 +23,7 @@ from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import Result
 from course.grading.intake.students import Entry
 from course.grading.results.effective import Effective
+from course.grading.results.roster import read_roster
 from course.grading.running import batch
 from course.grading.running.batch import MAX_TRIES, Graded, grade_all
 from course.grading.running.folder import open_results
@@ -33,7 +35,7 @@ from course.scoring.judging.submission import Terms
 from course.scoring.verdict import Verdict
 from tests.command_line import in_process
 from tests.unit.grading.conftest import MINI
-from tests.unit.grading.made import graded_class, read_class, stillborn
+from tests.unit.grading.made import graded_class, put, read_class, stillborn, zipped
 
 pytestmark = pytest.mark.usefixtures("unpacked")
 
@@ -44,7 +46,7 @@ def make_class(folder: Path, solution: bytes, students: int) -> None:
     """Every third student is wrong about one function."""
     for number in range(students):
         place = folder / f"student-{number:03}"
-        place.mkdir(parents=True)
+        place.mkdir(parents=True, exist_ok=True)
         (place / "doubling.py").write_bytes(
             solution + (WRONG if number % 3 == 0 else b"") + b"# %d\n" % number
         )
@@ -97,13 +99,40 @@ def test_resume_grades_only_what_is_new_and_with_the_same_seed(
     assert (summary.already, summary.seed) == (3, 5)
     assert scores(tmp_path / "out")["student-001"] == 6
     file.write_bytes(before)
+    # As after a salvage: the results are there, and what they are of is not.
+    with Gradebook(tmp_path / "out" / "gradebook.sqlite", writing=True) as book, book._transaction():
+        book._db.execute("DELETE FROM submissions")
     graded_class(tmp_path, catalog, again, report, grade=as_written)
     assert graded == ["student-001"]
+    with open_results(tmp_path / "out") as results:
+        assert (
+            rerun(results, catalog, RerunOptions(dry_run=True, everything=True), grade=as_written).kept == 0
+        )
     with open_results(tmp_path / "out") as results:
         noted = results.book.journal()
     assert [(it.kind, it.student) for it in noted] == [("resume", "student-001")] * 2
     told = [[json.loads(text)["score"] for text in (it.before, it.after)] for it in noted]
     assert told == [[10, 6], [6, 10]]
+
+
+@pytest.mark.parametrize("now", [{"halving.py": b"x"}, {"halving.py": b"x", "mine.py": b"y"}, {}])
+def test_a_file_that_is_not_there_any_more_takes_no_score_away(
+    tmp_path: Path, catalog: Catalog, solution: bytes, now: dict[str, bytes]
+) -> None:
+    make_class(tmp_path / "class", solution, 1)
+    graded_class(tmp_path, catalog, RunOptions(exercises=("doubling",), seed=5), grade=right)
+    shutil.rmtree(tmp_path / "class" / "student-000")
+    (tmp_path / "class" / "student-000").mkdir()
+    for name, content in now.items():
+        (tmp_path / "class" / "student-000" / name).write_bytes(content)
+    both = RunOptions(exercises=("doubling", "halving"), resume=True)
+    summary = graded_class(tmp_path, catalog, both, grade=right)
+    with open_results(tmp_path / "out") as results:
+        found = {item.exercise: item.score for item in results.all()}
+        assert results.book.journal() == []
+    assert found["doubling"] == 10.0
+    assert [line.startswith("student-000 doubling: ") for line in summary.stay] == [True]
+    assert ["mine.py" in line for line in summary.stay] == ["mine.py" in now]
 
 
 @pytest.mark.parametrize("deaths", [MAX_TRIES - 1, MAX_TRIES])
@@ -238,7 +267,7 @@ def test_quiz_attempts_that_travel_in_a_submission_are_scored_again_and_again_by
     }  # fmt: skip
     for student, claimed in (("ada", 5), ("eve", 4)):
         place = tmp_path / "class" / student
-        place.mkdir(parents=True)
+        place.mkdir(parents=True, exist_ok=True)
         manifest = {"format_version": 1, "files": {}, "quiz": [{**attempt, "score": claimed}]}
         with zipfile.ZipFile(place / "mine.zip", "w") as target:
             target.writestr("submission.json", json.dumps(manifest))
@@ -255,6 +284,67 @@ def test_quiz_attempts_that_travel_in_a_submission_are_scored_again_and_again_by
         assert rerun(results, catalog, RerunOptions()).regraded == 1
         (found,) = results.all("ada")
     assert (found.score, found.passed) == (len(right), True)
+
+
+#: What a student hands in who took the quiz -> what becomes of the quiz, and of two exercises.
+QUIZZED: dict[str, tuple[dict[str, Any], str, str]] = {
+    "the record in a zip": ({"a.zip": {"submission.json": "{quiz}"}}, "graded", "missing"),
+    "the zip": ({"a.zip": {"submission.json": "{both}", "halving.py": "x"}}, "graded", "graded"),
+    "the zip, unpacked": ({"submission.json": "{both}", "halving.py": "x"}, "graded", "graded"),
+    "both": (
+        {"a.zip": {"submission.json": "{both}", "halving.py": "x"}, "submission.json": "{both}"},
+        "graded", "graded",
+    ),
+    "a damaged record": ({"a.zip": {"submission.json": "[1"}}, "malformed (a.zip: its sub", "missing"),
+    "a damaged one, unpacked": ({"submission.json": "[1"}, "malformed (submission.json: it is", "missing"),
+    "a newer one": (
+        {"a.zip": {"submission.json": '{"format_version": 9}'}}, "malformed (a.zip was written", "missing"
+    ),
+    "two": (
+        {"a.zip": {"submission.json": "{quiz}"}, "submission.json": "[1"}, "malformed (Several", "missing"
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("how", QUIZZED)
+def test_a_quiz_counts_wherever_its_record_lies_and_is_no_exercise_of_anybodys(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, how: str
+) -> None:
+    """A zip with a quiz alone gave 0 in every exercise, in which then everybody was missing."""
+    files, quiz, halving = QUIZZED[how]
+    shutil.copytree(MINI, tmp_path / "course")
+    shutil.copytree(MINI.parents[2] / "quiz", tmp_path / "course" / "quiz", dirs_exist_ok=True)
+    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
+    catalog = Catalog()
+    answers = {one.question: one.key.id for one in Bank.of(catalog).pose(5)}
+    attempt = {
+        "seed": 5,
+        "version": "1",
+        "finished_at": "2026",
+        "questions": list(answers),
+        "answers": answers,
+    }
+    record = {"format_version": 1, "files": {}, "quiz": [{**attempt, "score": len(answers)}]}
+    both = {**record, "files": {"halving.py": hashlib.sha256(b"x").hexdigest()}}
+
+    def filled(text: str) -> bytes:
+        return text.replace("{quiz}", json.dumps(record)).replace("{both}", json.dumps(both)).encode()
+
+    for name, held in files.items():
+        inside = {member: filled(text) for member, text in held.items()} if isinstance(held, dict) else {}
+        put(tmp_path / "class" / "bob" / name, zipped(inside) if inside else filled(held))
+    put(tmp_path / "class" / "cy" / "halving.py", b"y")
+    (tmp_path / "roster.csv").write_text("student\nbob\ncy\n", "utf-8")
+    summary = graded_class(
+        tmp_path, catalog, RunOptions(roster=read_roster(tmp_path / "roster.csv")), grade=right
+    )
+    with open_results(tmp_path / "out") as results:
+        found = {(item.student, item.exercise): item.verdict for item in results.all()}
+    assert set(found) == {(name, about) for name in ("bob", "cy") for about in ("halving", "quiz")}
+    assert found["bob", "halving"].state == halving
+    verdict = found["bob", "quiz"]
+    assert quiz in (verdict.error.message if verdict.error else verdict.state)
+    assert [row.exercise for row in summary.troubled] == ["quiz"] * (quiz != "graded")
 
 
 @pytest.mark.parametrize(

@@ -65,7 +65,7 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
                 code="needs_assignment",
             )
         if options.columns and assignment not in options.columns:
-            named = ", ".join(column.heading for column in options.columns.values())
+            named = one_line(", ".join(column.heading for column in options.columns.values()))
             raise UsageError(
                 f"Canvas' gradebook has no assignment {assignment}, which was given for {name}. Nothing was"
                 " written.",
@@ -74,12 +74,17 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
             )
     check_settled(selection, options)
     most = {exercise.id: exercise.max_points for exercise in results.exercises()}
-    titles, possible, notes = [], [], selection.written.notes
+    columns, possible, notes = [], [], selection.written.notes
     for name in selection.exercises:
         assignment = options.assignments[name]
         column = options.columns.get(assignment, Column(f"{results.title(name)} ({assignment})", None))
-        titles.append(column.heading)
+        columns.append(column)
         possible.append(column.points or most[name])
+        if options.columns and not column.points:
+            notes.append(
+                f"Canvas' gradebook says no points for {one_line(column.heading)}: the scores of {name} are"
+                f" written as points of {number(most[name])}."
+            )
         if possible[-1] != most[name]:
             notes.append(
                 f"{name} has {number(most[name])} points here and {number(possible[-1])} in Canvas: its"
@@ -90,18 +95,35 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
             "Canvas takes a score as points of its own assignment. Give its gradebook with --roster, and the"
             " scores are written on its scale."
         )
-    headings = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", *titles]
+    headings = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", *(one.heading for one in columns)]
     rows = [["    Points Possible", "", "", "", "", *map(number, possible)]]
     scales = {name: points / most[name] for name, points in zip(selection.exercises, possible, strict=True)}
     for student, scores in _table(selection, scales).items():
         person = selection.people[student]
+        if not options.overwrite:
+            _keep_excuses(selection, student, columns, scores)
         login = person.login if person.canvas_id and is_safe(person.login) else ""  # as Canvas wrote it
         ids = person.canvas_id, person.sis_user_id, login
         rows.append([person.name or student, *ids, person.section, *scores])
+    if selection.written.kept:
+        notes.append(f"Excused in Canvas (EX), and {_kept(selection.written)}")
     # Ruby's CSV reader, which Canvas uses, fails on a quote after a byte order mark.
     write_bytes(path, csv_bytes(headings, rows, mark=False))
     selection.written.paths.append(path)
     return selection.written
+
+
+def _keep_excuses(selection: Selection, student: str, columns: list[Column], scores: list[str]) -> None:
+    """Leave out the scores of assignments from which Canvas excuses the student."""
+    for at, column in enumerate(columns):
+        if scores[at] and selection.people[student].canvas_id in column.excused:
+            scores[at] = ""
+            selection.written.kept.append(f"{student} {selection.exercises[at]} (EX)")
+
+
+def _kept(written: Written) -> str:
+    listed = some([one_line(one) for one in written.kept], SHOWN)
+    return f"nothing was changed there: {listed}. --overwrite writes ours in their place."
 
 
 def _has_canvas_id(person: Person) -> bool:
@@ -231,10 +253,7 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
     if kept:
         written.kept = kept
         rows_have = "1 row has" if len(kept) == 1 else f"{len(kept)} rows have"
-        written.notes.append(
-            f"{rows_have} a grade or feedback already, and nothing was changed there: {some(kept, SHOWN)}."
-            " --overwrite writes ours in their place."
-        )
+        written.notes.append(f"{rows_have} a grade or feedback already, and {_kept(written)}")
     if locked:
         written.notes.append(
             f"{len(locked)} grades cannot be changed in Moodle, which says so in the worksheet."

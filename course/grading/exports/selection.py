@@ -27,7 +27,7 @@ class ExportOptions:
             it.
         worksheet: Moodle's file to fill in.
         columns: of the platform's file, by the id of the assignment; empty if it was not given.
-        overwrite: a grade or feedback that is in it already gives way to ours.
+        overwrite: what the platform's file has already (a grade, feedback, an excuse) gives way to ours.
     """
 
     exercises: tuple[str, ...] = ()
@@ -67,7 +67,7 @@ class Written:
     Attributes:
         unmatched: students left out.
         without_grade: "student exercise" of results without a score because the grader failed.
-        kept: rows of a platform's file that have a grade or feedback of a teacher's, with it.
+        kept: rows of a platform's file that have a grade, feedback or an excuse of a teacher's, with it.
         notes: what the instructor should know, one sentence each.
     """
 

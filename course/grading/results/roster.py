@@ -64,8 +64,8 @@ _GRADESCOPE = {"sis_user_id": "SID", "email": "Email", "name": "Name"}
 #: Canvas' own student, with whom a teacher tries an assignment: "Student, Test" in its gradebook.
 _TEST_STUDENT = re.compile(r"studenttest(_[0-9]+)?")
 FOR_TESTS = "Canvas' student for tests"
-#: Points as Canvas writes them.
-_POINTS = re.compile(r"[0-9]{1,9}(\.[0-9]{1,9})?")
+#: Points as Canvas writes them, in the language of whoever exports: 10.00 or 10,00, thousands not parted.
+_POINTS = re.compile(r"[0-9]{1,9}([.,][0-9]{1,9})?")
 #: Columns of a file that are named: a Canvas gradebook has one for each assignment.
 _NAMED = 8
 
@@ -86,10 +86,12 @@ class Person(msgspec.Struct, frozen=True, omit_defaults=True):
 
 @dataclass(frozen=True)
 class Column:
-    """An assignment's column in Canvas' gradebook: its heading, and its points if the file says them."""
+    """An assignment's column in Canvas' gradebook: its heading, its points if the file says them, and the
+    ids of the students whom it excuses."""
 
     heading: str
     points: float | None
+    excused: frozenset[str] = frozenset()
 
 
 @dataclass
@@ -338,12 +340,12 @@ def _assignments(headings: list[str], rows: list[dict[str, str]]) -> dict[str, C
     found = {}
     for heading in headings:
         if id_ := re.search(r"\(([0-9]+)\)$", heading):
+            cells = [(row["ID"].strip(), row[heading].strip()) for row in rows]
             points = [
-                float(p)
-                for row in rows
-                if not row["ID"].strip() and _POINTS.fullmatch(p := row[heading].strip())
+                float(cell.replace(",", ".")) for key, cell in cells if not key and _POINTS.fullmatch(cell)
             ]
-            found[id_[1]] = Column(heading, points[0] if points else None)
+            excused = frozenset(key for key, cell in cells if key and cell.upper() == "EX")
+            found[id_[1]] = Column(heading, points[0] if points else None, excused)
     return found
 
 

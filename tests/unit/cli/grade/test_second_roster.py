@@ -222,6 +222,38 @@ def test_scores_are_on_the_scale_of_the_gradebook_that_canvas_gave(course, out: 
     assert "Doubling, first try (4711)" in ran.err
 
 
+@pytest.mark.parametrize(
+    ("points", "score", "told"),
+    [
+        ("5.00", "5", "5 in Canvas"), ("5,00", "5", "5 in Canvas"), ("10,00", "10", ""),
+        ("", "10", "no points"), ("nan", "10", "no points"), ("0", "10", "no points"),
+        ("-3", "10", "no points"),
+    ],
+)  # fmt: skip
+def test_points_are_read_in_every_language_and_said_where_there_are_none(
+    course, out: Path, points: str, score: str, told: str
+) -> None:
+    """Source: canvas-lms/lib/gradebook_exporter.rb, ``format_numbers``: two digits, in a user's language."""
+    rows = list(csv.reader(CANVAS.replace(",10\n", ",POINTS\n").splitlines()))
+    text = "\n".join(";".join(row) for row in rows).replace("POINTS", points)
+    write(out.parent, "canvas.csv", text)
+    ran = course(*TO_CANVAS, "canvas.csv")
+    rows = list(csv.reader((out / "canvas.csv").read_text().splitlines()))
+    assert (rows[1][-1], rows[2][-1], ran.code) == (score, score, 0)
+    assert told in ran.out
+    assert len(ran.out.splitlines()) == 1 + bool(told)
+
+
+def test_whom_canvas_excuses_stays_excused(course, out: Path) -> None:
+    write(out.parent, "canvas.csv", CANVAS.replace(",bob,A,", ",bob,A,EX"))
+    ran = course(*TO_CANVAS, "canvas.csv")
+    assert '"bob","A",""' in (out / "canvas.csv").read_text()
+    assert "Excused in Canvas (EX), and nothing was changed there: bob doubling (EX)." in ran.out
+    assert course(*TO_CANVAS, "canvas.csv", "--json").json["kept"] == ["bob doubling (EX)"]
+    assert course(*TO_CANVAS, "canvas.csv", "--overwrite").code == 0
+    assert '"bob","A","10"' in (out / "canvas.csv").read_text()
+
+
 def test_the_student_for_tests_stops_no_export(course, tmp_path: Path) -> None:
     with make_book(tmp_path / "out", {"lovelaceada_101": RIGHT, "studenttest_999": RIGHT}):
         pass

@@ -36,8 +36,8 @@ from course.errors import (
     UsageError,
 )
 
-#: A disk without room, or a user's share of it.
-_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+#: A disk without room, or a user's share of it; a name without a place on any disk.
+_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.ENAMETOOLONG}
 SHELLS = ("bash", "zsh", "fish", "powershell", "pwsh")
 
 

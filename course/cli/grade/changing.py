@@ -64,7 +64,7 @@ from course.grading.results.roster import Roster, read_roster
 from course.grading.running import assign as assigning
 from course.grading.running import batch
 from course.grading.running.assign import Assigned, Unsettled
-from course.grading.running.folder import export_all, open_results, previewed
+from course.grading.running.folder import export_all, make_folder, open_results, previewed
 from course.grading.running.rerun import Regraded, RerunOptions
 from course.grading.running.rerun import rerun as regrade
 from course.grading.similar import Similar, compare, page
@@ -200,7 +200,7 @@ def late(
     people = read_roster(roster) if roster else None
     listed = read_times(times) if times else []
     changes = bool(policy or people or listed or clear)
-    why = reason or ", ".join(str(file) for file in (policy, times, roster) if file) or "no policy"
+    why = reason or ", ".join(one_line(str(file)) for file in (policy, times, roster) if file) or "no policy"
     with previewed(out) if changes and dry_run else open_results(out, writing=changes) as opened:
         book = opened.book
         with recorded(book, "late", why) if changes else nullcontext(list[ScoreChange]()) as moved:
@@ -565,13 +565,13 @@ def salvage(
             f"{to} exists already; nothing was changed.", help="Name a new folder.", code="out_exists"
         )
     folder = private_folder() if dry_run else to
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     try:
         path = folder / "gradebook.sqlite"
         told = rescue(out / path.name, path)
         with Gradebook(path, writing=True) as book:
             lost = "; ".join(told.lost) or "nothing known to be lost"
-            book.note(Decision("", "", "salvage", "", "", f"from {out}", "", lost))
+            book.note(Decision("", "", "salvage", "", "", f"from {one_line(str(out))}", "", lost))
             if not dry_run:
                 export_all(folder, Results(book))
         if not dry_run:

@@ -242,7 +242,7 @@ def read_roster(path: Path) -> Roster:
     _check_unique(path, people)
     there = {name: heading for name, heading in columns.items() if heading in headings}
     assignments = _assignments(headings, [row for row, _ in rows]) if kind is _from_canvas else {}
-    return Roster(people, path.name, tuple(headings), there, assignments)
+    return Roster(people, one_line(path.name), tuple(headings), there, assignments)
 
 
 def read_text(path: Path) -> str:

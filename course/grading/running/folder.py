@@ -58,7 +58,7 @@ def begin(out: Path, submissions: Path, *, resume: bool) -> Gradebook:
     if resume and path.exists():
         return Gradebook(path, writing=True)
     try:
-        out.mkdir(parents=True)
+        make_folder(out, exist_ok=False)
     except FileExistsError:
         # A run that was killed before it made its gradebook leaves the folder and perhaps the draft.
         begun = (
@@ -72,13 +72,26 @@ def begin(out: Path, submissions: Path, *, resume: bool) -> Gradebook:
             ) from None
         for draft in out.iterdir():
             draft.unlink(missing_ok=True)
+    return Gradebook(path, create=True, writing=True)
+
+
+def make_folder(out: Path, *, exist_ok: bool = True) -> None:
+    """Make a folder for a gradebook, and those above it.
+
+    Raises:
+        FileExistsError: it is there, and should not be.
+        MissingCapabilityError: it cannot be made.
+    """
+    try:
+        out.mkdir(parents=True, exist_ok=exist_ok)
+    except FileExistsError:
+        raise
     except OSError as error:
         raise MissingCapabilityError(
             f"{out} cannot be made: {error.strerror}.",
             help="Name a folder that can be written.",
             code="read_only",
         ) from None
-    return Gradebook(path, create=True, writing=True)
 
 
 def export_all(out: Path, results: Results) -> None:

@@ -29,6 +29,7 @@ from course.grading.results.roster import Roster
 from course.grading.running.batch import Graded, grade_all
 from course.grading.running.folder import BOOK, begin, export_all, note_without_work, remember, taken_back
 from course.grading.running.snapshot import Snapshot, Unpacked, among_graders, fresh, frozen, kept
+from course.printable import one_line
 from course.quizzing.bank import Bank, needed
 from course.scoring.graders import grader_version
 from course.scoring.judging.submission import Terms
@@ -289,7 +290,7 @@ class _Run:
         terms = options.terms
         facts = {
             "level": terms.level, "at_least": terms.at_least, "timeout": terms.timeout,
-            "snapshot": self.summary.graders, "folder": str(self._folder.absolute()),
+            "snapshot": self.summary.graders, "folder": one_line(str(self._folder.absolute())),
             "layout": options.layout,
         }  # fmt: skip
         if not (options.resume and book.run_options().get("snapshot")):

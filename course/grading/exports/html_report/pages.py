@@ -8,6 +8,7 @@ import contextlib
 import hashlib
 import itertools
 import math
+import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -525,7 +526,8 @@ def write_html(target: Path, results: Results, options: ExportOptions) -> Writte
         target: the page (``.html``), or the folder it goes into.
     """
     selection = select(results, options)
-    path = target if target.suffix.lower() in {".html", ".htm"} else target / "report.html"
+    page = target.suffix.lower() in {".html", ".htm"} and not target.is_dir()
+    path = target if page else target / "report.html"
     paths = write_pages(path, results, selection.each(), selection.exercises)
     selection.written.paths += paths
     selection.written.notes.append(
@@ -570,7 +572,7 @@ def write_pages(
     listed, table = path.with_name("students.html"), path.with_name("students.csv")
     chosen = [noted[name] for name in exercises]
     shown = [rows[student] for student in written]
-    write_bytes(listed, _encoded(index_page(results, shown, chosen, quote(path.name))))
+    write_bytes(listed, _encoded(index_page(results, shown, chosen, quote(os.fsencode(path.name)))))
     headings = ("page", "student", "name", "email", *exercises)
     rows_of = _table(results, written, links)
     write_bytes(table, csv_bytes(headings, ([*row, *scores[row[1]]] for row in rows_of)))

@@ -21,9 +21,11 @@ from course.grading.exports.selection import (
     Needs,
     Selection,
     Written,
+    begins,
     check_settled,
     checks_for_student,
     problem_for_student,
+    refuse_to_replace,
     select,
 )
 from course.grading.results.effective import Effective, Results
@@ -350,6 +352,7 @@ _WHAT_FOR = (
     "autograder of your own can hand them out. index.csv says whose is which. To grade in Gradescope itself, "
     "use --format gradescope-autograder."
 )
+_INDEX = ("file", "student", "name", "email", "exercise", "score")
 _LONGEST = 4000  # characters of one check's words: a student's function may return anything
 
 
@@ -357,6 +360,9 @@ def write_gradescope(folder: Path, results: Results, options: ExportOptions) -> 
     """A folder with one results file per student and exercise, and ``index.csv``, which names the owners."""
     selection = select(results, options)
     check_settled(selection, options)
+    index = folder / "index.csv"
+    if not begins(index, csv_bytes(_INDEX, [])):
+        refuse_to_replace(folder, [index, folder / "00001.json"], "this folder")
     rows: list[Sequence[str]] = []
     for effective in (item for item in selection.each() if not item.missing):
         # A student's id never becomes a path.
@@ -366,8 +372,7 @@ def write_gradescope(folder: Path, results: Results, options: ExportOptions) -> 
         person = selection.people.get(effective.student) or results.person(effective.student)
         about = [person.name, person.email] if person else ["", ""]
         rows.append([name, effective.student, *about, effective.exercise, number(effective.score)])
-    index = folder / "index.csv"
-    write_bytes(index, csv_bytes(["file", "student", "name", "email", "exercise", "score"], rows))
+    write_bytes(index, csv_bytes(_INDEX, rows))
     selection.written.paths += [index, folder]
     selection.written.notes.append(_WHAT_FOR)
     return selection.written

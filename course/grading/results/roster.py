@@ -227,22 +227,36 @@ def read_roster(path: Path) -> Roster:
     Raises:
         UsageError: it cannot be read or is not a roster; the message names the row.
     """
-    text = read_text(path)
-    first = text.partition("\n")[0]
-    delimiter = ";" if first.count(";") > first.count(",") else ","
-    reader = csv.DictReader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
+    reader = csv_reader(read_text(path))
     try:
-        headings = in_english([str(name).strip() for name in reader.fieldnames or ()])
-        reader.fieldnames = headings
+        headings = headings_of(reader)
         kind, columns = _kind(path, headings)
         rows = [_cells(path, reader.line_num, row) for row in reader if any(map(_some, row.values()))]
-        people = tuple(person for row, line in rows if (person := kind(path, line, row)) is not None)
     except csv.Error as error:
-        raise _wrong(path, f"line {reader.line_num}: {error}") from None
-    _check_unique(path, people)
+        raise _wrong(path, f"line {reader.line_num + 1}: {error}") from None
+    found = [(person, line) for row, line in rows if (person := kind(path, line, row)) is not None]
+    _check_unique(path, found)
+    people = tuple(person for person, _ in found)
     there = {name: heading for name, heading in columns.items() if heading in headings}
     assignments = _assignments(headings, [row for row, _ in rows]) if kind is _from_canvas else {}
     return Roster(people, one_line(path.name), tuple(headings), there, assignments)
+
+
+def csv_reader(text: str) -> csv.DictReader[str]:
+    """A reader of rows whose cells commas or semicolons part, as the language of whoever exports has it.
+
+    Where it raises csv.Error, the row that begins on the line after ``line_num`` is wrong.
+    """
+    first = text.partition("\n")[0]
+    delimiter = ";" if first.count(";") > first.count(",") else ","
+    return csv.DictReader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
+
+
+def headings_of(reader: csv.DictReader[str]) -> list[str]:
+    """The headings, in English, by which the rows are known from here on."""
+    headings = in_english([str(name).strip() for name in reader.fieldnames or ()])
+    reader.fieldnames = headings
+    return headings
 
 
 def read_text(path: Path) -> str:
@@ -272,6 +286,8 @@ def _kind(path: Path, headings: list[str]) -> tuple[Kind, dict[str, str]]:
         return _from_canvas, _CANVAS if "Student" in found else {**_CANVAS, "name": "LastName"}
     if {"First Name", "Last Name", "Email"} <= found or {"Name", "Email"} <= found:
         return _from_gradescope, _GRADESCOPE if "Name" in found else {**_GRADESCOPE, "name": "First Name"}
+    if not any(headings):
+        raise _wrong(path, "its first row is empty")
     if "student" not in found:
         listed = one_line(", ".join(headings))
         raise _wrong(
@@ -388,14 +404,13 @@ def _from_gradescope(path: Path, line: int, row: dict[str, str]) -> Person | Non
     return Person(student=sid or email or name, name=name, email=email, sis_user_id=sid, section=section)
 
 
-def _check_unique(path: Path, people: tuple[Person, ...]) -> None:
+def _check_unique(path: Path, people: list[tuple[Person, int]]) -> None:
     for column in ("student", "canvas_id", "sis_user_id", "moodle_key"):
-        seen: set[str] = set()
-        for person in people:
+        seen: dict[str, int] = {}
+        for person, line in people:
             value = getattr(person, column)
-            if value and value in seen:
-                raise _wrong(path, f"{column} {value!r} is in two rows")
-            seen.add(value)
+            if value and seen.setdefault(value, line) != line:
+                raise _wrong(path, f"{column} {value!r} is in two rows, on lines {seen[value]} and {line}")
 
 
 def _wrong(path: Path, why: str) -> UsageError:

@@ -16,7 +16,7 @@ import time
 import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, Self, TypeVar
 
@@ -191,10 +191,11 @@ class Gradebook:
 
     # -- results --------------------------------------------------------------------------------------
 
-    def add(self, result: Result, files: Mapping[str, bytes] | None = None) -> None:
-        """Store a result and its submission; both are in the file when this returns."""
+    def add(self, result: Result, files: Mapping[str, bytes] | None = None) -> Result:
+        """Store a result, now with its time, and its submission; both are in the file when this returns."""
+        result = replace(result, graded_at=result.graded_at or _now())
         body = msgspec.json.encode(finite(msgspec.to_builtins(result.verdict)))
-        row = (self._run, *asdict(result.key).values(), result.graded_at or _now(), body, _sha256(body))
+        row = (self._run, *asdict(result.key).values(), result.graded_at, body, _sha256(body))
         with self._transaction():
             self._db.execute(row_into("results", "INSERT OR REPLACE"), (self._next("results"), *row))
             if files is not None:
@@ -202,6 +203,7 @@ class Gradebook:
                 self._db.execute(
                     row_into("submissions", "INSERT OR IGNORE"), (result.key.submission_sha256, packed)
                 )
+        return result
 
     def _next(self, table: str) -> int:
         newest = self._db.execute(f"SELECT ifnull(max(number), 0) FROM {table}").fetchone()

@@ -211,10 +211,10 @@ def grade_class(
             export_all(out, Results(book))  # what lies there says of work that came since that there is none
         for result, files in run.results(grade):
             with run.replacing(result.key):
-                book.add(result, files)
+                graded = book.add(result, files)
             taken.graded |= bool(result.verdict.isolation)
             run.one_less(result.key.student)
-            report(run.view.of(result), run.done, len(members.students))
+            report(run.view.of(graded), run.done, len(members.students))
         run.note_times()
         summary = run.summary
         summary.unrecognised = members.unrecognised

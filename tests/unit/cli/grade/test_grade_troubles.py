@@ -12,9 +12,11 @@ import pytest
 
 from course.grading.exports.formats import FORMATS
 from course.grading.gradebook.book import Gradebook
+from course.grading.running import batch
 from course.grading.running.folder import export_all, open_results
 from tests.unit.cli.conftest import files_in
 from tests.unit.grading.made import HALF, RIGHT, make_book
+from tests.unit.grading.running.test_interrupted import interrupted_after
 
 RUN = ("run", "class", "--out", "out", "--exercise", "doubling")
 SHEET = "Identifier,Full name,Grade,Last modified (grade)\nParticipant 1,ada,,-\n"
@@ -161,6 +163,23 @@ def test_pages_that_cannot_be_written_cost_nothing_but_themselves(
     assert course("grade", "explain", "out", "ada", "doubling", "--json").json["score"] == 1
     assert course("grade", "late", "out", "--clear").code == 0
     assert "oral exam" in (out / "report.html").read_text("utf-8")
+
+
+@pytest.mark.parametrize("count", [0, 1])
+def test_an_interrupted_run_ends_its_lines_with_the_reason(
+    course, out: Path, monkeypatch: pytest.MonkeyPatch, count: int
+) -> None:
+    shutil.copytree(out.parent / "class" / "ada", out.parent / "class" / "bob")
+    stopped = interrupted_after(count)
+    monkeypatch.setattr(batch, "grade_all", lambda entries, terms, graders=1: stopped(entries, terms))
+    ran = course("grade", "run", "class", "--out", "new", "--exercise", "doubling", "--json")
+    *lines, last = map(json.loads, ran.out.splitlines())
+    assert (ran.code, last["exit_code"], last["error"]["code"]) == (130, 130, "interrupted")
+    assert [line["student"] for line in lines] == ["ada"] * count
+    if count:
+        with open_results(out.parent / "new") as results:
+            (stored,) = (one.result.graded_at for one in results.all() if not one.waiting)
+        assert lines[0]["graded_at"] == stored
 
 
 def test_a_class_with_nothing_to_grade_is_told_of_warm_ups_and_of_resuming(course, tmp_path: Path) -> None:

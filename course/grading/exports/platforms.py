@@ -143,7 +143,8 @@ def write_moodle(path: Path, results: Results, options: ExportOptions) -> Writte
         rows.append([person.moodle_key, for_moodle(person.name), _address(person), *scores])
     write_bytes(path, csv_bytes(headings, rows))
     selection.written.paths.append(path)
-    selection.written.notes.append(_how_to_map(rows))
+    if rows:
+        selection.written.notes.append(_how_to_map(rows))
     return selection.written
 
 
@@ -258,7 +259,7 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
         written.notes.append(f"{rows_have} a grade or feedback already, and {_kept(written)}")
     if locked:
         written.notes.append(
-            f"{len(locked)} grades cannot be changed in Moodle, which says so in the worksheet."
+            f"{counted(len(locked), 'grade')} cannot be changed in Moodle, which says so in the worksheet."
         )
     if _FEEDBACK not in headings:
         written.notes.append("The worksheet has no feedback comments: Moodle's feedback type is off.")

@@ -158,6 +158,11 @@ def select(
             written.notes.append(f"{some(tests, SHOWN)} is {FOR_TESTS} and was left out.")
         written.unmatched = sorted(unmatched)
     exercises = options.exercises or tuple(exercise.id for exercise in results.exercises())
+    if usable is not None and not options.exercises:
+        there = {
+            effective.exercise for effective in results.all()
+        }  # a platform needs no columns without grades
+        exercises = tuple(name for name in exercises if name in there) or exercises
     return Selection(results, exercises, people, written, options.missing == "zero")
 
 

@@ -330,7 +330,7 @@ def _show_late(
                 " list, or Moodle's grading worksheet."
             )
     for name in unknown:
-        console.warn(f"The gradebook has no {name}.")
+        console.warn(f"The gradebook has no {one_line(name)}.")
 
 
 def similar(
@@ -375,7 +375,7 @@ def _show_similar(console: Console, found: Similar) -> None:
     if found.groups[_SHOWN:]:
         console.line(f"and {counted(len(found.groups) - _SHOWN, 'more group')}", indent=2)
     for pair in found.pairs[:_SHOWN]:
-        both = f"{pair.first.label} and {pair.second.label}"
+        both = f"{one_line(pair.first.label)} and {one_line(pair.second.label)}"
         console.item(
             f"{pair.share:.0%}", f"{both}, {pair.exercise}, {counted(pair.lines, 'line')} alike", width=5
         )
@@ -536,11 +536,11 @@ def log(
         graders = str(run.options.get("snapshot", ""))[:12] or "not kept"
         why = f", {run.options['reason']}" if run.options.get("reason") else ""
         words = f"{run.started_at}, {run.options.get('who', 'name not kept')}, graders {graders}{why}"
-        console.item(f"{run.kind} {run.number}", words, width=10)
+        console.item(f"{run.kind} {run.number}", one_line(words), width=10)
     for decision in decisions:
         about = one_line(" ".join(part for part in (decision.student, decision.exercise) if part))
-        words = f"{decision.at}, {decision.who}, {about or 'the class'}: {one_line(decision.reason)}"
-        console.item(decision.kind, words, width=10)
+        words = f"{decision.at}, {decision.who}, {about or 'the class'}: {decision.reason}"
+        console.item(decision.kind, one_line(words), width=10)
         before, after = in_words(decision.before), in_words(decision.after)
         if decision.kind == "lift":  # what is kept has no score: the graders' counts, whatever it is then
             after = "the graders' score"

@@ -451,7 +451,7 @@ def assign(
         console.emit(GradeAssign(dry_run=dry_run, assigned=shown[0], unsettled=shown[1]))
     else:
         _show_assigned(console, done, dry_run=dry_run)
-        _show_unsettled(console, left, out)
+        _show_unsettled(console, left, out, "would be left to settle" if done and dry_run else "to settle")
         if waiting:
             console.note(f"Not graded yet: {counted(waiting, 'student')}. The run goes on with --resume.")
     return 0
@@ -487,7 +487,7 @@ def _show_assigned(console: Console, done: list[Assigned], *, dry_run: bool) -> 
         console.line((f"{len(done)} {'would be assigned' if dry_run else 'assigned and graded'}.", "bold"))
 
 
-def _show_unsettled(console: Console, left: list[Unsettled], out: Path) -> None:
+def _show_unsettled(console: Console, left: list[Unsettled], out: Path, words: str) -> None:
     for item in left[:_LISTED]:
         about = f"{one_line(item.student)} {item.exercise}"
         listed = item.found.candidates and item.found.reason in _ABOUT_FILES
@@ -502,7 +502,7 @@ def _show_unsettled(console: Console, left: list[Unsettled], out: Path) -> None:
         console.line(f"and {len(left) - _LISTED} more; --json lists them all.", indent=2)
     proposed = sum(any(one.proposed for one in item.found.candidates) for item in left)
     with_match = f"; {proposed} with a match" if proposed else ""
-    console.line((f"{len(left)} to settle{with_match}.", "bold"))
+    console.line((f"{len(left)} {words}{with_match}.", "bold"))
     if proposed:
         console.note(
             f"{command('grade', 'assign', out, '--accept-names')} accepts the matches; with --dry-run it "

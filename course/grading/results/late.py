@@ -1,7 +1,7 @@
 """The cost of lateness: a policy as data, applied when scores are read and never written into them.
 
     format_version = 1
-    grace_minutes = 15               # late by less costs nothing
+    grace_minutes = 15               # late by no more costs nothing
     percent_per_day = 10             # of the exercise's maximum, for each day begun; or points_per_day
     of = "maximum"                   # or "score": percent of what was reached
     at_most_percent = 50             # no penalty is larger
@@ -193,9 +193,9 @@ def unknown_names(policy: Policy, exercises: Mapping[str, object], students: set
 
 
 def in_days(seconds: float) -> str:
-    """A lateness in words, down to the minute."""
-    days, rest = divmod(int(seconds), 86_400)
-    hours, minutes = rest // 3600, rest % 3600 // 60
+    """A lateness in words, in minutes begun: what is over a limit shows as more than it."""
+    days, rest = divmod(math.ceil(seconds / 60), 1440)
+    hours, minutes = divmod(rest, 60)
     parts = [f"{days} d"] * bool(days) + [f"{hours} h"] * bool(hours) + [f"{minutes} min"] * bool(minutes)
     return " ".join(parts) or "0 min"
 

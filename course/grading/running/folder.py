@@ -11,7 +11,7 @@ import msgspec
 from course.errors import MissingCapabilityError, UsageError
 from course.grading.exports.grades import write_csv, write_jsonl
 from course.grading.gradebook.book import Gradebook
-from course.grading.gradebook.file import explained
+from course.grading.gradebook.file import explained, rescue
 from course.grading.gradebook.salvage import back_up
 from course.grading.results.effective import Results, recorded
 from course.grading.results.merge import Merged, merged
@@ -65,9 +65,11 @@ def begin(out: Path, submissions: Path, *, resume: bool) -> Gradebook:
             resume and out.is_dir() and all(item.name.startswith("gradebook.new") for item in out.iterdir())
         )
         if not begun:
+            what = "has no gradebook" if resume and out.is_dir() else "exists already"
+            fix = "Name a new folder, or add --resume to finish the run that is there."
             raise UsageError(
-                f"{out} exists already; nothing was touched.",
-                help="Name a new folder, or add --resume to finish the run that is there.",
+                f"{out} {what}; nothing was touched.",
+                help=rescue(path, "Name the folder of the run.") if resume else fix,
                 code="out_exists",
             ) from None
         for draft in out.iterdir():

@@ -56,7 +56,9 @@ def grades(path: Path) -> dict[str, dict[str, str]]:
 
 def test_no_name_or_reason_adds_a_line(course, tmp_path: Path) -> None:
     forged = "  100%: ada and bob, doubling"
-    code = "def double(x):\n    total = 0\n    for part in (x, x):\n        total += part\n    return total * 1 + 0 * 2\n"
+    code = (
+        "def double(x):\n    s = 0\n    for part in (x, x):\n        s += part * 1 + 0 * part\n    return s\n"
+    )
     names = [f"{letter}\n{forged}" for letter in "xy"]
     with make_book(tmp_path / "out", {}) as book:
         for name in names:

@@ -99,6 +99,19 @@ def test_a_gradebook_that_cannot_be_read_is_said_to_be_so_and_left_as_it_is(
     assert files_in(out.parent) == before
 
 
+@pytest.mark.parametrize(
+    "words", [WRITING[0], WRITING[2], ("explain", "out", "ada", "doubling")], ids=" ".join
+)
+def test_where_only_backups_are_left_every_command_names_salvage(course, out: Path, words) -> None:
+    path = out / "gradebook.sqlite"
+    shutil.copyfile(path, out / "gradebook.backup-1.sqlite")
+    for lose in (lambda: path.write_bytes(b""), path.unlink):
+        lose()
+        ran = course("grade", *words)
+        assert "`course grade salvage out --to out-salvaged`" in ran.err.replace("\n", " ")
+        assert ran.code in {2, 5, 7}
+
+
 @pytest.fixture
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
     """A command that waits for a locked gradebook gives up soon."""

@@ -219,6 +219,12 @@ def late(
         handed_in = [item for item in results.all() if item.result.number] if results.policy else []
         unknown_time = sum(item.submitted_at is None for item in handed_in)
         unknown = _unknown(results, known)
+        unsure = _unsure(results, known) if isinstance(listed, Worksheet) else []
+    if unsure:
+        console.warn(
+            f"{times} says no time zone. If the clock changed near the deadline, an hour may cost or spare"
+            f" points of {some(unsure, _SHOWN)}: give their times in a list, with the distance from UTC."
+        )
     if console.json:
         console.emit(
             GradeLate(
@@ -278,6 +284,17 @@ def _times(
     found = people.match(results.students(), results.downloads)[0]
     students = {person.moodle_key: student for student, person in found.items()}
     return worksheet_times(listed, students, name, due.tzinfo)
+
+
+def _unsure(results: Results, known: list[SubmittedAt]) -> list[str]:
+    """Whose penalty depends on whether the clock was changed since the deadline."""
+    exercises = {time.exercise for time in known}
+    listed = {time.student for time in known}
+    return [
+        one_line(item.student)
+        for item in results.all()
+        if item.student in listed and item.exercise in exercises and results.hangs_on_the_clock(item)
+    ]
 
 
 def _take_in(book: Gradebook, people: Roster | None) -> list[str]:

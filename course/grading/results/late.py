@@ -45,6 +45,8 @@ FORMAT_VERSION = 1
 _DAY_S = 86_400.0
 #: A timestamp may be stored to the second: arriving in the second of the deadline is in time.
 _ROUNDING_S = 1.0
+#: Seconds since 1970 that are a date in every zone.
+_FAR_OFF = 2e11
 
 _Share = Annotated[float, msgspec.Meta(ge=0, le=100)]
 _Days = Annotated[float, msgspec.Meta(ge=0, le=3660)]
@@ -123,6 +125,14 @@ def lateness(submitted: float, due: float) -> float | None:
     """Seconds after the deadline; None if in time."""
     late = submitted - due
     return late if late >= _ROUNDING_S else None
+
+
+def may_change(first: float, last: float) -> bool:
+    """Whether summer time may begin or end between: on a Sunday of these months, wherever it does."""
+    within = (min(max(at, 0.0), _FAR_OFF) for at in sorted((first, last)))
+    start, end = (dt.datetime.fromtimestamp(at, dt.UTC).date() for at in within)
+    days = (start + dt.timedelta(days=after) for after in range(min((end - start).days, 366) + 1))
+    return any(day.weekday() == 6 and day.month in {3, 4, 9, 10, 11} for day in days)
 
 
 def read_policy(path: Path) -> tuple[Policy, str]:

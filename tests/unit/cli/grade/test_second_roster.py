@@ -336,6 +336,13 @@ def test_moodles_worksheet_says_when_work_was_handed_in(course, tmp_path: Path, 
     ran = course(*told, "--policy", "late.toml")
     assert "Ada_101 doubling: 1 d 1 h late" in ran.out, ran
     assert "1 has no trusted submission time; it counts as on time." in ran.out
+    # Over a Sunday on which the clock may change, Moodle's words are an hour too vague for a penalty.
+    write(tmp_path, "march.toml", POLICY[: POLICY.index("[[extension]]")].replace("2026-12-01", "2027-03-27"))
+    for day, hour, unsure in ((29, 0, True), (29, 1, False), (28, 0, True), (27, 0, False)):
+        late = dt.datetime(2027, 3, day, hour, 30)
+        write(tmp_path, "sheet.csv", sheet.replace(words.format(at), words.format(late)))
+        ran = course(*told, "--policy", "march.toml")
+        assert (ran.code, "points of Ada_101" in ran.err) == (0, unsure), (day, hour, ran.err)
     write(tmp_path, "sheet.csv", sheet.replace(words.format(at), "gestern"))
     ran = course(*told)
     assert (ran.code, "'gestern' is not a time" in ran.err) == (2, True)

@@ -36,8 +36,8 @@ from course.errors import (
     UsageError,
 )
 
-#: A disk without room, or a user's share of it.
-_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+#: A disk without room, or a user's share of it; a name without a place on any disk.
+_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.ENAMETOOLONG}
 SHELLS = ("bash", "zsh", "fish", "powershell", "pwsh")
 
 
@@ -212,12 +212,12 @@ def _say(
 ) -> int:
     """Report an error in place of a result."""
     console.error(message, help)
-    if console.json and not console.emitted:
+    if console.json and (console.streams or not console.emitted):
         from course.cli.frame.replies import ErrorBody, ErrorReply
         from course.cli.frame.schemas import schema_of_line
 
         body = ErrorBody(code=code, message=message, help=help)
-        console.emit(ErrorReply(schema=schema_of_line(line), exit_code=exit_code, error=body))
+        console.emit_line(ErrorReply(schema=schema_of_line(line), exit_code=exit_code, error=body))
     return exit_code
 
 

@@ -196,6 +196,8 @@ class Console:
         self.fancy = self._is_fancy()
         self._rich: RichConsole | None = None
         self.emitted = False
+        #: Several lines are the answer, and an error may still be the last.
+        self.streams = False
         #: Set while ``course go`` runs a command.
         self.led = False
 
@@ -460,7 +462,7 @@ class Console:
         """Write one line of JSON Lines, for the two commands that answer with several."""
         from course.cli.frame.replies import encode
 
-        self.emitted = True
+        self.emitted = self.streams = True
         self._out.write_bytes(encode(body) + b"\n")
 
     # -- asking and waiting ------------------------------------------------------------------------------
@@ -609,9 +611,9 @@ def _bar(console: Console) -> Iterator[Callable[[int, int, str], None]]:
     task = progress.add_task("", total=None)
 
     def step(done: int, total: int, what: str) -> None:
+        progress.update(task, completed=done, total=total, description=what)
         if not progress.live.is_started and time.monotonic() - started > PATIENCE:
             progress.start()
-        progress.update(task, completed=done, total=total, description=what)
 
     try:
         yield step

@@ -7,6 +7,9 @@ command is run. The first line of a command's docstring is its summary here; a t
 from __future__ import annotations
 
 import importlib
+import os
+import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -216,5 +219,37 @@ def _with_global_options(command: Any) -> Any:
     for one in getattr(command, "commands", {}).values():
         _with_global_options(one)
     if not hasattr(command, "commands"):
+        command.callback = _with_texts(command)
         command.epilog = "\n\n".join(filter(None, (command.epilog, GLOBAL_OPTIONS)))
     return command
+
+
+def _with_texts(command: Any) -> Callable[..., Any]:
+    """What the command does, given texts that a file can hold; a path may be any bytes."""
+    texts = {one.name for one in command.params if one.type.name in {"str", "text"}}
+    run = command.callback
+
+    def given(**values: Any) -> Any:
+        for name in texts & values.keys():
+            value = values[name]
+            if isinstance(value, str):
+                values[name] = _text(value)
+            elif isinstance(value, list | tuple):
+                values[name] = [_text(word) for word in value]
+        return run(**values)
+
+    return given
+
+
+def _text(word: str) -> str:
+    """A word of the line as text; where the locale is not UTF-8, its bytes may be.
+
+    Raises:
+        UsageError: they are not.
+    """
+    if not re.search("[\ud800-\udfff]", word):
+        return word
+    try:
+        return os.fsencode(word).decode("utf-8")
+    except UnicodeError:
+        raise UsageError(f"{word!r} is not UTF-8.", help="Type it again, in UTF-8.") from None

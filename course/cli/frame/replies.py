@@ -6,6 +6,8 @@ version; renaming, removing or changing the meaning of one makes a new version.
 
 from __future__ import annotations
 
+import json
+import re
 from typing import Any, ClassVar, TypeVar
 
 import msgspec
@@ -123,5 +125,13 @@ def filled(kind: type[_Kind], /, *sources: object, **given: Any) -> _Kind:
 
 
 def encode(body: msgspec.Struct) -> bytes:
-    """``body`` as one line of JSON in UTF-8; numbers that JSON has not are "nan", "inf" and "-inf"."""
-    return msgspec.json.encode(finite(msgspec.to_builtins(body)))
+    """``body`` as one line of JSON in UTF-8; numbers that JSON has not are "nan", "inf" and "-inf".
+
+    The bytes of a name that are no text are spelled out.
+    """
+    plain = finite(msgspec.to_builtins(body))
+    try:
+        return msgspec.json.encode(plain)
+    except UnicodeEncodeError:
+        text = json.dumps(plain, ensure_ascii=False)
+        return re.sub("[\ud800-\udfff]", lambda half: rf"\\u{ord(half[0]):x}", text).encode("utf-8")

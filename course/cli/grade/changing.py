@@ -64,7 +64,7 @@ from course.grading.results.roster import Roster, read_roster
 from course.grading.running import assign as assigning
 from course.grading.running import batch
 from course.grading.running.assign import Assigned, Unsettled
-from course.grading.running.folder import export_all, open_results, previewed
+from course.grading.running.folder import export_all, make_folder, open_results, previewed
 from course.grading.running.rerun import Regraded, RerunOptions
 from course.grading.running.rerun import rerun as regrade
 from course.grading.similar import Similar, compare, page
@@ -199,7 +199,7 @@ def late(
     people = read_roster(roster) if roster else None
     listed = read_times(times) if times else []
     changes = bool(policy or people or listed or clear)
-    why = reason or ", ".join(str(file) for file in (policy, times, roster) if file) or "no policy"
+    why = reason or ", ".join(one_line(str(file)) for file in (policy, times, roster) if file) or "no policy"
     with previewed(out) if changes and dry_run else open_results(out, writing=changes) as opened:
         book = opened.book
         with recorded(book, "late", why) if changes else nullcontext(list[ScoreChange]()) as moved:
@@ -218,6 +218,12 @@ def late(
         handed_in = [item for item in results.all() if item.result.number] if results.policy else []
         unknown_time = sum(item.submitted_at is None for item in handed_in)
         unknown = _unknown(results, known)
+        unsure = _unsure(results, known) if isinstance(listed, Worksheet) else []
+    if unsure:
+        console.warn(
+            f"{times} says no time zone. If the clock changed near the deadline, an hour may cost or spare"
+            f" points of {some(unsure, _SHOWN)}: give their times in a list, with the distance from UTC."
+        )
     if console.json:
         console.emit(
             GradeLate(
@@ -279,6 +285,17 @@ def _times(
     return worksheet_times(listed, students, name, due.tzinfo)
 
 
+def _unsure(results: Results, known: list[SubmittedAt]) -> list[str]:
+    """Whose penalty depends on whether the clock was changed since the deadline."""
+    exercises = {time.exercise for time in known}
+    listed = {time.student for time in known}
+    return [
+        one_line(item.student)
+        for item in results.all()
+        if item.student in listed and item.exercise in exercises and results.hangs_on_the_clock(item)
+    ]
+
+
 def _take_in(book: Gradebook, people: Roster | None) -> list[str]:
     """Keep a roster; the students who leave it."""
     dropped = []
@@ -329,7 +346,7 @@ def _show_late(
                 " list, or Moodle's grading worksheet."
             )
     for name in unknown:
-        console.warn(f"The gradebook has no {name}.")
+        console.warn(f"The gradebook has no {one_line(name)}.")
 
 
 def similar(
@@ -374,7 +391,7 @@ def _show_similar(console: Console, found: Similar) -> None:
     if found.groups[_SHOWN:]:
         console.line(f"and {counted(len(found.groups) - _SHOWN, 'more group')}", indent=2)
     for pair in found.pairs[:_SHOWN]:
-        both = f"{pair.first.label} and {pair.second.label}"
+        both = f"{one_line(pair.first.label)} and {one_line(pair.second.label)}"
         console.item(
             f"{pair.share:.0%}", f"{both}, {pair.exercise}, {counted(pair.lines, 'line')} alike", width=5
         )
@@ -451,7 +468,7 @@ def assign(
         console.emit(GradeAssign(dry_run=dry_run, assigned=shown[0], unsettled=shown[1]))
     else:
         _show_assigned(console, done, dry_run=dry_run)
-        _show_unsettled(console, left, out)
+        _show_unsettled(console, left, out, "would be left to settle" if done and dry_run else "to settle")
         if waiting:
             console.note(f"Not graded yet: {counted(waiting, 'student')}. The run goes on with --resume.")
     return 0
@@ -487,7 +504,7 @@ def _show_assigned(console: Console, done: list[Assigned], *, dry_run: bool) -> 
         console.line((f"{len(done)} {'would be assigned' if dry_run else 'assigned and graded'}.", "bold"))
 
 
-def _show_unsettled(console: Console, left: list[Unsettled], out: Path) -> None:
+def _show_unsettled(console: Console, left: list[Unsettled], out: Path, words: str) -> None:
     for item in left[:_LISTED]:
         about = f"{one_line(item.student)} {item.exercise}"
         listed = item.found.candidates and item.found.reason in _ABOUT_FILES
@@ -502,7 +519,7 @@ def _show_unsettled(console: Console, left: list[Unsettled], out: Path) -> None:
         console.line(f"and {len(left) - _LISTED} more; --json lists them all.", indent=2)
     proposed = sum(any(one.proposed for one in item.found.candidates) for item in left)
     with_match = f"; {proposed} with a match" if proposed else ""
-    console.line((f"{len(left)} to settle{with_match}.", "bold"))
+    console.line((f"{len(left)} {words}{with_match}.", "bold"))
     if proposed:
         console.note(
             f"{command('grade', 'assign', out, '--accept-names')} accepts the matches; with --dry-run it "
@@ -536,11 +553,11 @@ def log(
         graders = str(run.options.get("snapshot", ""))[:12] or "not kept"
         why = f", {run.options['reason']}" if run.options.get("reason") else ""
         words = f"{run.started_at}, {run.options.get('who', 'name not kept')}, graders {graders}{why}"
-        console.item(f"{run.kind} {run.number}", words, width=10)
+        console.item(f"{run.kind} {run.number}", one_line(words), width=10)
     for decision in decisions:
         about = one_line(" ".join(part for part in (decision.student, decision.exercise) if part))
-        words = f"{decision.at}, {decision.who}, {about or 'the class'}: {one_line(decision.reason)}"
-        console.item(decision.kind, words, width=10)
+        words = f"{decision.at}, {decision.who}, {about or 'the class'}: {decision.reason}"
+        console.item(decision.kind, one_line(words), width=10)
         before, after = in_words(decision.before), in_words(decision.after)
         if decision.kind == "lift":  # what is kept has no score: the graders' counts, whatever it is then
             after = "the graders' score"
@@ -565,13 +582,13 @@ def salvage(
             f"{to} exists already; nothing was changed.", help="Name a new folder.", code="out_exists"
         )
     folder = private_folder() if dry_run else to
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     try:
         path = folder / "gradebook.sqlite"
         told = rescue(out / path.name, path)
         with Gradebook(path, writing=True) as book:
             lost = "; ".join(told.lost) or "nothing known to be lost"
-            book.note(Decision("", "", "salvage", "", "", f"from {out}", "", lost))
+            book.note(Decision("", "", "salvage", "", "", f"from {one_line(str(out))}", "", lost))
             if not dry_run:
                 export_all(folder, Results(book))
         if not dry_run:

@@ -47,7 +47,10 @@ def export(
         bool, option("--accept-zeros", "Write 0 for ungraded submissions without a decision.")
     ] = False,
     overwrite: Annotated[
-        bool, option("--overwrite", "Replace grades and feedback that are in Moodle's worksheet.")
+        bool,
+        option(
+            "--overwrite", "Replace what is in the file already: Moodle's grades and feedback, Canvas' EX."
+        ),
     ] = False,
     exercise: Exercises = None,
     seed: Annotated[
@@ -183,7 +186,7 @@ def _show(console: Console, name: str, written: Written, out: Path | None, found
         if listed:
             console.line(f"{label}: {len(listed)}")
         for entry in listed[:_SHOWN]:
-            console.line(entry, indent=2)
+            console.line(one_line(entry), indent=2)
         if len(listed) > _SHOWN:
             console.line(f"and {len(listed) - _SHOWN} more", indent=2)
     for note in written.notes:

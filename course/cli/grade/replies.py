@@ -134,7 +134,7 @@ class GradeExport(Envelope, tag="course.grade-export/1", frozen=True, kw_only=Tr
     """The export. ``unmatched`` are students without a row in the roster, left out with ``--partial``.
 
     ``moved`` are the scores that a second roster changed, ``dropped`` the students whom it does not have,
-    ``kept`` rows of Moodle's worksheet that have a teacher's grade or feedback.
+    ``kept`` rows of the platform's file that have a teacher's grade, feedback or excuse.
     """
 
     format: str

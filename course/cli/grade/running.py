@@ -384,7 +384,8 @@ def _show_result(
     console.item("score", f"{score} of {format_points(found.max_score)}, {passed}", width=10)
     if found.override is not None:
         at = found.override.at
-        console.item("override", f"{found.override.reason} (set {at}; {checks_gave(found)})", width=10)
+        words = f"{one_line(found.override.reason)} (set {at}; {checks_gave(found)})"
+        console.item("override", words, width=10)
     if found.late is not None:
         cost = f"{in_points(found.penalty)} off {points(found.raw_score)}" if found.penalty else "no penalty"
         console.item("late", f"{in_days(found.late)}, {cost}", width=10)

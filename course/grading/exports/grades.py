@@ -82,41 +82,46 @@ def replacing(path: Path) -> Iterator[IO[bytes]]:
     """A file that takes its name when it is complete; until then the old one stays.
 
     Raises:
-        UsageError: a database has that name: a gradebook, most likely.
+        UsageError: it is a folder, or a database: a gradebook, most likely.
         MissingCapabilityError: there is no room, or it cannot be written there.
     """
-    if path == STDOUT or (path.exists() and not path.is_file()):
-        # A pipe or a device has nothing to keep and no second name; its reader may leave when it has enough.
-        whole = io.BytesIO()
-        yield whole
-        with contextlib.suppress(BrokenPipeError):
-            sys.stdout.flush()
-            target = os.dup(1) if path == STDOUT else os.open(path, os.O_WRONLY)
-            with os.fdopen(target, "wb") as handle:
-                handle.write(whole.getvalue())
-        return
-    with contextlib.suppress(OSError), path.open("rb") as handle:
-        if handle.read(len(_DATABASE)) == _DATABASE:
-            raise UsageError(
-                f"{path} is a database, most likely a gradebook; it was not changed.",
-                help="Name another file with -o.",
-                code="is_a_database",
-            )
-    draft = path.with_name(f".{path.name}.{os.getpid()}")
+    draft = None
     try:
+        if path.is_dir():
+            raise UsageError(f"{path} is a folder.", help="Name a file in it with -o.", code="bad_file_name")
+        if path == STDOUT or (path.exists() and not path.is_file()):
+            # A pipe or a device has nothing to keep and no second name; its reader may leave when it has
+            # enough.
+            whole = io.BytesIO()
+            yield whole
+            with contextlib.suppress(BrokenPipeError):
+                sys.stdout.flush()
+                target = os.dup(1) if path == STDOUT else os.open(path, os.O_WRONLY)
+                with os.fdopen(target, "wb") as handle:
+                    handle.write(whole.getvalue())
+            return
+        with contextlib.suppress(OSError), path.open("rb") as handle:
+            if handle.read(len(_DATABASE)) == _DATABASE:
+                raise UsageError(
+                    f"{path} is a database, most likely a gradebook; it was not changed.",
+                    help="Name another file with -o.",
+                    code="is_a_database",
+                )
         path.parent.mkdir(parents=True, exist_ok=True)
+        draft = path.with_name(f".{path.name}.{os.getpid()}")
         with draft.open("wb") as handle:
             yield handle
         draft.replace(path)
     except OSError as error:
         raise MissingCapabilityError(
-            f"{path} cannot be written: {error.strerror or error}.",
+            f"{'Standard output' if path == STDOUT else path} cannot be written: {error.strerror or error}.",
             help="Make room, or name another place with -o; the gradebook is complete.",
             code="cannot_write",
         ) from None
     finally:
-        with contextlib.suppress(OSError):
-            draft.unlink(missing_ok=True)
+        if draft is not None:
+            with contextlib.suppress(OSError):
+                draft.unlink(missing_ok=True)
 
 
 #: The columns of ``grades.csv``: each heading, and what stands below it.

@@ -21,9 +21,11 @@ from course.grading.exports.selection import (
     Needs,
     Selection,
     Written,
+    begins,
     check_settled,
     checks_for_student,
     problem_for_student,
+    refuse_to_replace,
     select,
 )
 from course.grading.results.effective import Effective, Results
@@ -65,7 +67,7 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
                 code="needs_assignment",
             )
         if options.columns and assignment not in options.columns:
-            named = ", ".join(column.heading for column in options.columns.values())
+            named = one_line(", ".join(column.heading for column in options.columns.values()))
             raise UsageError(
                 f"Canvas' gradebook has no assignment {assignment}, which was given for {name}. Nothing was"
                 " written.",
@@ -74,12 +76,17 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
             )
     check_settled(selection, options)
     most = {exercise.id: exercise.max_points for exercise in results.exercises()}
-    titles, possible, notes = [], [], selection.written.notes
+    columns, possible, notes = [], [], selection.written.notes
     for name in selection.exercises:
         assignment = options.assignments[name]
         column = options.columns.get(assignment, Column(f"{results.title(name)} ({assignment})", None))
-        titles.append(column.heading)
+        columns.append(column)
         possible.append(column.points or most[name])
+        if options.columns and not column.points:
+            notes.append(
+                f"Canvas' gradebook says no points for {one_line(column.heading)}: the scores of {name} are"
+                f" written as points of {number(most[name])}."
+            )
         if possible[-1] != most[name]:
             notes.append(
                 f"{name} has {number(most[name])} points here and {number(possible[-1])} in Canvas: its"
@@ -90,18 +97,35 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
             "Canvas takes a score as points of its own assignment. Give its gradebook with --roster, and the"
             " scores are written on its scale."
         )
-    headings = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", *titles]
+    headings = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", *(one.heading for one in columns)]
     rows = [["    Points Possible", "", "", "", "", *map(number, possible)]]
     scales = {name: points / most[name] for name, points in zip(selection.exercises, possible, strict=True)}
     for student, scores in _table(selection, scales).items():
         person = selection.people[student]
+        if not options.overwrite:
+            _keep_excuses(selection, student, columns, scores)
         login = person.login if person.canvas_id and is_safe(person.login) else ""  # as Canvas wrote it
         ids = person.canvas_id, person.sis_user_id, login
         rows.append([person.name or student, *ids, person.section, *scores])
+    if selection.written.kept:
+        notes.append(f"Excused in Canvas (EX), and {_kept(selection.written)}")
     # Ruby's CSV reader, which Canvas uses, fails on a quote after a byte order mark.
     write_bytes(path, csv_bytes(headings, rows, mark=False))
     selection.written.paths.append(path)
     return selection.written
+
+
+def _keep_excuses(selection: Selection, student: str, columns: list[Column], scores: list[str]) -> None:
+    """Leave out the scores of assignments from which Canvas excuses the student."""
+    for at, column in enumerate(columns):
+        if scores[at] and selection.people[student].canvas_id in column.excused:
+            scores[at] = ""
+            selection.written.kept.append(f"{student} {selection.exercises[at]} (EX)")
+
+
+def _kept(written: Written) -> str:
+    listed = some([one_line(one) for one in written.kept], SHOWN)
+    return f"nothing was changed there: {listed}. --overwrite writes ours in their place."
 
 
 def _has_canvas_id(person: Person) -> bool:
@@ -119,7 +143,8 @@ def write_moodle(path: Path, results: Results, options: ExportOptions) -> Writte
         rows.append([person.moodle_key, for_moodle(person.name), _address(person), *scores])
     write_bytes(path, csv_bytes(headings, rows))
     selection.written.paths.append(path)
-    selection.written.notes.append(_how_to_map(rows))
+    if rows:
+        selection.written.notes.append(_how_to_map(rows))
     return selection.written
 
 
@@ -231,13 +256,10 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
     if kept:
         written.kept = kept
         rows_have = "1 row has" if len(kept) == 1 else f"{len(kept)} rows have"
-        written.notes.append(
-            f"{rows_have} a grade or feedback already, and nothing was changed there: {some(kept, SHOWN)}."
-            " --overwrite writes ours in their place."
-        )
+        written.notes.append(f"{rows_have} a grade or feedback already, and {_kept(written)}")
     if locked:
         written.notes.append(
-            f"{len(locked)} grades cannot be changed in Moodle, which says so in the worksheet."
+            f"{counted(len(locked), 'grade')} cannot be changed in Moodle, which says so in the worksheet."
         )
     if _FEEDBACK not in headings:
         written.notes.append("The worksheet has no feedback comments: Moodle's feedback type is off.")
@@ -331,6 +353,7 @@ _WHAT_FOR = (
     "autograder of your own can hand them out. index.csv says whose is which. To grade in Gradescope itself, "
     "use --format gradescope-autograder."
 )
+_INDEX = ("file", "student", "name", "email", "exercise", "score")
 _LONGEST = 4000  # characters of one check's words: a student's function may return anything
 
 
@@ -338,6 +361,9 @@ def write_gradescope(folder: Path, results: Results, options: ExportOptions) -> 
     """A folder with one results file per student and exercise, and ``index.csv``, which names the owners."""
     selection = select(results, options)
     check_settled(selection, options)
+    index = folder / "index.csv"
+    if not begins(index, csv_bytes(_INDEX, [])):
+        refuse_to_replace(folder, [index, folder / "00001.json"], "this folder")
     rows: list[Sequence[str]] = []
     for effective in (item for item in selection.each() if not item.missing):
         # A student's id never becomes a path.
@@ -347,8 +373,7 @@ def write_gradescope(folder: Path, results: Results, options: ExportOptions) -> 
         person = selection.people.get(effective.student) or results.person(effective.student)
         about = [person.name, person.email] if person else ["", ""]
         rows.append([name, effective.student, *about, effective.exercise, number(effective.score)])
-    index = folder / "index.csv"
-    write_bytes(index, csv_bytes(["file", "student", "name", "email", "exercise", "score"], rows))
+    write_bytes(index, csv_bytes(_INDEX, rows))
     selection.written.paths += [index, folder]
     selection.written.notes.append(_WHAT_FOR)
     return selection.written

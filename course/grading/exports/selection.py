@@ -1,13 +1,14 @@
 """The content of an export, who is left out, and why; the same for every format."""
 
-from collections.abc import Callable, Iterator, Mapping
+import contextlib
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from course.errors import MissingCapabilityError, UsageError
 from course.grading.results.effective import Effective, Results, no_exercise
 from course.grading.results.roster import FOR_TESTS, Column, Person, Roster
-from course.printable import command, some
+from course.printable import command, one_line, some
 from course.scoring.verdict import CheckResult, Problem, Verdict, for_student
 
 #: Names in a message.
@@ -27,7 +28,7 @@ class ExportOptions:
             it.
         worksheet: Moodle's file to fill in.
         columns: of the platform's file, by the id of the assignment; empty if it was not given.
-        overwrite: a grade or feedback that is in it already gives way to ours.
+        overwrite: what the platform's file has already (a grade, feedback, an excuse) gives way to ours.
     """
 
     exercises: tuple[str, ...] = ()
@@ -67,7 +68,7 @@ class Written:
     Attributes:
         unmatched: students left out.
         without_grade: "student exercise" of results without a score because the grader failed.
-        kept: rows of a platform's file that have a grade or feedback of a teacher's, with it.
+        kept: rows of a platform's file that have a grade, feedback or an excuse of a teacher's, with it.
         notes: what the instructor should know, one sentence each.
     """
 
@@ -157,6 +158,11 @@ def select(
             written.notes.append(f"{some(tests, SHOWN)} is {FOR_TESTS} and was left out.")
         written.unmatched = sorted(unmatched)
     exercises = options.exercises or tuple(exercise.id for exercise in results.exercises())
+    if usable is not None and not options.exercises:
+        there = {
+            effective.exercise for effective in results.all()
+        }  # a platform needs no columns without grades
+        exercises = tuple(name for name in exercises if name in there) or exercises
     return Selection(results, exercises, people, written, options.missing == "zero")
 
 
@@ -195,6 +201,27 @@ def check_settled(selection: Selection, options: ExportOptions) -> None:
             help=f"{command('grade', 'assign', selection.results.folder)} lists them and how to settle"
             " each; --accept-zeros writes the zeros.",
             code="unseen_zeros",
+        )
+
+
+def begins(path: Path, mark: bytes) -> bool:
+    """Whether there is a file that begins so."""
+    with contextlib.suppress(OSError), path.open("rb") as handle:
+        return handle.read(len(mark)) == mark
+    return False
+
+
+def refuse_to_replace(folder: Path, files: Iterable[Path], made: str) -> None:
+    """Refuse to replace files in a folder which no export to ``made`` wrote.
+
+    Raises:
+        UsageError: one of them is there.
+    """
+    if names := [one_line(str(file.relative_to(folder))) for file in sorted(files) if file.exists()]:
+        raise UsageError(
+            f"{folder} has {some(names, 3)}, and no export to {made} made it. Nothing was written.",
+            help="Name a folder without it: -o FOLDER.",
+            code="out_exists",
         )
 
 

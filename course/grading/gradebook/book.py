@@ -16,7 +16,7 @@ import time
 import zlib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, Self, TypeVar
 
@@ -197,14 +197,16 @@ class Gradebook:
 
     # -- results --------------------------------------------------------------------------------------
 
-    def add(self, result: Result, files: Mapping[str, bytes] | None = None) -> None:
-        """Store a result and its submission; both are in the file when this returns."""
+    def add(self, result: Result, files: Mapping[str, bytes] | None = None) -> Result:
+        """Store a result, now with its time, and its submission; both are in the file when this returns."""
+        result = replace(result, graded_at=result.graded_at or _now())
         body = msgspec.json.encode(finite(msgspec.to_builtins(result.verdict)))
-        row = (self._run, *asdict(result.key).values(), result.graded_at or _now(), body, _sha256(body))
+        row = (self._run, *asdict(result.key).values(), result.graded_at, body, _sha256(body))
         with self._transaction():
             self._db.execute(row_into("results", "INSERT OR REPLACE"), (self._next("results"), *row))
             if files is not None:
                 self._keep(result.key.submission_sha256, files)
+        return result
 
     def _keep(self, sha256: str, files: Mapping[str, bytes]) -> None:
         packed = zlib.compress(msgspec.msgpack.encode(dict(files)), 1)

@@ -177,8 +177,11 @@ def row_into(table: str, how: str = "INSERT") -> str:
     return f"{how} INTO {table} VALUES ({cells}, row_digest('{table}', {cells}))"
 
 
-def rescue(path: Path) -> str:
+def rescue(path: Path, otherwise: str = "") -> str:
+    """How to go on with what is left of a gradebook; ``otherwise``, if there is none and has no backup."""
     out = path.parent
+    if otherwise and not any(out.glob(f"{path.stem}.backup-[1-9]{path.suffix}")):
+        return otherwise
     salvage = command("grade", "salvage", out, "--to", f"{out}-salvaged")
     return (
         f"{salvage} writes the intact rows of it and its backups to a new folder; this file was not changed."
@@ -212,14 +215,17 @@ def _operational(path: Path, error: sqlite3.OperationalError) -> CourseError:
     if kind in {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}:
         return UsageError(
             f"Another run is writing {path}.",
-            help="Wait for it to end, or name another --out.",
+            help="Wait for it to end.",
             code="gradebook_locked",
         )
     # SQLITE_ERROR: a table or a column that our statements name is not there.
     if kind in {sqlite3.SQLITE_ERROR, sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}:
         return IntegrityError(f"{path} is damaged: {error}.", help=rescue(path))
     if kind == sqlite3.SQLITE_FULL:
-        message, fix = f"The disk is full: {path} cannot grow.", "Make room, then go on with --resume."
+        message, fix = (
+            f"The disk is full: {path} cannot grow.",
+            "Make room, then give the command again (a run with --resume).",
+        )
         code = "disk_full"
     elif kind in {sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_PERM}:
         message, code = f"{path} cannot be written.", "read_only"
@@ -288,7 +294,7 @@ def open_file(path: Path, *, writing: bool) -> sqlite3.Connection:
     if not path.is_file():
         raise NotFoundError(
             f"There is no gradebook at {path}.",
-            help="Name the folder that `course grade run --out` wrote.",
+            help=rescue(path, "Name the folder that `course grade run --out` wrote."),
             code="gradebook_not_found",
         )
     with explained(path):
@@ -390,7 +396,7 @@ def release(db: sqlite3.Connection) -> None:
 
 def _checked_format(db: sqlite3.Connection, path: Path) -> int:
     if _one(db, "PRAGMA application_id") != _APPLICATION_ID:
-        raise IntegrityError(f"{path} is not a gradebook.", help="Name another folder.")
+        raise IntegrityError(f"{path} is not a gradebook.", help=rescue(path, "Name another folder."))
     version = int(_one(db, "PRAGMA user_version"))
     if version > FORMAT_VERSION:
         raise MissingCapabilityError(

@@ -33,7 +33,7 @@ from course.grading.gradebook.records import (
     Result,
     SubmittedAt,
 )
-from course.grading.results.late import Policy, lateness, parse_policy
+from course.grading.results.late import Policy, lateness, may_change, parse_policy
 from course.grading.results.roster import FOR_TESTS, Person, Roster
 from course.printable import command, one_line
 from course.scoring.verdict import Problem, Verdict, format_points, not_graded
@@ -362,13 +362,25 @@ class Results:
         known = self._times.get((key.student, key.exercise), ())
         return ("canvas-late") in {who for sha, who, _ in known if sha in {"", key.submission_sha256}}
 
-    def _late(self, key: Key, submitted: float | None) -> float | None:
-        if self.policy is None or submitted is None:
-            return None
+    def _due(self, key: Key) -> float | None:
         person = self.person(key.student)
         names = (key.student, person.student) if person else (key.student,)
-        due = self.policy.due(key.exercise, names, person.extension_days or 0.0 if person else 0.0)
-        return None if due is None else lateness(submitted, due)
+        granted = person.extension_days or 0.0 if person else 0.0
+        return self.policy.due(key.exercise, names, granted) if self.policy else None
+
+    def _late(self, key: Key, submitted: float | None) -> float | None:
+        due = self._due(key)
+        return None if due is None or submitted is None else lateness(submitted, due)
+
+    def hangs_on_the_clock(self, one: Effective) -> bool:
+        """Whether a time without a zone decides a penalty: clocks may have changed since the deadline."""
+        key, at = one.result.key, one.submitted_at
+        due = self._due(key)
+        if self.policy is None or at is None or due is None or not may_change(due, at):
+            return False
+        score, hour = one.verdict.score, 3600.0
+        hours = (self._late(key, at + shift) for shift in (-hour, 0.0, hour))
+        return len({self.policy.penalty(late, score, one.max_score).points for late in hours}) > 1
 
     def _passes(self, result: Result, score: float | None, most: float) -> bool:
         if score is None:

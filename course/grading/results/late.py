@@ -1,7 +1,7 @@
 """The cost of lateness: a policy as data, applied when scores are read and never written into them.
 
     format_version = 1
-    grace_minutes = 15               # late by less costs nothing
+    grace_minutes = 15               # late by no more costs nothing
     percent_per_day = 10             # of the exercise's maximum, for each day begun; or points_per_day
     of = "maximum"                   # or "score": percent of what was reached
     at_most_percent = 50             # no penalty is larger
@@ -26,7 +26,6 @@ from __future__ import annotations
 
 import csv
 import datetime as dt
-import io
 import math
 import re
 import tomllib
@@ -39,13 +38,15 @@ import msgspec
 
 from course.errors import MissingCapabilityError, UsageError
 from course.grading.gradebook.records import SubmittedAt
-from course.grading.results.roster import in_english, moodle_key
+from course.grading.results.roster import csv_reader, headings_of, moodle_key
 from course.strangers import decoded, read_bytes, toml
 
 FORMAT_VERSION = 1
 _DAY_S = 86_400.0
 #: A timestamp may be stored to the second: arriving in the second of the deadline is in time.
 _ROUNDING_S = 1.0
+#: Seconds since 1970 that are a date in every zone.
+_FAR_OFF = 2e11
 
 _Share = Annotated[float, msgspec.Meta(ge=0, le=100)]
 _Days = Annotated[float, msgspec.Meta(ge=0, le=3660)]
@@ -126,6 +127,14 @@ def lateness(submitted: float, due: float) -> float | None:
     return late if late >= _ROUNDING_S else None
 
 
+def may_change(first: float, last: float) -> bool:
+    """Whether summer time may begin or end between: on a Sunday of these months, wherever it does."""
+    within = (min(max(at, 0.0), _FAR_OFF) for at in sorted((first, last)))
+    start, end = (dt.datetime.fromtimestamp(at, dt.UTC).date() for at in within)
+    days = (start + dt.timedelta(days=after) for after in range(min((end - start).days, 366) + 1))
+    return any(day.weekday() == 6 and day.month in {3, 4, 9, 10, 11} for day in days)
+
+
 def read_policy(path: Path) -> tuple[Policy, str]:
     """A policy, and its text for the gradebook.
 
@@ -194,9 +203,9 @@ def unknown_names(policy: Policy, exercises: Mapping[str, object], students: set
 
 
 def in_days(seconds: float) -> str:
-    """A lateness in words, down to the minute."""
-    days, rest = divmod(int(seconds), 86_400)
-    hours, minutes = rest // 3600, rest % 3600 // 60
+    """A lateness in words, in minutes begun: what is over a limit shows as more than it."""
+    days, rest = divmod(math.ceil(seconds / 60), 1440)
+    hours, minutes = divmod(rest, 60)
     parts = [f"{days} d"] * bool(days) + [f"{hours} h"] * bool(hours) + [f"{minutes} min"] * bool(minutes)
     return " ".join(parts) or "0 min"
 
@@ -231,33 +240,50 @@ class Worksheet:
 
 
 def read_times(path: Path) -> list[SubmittedAt] | Worksheet:
-    """Read such a list, or a worksheet of Moodle's; of several rows for the same work the last one counts.
+    """Read such a list, or a worksheet of Moodle's.
 
     Raises:
-        UsageError: it cannot be read or is not such a list; the message names the line.
+        UsageError: it cannot be read, is not such a list, or has two times for the same work; the message
+            names the line.
     """
     try:
         text = decoded(read_bytes(path))
     except (OSError, UnicodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not text"
         raise _wrong_times(path, f"it cannot be read ({reason})") from None
-    reader = csv.DictReader(io.StringIO(text, newline=""), strict=True)
-    found: list[SubmittedAt] = []
+    reader = csv_reader(text)
     try:
-        reader.fieldnames = in_english([str(name).strip() for name in reader.fieldnames or ()])
-        if {_IDENTIFIER, _SUBMITTED} <= set(reader.fieldnames):
-            cells = ((moodle_key(row[_IDENTIFIER] or ""), (row[_SUBMITTED] or "").strip()) for row in reader)
-            return Worksheet(path, {key: words for key, words in cells if key and words.strip("-")})
-        if not set(reader.fieldnames or ()) >= _COLUMNS:
-            raise _wrong_times(path, "its first row lacks student, exercise or submitted_at")
-        for row in reader:
-            if not row["student"] or not row["exercise"]:
-                raise _wrong_times(path, f"line {reader.line_num}: it names no student or no exercise")
-            at = _seconds(path, reader.line_num, row["submitted_at"] or "")
-            found.append(SubmittedAt(row["student"], row["exercise"], "", "list", at))
+        headings = set(headings_of(reader))
+        rows = [(reader.line_num, row) for row in reader]
     except csv.Error as error:
-        raise _wrong_times(path, f"line {reader.line_num}: {error}") from None
+        raise _wrong_times(path, f"line {reader.line_num + 1}: {error}") from None
+    lines: dict[tuple[str, ...], int] = {}
+    if {_IDENTIFIER, _SUBMITTED} <= headings:
+        times = {}
+        for line, row in rows:
+            key, words = moodle_key(row[_IDENTIFIER] or ""), (row[_SUBMITTED] or "").strip()
+            if key and words.strip("-"):
+                _once(path, lines, line, key)
+                times[key] = words
+        return Worksheet(path, times)
+    if not headings >= _COLUMNS:
+        raise _wrong_times(path, "its first row lacks student, exercise or submitted_at")
+    found = []
+    for line, row in rows:
+        if not row["student"] or not row["exercise"]:
+            raise _wrong_times(path, f"line {line}: it names no student or no exercise")
+        _once(path, lines, line, row["student"], row["exercise"])
+        at = _seconds(path, line, row["submitted_at"] or "")
+        found.append(SubmittedAt(row["student"], row["exercise"], "", "list", at))
     return found
+
+
+def _once(path: Path, lines: dict[tuple[str, ...], int], line: int, *work: str) -> None:
+    """Refuse a second time for the same work: nobody said which counts."""
+    if lines.setdefault(work, line) != line:
+        raise _wrong_times(
+            path, f"{' '.join(map(repr, work))} is in two rows, on lines {lines[work]} and {line}"
+        )
 
 
 def worksheet_times(

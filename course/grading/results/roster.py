@@ -64,8 +64,8 @@ _GRADESCOPE = {"sis_user_id": "SID", "email": "Email", "name": "Name"}
 #: Canvas' own student, with whom a teacher tries an assignment: "Student, Test" in its gradebook.
 _TEST_STUDENT = re.compile(r"studenttest(_[0-9]+)?")
 FOR_TESTS = "Canvas' student for tests"
-#: Points as Canvas writes them.
-_POINTS = re.compile(r"[0-9]{1,9}(\.[0-9]{1,9})?")
+#: Points as Canvas writes them, in the language of whoever exports: 10.00 or 10,00, thousands not parted.
+_POINTS = re.compile(r"[0-9]{1,9}([.,][0-9]{1,9})?")
 #: Columns of a file that are named: a Canvas gradebook has one for each assignment.
 _NAMED = 8
 
@@ -86,10 +86,12 @@ class Person(msgspec.Struct, frozen=True, omit_defaults=True):
 
 @dataclass(frozen=True)
 class Column:
-    """An assignment's column in Canvas' gradebook: its heading, and its points if the file says them."""
+    """An assignment's column in Canvas' gradebook: its heading, its points if the file says them, and the
+    ids of the students whom it excuses."""
 
     heading: str
     points: float | None
+    excused: frozenset[str] = frozenset()
 
 
 @dataclass
@@ -225,22 +227,36 @@ def read_roster(path: Path) -> Roster:
     Raises:
         UsageError: it cannot be read or is not a roster; the message names the row.
     """
-    text = read_text(path)
-    first = text.partition("\n")[0]
-    delimiter = ";" if first.count(";") > first.count(",") else ","
-    reader = csv.DictReader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
+    reader = csv_reader(read_text(path))
     try:
-        headings = in_english([str(name).strip() for name in reader.fieldnames or ()])
-        reader.fieldnames = headings
+        headings = headings_of(reader)
         kind, columns = _kind(path, headings)
         rows = [_cells(path, reader.line_num, row) for row in reader if any(map(_some, row.values()))]
-        people = tuple(person for row, line in rows if (person := kind(path, line, row)) is not None)
     except csv.Error as error:
-        raise _wrong(path, f"line {reader.line_num}: {error}") from None
-    _check_unique(path, people)
+        raise _wrong(path, f"line {reader.line_num + 1}: {error}") from None
+    found = [(person, line) for row, line in rows if (person := kind(path, line, row)) is not None]
+    _check_unique(path, found)
+    people = tuple(person for person, _ in found)
     there = {name: heading for name, heading in columns.items() if heading in headings}
     assignments = _assignments(headings, [row for row, _ in rows]) if kind is _from_canvas else {}
-    return Roster(people, path.name, tuple(headings), there, assignments)
+    return Roster(people, one_line(path.name), tuple(headings), there, assignments)
+
+
+def csv_reader(text: str) -> csv.DictReader[str]:
+    """A reader of rows whose cells commas or semicolons part, as the language of whoever exports has it.
+
+    Where it raises csv.Error, the row that begins on the line after ``line_num`` is wrong.
+    """
+    first = text.partition("\n")[0]
+    delimiter = ";" if first.count(";") > first.count(",") else ","
+    return csv.DictReader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
+
+
+def headings_of(reader: csv.DictReader[str]) -> list[str]:
+    """The headings, in English, by which the rows are known from here on."""
+    headings = in_english([str(name).strip() for name in reader.fieldnames or ()])
+    reader.fieldnames = headings
+    return headings
 
 
 def read_text(path: Path) -> str:
@@ -270,6 +286,8 @@ def _kind(path: Path, headings: list[str]) -> tuple[Kind, dict[str, str]]:
         return _from_canvas, _CANVAS if "Student" in found else {**_CANVAS, "name": "LastName"}
     if {"First Name", "Last Name", "Email"} <= found or {"Name", "Email"} <= found:
         return _from_gradescope, _GRADESCOPE if "Name" in found else {**_GRADESCOPE, "name": "First Name"}
+    if not any(headings):
+        raise _wrong(path, "its first row is empty")
     if "student" not in found:
         listed = one_line(", ".join(headings))
         raise _wrong(
@@ -338,12 +356,12 @@ def _assignments(headings: list[str], rows: list[dict[str, str]]) -> dict[str, C
     found = {}
     for heading in headings:
         if id_ := re.search(r"\(([0-9]+)\)$", heading):
+            cells = [(row["ID"].strip(), row[heading].strip()) for row in rows]
             points = [
-                float(p)
-                for row in rows
-                if not row["ID"].strip() and _POINTS.fullmatch(p := row[heading].strip())
+                float(cell.replace(",", ".")) for key, cell in cells if not key and _POINTS.fullmatch(cell)
             ]
-            found[id_[1]] = Column(heading, points[0] if points else None)
+            excused = frozenset(key for key, cell in cells if key and cell.upper() == "EX")
+            found[id_[1]] = Column(heading, points[0] if points else None, excused)
     return found
 
 
@@ -386,14 +404,13 @@ def _from_gradescope(path: Path, line: int, row: dict[str, str]) -> Person | Non
     return Person(student=sid or email or name, name=name, email=email, sis_user_id=sid, section=section)
 
 
-def _check_unique(path: Path, people: tuple[Person, ...]) -> None:
+def _check_unique(path: Path, people: list[tuple[Person, int]]) -> None:
     for column in ("student", "canvas_id", "sis_user_id", "moodle_key"):
-        seen: set[str] = set()
-        for person in people:
+        seen: dict[str, int] = {}
+        for person, line in people:
             value = getattr(person, column)
-            if value and value in seen:
-                raise _wrong(path, f"{column} {value!r} is in two rows")
-            seen.add(value)
+            if value and seen.setdefault(value, line) != line:
+                raise _wrong(path, f"{column} {value!r} is in two rows, on lines {seen[value]} and {line}")
 
 
 def _wrong(path: Path, why: str) -> UsageError:

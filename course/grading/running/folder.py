@@ -11,7 +11,7 @@ import msgspec
 from course.errors import MissingCapabilityError, UsageError
 from course.grading.exports.grades import write_csv, write_jsonl
 from course.grading.gradebook.book import Gradebook
-from course.grading.gradebook.file import explained
+from course.grading.gradebook.file import explained, rescue
 from course.grading.gradebook.records import Looked
 from course.grading.gradebook.salvage import back_up
 from course.grading.results.effective import Results, recorded
@@ -59,27 +59,42 @@ def begin(out: Path, submissions: Path, *, resume: bool) -> Gradebook:
     if resume and path.exists():
         return Gradebook(path, writing=True)
     try:
-        out.mkdir(parents=True)
+        make_folder(out, exist_ok=False)
     except FileExistsError:
         # A run that was killed before it made its gradebook leaves the folder and perhaps the draft.
         begun = (
             resume and out.is_dir() and all(item.name.startswith("gradebook.new") for item in out.iterdir())
         )
         if not begun:
+            what = "has no gradebook" if resume and out.is_dir() else "exists already"
+            fix = "Name a new folder, or add --resume to finish the run that is there."
             raise UsageError(
-                f"{out} exists already; nothing was touched.",
-                help="Name a new folder, or add --resume to finish the run that is there.",
+                f"{out} {what}; nothing was touched.",
+                help=rescue(path, "Name the folder of the run.") if resume else fix,
                 code="out_exists",
             ) from None
         for draft in out.iterdir():
             draft.unlink(missing_ok=True)
+    return Gradebook(path, create=True, writing=True)
+
+
+def make_folder(out: Path, *, exist_ok: bool = True) -> None:
+    """Make a folder for a gradebook, and those above it.
+
+    Raises:
+        FileExistsError: it is there, and should not be.
+        MissingCapabilityError: it cannot be made.
+    """
+    try:
+        out.mkdir(parents=True, exist_ok=exist_ok)
+    except FileExistsError:
+        raise
     except OSError as error:
         raise MissingCapabilityError(
             f"{out} cannot be made: {error.strerror}.",
             help="Name a folder that can be written.",
             code="read_only",
         ) from None
-    return Gradebook(path, create=True, writing=True)
 
 
 def export_all(out: Path, results: Results) -> None:

@@ -47,6 +47,7 @@ from course.grading.running.folder import (
     taken_back,
 )
 from course.grading.running.snapshot import Snapshot, Unpacked, among_graders, fresh, frozen, kept
+from course.printable import one_line
 from course.quizzing.bank import Bank, needed
 from course.scoring.graders import grader_version
 from course.scoring.judging.submission import Terms
@@ -234,10 +235,10 @@ def grade_class(
             export_all(out, Results(book))  # what lies there says of work that came since that there is none
         for result, files in run.results(grade):
             with run.replacing(result.key):
-                book.add(result, files)
+                graded = book.add(result, files)
             taken.graded |= bool(result.verdict.isolation)
             run.one_less(result.key.student)
-            report(run.view.of(result), run.done, len(run.names))
+            report(run.view.of(graded), run.done, len(run.names))
         run.note_times()
         run.note_unread()
         summary = run.summary
@@ -323,7 +324,7 @@ class _Run:
         terms = options.terms
         facts = {
             "level": terms.level, "at_least": terms.at_least, "timeout": terms.timeout,
-            "snapshot": self.summary.graders, "folder": str(self._folder.absolute()),
+            "snapshot": self.summary.graders, "folder": one_line(str(self._folder.absolute())),
             "layout": options.layout,
         }  # fmt: skip
         if not (options.resume and book.run_options().get("snapshot")):

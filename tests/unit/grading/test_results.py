@@ -205,9 +205,15 @@ def test_names_a_policy_has_and_the_gradebook_has_not_are_listed() -> None:
 
 def test_a_list_of_times_is_read_to_the_second(tmp_path: Path) -> None:
     path = tmp_path / "times.csv"
-    path.write_text("student,exercise,submitted_at\nada,doubling,2026-12-02T01:00:00+01:00\n", "utf-8")
-    assert [(time.student, time.at) for time in read_times(path)] == [("ada", DUE.timestamp() + 60)]
-    for bad in ("2026-12-02T01:00:00", "yesterday", ""):
-        path.write_text(f"student,exercise,submitted_at\nada,doubling,{bad}\n", "utf-8")
-        with pytest.raises(UsageError, match="line 2"):
+    text = "student,exercise,submitted_at\nada,doubling,2026-12-02T01:00:00+01:00\n"
+    for sep in ",;":
+        path.write_text(text.replace(",", sep), "utf-8")
+        assert [(time.student, time.at) for time in read_times(path)] == [("ada", DUE.timestamp() + 60)]
+    bad = [text.replace("2026-12-02T01:00:00+01:00", at) for at in ("2026-12-02T01:00:00", "yesterday", "")]
+    again = "ada,doubling,2026-12-03T01:00:00+01:00\n"
+    sheet = "Identifier,Last modified (submission)\nParticipant 1,x\nParticipant 2,-\nTeilnehmer/in1,y\n"
+    for wrong, line in (*((one, "line 2") for one in bad), (text + '"bob', "line 3"),
+                       (text + again, "on lines 2 and 3"), (sheet, "on lines 2 and 4")):  # fmt: skip
+        path.write_text(wrong, "utf-8")
+        with pytest.raises(UsageError, match=line):
             read_times(path)

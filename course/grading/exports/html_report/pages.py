@@ -8,6 +8,7 @@ import contextlib
 import hashlib
 import itertools
 import math
+import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -25,8 +26,10 @@ from course.grading.exports.html_report.tally import CheckTally, ExerciseTally, 
 from course.grading.exports.selection import (
     ExportOptions,
     Written,
+    begins,
     checks_for_student,
     problem_for_student,
+    refuse_to_replace,
     select,
 )
 from course.grading.gradebook.records import GradedExercise
@@ -523,15 +526,45 @@ def write_html(target: Path, results: Results, options: ExportOptions) -> Writte
 
     Args:
         target: the page (``.html``), or the folder it goes into.
+
+    Raises:
+        UsageError: files are in the way that no export to this page made.
     """
     selection = select(results, options)
-    path = target if target.suffix.lower() in {".html", ".htm"} else target / "report.html"
+    page = target.suffix.lower() in {".html", ".htm"} and not target.is_dir()
+    path = target if page else target / "report.html"
+    _refuse_others(path, len(results.students()), named=page)
     paths = write_pages(path, results, selection.each(), selection.exercises)
     selection.written.paths += paths
     selection.written.notes.append(
         "Pages in the folder students can be handed out, each to its student; the list of students is yours."
     )
     return selection.written
+
+
+def _refuse_others(path: Path, students: int, *, named: bool) -> None:
+    """Refuse to replace or remove what no earlier export to this page made: its list of students links to it.
+
+    Args:
+        students: how many pages are numbered.
+        named: the user named the page itself, and not its folder.
+    """
+    listed, table, folder = (path.with_name(name) for name in ("students.html", "students.csv", "students"))
+    numbered = [*folder.iterdir()] if folder.is_dir() else []
+    pages = [page for page in numbered if _PAGE.fullmatch(page.name)]
+    pages = [page for page in pages if int(page.stem) <= students or _is_ours(page)]
+    again = _is_ours(listed) and f'href="{_link(path)}"' in listed.read_text("utf-8", "replace")
+    others = [page for page in pages if not _is_ours(page)] if again else [listed, table, *pages]
+    others += [path] * (not named and not _is_ours(path))
+    refuse_to_replace(path.parent, others, path.name)
+
+
+def _is_ours(path: Path) -> bool:
+    return begins(path, MARKER.encode())
+
+
+def _link(path: Path) -> str:
+    return quote(os.fsencode(path.name))
 
 
 def write_pages(
@@ -570,11 +603,11 @@ def write_pages(
     listed, table = path.with_name("students.html"), path.with_name("students.csv")
     chosen = [noted[name] for name in exercises]
     shown = [rows[student] for student in written]
-    write_bytes(listed, _encoded(index_page(results, shown, chosen, quote(path.name))))
+    write_bytes(listed, _encoded(index_page(results, shown, chosen, _link(path))))
     headings = ("page", "student", "name", "email", *exercises)
     rows_of = _table(results, written, links)
     write_bytes(table, csv_bytes(headings, ([*row, *scores[row[1]]] for row in rows_of)))
-    write_bytes(path, _encoded(class_page(results, tally, links, quote(listed.name))))
+    write_bytes(path, _encoded(class_page(results, tally, links, _link(listed))))
     _remove_others(folder, {f"{numbers[student]}.html" for student in written})
     return [path, listed, table, folder]
 
@@ -605,11 +638,9 @@ def _remove_others(folder: Path, written: set[str]) -> None:
     if not folder.is_dir():
         return
     for path in folder.iterdir():
-        if _PAGE.fullmatch(path.name) and path.name not in written:
-            with contextlib.suppress(OSError), path.open("rb") as handle:
-                ours = handle.read(len(MARKER)) == MARKER.encode()
-                if ours:
-                    path.unlink()
+        if _PAGE.fullmatch(path.name) and path.name not in written and _is_ours(path):
+            with contextlib.suppress(OSError):
+                path.unlink()
 
 
 def _encoded(page: str) -> bytes:

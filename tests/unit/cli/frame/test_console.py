@@ -10,7 +10,7 @@ import re
 import msgspec
 import pytest
 
-from course.cli.frame.console import Console, Settings
+from course.cli.frame.console import Console, Settings, meter
 from course.cli.frame.replies import Bare, encode
 from course.errors import InternalError
 
@@ -67,6 +67,15 @@ def test_a_narrow_window_gets_facts_in_place_of_a_table(monkeypatch, columns):
         "numerical-integration",
         "  Lesson How a simulator moves time",
     ]
+
+
+def test_a_bar_knows_how_much_there_is_when_it_appears(monkeypatch):
+    monkeypatch.setattr("course.cli.frame.console.PATIENCE", -1.0)
+    console, out, _ = _console()
+    with meter(console) as step:
+        step(1, 3, "graded")
+    assert "1/3" in out.getvalue()
+    assert "None" not in out.getvalue()
 
 
 @pytest.mark.parametrize("terminal", [True, False])

@@ -15,12 +15,13 @@ from pathlib import Path
 import pytest
 
 from course.grading.gradebook.book import Gradebook
-from course.grading.gradebook.records import PlatformIdentity, SubmittedAt
+from course.grading.gradebook.records import PlatformIdentity, Result, SubmittedAt
+from course.grading.results.roster import Person, Roster
 from course.grading.running import batch
 from course.grading.running.batch import Graded
 from course.grading.similar import Similar
 from tests.unit.cli.conftest import files_in
-from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, make_book
+from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, key, make_book
 from tests.unit.grading.test_results import DAY, DUE, POLICY
 
 ROSTER = """student,name,email,canvas_id,moodle_key,extension_days
@@ -51,6 +52,27 @@ def out(made: Path, tmp_path: Path) -> Path:
 def grades(path: Path) -> dict[str, dict[str, str]]:
     rows = csv.DictReader(io.StringIO(path.read_text("utf-8-sig"), newline=""))
     return {row["student"]: row for row in rows}
+
+
+def test_no_name_or_reason_adds_a_line(course, tmp_path: Path) -> None:
+    forged = "  100%: ada and bob, doubling"
+    code = (
+        "def double(x):\n    s = 0\n    for part in (x, x):\n        s += part * 1 + 0 * part\n    return s\n"
+    )
+    names = [f"{letter}\n{forged}" for letter in "xy"]
+    with make_book(tmp_path / "out", {}) as book:
+        for name in names:
+            book.add(Result(key(name), RIGHT), {"doubling.py": code.encode()})
+        book.begin_run("rerun", {"reason": f"r\n{forged}", "who": f"w\n{forged}"})
+        book.set_meta(late_policy=POLICY.replace("bob", f"z\\n{forged}"))
+        book.set_meta(roster=Roster((Person("else"),)).dump())
+    override = ("override", "out", names[0], "doubling", "--score", "1", "--reason", f"r\n{forged}")
+    for words in (("similar", "out"), override, ("log", "out"), ("explain", "out", names[0], "doubling"),
+                  ("late", "out"), ("export", "out", "--partial"), ("assign", "out")):  # fmt: skip
+        ran = course("grade", *words)
+        assert ran.code == 0, ran.err
+        assert forged not in (ran.out + ran.err).splitlines()
+    assert "100%: x\\n" in course("grade", "similar", "out").out
 
 
 def test_an_override_is_in_every_file_at_once_and_can_be_lifted(course, out: Path) -> None:

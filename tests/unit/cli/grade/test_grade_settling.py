@@ -60,6 +60,8 @@ def test_what_is_unsettled_is_listed_previewed_and_settled(course, here: Path) -
         },
     ]  # fmt: skip
     assert "hw.py: defines double, doublings; proposed" in course("grade", "assign", "out").out
+    told = course("grade", "assign", "out", "--accept-names", "--dry-run").out
+    assert "would be left to settle" in told
     tried = course("grade", "assign", "out", "--accept-names", "--dry-run", "--json").json
     assert [(one["student"], one["score_before"], one["score_after"]) for one in tried["assigned"]] == [
         ("bob", 0.0, 10.0)

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import shutil
 import sqlite3
 from pathlib import Path
 
 import pytest
 
+from course.grading.exports.formats import FORMATS
 from course.grading.gradebook.book import Gradebook
+from course.grading.running import batch
 from course.grading.running.folder import export_all, open_results
 from tests.unit.cli.conftest import files_in
 from tests.unit.grading.made import HALF, RIGHT, make_book
+from tests.unit.grading.running.test_interrupted import interrupted_after
 
 RUN = ("run", "class", "--out", "out", "--exercise", "doubling")
+SHEET = "Identifier,Full name,Grade,Last modified (grade)\nParticipant 1,ada,,-\n"
 WRITING = [
     (*RUN, "--resume"),
     ("rerun", "out"),
@@ -94,6 +99,19 @@ def test_a_gradebook_that_cannot_be_read_is_said_to_be_so_and_left_as_it_is(
     assert files_in(out.parent) == before
 
 
+@pytest.mark.parametrize(
+    "words", [WRITING[0], WRITING[2], ("explain", "out", "ada", "doubling")], ids=" ".join
+)
+def test_where_only_backups_are_left_every_command_names_salvage(course, out: Path, words) -> None:
+    path = out / "gradebook.sqlite"
+    shutil.copyfile(path, out / "gradebook.backup-1.sqlite")
+    for lose in (lambda: path.write_bytes(b""), path.unlink):
+        lose()
+        ran = course("grade", *words)
+        assert "`course grade salvage out --to out-salvaged`" in ran.err.replace("\n", " ")
+        assert ran.code in {2, 5, 7}
+
+
 @pytest.fixture
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
     """A command that waits for a locked gradebook gives up soon."""
@@ -160,6 +178,23 @@ def test_pages_that_cannot_be_written_cost_nothing_but_themselves(
     assert "oral exam" in (out / "report.html").read_text("utf-8")
 
 
+@pytest.mark.parametrize("count", [0, 1])
+def test_an_interrupted_run_ends_its_lines_with_the_reason(
+    course, out: Path, monkeypatch: pytest.MonkeyPatch, count: int
+) -> None:
+    shutil.copytree(out.parent / "class" / "ada", out.parent / "class" / "bob")
+    stopped = interrupted_after(count)
+    monkeypatch.setattr(batch, "grade_all", lambda entries, terms, graders=1: stopped(entries, terms))
+    ran = course("grade", "run", "class", "--out", "new", "--exercise", "doubling", "--json")
+    *lines, last = map(json.loads, ran.out.splitlines())
+    assert (ran.code, last["exit_code"], last["error"]["code"]) == (130, 130, "interrupted")
+    assert [line["student"] for line in lines] == ["ada"] * count
+    if count:
+        with open_results(out.parent / "new") as results:
+            (stored,) = (one.result.graded_at for one in results.all() if not one.waiting)
+        assert lines[0]["graded_at"] == stored
+
+
 def test_a_class_with_nothing_to_grade_is_told_of_warm_ups_and_of_resuming(course, tmp_path: Path) -> None:
     (tmp_path / "class" / "ada" / "two-walls").mkdir(parents=True)
     (tmp_path / "class" / "ada" / "two-walls" / "two_walls.py").write_text("x = 1\n", "utf-8")
@@ -169,3 +204,62 @@ def test_a_class_with_nothing_to_grade_is_told_of_warm_ups_and_of_resuming(cours
     said = course("grade", "explain", "out", "ada", "doubling")
     assert said.code == 5
     assert "--exercise names it), or the run was interrupted" in said.err
+
+
+#: What is said of a text that is not UTF-8, of a name that may be any bytes, and of one that nobody has.
+REFUSED, TAKEN, UNKNOWN = 2, 0, 5
+NO_TEXT = "x\udcff"
+
+
+@pytest.mark.parametrize(
+    ("words", "code"),
+    [
+        (("override", "out", "ada", "doubling", "--score", "1", "--reason", NO_TEXT), REFUSED),
+        (("override", "out", NO_TEXT, "doubling", "--lift"), REFUSED),
+        (("explain", "out", NO_TEXT, "doubling"), REFUSED),
+        (("explain", "out", "ada", NO_TEXT), REFUSED),
+        (("log", "out", NO_TEXT), REFUSED),
+        (("log", NO_TEXT), UNKNOWN),
+        (("rerun", "out", "--reason", NO_TEXT), REFUSED),
+        (("assign", "out", "ada", NO_TEXT), REFUSED),
+        (("similar", "out", "--exercise", NO_TEXT), REFUSED),
+        (("late", "out", "--clear", "--reason", NO_TEXT), REFUSED),
+        (("late", "out", "--roster", f"{NO_TEXT}.csv"), TAKEN),
+        (("run", NO_TEXT, "--out", "new", "--exercise", "doubling"), TAKEN),
+        (("run", "class", "--out", NO_TEXT, "--exercise", "doubling"), TAKEN),
+        (("salvage", "out", "--to", NO_TEXT), TAKEN),
+        (("similar", "out", "-o", f"{NO_TEXT}.html"), TAKEN),
+        *((("export", "out", "--format", name, "-o", NO_TEXT), TAKEN) for name in ("csv", "html")),
+        (("export", "out", "--format", "html", "-o", f"{NO_TEXT}.html"), TAKEN),
+        *((("export", "out", "-o", name), 4) for name in ("y" * 300, "class/ada/doubling.py/x")),
+        (("salvage", "out", "--to", "class/ada/doubling.py/x"), 4),
+    ],
+)
+def test_words_that_are_no_text_are_named_and_paths_may_be_any_bytes(course, out: Path, words, code) -> None:
+    (out.parent / f"{NO_TEXT}.csv").write_text("student\nada\n", "utf-8")
+    if words[:2] == ("run", NO_TEXT):
+        shutil.copytree(out.parent / "class", out.parent / NO_TEXT)
+    ran = course("grade", *words, "--json")
+    assert ran.code == code, ran.err
+    for line in ran.out.splitlines():
+        json.dumps(json.loads(line), ensure_ascii=False).encode("utf-8")
+    if code == REFUSED:
+        assert r"'x\udcff' is not UTF-8." in ran.err
+
+
+@pytest.mark.parametrize("name", [*FORMATS, "gradescope-autograder", "similar"])
+def test_a_folder_is_no_place_for_a_file(course, out: Path, name: str) -> None:
+    (out.parent / "folder.html").mkdir()
+    (out.parent / "sheet.csv").write_text(SHEET, "utf-8")
+    (out.parent / "keys.csv").write_text("student,canvas_id,moodle_key\nada,1,ada\n", "utf-8")
+    words = ("similar", "out") if name == "similar" else ("export", "out", "--format", name)
+    if name in {"canvas", "moodle", "moodle-worksheet"}:
+        roster = "sheet.csv" if name == "moodle-worksheet" else "keys.csv"
+        words += ("--exercise", "doubling", "--roster", roster, "--partial")
+        words += ("--assignment", "doubling=1") * (name == "canvas")
+    ran = course("grade", *words, "-o", "folder.html", "--json")
+    if name in {"gradescope", "html"}:
+        assert (ran.code, len(files_in(out.parent / "folder.html")) > 1) == (0, True), ran.err
+    else:
+        assert (ran.code, ran.json["error"]["code"]) == (2, "bad_file_name")
+        assert ran.json["error"]["message"] == "folder.html is a folder."

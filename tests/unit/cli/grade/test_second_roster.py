@@ -222,6 +222,38 @@ def test_scores_are_on_the_scale_of_the_gradebook_that_canvas_gave(course, out: 
     assert "Doubling, first try (4711)" in ran.err
 
 
+@pytest.mark.parametrize(
+    ("points", "score", "told"),
+    [
+        ("5.00", "5", "5 in Canvas"), ("5,00", "5", "5 in Canvas"), ("10,00", "10", ""),
+        ("", "10", "no points"), ("nan", "10", "no points"), ("0", "10", "no points"),
+        ("-3", "10", "no points"),
+    ],
+)  # fmt: skip
+def test_points_are_read_in_every_language_and_said_where_there_are_none(
+    course, out: Path, points: str, score: str, told: str
+) -> None:
+    """Source: canvas-lms/lib/gradebook_exporter.rb, ``format_numbers``: two digits, in a user's language."""
+    rows = list(csv.reader(CANVAS.replace(",10\n", ",POINTS\n").splitlines()))
+    text = "\n".join(";".join(row) for row in rows).replace("POINTS", points)
+    write(out.parent, "canvas.csv", text)
+    ran = course(*TO_CANVAS, "canvas.csv")
+    rows = list(csv.reader((out / "canvas.csv").read_text().splitlines()))
+    assert (rows[1][-1], rows[2][-1], ran.code) == (score, score, 0)
+    assert told in ran.out
+    assert len(ran.out.splitlines()) == 1 + bool(told)
+
+
+def test_whom_canvas_excuses_stays_excused(course, out: Path) -> None:
+    write(out.parent, "canvas.csv", CANVAS.replace(",bob,A,", ",bob,A,EX"))
+    ran = course(*TO_CANVAS, "canvas.csv")
+    assert '"bob","A",""' in (out / "canvas.csv").read_text()
+    assert "Excused in Canvas (EX), and nothing was changed there: bob doubling (EX)." in ran.out
+    assert course(*TO_CANVAS, "canvas.csv", "--json").json["kept"] == ["bob doubling (EX)"]
+    assert course(*TO_CANVAS, "canvas.csv", "--overwrite").code == 0
+    assert '"bob","A","10"' in (out / "canvas.csv").read_text()
+
+
 def test_the_student_for_tests_stops_no_export(course, tmp_path: Path) -> None:
     with make_book(tmp_path / "out", {"lovelaceada_101": RIGHT, "studenttest_999": RIGHT}):
         pass
@@ -304,6 +336,13 @@ def test_moodles_worksheet_says_when_work_was_handed_in(course, tmp_path: Path, 
     ran = course(*told, "--policy", "late.toml")
     assert "Ada_101 doubling: 1 d 1 h late" in ran.out, ran
     assert "1 has no trusted submission time; it counts as on time." in ran.out
+    # Over a Sunday on which the clock may change, Moodle's words are an hour too vague for a penalty.
+    write(tmp_path, "march.toml", POLICY[: POLICY.index("[[extension]]")].replace("2026-12-01", "2027-03-27"))
+    for day, hour, unsure in ((29, 0, True), (29, 1, False), (28, 0, True), (27, 0, False)):
+        late = dt.datetime(2027, 3, day, hour, 30)
+        write(tmp_path, "sheet.csv", sheet.replace(words.format(at), words.format(late)))
+        ran = course(*told, "--policy", "march.toml")
+        assert (ran.code, "points of Ada_101" in ran.err) == (0, unsure), (day, hour, ran.err)
     write(tmp_path, "sheet.csv", sheet.replace(words.format(at), "gestern"))
     ran = course(*told)
     assert (ran.code, "'gestern' is not a time" in ran.err) == (2, True)

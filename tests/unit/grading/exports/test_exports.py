@@ -310,6 +310,18 @@ def test_moodle_finds_its_students_by_their_key(results: Results, tmp_path: Path
     assert all(re.fullmatch(r"[0-9.]*", grade) for grade in grades.values())
 
 
+def test_an_exercise_that_nobody_handed_in_has_no_column(results: Results, tmp_path: Path) -> None:
+    everything = dataclasses.replace(OPTIONS, exercises=())
+    for name in ("moodle", "canvas"):
+        export(results, name, tmp_path, tmp_path / "all.csv", everything)
+        assert (tmp_path / "all.csv").read_bytes() == write(results, name, tmp_path).read_bytes()
+    results.roster = Roster((Person("nobody", moodle_key="7", canvas_id="7"),))
+    written = export(
+        results, "moodle", tmp_path, tmp_path / "none.csv", dataclasses.replace(OPTIONS, partial=True)
+    )
+    assert (written.rows, written.notes) == (0, [])
+
+
 @pytest.mark.parametrize("name", FOR_STUDENTS)
 def test_what_students_may_read_has_nothing_hidden(results: Results, tmp_path: Path, name: str) -> None:
     path = write(results, name, tmp_path)

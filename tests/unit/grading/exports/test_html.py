@@ -12,7 +12,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from course.errors import MissingCapabilityError
+from course.errors import MissingCapabilityError, UsageError
 from course.grading.exports.formats import export
 from course.grading.exports.grades import number, safe_cell
 from course.grading.exports.html_report.pages import class_page, macro, script
@@ -333,6 +333,37 @@ def test_the_page_goes_where_it_is_told(tmp_path: Path) -> None:
     assert said[said.index("Skip to the content") + 1] == "Ada Lovelace"
     row = read_page(tmp_path / "web" / "students.html").tables["Students and their scores"][1]
     assert row == ["1", "ada", "Ada Lovelace", "B", "10", "–"]
+
+
+@pytest.mark.parametrize(
+    ("target", "there"),
+    [
+        ("b.html", "students.html"), ("b.html", "students.csv"), ("b.html", "students/1.html"),
+        ("", "report.html"), ("", "students.csv"), ("b.html", "an export to a.html"),
+        ("gradescope", "gradescope/index.csv"), ("gradescope", "gradescope/00001.json"),
+    ],
+)  # fmt: skip
+def test_nothing_is_replaced_that_no_export_to_this_page_made(
+    tmp_path: Path, target: str, there: str
+) -> None:
+    web, name = tmp_path / "web", "gradescope" if target == "gradescope" else "html"
+    with make_book(tmp_path / "out", {"ada": RIGHT}) as book:
+        results = Results(book)
+        if there.startswith("an"):
+            export(results, "html", tmp_path / "out", web / "a.html", ALL)
+        else:
+            (web / there).parent.mkdir(parents=True)
+            (web / there).write_text("mine")
+        before = {path: path.read_bytes() for path in web.rglob("*.*")}
+        with pytest.raises(UsageError) as caught:
+            export(results, name, tmp_path / "out", web / target, ALL)
+        assert caught.value.code == "out_exists"
+        assert (
+            there.removeprefix("gradescope/") if there[:2] != "an" else "students.csv"
+        ) in caught.value.message
+        assert {path: path.read_bytes() for path in web.rglob("*.*")} == before
+        for _ in range(2):
+            export(results, name, tmp_path / "out", tmp_path / "new" / target, ALL)
 
 
 def test_the_class_page_does_not_grow_with_the_class(tmp_path: Path) -> None:

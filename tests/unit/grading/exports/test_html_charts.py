@@ -88,12 +88,8 @@ def test_times_are_written_as_a_person_reads_them() -> None:
     assert [duration(value) for value in (0.0004, 0.0123, 0.9, 1.234, 75.0)] == [
         "0.4 ms", "12 ms", "900 ms", "1.23 s", "75 s",
     ]  # fmt: skip
-    assert [in_days(value) for value in (59, 3_700, 86_400, 87_060, 90_100)] == [
-        "0 min",
-        "1 h 1 min",
-        "1 d",
-        "1 d 11 min",
-        "1 d 1 h 1 min",
-    ]
+    assert [in_days(value) for value in (1, 900, 900.5, 3_700, 86_400, 87_060, 90_100)] == [
+        "1 min", "15 min", "16 min", "1 h 2 min", "1 d", "1 d 11 min", "1 d 1 h 2 min",
+    ]  # fmt: skip
     assert when("2026-12-01T23:59:07Z") == "2026-12-01 23:59 UTC"
     assert when("") == ""

@@ -6,8 +6,9 @@
                  <name>[_LATE]_<user>_text.html or _link.html; <name> is anon where it grades anonymously
     gradescope   SUBMISSIONS/submission_<number>/... with submission_metadata.yml
 
-The kind follows from all the names together. A folder in which only some names are a platform's is refused,
-and the others are listed; a file without a known owner is reported, never guessed.
+The kind follows from all the names together, and from nothing that lies in a student's folder: that is the
+student's. A folder in which only some names are a platform's is refused, and the others are listed; a file
+without a known owner is reported, never guessed.
 """
 
 import bz2
@@ -84,6 +85,7 @@ _CANVAS = re.compile(
     r"_(?:(?P<attachment>[0-9]+)_(?P<file>.+)|(?P<typed>text|link)\.html)",
     re.S,
 )
+_GRADESCOPE = re.compile(r"submission_[0-9]+")
 _METADATA = "submission_metadata.yml"
 _MAX_METADATA = 200 << 20
 _SHOWN = 5
@@ -180,11 +182,10 @@ def class_list(folder: Path, layout: str = "auto") -> ClassList:
     if layout not in LAYOUTS:
         raise UsageError(f"--layout is {layout!r}.", help=f"It takes {', '.join(LAYOUTS)}.")
     names = _names(folder)
-    inner = [name for name in names if (folder / name / _METADATA).is_file()]
-    if layout in {"auto", "gradescope"} and len(names) == len(inner) == 1:
-        folder, names = folder / inner[0], _names(folder / inner[0])  # the export is one folder in a zip
     if layout == "auto":
         layout = _recognised(folder, names)
+    elif layout == "gradescope" and _METADATA not in names and (refused := _one_too_high(folder, names)):
+        raise refused
     readers = {"folders": _folders, "moodle": _moodle, "canvas": _canvas, "gradescope": _gradescope}
     found = readers[layout](folder, names)
     found.students.sort(key=lambda student: student.name)
@@ -209,16 +210,30 @@ def _names(folder: Path) -> list[str]:
     return [name for raw in found if (name := os.fsdecode(raw)) not in IGNORED]
 
 
+def _one_too_high(folder: Path, names: list[str]) -> UsageError | None:
+    """Gradescope's zip holds one folder. A student's may look the same, so no list in it is believed."""
+    inner = [folder / name for name in names if (folder / name).is_dir()]
+    if len(inner) != 1 or not os.path.isfile(inner[0] / _METADATA):  # noqa: PTH113 - False where it is closed
+        return None
+    return UsageError(
+        f"The one folder in {folder} has a {_METADATA}: a download from Gradescope, or a student's work.",
+        help=f"If Gradescope made it, name {str(inner[0])!r}; if a student did, choose --layout folders.",
+        code="mixed_layout",
+    )
+
+
 def _recognised(folder: Path, names: list[str]) -> str:
-    if _METADATA in names:
-        return "gradescope"
     folders = [name for name in names if (folder / name).is_dir() or (folder / name).is_symlink()]
     moodle = [name for name in names if _MOODLE.fullmatch(name)]
     canvas = [name for name in names if name not in folders and _CANVAS.fullmatch(name)]
     if moodle:
         layout, odd = "moodle", [name for name in folders if name not in moodle]
+    elif _METADATA in names:
+        layout, odd = "gradescope", [name for name in folders if not _GRADESCOPE.fullmatch(name)]
     elif canvas and (not folders or any(map(_may_be_handed_in, canvas))):
         layout, odd = "canvas", [name for name in names if name not in canvas]
+    elif refused := _one_too_high(folder, names):
+        raise refused
     else:
         return "folders"
     if odd:

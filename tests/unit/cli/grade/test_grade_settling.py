@@ -292,3 +292,30 @@ def test_students_who_are_called_as_exercises_are_graded_and_it_is_said(course, 
     table = csv.DictReader((here / "new" / "grades.csv").read_text("utf-8-sig").splitlines())
     full = {row["student"]: row["score"] == row["max_score"] for row in table}
     assert full == {"doubling": True, "halving": True}
+
+
+_METADATA = "".join(
+    f"submission_{n}:\n  :submitters:\n  - :sid: {who}\n  :created_at: 2026-11-01 10:00:00 Z\n"
+    for n, who in enumerate(("ada", "bob"))
+)
+
+
+@pytest.mark.parametrize("layout", ["auto", "gradescope", "folders", "moodle"])
+@pytest.mark.parametrize("name", ["ada", "Ada_11_assignsubmission_file", "assignment_77_export"])
+def test_what_one_student_hands_in_grades_nobody_else(course, here: Path, name: str, layout: str) -> None:
+    """The only entry of a folder was searched for Gradescope's list, and that was believed."""
+    for n in range(2):
+        (here / "second" / name / f"submission_{n}").mkdir(parents=True)
+        (here / "second" / name / f"submission_{n}" / "doubling.py").write_text(SOURCE)
+    (here / "second" / name / "submission_metadata.yml").write_text(_METADATA)
+    with Gradebook(here / "out" / "gradebook.sqlite") as kept:
+        before = kept.history("bob", "doubling")
+    ran = course("grade", "run", "second", "--out", "out", "--resume", "--layout", layout, "--json")
+    with Gradebook(here / "out" / "gradebook.sqlite") as kept:
+        assert kept.history("bob", "doubling") == before
+        assert not [one for one in kept.times() if one.source == "gradescope"]
+    if ran.code == 2:  # it is a download, or one student's work: whoever grades says which
+        assert f"second/{name}" in ran.json["error"]["help"]
+        whole = course("grade", "run", f"second/{name}", "--out", "new", "--exercise", "doubling", "--json")
+        assert whole.code == 0, whole.err
+    assert (ran.code == 2) == (layout == "gradescope" or (layout == "auto" and "Ada" not in name))

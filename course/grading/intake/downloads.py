@@ -20,7 +20,6 @@ import os
 import re
 import tarfile
 import unicodedata
-import zlib
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
@@ -29,7 +28,7 @@ from typing import Any, Literal
 from course import extras
 from course.errors import NotFoundError, UsageError
 from course.grading.gradebook.records import PlatformIdentity
-from course.handed_in.limits import HANDED_IN
+from course.handed_in.limits import HANDED_IN, MAX_DEEP, MAX_PATH, MAX_STREAMED
 from course.strangers import read_bytes
 
 # ---
@@ -40,12 +39,18 @@ from course.strangers import read_bytes
 
 
 _NUMBERED = re.compile(r"(?:\s*\([0-9]{1,3}\)|-[0-9]{1,3})+$")
+#: Characters at the end of a name in which numbers are looked for, which takes quadratic time.
+_END = 40
+
+
+def _unnumbered(name: str) -> str:
+    return name[:-_END] + _NUMBERED.sub("", name[-_END:])
 
 
 def plain(name: str) -> str:
     """A file's name without letter case, and without the number of a copy: ``Name (2).py`` is ``name.py``."""
     stem, dot, suffix = unicodedata.normalize("NFC", name).rpartition(".")
-    return (_NUMBERED.sub("", stem) + dot + suffix.rstrip()).casefold()
+    return (_unnumbered(stem) + dot + suffix.rstrip()).casefold()
 
 
 def is_meant(name: str, wanted: str) -> bool:
@@ -59,7 +64,7 @@ def is_folder_meant(name: str, wanted: str) -> bool:
     A warm-up's is ``warm-ups/<id>`` in a workspace, and ``<id>`` alone where a student made it.
     """
     names = {wanted.casefold(), wanted.rpartition("/")[2].casefold()}
-    return name == "." or _NUMBERED.sub("", name).casefold() in names or name.casefold() in names
+    return name == "." or _unnumbered(name).casefold() in names or name.casefold() in names
 
 
 Layout = Literal["auto", "folders", "canvas", "moodle", "gradescope"]
@@ -455,16 +460,29 @@ def is_clutter(name: str) -> bool:
     return _CLUTTER.fullmatch(name) is not None
 
 
+_SLASH = re.compile("/")
+
+
 def clutter(names: Iterable[str]) -> Callable[[str], bool]:
     """Whether one of these paths lies in something that is no student's work, such as an environment."""
     environments = {name.rpartition("/")[0] for name in names if name.rpartition("/")[2] == _ENVIRONMENT}
     environments.discard("")
 
     def inside(name: str) -> bool:
-        path = PurePosixPath(name)
-        return any(map(is_clutter, path.parts)) or any(str(above) in environments for above in path.parents)
+        if any(map(is_clutter, name.split("/"))):
+            return True
+        return bool(environments) and any(name[: at.start()] in environments for at in _SLASH.finditer(name))
 
     return inside
+
+
+#: Why an archive with such a path in it is refused.
+DEEP = f"a file in it lies in more than {MAX_DEEP} folders, or its path has more than {MAX_PATH} characters"
+
+
+def too_deep(name: str) -> bool:
+    """Whether no program makes such a path; what looks at all folders above a file would never end."""
+    return len(name) > MAX_PATH or name.count("/") > MAX_DEEP
 
 
 def is_notebook(content: bytes) -> bool:
@@ -474,7 +492,7 @@ def is_notebook(content: bytes) -> bool:
 
 def may_be_code(name: str) -> bool:
     """Whether a text of this name may be code."""
-    return PurePosixPath(name).suffix.casefold() in _CODE
+    return PurePosixPath(name).suffix.rstrip().casefold() in _CODE
 
 
 def kind_of(name: str, content: bytes) -> str:
@@ -502,35 +520,58 @@ def _kind_of_text(suffix: str, content: bytes, head: bytes) -> str:
 
 
 _OPENERS: dict[str, Callable[..., Any]] = {
+    "a tar archive": open,
     "a gzip archive": gzip.open,
     "a bzip2 archive": bz2.open,
     "an xz archive": lzma.open,
 }
 
 
-def compressed(path: Path, kind: str, most: int, total: int) -> Iterator[tuple[str, bytes]]:
+class TooMuchError(Exception):
+    """A tar archive has more in it than may be, which the message says."""
+
+
+@dataclass
+class Meter:
+    """What was decompressed of one student's archives, and may be, in bytes."""
+
+    most: int
+    used: int = 0
+    source: Any = None
+
+    def read(self, size: int) -> bytes:
+        """The next bytes of the source."""
+        found: bytes = self.source.read(size)
+        self.used += len(found)
+        if self.used > self.most:
+            raise TooMuchError(f"the tar archives here unpack to more than {MAX_STREAMED >> 20} MB")
+        return found
+
+
+def compressed(path: Path, kind: str, most: int, total: int, meter: Meter) -> Iterator[tuple[str, bytes]]:
     """Names and contents of what may be code in a tar archive, or of the one file that was compressed.
 
     Args:
         most, total: bytes of a file, and of all of them; larger ones are passed over.
 
     Raises:
+        TooMuchError: to find them takes more than the meter allows, or a path is too long.
         OSError: it is damaged.
     """
     try:
-        with tarfile.open(path, "r|*") as archive:
-            yield from _in_tar(archive, most, total)
-        return
-    except tarfile.ReadError:
-        opener = _OPENERS.get(kind)
-    except (EOFError, zlib.error, lzma.LZMAError):
-        opener = None
-    if opener is None:
-        raise OSError("it is damaged")
-    try:
-        with opener(path, "rb") as handle:
+        with _OPENERS[kind](path, "rb") as meter.source:
+            try:
+                with tarfile.open(fileobj=meter, mode="r|") as archive:  # type: ignore[call-overload]
+                    yield from _in_tar(archive, most, total)
+                return
+            except tarfile.ReadError:
+                if kind == "a tar archive":
+                    raise
+        with _OPENERS[kind](path, "rb") as handle:
             content: bytes = handle.read(most + 1)
-    except (OSError, EOFError, zlib.error, lzma.LZMAError):
+    except TooMuchError:
+        raise
+    except Exception:  # noqa: BLE001 - tarfile and what decompresses for it raise all kinds at damage
         raise OSError("it is damaged") from None
     if len(content) <= most:
         yield path.stem, content
@@ -538,8 +579,10 @@ def compressed(path: Path, kind: str, most: int, total: int) -> Iterator[tuple[s
 
 def _in_tar(archive: tarfile.TarFile, most: int, total: int) -> Iterator[tuple[str, bytes]]:
     for member in archive:
-        name = member.name.removeprefix("./")
-        if not (member.isreg() and may_be_code(name)) or any(map(is_clutter, PurePosixPath(name).parts)):
+        name = _text(member.name.removeprefix("./"))
+        if too_deep(name):
+            raise TooMuchError(DEEP)
+        if not (member.isreg() and may_be_code(name)) or any(map(is_clutter, name.split("/"))):
             continue
         total -= member.size
         if total < 0:

@@ -91,6 +91,7 @@ def read_student(student: Student, exercises: Sequence[Exercise], *, required: b
         required: whether an exercise without a file is ungradable (it was asked for by name) or merely not
             submitted.
     """
+    reader.turn_to(student)
     try:
         return list(_entries(student, exercises, required=required))
     except InternalError:
@@ -397,6 +398,7 @@ def read_quiz(student: Student) -> tuple[Any, Path | None]:
     """
     found: list[tuple[Any, Path]] = []
     place = student.place
+    reader.turn_to(student)
     with contextlib.suppress(OSError):
         if place.files is None and place.root.is_symlink():
             return [], None

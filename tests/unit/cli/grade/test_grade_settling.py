@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import io
 import json
 import shutil
+import tarfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -18,11 +20,22 @@ from course.grading.running.batch import Graded
 from course.scoring.judging.submission import Terms
 from course.scoring.verdict import Problem
 from tests.unit.grading.conftest import MINI
+from tests.unit.grading.made import zipped
 from tests.unit.grading.running.test_run import right
 
 pytestmark = pytest.mark.usefixtures("unpacked")
 
 SOURCE = "def double(x):\n    return 2 * x\n\ndef doublings(x, n):\n    return x\n"
+
+
+def _long_tar(size: int) -> bytes:
+    """So many MB that are no code, in some kB."""
+    buffer = io.BytesIO()
+    with tarfile.open(fileobj=buffer, mode="w:gz") as archive:
+        info = tarfile.TarInfo("long.md")
+        info.size = size << 20
+        archive.addfile(info, io.BytesIO(bytes(info.size)))
+    return buffer.getvalue()
 
 
 @pytest.fixture
@@ -319,3 +332,23 @@ def test_what_one_student_hands_in_grades_nobody_else(course, here: Path, name: 
         whole = course("grade", "run", f"second/{name}", "--out", "new", "--exercise", "doubling", "--json")
         assert whole.code == 0, whole.err
     assert (ran.code == 2) == (layout == "gradescope" or (layout == "auto" and "Ada" not in name))
+
+
+@pytest.mark.parametrize(
+    ("files", "said"),
+    [
+        ({"w.zip": zipped({"doubling.py": SOURCE, "a/" * 30_000 + "x.md": ""})}, ["w.zip", "100 folders"]),
+        ({f"{n}.tar.gz": _long_tar(60) for n in range(2)}, ["a gzip archive without", "more than 100 MB"]),
+        ({"w.tar.gz": _long_tar(101)}, ["w.tar.gz", "more than 100 MB"]),
+    ],
+)  # fmt: skip
+def test_small_archives_that_would_take_minutes_cost_their_student_alone(
+    course, here: Path, files: dict[str, bytes], said: list[str]
+) -> None:
+    (here / "class" / "bob" / "hw.py").unlink()
+    for name, content in files.items():
+        (here / "class" / "bob" / name).write_bytes(content)
+    ran = course("grade", "run", "class", "--out", "new", "--exercise", "doubling", "--json")
+    graded = {one["student"]: one for one in map(json.loads, ran.out.splitlines()) if one.get("student")}
+    assert all(part in graded["bob"]["error"]["message"] for part in said), graded["bob"]
+    assert graded["ada"]["state"] == "graded"

@@ -17,6 +17,7 @@ from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.errors import NotFoundError, UngradableError
 from course.grading.intake import students
+from course.grading.intake.downloads import DEEP
 from course.grading.intake.students import Candidate, Entry, found_for
 from course.grading.results.effective import override
 from course.grading.running.assign import assign, named, proposals, unsettled
@@ -155,6 +156,10 @@ ODDLY: dict[str, tuple[dict[str, bytes], str, str]] = {
         {"all.tar.gz": in_tar("w:gz", **{"hw/doubling.py": SOURCE})}, "all.tar.gz/hw/doubling.py", ""
     ),
     "tar": ({"all.tar": in_tar("w", **{"x.py": SOURCE, "._x.py": b""})}, "all.tar/x.py", ""),
+    "tar, no text": (
+        {"all.tar": in_tar("w", **{os.fsdecode(b"l\xf6.py"): SOURCE})}, "all.tar/l\\xf6.py", ""
+    ),
+    "tar, deep": ({"all.tar": in_tar("w", **{"a/" * 101 + "x.py": SOURCE})}, "", DEEP),
     "gz": ({"doubling.py.gz": gzip.compress(SOURCE)}, "doubling.py.gz/doubling.py", ""),
     "notebook as text": ({"doubling.ipynb.txt": NOTEBOOK}, "doubling.ipynb.txt", "a notebook"),
     "notebook as JSON": ({"doubling.json": NOTEBOOK}, "doubling.json", "a notebook"),

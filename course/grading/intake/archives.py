@@ -46,7 +46,7 @@ from course.handed_in.limits import (
 )
 from course.handed_in.notebook import notebook_source
 from course.isolation.inside import statements
-from course.printable import one_line
+from course.printable import one_line, quoted, some
 from course.scoring.verdict import Problem
 from course.strangers import in_utf8
 
@@ -104,7 +104,8 @@ def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
         return None
     contents = {name: _given(held.files[name]) for name in wanted}
     if len(set(contents.values())) > 1:
-        message = f"{path.name} holds several files for {exercise.id}: {' and '.join(wanted)}."
+        names = " and ".join(map(quoted, wanted))
+        message = f"{quoted(path.name)} holds several files for {exercise.id}: {names}."
         raise RefusedError("ambiguous_files", message, "Keep the one that counts.")
     name, content = next(iter(contents.items()))
     raw = held.names[name]
@@ -113,10 +114,10 @@ def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
     if manifest and expected != hashlib.sha256(content).hexdigest():
         raise RefusedError(
             "checksum_mismatch",
-            f"{name} in {path.name} is not the file that `course submit` put there.",
+            f"{quoted(name)} in {quoted(path.name)} is not the file that `course submit` put there.",
             "Make the archive again with `course submit` and upload it unchanged.",
         )
-    notes = tuple(one_line(note) for note in _notes(path, name, raw, wanted, exercise))
+    notes = tuple(_notes(path, name, raw, wanted, exercise))
     copies = tuple(held.names[other] for other in wanted)
     return ArchiveContent(raw, content, notes, copies, _written(manifest.get("written_with")))
 
@@ -136,18 +137,21 @@ _TOOLS = (("python", "Python"), ("numpy", "NumPy"))
 def _notes(path: Path, name: str, raw: str, wanted: list[str], exercise: Exercise) -> Iterator[str]:
     """The assumptions made about a member."""
     around = raw.replace("\\", "/").removesuffix(name).strip("/").removesuffix(exercise.place).strip("/")
+    zipped = quoted(path.name)
     if around:
-        yield f"Everything in {path.name} lies in the folder {around}, which was passed over."
+        yield f"Everything in {zipped} lies in the folder {quoted(around)}, which was passed over."
     if "\\" in raw:
-        yield f"{path.name} has backslashes in its paths; they were taken for folders."
-    base = PurePosixPath(name).name
+        yield f"{zipped} has backslashes in its paths; they were taken for folders."
+    above, _, base = name.rpartition("/")
     if base not in {exercise.module, PurePosixPath(exercise.module).with_suffix(".ipynb").name}:
-        yield f"{base} was taken for {exercise.module}."
-    above = PurePosixPath(name).parent.as_posix()
-    if above not in {".", exercise.place, exercise.id}:
-        yield f"The folder {above} was taken for {exercise.place}."
+        yield f"{quoted(base)} was taken for {exercise.module}."
+    if above not in {"", exercise.place, exercise.id}:
+        yield f"The folder {quoted(above)} was taken for {exercise.place}."
     if len(wanted) > 1:
-        yield f"The same file is in {path.name} {len(wanted)} times: {', '.join(wanted)}."
+        yield f"The same file is in {zipped} {len(wanted)} times: {some([*map(quoted, wanted)], _SHOWN)}."
+
+
+_SHOWN = 4
 
 
 def _wanted_members(members: Iterable[str], exercise: Exercise) -> list[str]:
@@ -181,7 +185,8 @@ def member_of(path: Path, name: str, meter: downloads.Meter) -> bytes:
     else:
         for content in _given(_tried(path, lambda: _read(path, is_it))).files.values():
             return _given(content)
-    raise RefusedError("no_file", f"{path.name} holds no {name}.", "Name a file that is in it.")
+    message = f"{quoted(path.name)} holds no {quoted(name)}."
+    raise RefusedError("no_file", message, "Name a file that is in it.")
 
 
 _TARS = frozenset({"a tar archive", "a gzip archive", "a bzip2 archive", "an xz archive"})
@@ -217,6 +222,10 @@ class _Held:
     manifest: dict[str, Any] | RefusedError
 
 
+#: Characters of what the library says of damage; it quotes names.
+_SAID = 200
+
+
 def _given(found: T | RefusedError) -> T:
     if isinstance(found, RefusedError):
         raise found
@@ -232,7 +241,7 @@ def _tried(path: Path, read: Callable[[], T]) -> T | RefusedError:
     except OSError as error:
         return _refused(path, f"it cannot be read ({error.strerror or error})")
     except Exception as error:  # noqa: BLE001 - zipfile and what unpacks for it raise all kinds at damage
-        return _refused(path, f"it cannot be read ({error or type(error).__name__})")
+        return _refused(path, f"it cannot be read ({str(error)[:_SAID] or type(error).__name__})")
 
 
 @functools.lru_cache(maxsize=16)
@@ -273,7 +282,7 @@ def _listed(path: Path) -> int:
 
 def _refused(path: Path, why: str) -> RefusedError:
     return RefusedError(
-        "refused_archive", f"{path.name}: {why}.", "Hand in the zip that `course submit` writes."
+        "refused_archive", f"{quoted(path.name)}: {why}.", "Hand in the zip that `course submit` writes."
     )
 
 
@@ -317,7 +326,7 @@ def _unpacked(path: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> by
     with archive.open(info) as handle:
         content = handle.read(min(info.file_size, MAX_FILE) + 1)
     if len(content) > MAX_FILE:
-        raise _refused(path, f"{info.filename} unpacks to more than {MAX_FILE >> 20} MB")
+        raise _refused(path, f"{quoted(info.filename)} unpacks to more than {MAX_FILE >> 20} MB")
     return content
 
 
@@ -333,7 +342,7 @@ def _manifest(path: Path, archive: zipfile.ZipFile, members: Members) -> dict[st
         case {"format_version": int(version)} if version > FORMAT_VERSION:
             raise RefusedError(
                 "newer_format",
-                f"{path.name} was written by a newer version of this course.",
+                f"{quoted(path.name)} was written by a newer version of this course.",
                 "Update the course on the machine that grades.",
             )
         case {"format_version": int(), "files": dict(files)} if files or manifest.get("quiz"):
@@ -431,7 +440,7 @@ class Reader:
 
     def notebook(self, content: bytes, exercise: Exercise, name: str) -> tuple[bytes, bytes]:
         """The module that a notebook makes up, and the record of its cells."""
-        told = self._ask(_Request("notebook", one_line(name), content=content, **_wanted(exercise)))
+        told = self._ask(_Request("notebook", quoted(name), content=content, **_wanted(exercise)))
         return told.content, told.record
 
     def module_in(self, path: Path, exercise: Exercise) -> ArchiveContent | None:
@@ -441,7 +450,7 @@ class Reader:
             RefusedError: it must not be opened, or is damaged.
         """
         told = self._ask(
-            _Request("archive", one_line(path.name), path=os.fsencode(path.absolute()), **_wanted(exercise))
+            _Request("archive", quoted(path.name), path=os.fsencode(path.absolute()), **_wanted(exercise))
         )
         if told.name is None:
             return None
@@ -455,17 +464,17 @@ class Reader:
             functions: the names to look for.
         """
         where = os.fsencode(path.absolute())
-        ask = _Request("outline", one_line(path.name), path=where, tasks=functions, skip=skip)
+        ask = _Request("outline", quoted(path.name), path=where, tasks=functions, skip=skip)
         return self._ask(ask).outlines
 
     def member(self, path: Path, name: str) -> bytes:
         """The content of one file of an archive."""
-        ask = _Request("member", one_line(path.name), path=os.fsencode(path.absolute()), skip=(name,))
+        ask = _Request("member", quoted(path.name), path=os.fsencode(path.absolute()), skip=(name,))
         return self._ask(ask).content
 
     def quiz_in(self, path: Path) -> Any:
         """The quiz attempts in an archive; a word if they have another form, None if it has none."""
-        told = self._ask(_Request("quiz", one_line(path.name), path=os.fsencode(path.absolute())))
+        told = self._ask(_Request("quiz", quoted(path.name), path=os.fsencode(path.absolute())))
         return json.loads(told.content)
 
     def _ask(self, ask: _Request) -> _Reply:

@@ -29,6 +29,7 @@ from course import extras
 from course.errors import NotFoundError, UsageError
 from course.grading.gradebook.records import PlatformIdentity
 from course.handed_in.limits import HANDED_IN, MAX_DEEP, MAX_PATH, MAX_STREAMED
+from course.printable import quoted, some
 from course.strangers import read_bytes
 
 # ---
@@ -131,8 +132,8 @@ class Place:
         return next((name for name, mine in self.files or () if mine == path), path.name)
 
     def shown(self, path: Path) -> str:
-        """A path relative to the folder, as text."""
-        return os.fsencode(path.relative_to(self.root)).decode("utf-8", "backslashreplace")
+        """A path relative to the folder, as a sentence names it."""
+        return quoted(str(path.relative_to(self.root)))
 
 
 def _entries(folder: Path) -> list[tuple[str, Path]]:
@@ -242,7 +243,7 @@ def _recognised(folder: Path, names: list[str]) -> str:
     else:
         return "folders"
     if odd:
-        listed = ", ".join(_text(name) for name in odd[:_SHOWN]) + (", ..." if len(odd) > _SHOWN else "")
+        listed = some([*map(quoted, odd)], _SHOWN)
         raise UsageError(
             f"{folder} looks like a download from {layout.capitalize()}, but not all of it: {listed}.",
             help=f"Move these elsewhere, or choose the kind: --layout folders or --layout {layout}.",
@@ -267,7 +268,7 @@ def _folders(folder: Path, names: list[str]) -> ClassList:
         path = folder / raw
         if not (path.is_dir() or path.is_symlink()):
             if _may_be_handed_in(raw):
-                found.unrecognised.append(f"{_text(raw)}: is in no student's folder")
+                found.unrecognised.append(f"{quoted(raw)}: is in no student's folder")
             continue  # such as a class list or notes: not a submission
         name = _text(raw)
         while name in owned:
@@ -286,7 +287,7 @@ def _moodle(folder: Path, names: list[str]) -> ClassList:
     for raw in names:
         match = _MOODLE.fullmatch(raw)
         if match is None:
-            found.unrecognised.append(f"{_text(raw)}: not a name in Moodle's form")
+            found.unrecognised.append(f"{quoted(raw)}: not a name in Moodle's form")
             continue
         student = _text(f"{match['name']}_{match['key']}")
         people[student] = PlatformIdentity("moodle", match["key"], _text(match["name"]))
@@ -299,7 +300,7 @@ def _moodle(folder: Path, names: list[str]) -> ClassList:
             shared.setdefault(student, []).append((match["file"], folder / raw))
     for student, identity in people.items():
         if student in owned and student in shared:
-            found.unrecognised.append(f"{student}: both a folder and files of their own")
+            found.unrecognised.append(f"{quoted(student)}: both a folder and files of their own")
             continue
         place = Place(owned[student]) if student in owned else Place(folder, tuple(shared.get(student, ())))
         words = tuple(typed.get(student, ()))
@@ -316,7 +317,7 @@ def _canvas(folder: Path, names: list[str]) -> ClassList:
     for raw in names:
         match = _CANVAS.fullmatch(raw)
         if match is None or (folder / raw).is_dir():
-            found.unrecognised.append(f"{_text(raw)}: not a name in Canvas' form")
+            found.unrecognised.append(f"{quoted(raw)}: not a name in Canvas' form")
             continue
         key = match["key"] or match["anon_key"]
         mine = files.setdefault(key, [])
@@ -329,7 +330,7 @@ def _canvas(folder: Path, names: list[str]) -> ClassList:
             late.add(key)
     for key, items in files.items():
         if len(spelled[key]) > 1:
-            both = " and ".join(sorted(spelled[key]))
+            both = " and ".join(map(quoted, sorted(spelled[key])))
             found.unrecognised.append(
                 f"user {key} of Canvas is called {both}: whose files these are is unclear"
             )
@@ -350,25 +351,23 @@ def _gradescope(folder: Path, names: list[str]) -> ClassList:
     claims: dict[str, list[tuple[str, Student]]] = {}
     for name in names:
         if (folder / name).is_dir() and name not in metadata:
-            found.unrecognised.append(f"{_text(name)}: {_METADATA} does not name its owner")
+            found.unrecognised.append(f"{quoted(name)}: {_METADATA} does not name its owner")
     for name, about in metadata.items():
         # A folder's name comes out of a file: it must be one that was listed, never a path.
         if name not in names or not (folder / name).is_dir():
-            found.unrecognised.append(
-                f"{ascii(name)[1:-1]}: listed in {_METADATA}, but there is no such folder"
-            )
+            found.unrecognised.append(f"{quoted(name)}: listed in {_METADATA}, but there is no such folder")
             continue
         submitters = _submitters(about)
         if not submitters:
-            found.unrecognised.append(f"{_text(name)}: {_METADATA} names no student for it")
+            found.unrecognised.append(f"{quoted(name)}: {_METADATA} names no student for it")
         for who in submitters:
             student = who.sid or who.email or who.name
             entry = Student(student, Place(folder / name), who, _created_at(about))
             claims.setdefault(student, []).append((name, entry))
     for student, entries in claims.items():
         if len(entries) > 1:
-            listed = ", ".join(name for name, _ in entries)
-            found.unrecognised.append(f"{student} has several submissions: {listed}")
+            listed = some([quoted(name) for name, _ in entries], _SHOWN)
+            found.unrecognised.append(f"{quoted(student)} has several submissions: {listed}")
         else:
             found.students.append(entries[0][1])
     return found

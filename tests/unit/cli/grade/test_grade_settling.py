@@ -63,7 +63,7 @@ def test_what_is_unsettled_is_listed_previewed_and_settled(course, here: Path) -
     assert listed["unsettled"] == [
         {
             "student": "bob", "exercise": "doubling", "reason": "no_file",
-            "message": "There is no doubling.py for doubling. There is hw.py (defines double, doublings).",
+            "message": "There is no doubling.py for doubling. There is 'hw.py' (defines double, doublings).",
             "files": [{"file": "hw.py", "defines": ["double", "doublings"], "proposed": True, "kind": ""}],
         },
         {
@@ -79,7 +79,7 @@ def test_what_is_unsettled_is_listed_previewed_and_settled(course, here: Path) -
     assert book(here) == before
     ran = course("grade", "assign", "out", "bob", "hw.py", "--reason", "by mail")
     assert ran.code == 0, ran.err
-    assert "bob doubling: ungradable -> graded, 10 of 10; from hw.py" in ran.out
+    assert "bob doubling: ungradable -> graded, 10 of 10; from 'hw.py'" in ran.out
     log = course("grade", "log", "out", "--json").json
     assert [run["kind"] for run in log["runs"]] == ["run", "assign"]
     (change,) = log["changes"]
@@ -87,7 +87,7 @@ def test_what_is_unsettled_is_listed_previewed_and_settled(course, here: Path) -
     assert change["who"]
     logged = course("grade", "log", "out", "bob").out
     assert "by mail" in logged
-    assert "0 of 10, no_file -> 10 of 10, hw.py" in logged
+    assert "0 of 10, no_file -> 10 of 10, 'hw.py'" in logged
     assert "by mail; before: 0 of 10, no_file" in course("grade", "explain", "out", "bob", "doubling").out
     for words, code in (
         (("bob",), "usage"), (("bob", "x.py", "--accept-names"), "usage"),
@@ -260,12 +260,12 @@ def test_work_in_an_undeclared_encoding_is_settled_by_its_own_name_and_named_and
     assert ran.code == 0, ran.err
     assert [source.decode() for source in graded[-1:]] == [text]
     ran = course("grade", "run", "class", "--out", "new", "--exercise", "doubling")
-    assert f"ada doubling: syntax_error: doubling.py is saved in {named}" in " ".join(ran.out.split())
+    assert f"ada doubling: syntax_error: 'doubling.py' is saved in {named}" in " ".join(ran.out.split())
     listed = course("grade", "assign", "new").out
-    assert f"ada doubling: syntax_error: doubling.py is saved in {named}" in " ".join(listed.split())
+    assert f"ada doubling: syntax_error: 'doubling.py' is saved in {named}" in " ".join(listed.split())
     assert "doubling.py: defines double, doublings; proposed" in listed
     ran = course("grade", "assign", "new", "--accept-names")
-    assert "ada doubling: ungradable -> graded, 10 of 10; from doubling.py" in ran.out
+    assert "ada doubling: ungradable -> graded, 10 of 10; from 'doubling.py'" in ran.out
 
 
 def test_what_was_decided_before_a_folder_came_stays_with_its_student(course, here: Path) -> None:

@@ -76,7 +76,7 @@ def test_one_canvas_user_with_two_names_is_nobody(tmp_path: Path) -> None:
     found = class_list(tmp_path)
     assert [student.name for student in found.students] == ["bob_102"]
     assert len(found.unrecognised) == 1
-    assert "ada and eve" in found.unrecognised[0]
+    assert "'ada' and 'eve'" in found.unrecognised[0]
 
 
 def test_a_moodle_download_with_folders_is_a_class(tmp_path: Path, doubling) -> None:
@@ -175,7 +175,7 @@ def test_a_gradescope_download_is_a_class(tmp_path: Path, doubling) -> None:
     }  # fmt: skip
     words = "\n".join(sorted(found.unrecognised))
     assert len(found.unrecognised) == 4
-    for fact in ("submission_905", "34 has several", "names no student", "../../etc"):
+    for fact in ("submission_905", "'34' has several", "names no student", "../../etc"):
         assert fact in words
 
 
@@ -227,7 +227,7 @@ def test_a_folder_that_is_two_things_is_refused_and_the_odd_names_listed(
     found = class_list(tmp_path, layout)
     assert len(found.students) == 1
     assert len(found.unrecognised) == 1
-    assert found.unrecognised[0].startswith(odd)
+    assert found.unrecognised[0].startswith(repr(odd))
 
 
 def test_what_could_be_handed_in_beside_the_folders_is_listed(tmp_path: Path) -> None:
@@ -237,7 +237,7 @@ def test_what_could_be_handed_in_beside_the_folders_is_listed(tmp_path: Path) ->
     found = class_list(tmp_path)
     assert (found.layout, [student.name for student in found.students]) == ("folders", students)
     listed = [sentence.split(":")[0] for sentence in found.unrecognised]
-    assert listed == ["Cy.IPYNB", "bob.zip", "doubling.py"]
+    assert listed == ["'Cy.IPYNB'", "'bob.zip'", "'doubling.py'"]
 
 
 def test_an_empty_class_and_an_unknown_layout_are_said_plainly(tmp_path: Path) -> None:

@@ -1,7 +1,8 @@
 """Text of strangers as people may see it: it steers no terminal, hides nothing and turns nothing around.
 
 Exception messages, names of folders, values and lines of code all come from submissions. Text that is shown
-on one line goes through ``one_line``, so that a submission cannot add lines to a report.
+on one line goes through ``one_line``, so that a submission cannot add lines to a report, and a name within a
+sentence through ``quoted``, so that it adds no sentence either.
 """
 
 from __future__ import annotations
@@ -51,6 +52,15 @@ def one_line(text: str, limit: int | None = None) -> str:
     if text.isprintable():
         return text[:limit]
     return _UNUSUAL.sub(_spelled_out, text[:limit])[:limit]
+
+
+def quoted(name: str, most: int = 80) -> str:
+    """A stranger's name within a sentence of ours, of which it must not look a part: in quotes, on one line.
+
+    Args:
+        most: characters; of a longer name the middle is left out.
+    """
+    return repr(name if len(name) <= most else f"{name[: most - 23]}...{name[-20:]}")
 
 
 def printable(text: str, limit: int | None = None) -> str:

@@ -17,6 +17,7 @@ import msgspec
 from course.errors import UngradableError, UsageError
 from course.handed_in.limits import MAX_CELLS, MAX_CODE, MAX_NOTEBOOK
 from course.isolation.inside import statements
+from course.printable import quoted
 
 _FIX = "Save it from Jupyter again, or hand in the .py file."
 
@@ -91,7 +92,7 @@ def code_cells(data: bytes, name: str) -> list[CodeCell]:
     language = _language(notebook.metadata)
     if language not in {"", "python"}:
         raise UngradableError(
-            f"{name} is a notebook for {language}, not for Python.",
+            f"{name} is a notebook for {quoted(language)}, not for Python.",
             help="Write the functions in a Python notebook.",
             code="other_kernel",
         )

@@ -21,10 +21,15 @@ MAX_CELLS = 2000
 
 #: Files in an archive; of a course's own there are some forty.
 MAX_FILES = 500
+#: The longest path of a file in an archive, in characters, and the most folders above it. The longest that
+#: programs make, in environments, have some 250 and 30.
+MAX_PATH, MAX_DEEP = 1000, 100
 #: All of an archive that may be read, in bytes; an environment or a report beside it does not count, and the
 #: archive itself may be larger.
 MAX_UNPACKED = 5 << 20
 MAX_ARCHIVE = 300 << 20
+#: What is decompressed of all tar archives of one student together, in bytes.
+MAX_STREAMED = 100 << 20
 #: The member that says what an archive holds, and the version of its form.
 MANIFEST = "submission.json"
 FORMAT_VERSION = 1

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import unicodedata
 
 import pytest
 
-from course.printable import counted, one_line, printable, steady
+from course.printable import counted, one_line, printable, quoted, steady
 
 #: Line ends of every kind, marks that turn text, hidden characters, escapes, and half of a character.
 _HOSTILE = (
@@ -38,6 +39,14 @@ def test_a_limit_holds_for_what_is_shown() -> None:
     for shorten in (one_line, printable):
         assert len(shorten("\U0010ffff" * 5000, 2000)) == 2000
         assert shorten("plain", 3) == "pla"
+
+
+@pytest.mark.parametrize("name", [*_HOSTILE, "x' was taken. It", "x\" or 'y", "x\\", "a" * 500 + "'.py"])
+def test_a_name_in_a_sentence_ends_where_its_quotes_do(name: str) -> None:
+    shown = quoted(name)
+    assert shown.isprintable()
+    assert len(ast.literal_eval(shown)) <= 80
+    assert ast.literal_eval(shown) == name or (len(name) > 80 and shown.endswith(repr(name[-20:])[1:]))
 
 
 def test_honest_text_stays_as_it_is() -> None:

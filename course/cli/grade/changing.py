@@ -1,5 +1,6 @@
 """After a run: ``rerun``, ``override``, ``late``, ``similar``, ``assign``, ``log`` and ``salvage``."""
 
+import shlex
 from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
@@ -69,7 +70,7 @@ from course.grading.running.rerun import Regraded, RerunOptions
 from course.grading.running.rerun import rerun as regrade
 from course.grading.similar import Similar, compare, page
 from course.isolation.launch import private_folder, remove_tree
-from course.printable import command, counted, one_line, some
+from course.printable import command, counted, one_line, quoted, some
 from course.scoring.verdict import format_points, in_points
 
 _SHOWN = 20
@@ -498,7 +499,7 @@ def _show_assigned(console: Console, done: list[Assigned], *, dry_run: bool) -> 
         was = item.before.verdict.state if item.before else "missing"
         points = "no score" if after.score is None else format_points(after.score)
         most = format_points(after.max_score)
-        words = f"{was} -> {after.verdict.state}, {points} of {most}; from {one_line(one.name)}"
+        words = f"{was} -> {after.verdict.state}, {points} of {most}; from {quoted(one.name)}"
         console.item(f"{one_line(one.student)} {one.exercise}", words)
     if done:
         console.line((f"{len(done)} {'would be assigned' if dry_run else 'assigned and graded'}.", "bold"))
@@ -514,7 +515,7 @@ def _show_unsettled(console: Console, left: list[Unsettled], out: Path, words: s
             defines = f"defines {', '.join(one.defines)}" if one.defines else "defines none of the functions"
             if one.kind:
                 defines = f"{one.kind}; {defines}" if one.defines else one.kind
-            console.item(one.name, defines + ("; proposed" if one.proposed else ""), indent=4)
+            console.item(shlex.quote(one.name), defines + ("; proposed" if one.proposed else ""), indent=4)
     if len(left) > _LISTED:
         console.line(f"and {len(left) - _LISTED} more; --json lists them all.", indent=2)
     proposed = sum(any(one.proposed for one in item.found.candidates) for item in left)

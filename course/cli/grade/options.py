@@ -15,7 +15,7 @@ from course.grading.intake.downloads import LAYOUTS
 from course.grading.results.effective import ScoreChange
 from course.grading.running.rerun import Change
 from course.grading.running.snapshot import FOREIGN, ForeignGradersError
-from course.printable import one_line, some
+from course.printable import one_line, quoted, some
 from course.scoring.verdict import format_points
 
 T = TypeVar("T")
@@ -195,7 +195,7 @@ def in_words(text: str) -> str:
     with suppress(msgspec.MsgspecError, RecursionError):
         kept = msgspec.json.decode(text, type=_Counted)
         why = kept.reason or (kept.state if kept.score is None else "")
-        words = (points(kept.score, kept.of), why or "", kept.file)
+        words = (points(kept.score, kept.of), why or "", quoted(kept.file) if kept.file else "")
         return one_line(", ".join(filter(None, words)))
     with suppress(msgspec.MsgspecError, RecursionError):
         rows = msgspec.json.decode(text, type=list[tuple[str, str, float | None]])

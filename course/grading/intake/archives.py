@@ -1,4 +1,4 @@
-"""Zip archives from students, read as data: nothing is unpacked to disk, and nothing in them is trusted.
+"""Archives from students, read as data: nothing is unpacked to disk, and nothing in them is trusted.
 
 Links, devices, bombs and paths that lead elsewhere are refused with a reason that reaches the report. A
 folder around everything, and the backslashes of Windows, are accepted and noted.
@@ -7,15 +7,19 @@ folder around everything, and the backslashes of Windows, are accepted and noted
 import ast
 import atexit
 import contextlib
+import functools
 import hashlib
 import json
+import math
 import os
+import posixpath
 import re
 import stat
 import struct
 import sys
+import time
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from types import SimpleNamespace
@@ -37,11 +41,12 @@ from course.handed_in.limits import (
     MAX_FILE,
     MAX_FILES,
     MAX_NOTEBOOK,
+    MAX_STREAMED,
     MAX_UNPACKED,
 )
 from course.handed_in.notebook import notebook_source
 from course.isolation.inside import statements
-from course.printable import one_line
+from course.printable import one_line, quoted, some
 from course.scoring.verdict import Problem
 from course.strangers import in_utf8
 
@@ -70,20 +75,16 @@ def quiz_of(path: Path, loose: bytes) -> object:
     Args:
         loose: the metadata, unpacked; empty if it is in an archive.
     """
-
-    def read(archive: zipfile.ZipFile, members: Members) -> object:
-        try:
-            return checked_record(_manifest(path, archive, members).get("quiz"))
-        except RefusedError as refused:
-            if len(members) > 1:
-                raise
-            return refused.problem.message.rstrip(".")
-
-    if not loose:
-        return _opened(path, read)
+    alone = bool(loose)
     try:
-        return checked_record(_read_manifest(path, loose).get("quiz"))
+        if loose:
+            return checked_record(_read_manifest(path, loose).get("quiz"))
+        held = _given(_held(path))
+        alone = len(held.names) <= 1
+        return checked_record(_given(held.manifest).get("quiz"))
     except RefusedError as refused:
+        if not alone:
+            raise
         return refused.problem.message.rstrip(".")
 
 
@@ -112,30 +113,29 @@ def module_in(path: Path, exercise: Exercise) -> ArchiveContent | None:
         RefusedError: also where it holds several.
     """
 
-    def read(archive: zipfile.ZipFile, members: Members) -> ArchiveContent | None:
-        wanted = _wanted_members(members, exercise)
-        if not wanted:
-            return None
-        manifest = _manifest(path, archive, members)
-        contents = {name: _unpacked(path, archive, members[name]) for name in wanted}
-        if len(set(contents.values())) > 1:
-            message = f"{path.name} holds several files for {exercise.id}: {' and '.join(wanted)}."
-            raise RefusedError("ambiguous_files", message, "Keep the one that counts.")
-        name, content = next(iter(contents.items()))
-        listed = manifest.get("files", {})
-        expected = listed.get(name, listed.get(members[name].filename))
-        if manifest and expected != hashlib.sha256(content).hexdigest():
-            raise RefusedError(
-                "checksum_mismatch",
-                f"{name} in {path.name} is not the file that `course submit` put there.",
-                "Make the archive again with `course submit` and upload it unchanged.",
-            )
-        raw = members[name].filename
-        notes = tuple(one_line(note) for note in _notes(path, name, raw, wanted, exercise))
-        copies = tuple(members[other].filename for other in wanted)
-        return ArchiveContent(raw, content, notes, copies, _written(manifest.get("written_with")))
-
-    return _opened(path, read)
+    held = _given(_held(path))
+    wanted = _wanted_members(held.names, exercise)
+    if not wanted:
+        return None
+    manifest = _given(held.manifest)
+    contents = {name: _given(held.files[name]) for name in wanted}
+    if len(set(contents.values())) > 1:
+        names = " and ".join(map(quoted, wanted))
+        message = f"{quoted(path.name)} holds several files for {exercise.id}: {names}."
+        raise RefusedError("ambiguous_files", message, "Keep the one that counts.")
+    name, content = next(iter(contents.items()))
+    raw = held.names[name]
+    listed = manifest.get("files", {})
+    expected = listed.get(name, listed.get(raw))
+    if manifest and expected != hashlib.sha256(content).hexdigest():
+        raise RefusedError(
+            "checksum_mismatch",
+            f"{quoted(name)} in {quoted(path.name)} is not the file that `course submit` put there.",
+            "Make the archive again with `course submit` and upload it unchanged.",
+        )
+    notes = tuple(_notes(path, name, raw, wanted, exercise))
+    copies = tuple(held.names[other] for other in wanted)
+    return ArchiveContent(raw, content, notes, copies, _written(manifest.get("written_with")))
 
 
 _VERSION = re.compile(r"[\w.+-]{1,40}")
@@ -153,71 +153,67 @@ _TOOLS = (("python", "Python"), ("numpy", "NumPy"))
 def _notes(path: Path, name: str, raw: str, wanted: list[str], exercise: Exercise) -> Iterator[str]:
     """The assumptions made about a member."""
     around = raw.replace("\\", "/").removesuffix(name).strip("/").removesuffix(exercise.place).strip("/")
+    zipped = quoted(path.name)
     if around:
-        yield f"Everything in {path.name} lies in the folder {around}, which was passed over."
+        yield f"Everything in {zipped} lies in the folder {quoted(around)}, which was passed over."
     if "\\" in raw:
-        yield f"{path.name} has backslashes in its paths; they were taken for folders."
-    base = PurePosixPath(name).name
+        yield f"{zipped} has backslashes in its paths; they were taken for folders."
+    above, _, base = name.rpartition("/")
     if base not in {exercise.module, PurePosixPath(exercise.module).with_suffix(".ipynb").name}:
-        yield f"{base} was taken for {exercise.module}."
-    above = PurePosixPath(name).parent.as_posix()
-    if above not in {".", exercise.place, exercise.id}:
-        yield f"The folder {above} was taken for {exercise.place}."
+        yield f"{quoted(base)} was taken for {exercise.module}."
+    if above not in {"", exercise.place, exercise.id}:
+        yield f"The folder {quoted(above)} was taken for {exercise.place}."
     if len(wanted) > 1:
-        yield f"The same file is in {path.name} {len(wanted)} times: {', '.join(wanted)}."
+        yield f"The same file is in {zipped} {len(wanted)} times: {some([*map(quoted, wanted)], _SHOWN)}."
 
 
-def _wanted_members(members: Members, exercise: Exercise) -> list[str]:
+_SHOWN = 4
+
+
+def _wanted_members(members: Iterable[str], exercise: Exercise) -> list[str]:
     """The members for an exercise, those with exactly its name first."""
     names = (exercise.module, PurePosixPath(exercise.module).with_suffix(".ipynb").name)
     found = [
         name
         for name in members
-        if is_folder_meant(PurePosixPath(name).parent.as_posix(), exercise.place)
-        and any(is_meant(PurePosixPath(name).name, wanted) for wanted in names)
+        if is_folder_meant(name.rpartition("/")[0] or ".", exercise.place)
+        and any(is_meant(name.rpartition("/")[2], wanted) for wanted in names)
     ]
     return sorted(found, key=lambda name: (PurePosixPath(name).name not in names, "/" not in name, name))
 
 
 def outline_of(path: Path, skip: tuple[str, ...]) -> list[tuple[str, bytes]]:
     """Names and contents of the modules and notebooks in a zip, except those to skip."""
-
-    def read(archive: zipfile.ZipFile, members: Members) -> list[tuple[str, bytes]]:
-        return [
-            (info.filename, _unpacked(path, archive, info))
-            for info in members.values()
-            if info.filename not in skip
-            and downloads.may_be_code(info.filename)
-            and not info.filename.endswith(MANIFEST)
-        ]
-
-    return _opened(path, read)
+    held = _given(_held(path))
+    return [(raw, _given(held.files[name])) for name in held.files if (raw := held.names[name]) not in skip]
 
 
-def member_of(path: Path, name: str) -> bytes:
+def member_of(path: Path, name: str, meter: downloads.Meter) -> bytes:
     """The content of one member, by the name the archive has for it, or that name with plain slashes."""
 
-    def read(archive: zipfile.ZipFile, members: Members) -> bytes:
-        for plain, info in members.items():
-            if name in {info.filename, info.filename.replace("\\", "/"), plain}:
-                return _unpacked(path, archive, info)
-        raise RefusedError("no_file", f"{path.name} holds no {name}.", "Name a file that is in it.")
+    def is_it(plain: str, raw: str) -> bool:
+        return name in {raw, raw.replace("\\", "/"), plain}
 
     if (kind := _kind(path)) in _TARS:
-        found = dict(_compressed(path, kind))
+        found = dict(_compressed(path, kind, meter))
         if name in found:
             return found[name]
-        raise RefusedError("no_file", f"{path.name} holds no {name}.", "Name a file that is in it.")
-    return _opened(path, read)
+    else:
+        for content in _given(_tried(path, lambda: _read(path, is_it))).files.values():
+            return _given(content)
+    message = f"{quoted(path.name)} holds no {quoted(name)}."
+    raise RefusedError("no_file", message, "Name a file that is in it.")
 
 
 _TARS = frozenset({"a tar archive", "a gzip archive", "a bzip2 archive", "an xz archive"})
 
 
-def _compressed(path: Path, kind: str) -> list[tuple[str, bytes]]:
+def _compressed(path: Path, kind: str, meter: downloads.Meter) -> list[tuple[str, bytes]]:
     """What may be code in an archive that is no zip, by name."""
     try:
-        return list(downloads.compressed(path, kind, MAX_FILE, MAX_UNPACKED))
+        return list(downloads.compressed(path, kind, MAX_FILE, MAX_UNPACKED, meter))
+    except downloads.TooMuchError as error:
+        raise _refused(path, str(error)) from None
     except OSError as error:
         raise _refused(path, f"it cannot be read ({error})") from None
 
@@ -227,23 +223,69 @@ def _kind(path: Path) -> str:
         return downloads.kind_of(path.name, handle.read(512))
 
 
-def _opened(path: Path, read: Callable[[zipfile.ZipFile, Members], T]) -> T:
-    """The result of ``read`` on an archive whose members are all harmless."""
+@dataclass(frozen=True)
+class _Held:
+    """A zip whose members are all harmless.
+
+    Attributes:
+        names: in the archive, by those without the folders around all of them.
+        files: what may be code, or why one cannot be read, by the latter.
+        manifest: of ``course submit``, or why it cannot be read; empty in an archive made by hand.
+    """
+
+    names: dict[str, str]
+    files: dict[str, bytes | RefusedError]
+    manifest: dict[str, Any] | RefusedError
+
+
+#: Characters of what the library says of damage; it quotes names.
+_SAID = 200
+
+
+def _given(found: T | RefusedError) -> T:
+    if isinstance(found, RefusedError):
+        raise found
+    return found
+
+
+def _tried(path: Path, read: Callable[[], T]) -> T | RefusedError:
+    """What reading an archive, or something in it, gives, or why it cannot be read."""
     try:
-        if not stat.S_ISREG(path.lstat().st_mode):
-            raise _refused(path, "it is not a regular file")
-        if path.stat().st_size > MAX_ARCHIVE:
-            raise _refused(path, f"it is larger than {MAX_ARCHIVE >> 20} MB")
-        if _listed(path) > MAX_LISTED:
-            raise _refused(path, "it holds tens of thousands of files")
-        with zipfile.ZipFile(path) as archive:
-            return read(archive, _checked_members(path, archive.infolist()))
-    except RefusedError:
-        raise
+        return read()
+    except RefusedError as refused:
+        return refused
     except OSError as error:
-        raise _refused(path, f"it cannot be read ({error.strerror or error})") from None
+        return _refused(path, f"it cannot be read ({error.strerror or error})")
     except Exception as error:  # noqa: BLE001 - zipfile and what unpacks for it raise all kinds at damage
-        raise _refused(path, f"it cannot be read ({error or type(error).__name__})") from None
+        return _refused(path, f"it cannot be read ({str(error)[:_SAID] or type(error).__name__})")
+
+
+@functools.lru_cache(maxsize=16)
+def _held(path: Path) -> _Held | RefusedError:
+    """An archive, read once for all questions about it (``_serve`` forgets it with the next student)."""
+
+    def is_work(_plain: str, raw: str) -> bool:
+        return downloads.may_be_code(raw) and not raw.endswith(MANIFEST)
+
+    return _tried(path, lambda: _read(path, is_work))
+
+
+def _read(path: Path, wanted: Callable[[str, str], bool]) -> _Held:
+    if not stat.S_ISREG(path.lstat().st_mode):
+        raise _refused(path, "it is not a regular file")
+    if path.stat().st_size > MAX_ARCHIVE:
+        raise _refused(path, f"it is larger than {MAX_ARCHIVE >> 20} MB")
+    if _listed(path) > MAX_LISTED:
+        raise _refused(path, "it holds tens of thousands of files")
+    with zipfile.ZipFile(path) as archive:
+        members = _checked_members(path, archive.infolist())
+        names = {name: info.filename for name, info in members.items()}
+        files = {
+            name: _tried(path, functools.partial(_unpacked, path, archive, members[name]))
+            for name, raw in names.items()
+            if wanted(name, raw)
+        }
+        return _Held(names, files, _tried(path, lambda: _manifest(path, archive, members)))
 
 
 def _listed(path: Path) -> int:
@@ -256,13 +298,15 @@ def _listed(path: Path) -> int:
 
 def _refused(path: Path, why: str) -> RefusedError:
     return RefusedError(
-        "refused_archive", f"{path.name}: {why}.", "Hand in the zip that `course submit` writes."
+        "refused_archive", f"{quoted(path.name)}: {why}.", "Hand in the zip that `course submit` writes."
     )
 
 
 def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
     """The members by name, without the folders around all of them; every one is harmless."""
-    plain = {info.filename.replace("\\", "/"): info for info in infos if not info.is_dir()}
+    plain = [info.filename.replace("\\", "/") for info in infos if not info.is_dir()]
+    if any(map(downloads.too_deep, plain)):
+        raise _refused(path, downloads.DEEP)
     unwanted = downloads.clutter(plain)
     files = [info for info in infos if not info.is_dir() and not unwanted(info.filename.replace("\\", "/"))]
     if len(files) > MAX_FILES:
@@ -289,20 +333,16 @@ def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
 
 def _without_top(members: Members) -> Members:
     """The members' names without the folders around all of them."""
-    while members and all("/" in name for name in members):
-        tops = {name.partition("/")[0] for name in members}
-        if len(tops) > 1:
-            break
-        members = {name.partition("/")[2]: info for name, info in members.items()}
-    return members
+    around = posixpath.commonpath([name.rpartition("/")[0] for name in members] or [""])
+    return {name.removeprefix(f"{around}/"): info for name, info in members.items()}
 
 
 def _unpacked(path: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
     """A member's content; the size in its header is not trusted."""
     with archive.open(info) as handle:
-        content = handle.read(MAX_FILE + 1)
+        content = handle.read(min(info.file_size, MAX_FILE) + 1)
     if len(content) > MAX_FILE:
-        raise _refused(path, f"{info.filename} unpacks to more than {MAX_FILE >> 20} MB")
+        raise _refused(path, f"{quoted(info.filename)} unpacks to more than {MAX_FILE >> 20} MB")
     return content
 
 
@@ -322,7 +362,7 @@ def _read_manifest(path: Path, content: bytes) -> dict[str, Any]:
         case {"format_version": int(version)} if version > FORMAT_VERSION:
             raise RefusedError(
                 "newer_format",
-                f"{path.name} was written by a newer version of this course.",
+                f"{quoted(path.name)} was written by a newer version of this course.",
                 "Update the course on the machine that grades.",
             )
         case {"format_version": int(), "files": dict(files)} if files or manifest.get("quiz"):
@@ -341,6 +381,8 @@ def _read_manifest(path: Path, content: bytes) -> dict[str, Any]:
 #: For one file. The largest notebook that may be handed in takes about 3 s of CPU, ten thousand lines of code
 #: less than one; a busy machine may take six times as long by the wall clock.
 CPU_S, WALL_S = 10, 60.0
+#: CPU seconds for all files of one student. A dozen of the largest notebooks take some 40.
+STUDENT_S = 60.0
 MEMORY = 1 << 30
 #: The largest answer, in bytes: a module and the notes on it.
 MAX_ANSWER = 4 << 20
@@ -354,6 +396,8 @@ class _Request(msgspec.Struct, frozen=True):
         path: of an archive, or of a file to outline.
         content: of a notebook, or of a quiz record that is in no archive.
         name: what to call it in messages.
+        student: whose it is, as a number; 0 if there is no telling, and then no archive is remembered.
+        streamed: bytes of tar archives that may be decompressed.
     """
 
     kind: str
@@ -365,6 +409,8 @@ class _Request(msgspec.Struct, frozen=True):
     module: str = ""
     tasks: tuple[str, ...] = ()
     skip: tuple[str, ...] = ()
+    student: int = 0
+    streamed: int = MAX_STREAMED
 
 
 #: A file by its name in its archive, the digest of its content, the names of the functions in it, how much
@@ -383,6 +429,8 @@ class _Reply(msgspec.Struct, frozen=True):
     copies: tuple[str, ...] = ()
     written: str = ""
     outlines: tuple[Outline, ...] = ()
+    cpu_s: float = 0.0
+    streamed: int = 0
 
 
 @dataclass(frozen=True)
@@ -398,10 +446,21 @@ class Reader:
     def __init__(self, limits: _Limits = _Limits()) -> None:
         self._servant = Servant(__name__, str(limits.cpu_s), str(limits.memory), wall_s=limits.wall_s)
         self.close = self._servant.close
+        self._cpu_s = limits.cpu_s
+        self._whose: object = None
+        self._student, self._left_s, self._streamed = 0, math.inf, MAX_STREAMED
+        self._fatal: set[bytes] = set()
+
+    def turn_to(self, student: object) -> None:
+        """Begin with a student's files: each archive is read once, and for all there is so much time."""
+        if student is not self._whose:
+            self._whose, self._student = student, self._student + 1
+            self._left_s, self._streamed = STUDENT_S, MAX_STREAMED
+            self._fatal.clear()
 
     def notebook(self, content: bytes, exercise: Exercise, name: str) -> tuple[bytes, bytes]:
         """The module that a notebook makes up, and the record of its cells."""
-        told = self._ask(_Request("notebook", one_line(name), content=content, **_wanted(exercise)))
+        told = self._ask(_Request("notebook", quoted(name), content=content, **_wanted(exercise)))
         return told.content, told.record
 
     def module_in(self, path: Path, exercise: Exercise) -> ArchiveContent | None:
@@ -411,7 +470,7 @@ class Reader:
             RefusedError: it must not be opened, or is damaged.
         """
         told = self._ask(
-            _Request("archive", one_line(path.name), path=os.fsencode(path.absolute()), **_wanted(exercise))
+            _Request("archive", quoted(path.name), path=os.fsencode(path.absolute()), **_wanted(exercise))
         )
         if told.name is None:
             return None
@@ -425,12 +484,12 @@ class Reader:
             functions: the names to look for.
         """
         where = os.fsencode(path.absolute())
-        ask = _Request("outline", one_line(path.name), path=where, tasks=functions, skip=skip)
+        ask = _Request("outline", quoted(path.name), path=where, tasks=functions, skip=skip)
         return self._ask(ask).outlines
 
     def member(self, path: Path, name: str) -> bytes:
         """The content of one file of an archive."""
-        ask = _Request("member", one_line(path.name), path=os.fsencode(path.absolute()), skip=(name,))
+        ask = _Request("member", quoted(path.name), path=os.fsencode(path.absolute()), skip=(name,))
         return self._ask(ask).content
 
     def quiz_in(self, path: Path, loose: bytes = b"") -> Any:
@@ -440,18 +499,31 @@ class Reader:
             loose: what ``path`` holds, where that is no archive.
         """
         where = os.fsencode(path.absolute())
-        told = self._ask(_Request("quiz", one_line(path.name), path=where, content=loose))
+        told = self._ask(_Request("quiz", quoted(path.name), path=where, content=loose))
         return json.loads(told.content)
 
     def _ask(self, ask: _Request) -> _Reply:
-        frame = self._servant.ask(ask, MAX_ANSWER)
+        if self._left_s <= 0:
+            raise RefusedError(
+                "unreadable",
+                f"{ask.name} was not read: what was handed in with it took all the time for reading.",
+                "Hand in the .py files alone.",
+            )
+        ask = msgspec.structs.replace(ask, student=self._student, streamed=self._streamed)
+        frame = None if ask.path in self._fatal else self._servant.ask(ask, MAX_ANSWER)
         if frame is None:
+            if self._student and ask.path not in self._fatal:
+                self._left_s -= self._cpu_s
+                self._fatal |= {ask.path} - {b""}
             raise RefusedError(
                 "unreadable",
                 f"{ask.name} takes more time or memory to read than any honest file.",
                 "Hand in the .py file, or a notebook of ordinary size.",
             )
         told = msgspec.msgpack.decode(frame, type=_Reply)
+        if self._student:
+            self._left_s -= told.cpu_s
+            self._streamed -= told.streamed
         if told.problem is not None:
             problem = told.problem
             raise RefusedError(problem.code, problem.message, problem.help)
@@ -482,11 +554,16 @@ def main() -> None:
 
 
 def _serve(source: IO[bytes], sink: IO[bytes], cpu_s: int) -> None:
+    student = 0
     for frame in served(source):
         limit_cpu(cpu_s)
+        started = time.process_time()
         ask = msgspec.msgpack.decode(frame, type=_Request)
+        if not ask.student or ask.student != student:
+            _held.cache_clear()
+        student, meter = ask.student, downloads.Meter(ask.streamed)
         try:
-            told = _answer(ask)
+            told = _answer(ask, meter)
         except RefusedError as refused:
             told = _Reply(problem=refused.problem)
         except UngradableError as error:
@@ -495,10 +572,11 @@ def _serve(source: IO[bytes], sink: IO[bytes], cpu_s: int) -> None:
             told = _Reply(problem=Problem("unreadable", f"{ask.name} cannot be read: {error.strerror}.", ""))
         except MemoryError:
             os._exit(1)  # the parent process reports it
-        write_frame(sink, told)
+        took = time.process_time() - started
+        write_frame(sink, msgspec.structs.replace(told, cpu_s=took, streamed=meter.used))
 
 
-def _answer(ask: _Request) -> _Reply:
+def _answer(ask: _Request, meter: downloads.Meter) -> _Reply:
     # What it is looked for by, of an exercise; the course's content is not needed to read a file.
     exercise: Any = SimpleNamespace(
         id=ask.exercise,
@@ -511,9 +589,9 @@ def _answer(ask: _Request) -> _Reply:
         return _Reply(name=ask.name, content=module.source, record=module.record())
     path = Path(os.fsdecode(ask.path))
     if ask.kind == "outline":
-        return _Reply(outlines=tuple(_outlines(path, ask.skip, ask.tasks)))
+        return _Reply(outlines=tuple(_outlines(path, ask.skip, ask.tasks, meter)))
     if ask.kind == "member":
-        return _Reply(content=member_of(path, ask.skip[0]))
+        return _Reply(content=member_of(path, ask.skip[0], meter))
     if ask.kind == "quiz":
         return _Reply(content=json.dumps(quiz_of(path, ask.content)).encode())
     found = module_in(path, exercise)
@@ -524,14 +602,16 @@ def _answer(ask: _Request) -> _Reply:
     )
 
 
-def _outlines(path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> Iterator[Outline]:
+def _outlines(
+    path: Path, skip: tuple[str, ...], functions: tuple[str, ...], meter: downloads.Meter
+) -> Iterator[Outline]:
     with path.open("rb") as handle:
         content = handle.read(MAX_NOTEBOOK + 1)
     kind = downloads.kind_of(path.name, content)
     if kind == "a zip archive" or path.suffix.casefold() == ".zip":
         files = outline_of(path, skip)
     elif kind in _TARS:
-        files = _compressed(path, kind)
+        files = _compressed(path, kind, meter)
     else:
         digest = hashlib.sha256(content).hexdigest()
         if len(content) > MAX_NOTEBOOK:
@@ -551,9 +631,8 @@ def _outlines(path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> 
 
 def _is_record(path: Path) -> bool:
     """Whether an archive has nothing but what ``course submit`` writes beside the files."""
-    with contextlib.suppress(RefusedError):
-        return _opened(path, lambda _, members: list(members) == [MANIFEST])
-    return False
+    held = _held(path)
+    return isinstance(held, _Held) and list(held.names) == [MANIFEST]
 
 
 #: What is read as code; "" is what its name says.

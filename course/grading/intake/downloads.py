@@ -6,8 +6,9 @@
                  <name>[_LATE]_<user>_text.html or _link.html; <name> is anon where it grades anonymously
     gradescope   SUBMISSIONS/submission_<number>/... with submission_metadata.yml
 
-The kind follows from all the names together. A folder in which only some names are a platform's is refused,
-and the others are listed; a file without a known owner is reported, never guessed.
+The kind follows from all the names together, and from nothing that lies in a student's folder: that is the
+student's. A folder in which only some names are a platform's is refused, and the others are listed; a file
+without a known owner is reported, never guessed.
 """
 
 import bz2
@@ -19,7 +20,6 @@ import os
 import re
 import tarfile
 import unicodedata
-import zlib
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
@@ -28,7 +28,8 @@ from typing import Any, Literal
 from course import extras
 from course.errors import NotFoundError, UsageError
 from course.grading.gradebook.records import PlatformIdentity
-from course.handed_in.limits import HANDED_IN
+from course.handed_in.limits import HANDED_IN, MAX_DEEP, MAX_PATH, MAX_STREAMED
+from course.printable import quoted, some
 from course.strangers import read_bytes
 
 # ---
@@ -39,12 +40,18 @@ from course.strangers import read_bytes
 
 
 _NUMBERED = re.compile(r"(?:\s*\([0-9]{1,3}\)|-[0-9]{1,3})+$")
+#: Characters at the end of a name in which numbers are looked for, which takes quadratic time.
+_END = 40
+
+
+def _unnumbered(name: str) -> str:
+    return name[:-_END] + _NUMBERED.sub("", name[-_END:])
 
 
 def plain(name: str) -> str:
     """A file's name without letter case, and without the number of a copy: ``Name (2).py`` is ``name.py``."""
     stem, dot, suffix = unicodedata.normalize("NFC", name).rpartition(".")
-    return (_NUMBERED.sub("", stem) + dot + suffix.rstrip()).casefold()
+    return (_unnumbered(stem) + dot + suffix.rstrip()).casefold()
 
 
 def is_meant(name: str, wanted: str) -> bool:
@@ -58,7 +65,7 @@ def is_folder_meant(name: str, wanted: str) -> bool:
     A warm-up's is ``warm-ups/<id>`` in a workspace, and ``<id>`` alone where a student made it.
     """
     names = {wanted.casefold(), wanted.rpartition("/")[2].casefold()}
-    return name == "." or _NUMBERED.sub("", name).casefold() in names or name.casefold() in names
+    return name == "." or _unnumbered(name).casefold() in names or name.casefold() in names
 
 
 Layout = Literal["auto", "folders", "canvas", "moodle", "gradescope"]
@@ -84,6 +91,7 @@ _CANVAS = re.compile(
     r"_(?:(?P<attachment>[0-9]+)_(?P<file>.+)|(?P<typed>text|link)\.html)",
     re.S,
 )
+_GRADESCOPE = re.compile(r"submission_[0-9]+")
 _METADATA = "submission_metadata.yml"
 _MAX_METADATA = 200 << 20
 _SHOWN = 5
@@ -124,8 +132,8 @@ class Place:
         return next((name for name, mine in self.files or () if mine == path), path.name)
 
     def shown(self, path: Path) -> str:
-        """A path relative to the folder, as text."""
-        return os.fsencode(path.relative_to(self.root)).decode("utf-8", "backslashreplace")
+        """A path relative to the folder, as a sentence names it."""
+        return quoted(str(path.relative_to(self.root)))
 
 
 def _entries(folder: Path) -> list[tuple[str, Path]]:
@@ -180,11 +188,10 @@ def class_list(folder: Path, layout: str = "auto") -> ClassList:
     if layout not in LAYOUTS:
         raise UsageError(f"--layout is {layout!r}.", help=f"It takes {', '.join(LAYOUTS)}.")
     names = _names(folder)
-    inner = [name for name in names if (folder / name / _METADATA).is_file()]
-    if layout in {"auto", "gradescope"} and len(names) == len(inner) == 1:
-        folder, names = folder / inner[0], _names(folder / inner[0])  # the export is one folder in a zip
     if layout == "auto":
         layout = _recognised(folder, names)
+    elif layout == "gradescope" and _METADATA not in names and (refused := _one_too_high(folder, names)):
+        raise refused
     readers = {"folders": _folders, "moodle": _moodle, "canvas": _canvas, "gradescope": _gradescope}
     found = readers[layout](folder, names)
     found.students.sort(key=lambda student: student.name)
@@ -209,20 +216,34 @@ def _names(folder: Path) -> list[str]:
     return [name for raw in found if (name := os.fsdecode(raw)) not in IGNORED]
 
 
+def _one_too_high(folder: Path, names: list[str]) -> UsageError | None:
+    """Gradescope's zip holds one folder. A student's may look the same, so no list in it is believed."""
+    inner = [folder / name for name in names if (folder / name).is_dir()]
+    if len(inner) != 1 or not os.path.isfile(inner[0] / _METADATA):  # noqa: PTH113 - False where it is closed
+        return None
+    return UsageError(
+        f"The one folder in {folder} has a {_METADATA}: a download from Gradescope, or a student's work.",
+        help=f"If Gradescope made it, name {str(inner[0])!r}; if a student did, choose --layout folders.",
+        code="mixed_layout",
+    )
+
+
 def _recognised(folder: Path, names: list[str]) -> str:
-    if _METADATA in names:
-        return "gradescope"
     folders = [name for name in names if (folder / name).is_dir() or (folder / name).is_symlink()]
     moodle = [name for name in names if _MOODLE.fullmatch(name)]
     canvas = [name for name in names if name not in folders and _CANVAS.fullmatch(name)]
     if moodle:
         layout, odd = "moodle", [name for name in folders if name not in moodle]
+    elif _METADATA in names:
+        layout, odd = "gradescope", [name for name in folders if not _GRADESCOPE.fullmatch(name)]
     elif canvas and (not folders or any(map(_may_be_handed_in, canvas))):
         layout, odd = "canvas", [name for name in names if name not in canvas]
+    elif refused := _one_too_high(folder, names):
+        raise refused
     else:
         return "folders"
     if odd:
-        listed = ", ".join(_text(name) for name in odd[:_SHOWN]) + (", ..." if len(odd) > _SHOWN else "")
+        listed = some([*map(quoted, odd)], _SHOWN)
         raise UsageError(
             f"{folder} looks like a download from {layout.capitalize()}, but not all of it: {listed}.",
             help=f"Move these elsewhere, or choose the kind: --layout folders or --layout {layout}.",
@@ -247,7 +268,7 @@ def _folders(folder: Path, names: list[str]) -> ClassList:
         path = folder / raw
         if not (path.is_dir() or path.is_symlink()):
             if _may_be_handed_in(raw):
-                found.unrecognised.append(f"{_text(raw)}: is in no student's folder")
+                found.unrecognised.append(f"{quoted(raw)}: is in no student's folder")
             continue  # such as a class list or notes: not a submission
         name = _text(raw)
         while name in owned:
@@ -266,7 +287,7 @@ def _moodle(folder: Path, names: list[str]) -> ClassList:
     for raw in names:
         match = _MOODLE.fullmatch(raw)
         if match is None:
-            found.unrecognised.append(f"{_text(raw)}: not a name in Moodle's form")
+            found.unrecognised.append(f"{quoted(raw)}: not a name in Moodle's form")
             continue
         student = _text(f"{match['name']}_{match['key']}")
         people[student] = PlatformIdentity("moodle", match["key"], _text(match["name"]))
@@ -279,7 +300,7 @@ def _moodle(folder: Path, names: list[str]) -> ClassList:
             shared.setdefault(student, []).append((match["file"], folder / raw))
     for student, identity in people.items():
         if student in owned and student in shared:
-            found.unrecognised.append(f"{student}: both a folder and files of their own")
+            found.unrecognised.append(f"{quoted(student)}: both a folder and files of their own")
             continue
         place = Place(owned[student]) if student in owned else Place(folder, tuple(shared.get(student, ())))
         words = tuple(typed.get(student, ()))
@@ -296,7 +317,7 @@ def _canvas(folder: Path, names: list[str]) -> ClassList:
     for raw in names:
         match = _CANVAS.fullmatch(raw)
         if match is None or (folder / raw).is_dir():
-            found.unrecognised.append(f"{_text(raw)}: not a name in Canvas' form")
+            found.unrecognised.append(f"{quoted(raw)}: not a name in Canvas' form")
             continue
         key = match["key"] or match["anon_key"]
         mine = files.setdefault(key, [])
@@ -309,7 +330,7 @@ def _canvas(folder: Path, names: list[str]) -> ClassList:
             late.add(key)
     for key, items in files.items():
         if len(spelled[key]) > 1:
-            both = " and ".join(sorted(spelled[key]))
+            both = " and ".join(map(quoted, sorted(spelled[key])))
             found.unrecognised.append(
                 f"user {key} of Canvas is called {both}: whose files these are is unclear"
             )
@@ -330,25 +351,23 @@ def _gradescope(folder: Path, names: list[str]) -> ClassList:
     claims: dict[str, list[tuple[str, Student]]] = {}
     for name in names:
         if (folder / name).is_dir() and name not in metadata:
-            found.unrecognised.append(f"{_text(name)}: {_METADATA} does not name its owner")
+            found.unrecognised.append(f"{quoted(name)}: {_METADATA} does not name its owner")
     for name, about in metadata.items():
         # A folder's name comes out of a file: it must be one that was listed, never a path.
         if name not in names or not (folder / name).is_dir():
-            found.unrecognised.append(
-                f"{ascii(name)[1:-1]}: listed in {_METADATA}, but there is no such folder"
-            )
+            found.unrecognised.append(f"{quoted(name)}: listed in {_METADATA}, but there is no such folder")
             continue
         submitters = _submitters(about)
         if not submitters:
-            found.unrecognised.append(f"{_text(name)}: {_METADATA} names no student for it")
+            found.unrecognised.append(f"{quoted(name)}: {_METADATA} names no student for it")
         for who in submitters:
             student = who.sid or who.email or who.name
             entry = Student(student, Place(folder / name), who, _created_at(about))
             claims.setdefault(student, []).append((name, entry))
     for student, entries in claims.items():
         if len(entries) > 1:
-            listed = ", ".join(name for name, _ in entries)
-            found.unrecognised.append(f"{student} has several submissions: {listed}")
+            listed = some([quoted(name) for name, _ in entries], _SHOWN)
+            found.unrecognised.append(f"{quoted(student)} has several submissions: {listed}")
         else:
             found.students.append(entries[0][1])
     return found
@@ -440,16 +459,29 @@ def is_clutter(name: str) -> bool:
     return _CLUTTER.fullmatch(name) is not None
 
 
+_SLASH = re.compile("/")
+
+
 def clutter(names: Iterable[str]) -> Callable[[str], bool]:
     """Whether one of these paths lies in something that is no student's work, such as an environment."""
     environments = {name.rpartition("/")[0] for name in names if name.rpartition("/")[2] == _ENVIRONMENT}
     environments.discard("")
 
     def inside(name: str) -> bool:
-        path = PurePosixPath(name)
-        return any(map(is_clutter, path.parts)) or any(str(above) in environments for above in path.parents)
+        if any(map(is_clutter, name.split("/"))):
+            return True
+        return bool(environments) and any(name[: at.start()] in environments for at in _SLASH.finditer(name))
 
     return inside
+
+
+#: Why an archive with such a path in it is refused.
+DEEP = f"a file in it lies in more than {MAX_DEEP} folders, or its path has more than {MAX_PATH} characters"
+
+
+def too_deep(name: str) -> bool:
+    """Whether no program makes such a path; what looks at all folders above a file would never end."""
+    return len(name) > MAX_PATH or name.count("/") > MAX_DEEP
 
 
 def is_notebook(content: bytes) -> bool:
@@ -459,7 +491,7 @@ def is_notebook(content: bytes) -> bool:
 
 def may_be_code(name: str) -> bool:
     """Whether a text of this name may be code."""
-    return PurePosixPath(name).suffix.casefold() in _CODE
+    return PurePosixPath(name).suffix.rstrip().casefold() in _CODE
 
 
 def kind_of(name: str, content: bytes) -> str:
@@ -487,35 +519,58 @@ def _kind_of_text(suffix: str, content: bytes, head: bytes) -> str:
 
 
 _OPENERS: dict[str, Callable[..., Any]] = {
+    "a tar archive": open,
     "a gzip archive": gzip.open,
     "a bzip2 archive": bz2.open,
     "an xz archive": lzma.open,
 }
 
 
-def compressed(path: Path, kind: str, most: int, total: int) -> Iterator[tuple[str, bytes]]:
+class TooMuchError(Exception):
+    """A tar archive has more in it than may be, which the message says."""
+
+
+@dataclass
+class Meter:
+    """What was decompressed of one student's archives, and may be, in bytes."""
+
+    most: int
+    used: int = 0
+    source: Any = None
+
+    def read(self, size: int) -> bytes:
+        """The next bytes of the source."""
+        found: bytes = self.source.read(size)
+        self.used += len(found)
+        if self.used > self.most:
+            raise TooMuchError(f"the tar archives here unpack to more than {MAX_STREAMED >> 20} MB")
+        return found
+
+
+def compressed(path: Path, kind: str, most: int, total: int, meter: Meter) -> Iterator[tuple[str, bytes]]:
     """Names and contents of what may be code in a tar archive, or of the one file that was compressed.
 
     Args:
         most, total: bytes of a file, and of all of them; larger ones are passed over.
 
     Raises:
+        TooMuchError: to find them takes more than the meter allows, or a path is too long.
         OSError: it is damaged.
     """
     try:
-        with tarfile.open(path, "r|*") as archive:
-            yield from _in_tar(archive, most, total)
-        return
-    except tarfile.ReadError:
-        opener = _OPENERS.get(kind)
-    except (EOFError, zlib.error, lzma.LZMAError):
-        opener = None
-    if opener is None:
-        raise OSError("it is damaged")
-    try:
-        with opener(path, "rb") as handle:
+        with _OPENERS[kind](path, "rb") as meter.source:
+            try:
+                with tarfile.open(fileobj=meter, mode="r|") as archive:  # type: ignore[call-overload]
+                    yield from _in_tar(archive, most, total)
+                return
+            except tarfile.ReadError:
+                if kind == "a tar archive":
+                    raise
+        with _OPENERS[kind](path, "rb") as handle:
             content: bytes = handle.read(most + 1)
-    except (OSError, EOFError, zlib.error, lzma.LZMAError):
+    except TooMuchError:
+        raise
+    except Exception:  # noqa: BLE001 - tarfile and what decompresses for it raise all kinds at damage
         raise OSError("it is damaged") from None
     if len(content) <= most:
         yield path.stem, content
@@ -523,8 +578,10 @@ def compressed(path: Path, kind: str, most: int, total: int) -> Iterator[tuple[s
 
 def _in_tar(archive: tarfile.TarFile, most: int, total: int) -> Iterator[tuple[str, bytes]]:
     for member in archive:
-        name = member.name.removeprefix("./")
-        if not (member.isreg() and may_be_code(name)) or any(map(is_clutter, PurePosixPath(name).parts)):
+        name = _text(member.name.removeprefix("./"))
+        if too_deep(name):
+            raise TooMuchError(DEEP)
+        if not (member.isreg() and may_be_code(name)) or any(map(is_clutter, name.split("/"))):
             continue
         total -= member.size
         if total < 0:

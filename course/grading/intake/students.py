@@ -45,7 +45,7 @@ from course.grading.intake.downloads import (
 )
 from course.handed_in.limits import HANDED_IN, MANIFEST, MAX_FILE, MAX_NOTEBOOK
 from course.handed_in.notebook import RECORD
-from course.printable import one_line, some
+from course.printable import one_line, quoted, some
 from course.scoring.judging.submission import Submission
 from course.scoring.verdict import Problem, Verdict
 from course.strangers import in_utf8
@@ -110,6 +110,7 @@ def read_student(
         others: the course's other exercises. Where all that is there is known to be for these, an exercise
             that is required is merely not submitted, too; and each with work has an entry that says so.
     """
+    reader.turn_to(student)
     try:
         return list(_entries(student, exercises, required=required, others=others))
     except InternalError:
@@ -264,7 +265,7 @@ def _no_file(exercise: Exercise, found: tuple[Candidate, ...], typed: tuple[str,
     if found:
         message += f" There is {described(found)}."
     if typed:
-        message += f" The text typed into the platform is not a file: {', '.join(map(one_line, typed))}."
+        message += f" The text typed into the platform is not a file: {some([*map(quoted, typed)], _SHOWN)}."
     return Problem(
         "no_file",
         message,
@@ -305,7 +306,7 @@ def _find(place: Place, archives: list[Path], exercise: Exercise) -> _FoundWork 
     candidates = [*files, *(archive for archive, _ in packed)]
     if not candidates:
         return None
-    names = ", ".join(place.shown(path) for path in candidates)
+    names = some([place.shown(path) for path in candidates], _SHOWN)
     several = RefusedError(
         "ambiguous_files", f"There are several files for {exercise.id}: {names}.", "Keep the one that counts."
     )
@@ -323,12 +324,12 @@ def _find(place: Place, archives: list[Path], exercise: Exercise) -> _FoundWork 
     notes += _unlike_its_name(path) if files else []
     called = path.name if files else packed[0][1].name
     if files and (given := place.given(path)) not in {exercise.module, notebook}:
-        notes.append(f"{one_line(given)} was taken for {exercise.module}.")
+        notes.append(f"{quoted(given)} was taken for {exercise.module}.")
     above = path.parent.name if place.files is None and path.parent != place.root and files else ""
     if above and above != exercise.place.rpartition("/")[2]:
-        notes.append(f"The folder {one_line(above)} was taken for {exercise.place}.")
+        notes.append(f"The folder {quoted(above)} was taken for {exercise.place}.")
     if len(candidates) > 1:
-        notes.append(f"These are the same file: {one_line(names)}.")
+        notes.append(f"These are the same file: {names}.")
     digests = frozenset({hashlib.sha256(contents[0]).hexdigest()})
     submission = _submission(exercise, called, contents[0])
     written = next((held.written for _, held in packed), "")
@@ -348,7 +349,7 @@ def _content(place: Place, path: Path, exercise: Exercise, *, notebook: bool) ->
     """What a file holds for an exercise; one that is a zip by its content is read as such."""
     for part in path.relative_to(place.root).parents:
         if part.name and (place.root / part).is_symlink():
-            raise RefusedError("symlink", f"{part} is a link.", "Hand in the folder itself.")
+            raise RefusedError("symlink", f"{quoted(str(part))} is a link.", "Hand in the folder itself.")
     shown = place.shown(path)
     content = _read_regular(path, shown, MAX_NOTEBOOK)
     kind = kind_of(path.name, content)
@@ -369,7 +370,7 @@ def _unlike_its_name(path: Path) -> list[str]:
     """That a file that was taken is another kind of file than its name says."""
     with path.open("rb") as handle:
         kind = kind_of(path.name, handle.read(1 << 16))
-    return [f"{one_line(path.name)} is {kind}, and was read as one."] if kind in _TAKEN_AS else []
+    return [f"{quoted(path.name)} is {kind}, and was read as one."] if kind in _TAKEN_AS else []
 
 
 _TAKEN_AS = frozenset({"a notebook", "a zip archive"})
@@ -381,12 +382,12 @@ def submission_from(exercise: Exercise, path: Path, member: str = "") -> Submiss
     Args:
         member: name in the archive at ``path``; empty for the file itself.
     """
-    content = reader.member(path, member) if member else _read_regular(path, path.name, MAX_NOTEBOOK)
+    content = reader.member(path, member) if member else _read_regular(path, quoted(path.name), MAX_NOTEBOOK)
     notebook = (member or path.name).casefold().endswith(".ipynb") or is_notebook(content)
-    _within(content, path.name, MAX_NOTEBOOK if notebook else MAX_FILE)
+    _within(content, quoted(path.name), MAX_NOTEBOOK if notebook else MAX_FILE)
     kind = kind_of(member or path.name, content)
     if not notebook and kind not in {"", "a text", "an empty file", "no text"}:
-        message = f"{one_line(member or path.name)} cannot be graded: it is {kind}."
+        message = f"{quoted(member or path.name)} cannot be graded: it is {kind}."
         raise RefusedError(
             "no_code", message, "Name a .py file or a notebook; a path into an archive has a slash."
         )
@@ -402,7 +403,8 @@ def _submission(exercise: Exercise, name: str, content: bytes) -> Submission:
         RefusedError: it is empty, in an encoding that Python does not expect, or a notebook that cannot be
             graded.
     """
-    shown = name.rpartition("/")[2]
+    called = name.rpartition("/")[2]
+    shown = quoted(called)
     if not content.strip():
         raise RefusedError("empty_file", f"{shown} is empty.", "Was it saved before it was handed in?")
     if not name.casefold().endswith(".ipynb") and not is_notebook(content):
@@ -412,7 +414,7 @@ def _submission(exercise: Exercise, name: str, content: bytes) -> Submission:
             advice = "Save it as UTF-8, or declare its encoding in the first line."
             raise RefusedError("syntax_error", message, advice)
         return Submission({exercise.module: content})
-    source, record = reader.notebook(content, exercise, shown)
+    source, record = reader.notebook(content, exercise, called)
     if len(source) > MAX_FILE:
         message = f"The functions of {shown} are larger than {MAX_FILE >> 20} MB."
         raise RefusedError("too_large", message, "Hand in source code only.")
@@ -453,6 +455,7 @@ def read_quiz(student: Student) -> tuple[Any, Path | None]:
     """
     found: list[tuple[Any, Path]] = []
     place = student.place
+    reader.turn_to(student)
     with contextlib.suppress(OSError):
         if place.files is None and place.root.is_symlink():
             return [], None
@@ -575,7 +578,7 @@ def _outlined(
         outlines = reader.outlines(path, skip, functions)
     except RefusedError as refused:
         killed = refused.problem.code == "unreadable"
-        why = refused.problem.message.removeprefix(f"{path.name}: ").rstrip(".")
+        why = refused.problem.message.removeprefix(f"{quoted(path.name)}: ").rstrip(".")
         return [Candidate(shown, os.fsencode(path), sha256="" if killed else shown, kind=why)], 0
     candidates = [
         Candidate(
@@ -627,5 +630,5 @@ def described(candidates: Sequence[Candidate]) -> str:
     for one in candidates:
         names = ", ".join(one.defines[:_SHOWN]) + (", ..." if len(one.defines) > _SHOWN else "")
         facts = [*filter(None, [one.kind]), *([f"defines {names}"] if names else [])]
-        told.append(f"{one.name} ({', '.join(facts)})" if facts else one.name)
+        told.append(quoted(one.name) + (f" ({', '.join(facts)})" if facts else ""))
     return some(told, _SHOWN)

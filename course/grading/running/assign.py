@@ -22,7 +22,7 @@ from course.grading.results.effective import Effective, Results, counted, given_
 from course.grading.running.batch import Graded, grade_all
 from course.grading.running.run import GradeAll
 from course.grading.running.snapshot import Unpacked, fresh, frozen, kept
-from course.printable import command
+from course.printable import command, quoted
 from course.scoring.judging.submission import Terms
 
 
@@ -226,7 +226,7 @@ def _recorded(results: Results, one: Assignment, graded: Graded, version: str, r
     book, entry = results.book, graded.entry
     assert entry.submission is not None
     before = next(results.all(one.student, one.exercise), None)
-    note = f"Graded from {one.name}, assigned by the instructor: {reason}"
+    note = f"Graded from {quoted(one.name)}, assigned by the instructor: {reason}"
     verdict = msgspec.structs.replace(graded.verdict, warnings=(*graded.verdict.warnings, note))
     key = Key(one.student, one.exercise, entry.sha256, version, results.seed)
     book.add(Result(key, verdict), dict(entry.submission.files))

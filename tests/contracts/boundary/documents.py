@@ -282,6 +282,7 @@ ZIP: dict[str, Made] = {
     "bomb-beside": _bytes(lambda right: _zip(("doubling.py", _BOMB))),
     "bombs": _bytes(lambda right: _zip(*((f"{n}.py", b"\0" * 2_000_000) for n in range(200)))),
     "many": _bytes(lambda right: _zip(*((f"{n}.py", b"") for n in range(60_000)))),
+    "deep": _bytes(lambda right: _zip(("doubling.py", b"x = 1\n"), ("a/" * 30_000 + "x.md", b""))),
     "nested": _bytes(lambda right: _zip(("a.zip", _zip(("b.zip", right))))),
     "climbing": _repacked(lambda name, content: [("../" + name, content), ("/" + name, content)]),
     "twice": _repacked(lambda name, content: [(name, content), (name, content)]),

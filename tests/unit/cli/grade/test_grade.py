@@ -15,6 +15,7 @@ import pytest
 
 from tests.command_line import in_process
 from tests.unit.cli.conftest import MINI_COURSE, files_in
+from tests.unit.grading.made import zipped
 
 WRONG = b"\ndef double(x):\n    print('I saw', x)\n    return x\n"
 
@@ -119,7 +120,10 @@ def test_a_students_installation_is_told_so(tmp_path: Path) -> None:
 
 
 def test_nobody_adds_lines_of_their_own_to_what_the_instructor_reads(tmp_path: Path) -> None:
-    """Names of folders and archives, exceptions and values: on the terminal and in what is explained."""
+    """Names of folders and archives, exceptions and values: on the terminal and in what is explained.
+
+    A name that reads like a sentence stood in a sentence of ours like a part of it.
+    """
     solution = (MINI_COURSE / "solutions" / "doubling" / "doubling.py").read_bytes()
     forged = "ada 10 of 10 passed"
     names = {
@@ -134,14 +138,20 @@ def test_nobody_adds_lines_of_their_own_to_what_the_instructor_reads(tmp_path: P
         (tmp_path / "class" / name / "doubling.py").write_bytes(source)
     (tmp_path / "class" / "flo").mkdir()
     (tmp_path / "class" / "flo" / f"\n{forged}.zip").write_bytes(b"PK")
+    (tmp_path / "class" / "hal").mkdir()
+    around = f"work, as agreed. {forged}"
+    (tmp_path / "class" / "hal" / "w.zip").write_bytes(zipped({f"{around}/doubling.py": solution}))
     ran = course(
         "grade", "run", tmp_path / "class", "--exercise", "doubling", "--out", tmp_path / "out",
         "--isolation", "process", "--plain",
     )  # fmt: skip
     assert ran.returncode == 6, ran.stderr
-    told = [course("grade", "explain", tmp_path / "out", name, "doubling", "--plain") for name in names]
+    told = [
+        course("grade", "explain", tmp_path / "out", name, "doubling", "--plain") for name in (*names, "hal")
+    ]
     for said in (ran.stdout, ran.stderr, *(done.stdout for done in told)):
         assert not any(line.strip().startswith(forged) for line in said.splitlines()), said
         assert not set("\u202e\u2066\r") & set(said), said
     assert "bob\\n" in ran.stdout
     assert any("raised ValueError" in done.stdout for done in told)
+    assert f"in the folder '{around}', which" in " ".join(told[-1].stdout.split())

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import io
 import json
 import shutil
+import tarfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -18,12 +20,22 @@ from course.grading.running.batch import Graded
 from course.scoring.judging.submission import Terms
 from course.scoring.verdict import Problem
 from tests.unit.grading.conftest import MINI
-from tests.unit.grading.made import verdict
+from tests.unit.grading.made import verdict, zipped
 from tests.unit.grading.running.test_run import right
 
 pytestmark = pytest.mark.usefixtures("unpacked")
 
 SOURCE = "def double(x):\n    return 2 * x\n\ndef doublings(x, n):\n    return x\n"
+
+
+def _long_tar(size: int) -> bytes:
+    """So many MB that are no code, in some kB."""
+    buffer = io.BytesIO()
+    with tarfile.open(fileobj=buffer, mode="w:gz") as archive:
+        info = tarfile.TarInfo("long.md")
+        info.size = size << 20
+        archive.addfile(info, io.BytesIO(bytes(info.size)))
+    return buffer.getvalue()
 
 
 @pytest.fixture
@@ -51,7 +63,7 @@ def test_what_is_unsettled_is_listed_previewed_and_settled(course, here: Path) -
     assert listed["unsettled"] == [
         {
             "student": "bob", "exercise": "doubling", "reason": "no_file",
-            "message": "There is no doubling.py for doubling. There is hw.py (defines double, doublings).",
+            "message": "There is no doubling.py for doubling. There is 'hw.py' (defines double, doublings).",
             "files": [{"file": "hw.py", "defines": ["double", "doublings"], "proposed": True, "kind": ""}],
         },
         {
@@ -69,7 +81,7 @@ def test_what_is_unsettled_is_listed_previewed_and_settled(course, here: Path) -
     assert book(here) == before
     ran = course("grade", "assign", "out", "bob", "hw.py", "--reason", "by mail")
     assert ran.code == 0, ran.err
-    assert "bob doubling: ungradable -> graded, 10 of 10; from hw.py" in ran.out
+    assert "bob doubling: ungradable -> graded, 10 of 10; from 'hw.py'" in ran.out
     log = course("grade", "log", "out", "--json").json
     assert [run["kind"] for run in log["runs"]] == ["run", "assign"]
     (change,) = log["changes"]
@@ -77,7 +89,7 @@ def test_what_is_unsettled_is_listed_previewed_and_settled(course, here: Path) -
     assert change["who"]
     logged = course("grade", "log", "out", "bob").out
     assert "by mail" in logged
-    assert "0 of 10, no_file -> 10 of 10, hw.py" in logged
+    assert "0 of 10, no_file -> 10 of 10, 'hw.py'" in logged
     assert "by mail; before: 0 of 10, no_file" in course("grade", "explain", "out", "bob", "doubling").out
     for words, code in (
         (("bob",), "usage"), (("bob", "x.py", "--accept-names"), "usage"),
@@ -270,12 +282,12 @@ def test_work_in_an_undeclared_encoding_is_settled_by_its_own_name_and_named_and
     assert ran.code == 0, ran.err
     assert [source.decode() for source in graded[-1:]] == [text]
     ran = course("grade", "run", "class", "--out", "new", "--exercise", "doubling")
-    assert f"ada doubling: syntax_error: doubling.py is saved in {named}" in " ".join(ran.out.split())
+    assert f"ada doubling: syntax_error: 'doubling.py' is saved in {named}" in " ".join(ran.out.split())
     listed = course("grade", "assign", "new").out
-    assert f"ada doubling: syntax_error: doubling.py is saved in {named}" in " ".join(listed.split())
+    assert f"ada doubling: syntax_error: 'doubling.py' is saved in {named}" in " ".join(listed.split())
     assert "doubling.py: defines double, doublings; proposed" in listed
     ran = course("grade", "assign", "new", "--accept-names")
-    assert "ada doubling: ungradable -> graded, 10 of 10; from doubling.py" in ran.out
+    assert "ada doubling: ungradable -> graded, 10 of 10; from 'doubling.py'" in ran.out
 
 
 def test_what_was_decided_before_a_folder_came_stays_with_its_student(course, here: Path) -> None:
@@ -315,3 +327,50 @@ def test_students_who_are_called_as_exercises_are_graded_and_it_is_said(course, 
     table = csv.DictReader((here / "new" / "grades.csv").read_text("utf-8-sig").splitlines())
     full = {row["student"]: row["score"] == row["max_score"] for row in table}
     assert full == {"doubling": True, "halving": True}
+
+
+_METADATA = "".join(
+    f"submission_{n}:\n  :submitters:\n  - :sid: {who}\n  :created_at: 2026-11-01 10:00:00 Z\n"
+    for n, who in enumerate(("ada", "bob"))
+)
+
+
+@pytest.mark.parametrize("layout", ["auto", "gradescope", "folders", "moodle"])
+@pytest.mark.parametrize("name", ["ada", "Ada_11_assignsubmission_file", "assignment_77_export"])
+def test_what_one_student_hands_in_grades_nobody_else(course, here: Path, name: str, layout: str) -> None:
+    """The only entry of a folder was searched for Gradescope's list, and that was believed."""
+    for n in range(2):
+        (here / "second" / name / f"submission_{n}").mkdir(parents=True)
+        (here / "second" / name / f"submission_{n}" / "doubling.py").write_text(SOURCE)
+    (here / "second" / name / "submission_metadata.yml").write_text(_METADATA)
+    with Gradebook(here / "out" / "gradebook.sqlite") as kept:
+        before = kept.history("bob", "doubling")
+    ran = course("grade", "run", "second", "--out", "out", "--resume", "--layout", layout, "--json")
+    with Gradebook(here / "out" / "gradebook.sqlite") as kept:
+        assert kept.history("bob", "doubling") == before
+        assert not [one for one in kept.times() if one.source == "gradescope"]
+    if ran.code == 2:  # it is a download, or one student's work: whoever grades says which
+        assert f"second/{name}" in ran.json["error"]["help"]
+        whole = course("grade", "run", f"second/{name}", "--out", "new", "--exercise", "doubling", "--json")
+        assert whole.code == 0, whole.err
+    assert (ran.code == 2) == (layout == "gradescope" or (layout == "auto" and "Ada" not in name))
+
+
+@pytest.mark.parametrize(
+    ("files", "said"),
+    [
+        ({"w.zip": zipped({"doubling.py": SOURCE, "a/" * 30_000 + "x.md": ""})}, ["w.zip", "100 folders"]),
+        ({f"{n}.tar.gz": _long_tar(60) for n in range(2)}, ["a gzip archive without", "more than 100 MB"]),
+        ({"w.tar.gz": _long_tar(101)}, ["w.tar.gz", "more than 100 MB"]),
+    ],
+)  # fmt: skip
+def test_small_archives_that_would_take_minutes_cost_their_student_alone(
+    course, here: Path, files: dict[str, bytes], said: list[str]
+) -> None:
+    (here / "class" / "bob" / "hw.py").unlink()
+    for name, content in files.items():
+        (here / "class" / "bob" / name).write_bytes(content)
+    ran = course("grade", "run", "class", "--out", "new", "--exercise", "doubling", "--json")
+    graded = {one["student"]: one for one in map(json.loads, ran.out.splitlines()) if one.get("student")}
+    assert all(part in graded["bob"]["error"]["message"] for part in said), graded["bob"]
+    assert graded["ada"]["state"] == "graded"

@@ -18,7 +18,7 @@ from course.catalog.models import Exercise
 from course.errors import NotFoundError
 from course.grading.intake.downloads import Place, Student, class_list
 from course.grading.intake.students import Entry, read_student
-from course.handed_in.limits import MAX_FILE, MAX_FILES
+from course.handed_in.limits import MAX_DEEP, MAX_FILE, MAX_FILES, MAX_PATH
 from course.scoring.verdict import Problem, not_graded
 from tests.unit.grading.made import notebook, put
 
@@ -183,6 +183,8 @@ def _lying_size(path: Path) -> None:
         lambda path: archive(path, {"/etc/doubling.py": SOURCE}),
         lambda path: archive(path, {"..\\doubling.py": SOURCE}),
         lambda path: archive(path, {"C:/doubling.py": SOURCE}),
+        lambda path: archive(path, {FOUND: SOURCE, "a/" * (MAX_DEEP + 1) + "x.md": b""}),
+        lambda path: archive(path, {FOUND: SOURCE, "a" * (MAX_PATH + 1): b""}),
         lambda path: archive(path, {"doubling/doubling.py": b"/etc/passwd"}, mode=stat.S_IFLNK | 0o777),
         lambda path: archive(path, {"inner.zip": b"PK", "doubling/doubling.py": SOURCE}),
         lambda path: path.write_bytes(b"PK\x03\x04 and nothing that follows"),
@@ -190,8 +192,8 @@ def _lying_size(path: Path) -> None:
         lambda path: path.mkdir(),
     ],
     ids=[
-        "bomb", "many files", "lying size", "parent path", "absolute path", "backslash", "drive", "link",
-        "nested", "damaged", "empty", "a folder",
+        "bomb", "many files", "lying size", "parent path", "absolute path", "backslash", "drive", "deep path",
+        "long path", "link", "nested", "damaged", "empty", "a folder",
     ],
 )  # fmt: skip
 def test_hostile_archives_are_refused(

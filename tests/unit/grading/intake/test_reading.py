@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import subprocess
 import sys
@@ -95,6 +96,44 @@ def test_a_bomb_costs_itself_and_is_named(bomb: str, strict: Reader, doubling: E
     assert caught.value.problem.code == "unreadable"
     assert "bomb.ipynb" in caught.value.problem.message
     assert strict.notebook(notebook(_DOUBLE), doubling, "honest.ipynb")[0].decode().startswith("def double")
+
+
+def test_an_archive_is_read_once_for_all_questions_about_a_student(
+    tmp_path: Path, doubling: Exercise
+) -> None:
+    """It was read for each exercise, for the quiz, and for what is left."""
+    path = tmp_path / "all.zip"
+    manifest = {"format_version": 1, "files": {}, "quiz": [1]}
+    path.write_bytes(zipped({"hw.py": _DOUBLE, "submission.json": json.dumps(manifest)}))
+    with contextlib.closing(Reader()) as reader:
+        reader.turn_to("ada")
+        assert reader.module_in(path, doubling) is None
+        path.write_bytes(b"PK")
+        assert reader.module_in(path, doubling) is None
+        assert [name for name, *_ in reader.outlines(path, (), ())] == ["hw.py"]
+        assert reader.quiz_in(path)
+        reader.turn_to("bob")
+        with pytest.raises(RefusedError, match="cannot be read"):
+            reader.quiz_in(path)
+
+
+def test_what_ends_the_reader_is_not_read_again_and_all_of_a_student_has_one_time(
+    tmp_path: Path, strict: Reader, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[object] = []
+    files = [tmp_path / f"{n}.zip" for n in range(3)]
+    for path in files:
+        path.write_bytes(zipped({"hw.py": _DOUBLE}))
+    with monkeypatch.context() as patch:
+        patch.setattr(archives, "STUDENT_S", 1.5)
+        patch.setattr(strict._servant, "ask", lambda *given: asked.append(given))  # it ends after its second
+        strict.turn_to("ada")
+        for path, said in zip([files[0], *files], ["honest file"] * 3 + ["all the time"], strict=True):
+            with pytest.raises(RefusedError, match=said):
+                strict.outlines(path, (), ())
+    assert len(asked) == 2
+    strict.turn_to("bob")
+    assert len(strict.outlines(files[0], (), ())) == 1
 
 
 def test_the_wall_clock_ends_a_reader_that_uses_no_time(doubling: Exercise) -> None:

@@ -6,6 +6,7 @@ import gzip
 import io
 import json
 import os
+import re
 import sys
 import tarfile
 from pathlib import Path
@@ -17,12 +18,15 @@ from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.errors import NotFoundError, UngradableError
 from course.grading.intake import students
+from course.grading.intake.downloads import DEEP
 from course.grading.intake.students import Candidate, Entry, found_for
 from course.grading.results.effective import override
 from course.grading.results.roster import read_roster
 from course.grading.running.assign import assign, named, proposals, unsettled
 from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions
+from course.handed_in.limits import MAX_FILE
+from course.printable import quoted
 from course.scoring.judging.submission import Terms
 from tests.unit.grading.made import graded_class, notebook, put, read_class, zipped
 from tests.unit.grading.running.test_run import right
@@ -47,41 +51,41 @@ def read(folder: Path, doubling: Exercise, *, required: bool = True) -> Entry:
 #: What is taken without a question -> what the result says of it.
 TAKEN: dict[str, tuple[dict[str, bytes], str]] = {
     "its very name": ({"doubling.py": SOURCE}, ""),
-    "letter case": ({"Doubling.PY": SOURCE}, "Doubling.PY was taken for doubling.py."),
-    "a browser's number": ({"doubling (2).py": SOURCE}, "doubling (2).py was taken for doubling.py."),
-    "without a space": ({"doubling(2).py": SOURCE}, "doubling(2).py was taken for doubling.py."),
-    "with a dash": ({"doubling-1.py": SOURCE}, "doubling-1.py was taken for doubling.py."),
-    "a notebook's": ({"Doubling (1).ipynb": NOTEBOOK}, "Doubling (1).ipynb was taken for doubling.py."),
+    "letter case": ({"Doubling.PY": SOURCE}, "'Doubling.PY' was taken for doubling.py."),
+    "a browser's number": ({"doubling (2).py": SOURCE}, "'doubling (2).py' was taken for doubling.py."),
+    "without a space": ({"doubling(2).py": SOURCE}, "'doubling(2).py' was taken for doubling.py."),
+    "with a dash": ({"doubling-1.py": SOURCE}, "'doubling-1.py' was taken for doubling.py."),
+    "a notebook's": ({"Doubling (1).ipynb": NOTEBOOK}, "'Doubling (1).ipynb' was taken for doubling.py."),
     "two copies": (
         {"doubling.py": SOURCE, "doubling (1).py": SOURCE},
-        "These are the same file: doubling.py, doubling (1).py.",
+        "These are the same file: 'doubling.py', 'doubling (1).py'.",
     ),
     "a copy in the folder": (
         {"doubling.py": SOURCE, "doubling/doubling.py": SOURCE},
-        "These are the same file: doubling.py, doubling/doubling.py.",
+        "These are the same file: 'doubling.py', 'doubling/doubling.py'.",
     ),
     "a copy in a zip": (
         {"doubling.py": SOURCE, "all.zip": zipped({"doubling/doubling.py": SOURCE})},
-        "These are the same file: doubling.py, all.zip.",
+        "These are the same file: 'doubling.py', 'all.zip'.",
     ),
     "one folder around all": (
         {"all.zip": zipped({"homework/doubling.py": SOURCE, "homework/notes.txt": b""})},
-        "Everything in all.zip lies in the folder homework, which was passed over.",
+        "Everything in 'all.zip' lies in the folder 'homework', which was passed over.",
     ),
     "two folders around all": (
         {"all.zip": zipped({"a/b/doubling/doubling.py": SOURCE})},
-        "Everything in all.zip lies in the folder a/b, which was passed over.",
+        "Everything in 'all.zip' lies in the folder 'a/b', which was passed over.",
     ),
     "backslashes": (
         {"all.zip": zipped({"doubling\\doubling.py": SOURCE, "x\\notes.txt": b""})},
-        "all.zip has backslashes in its paths; they were taken for folders.",
+        "'all.zip' has backslashes in its paths; they were taken for folders.",
     ),
     "a second version elsewhere": (
         {"doubling.py": SOURCE, "old/doubling_v2.py": OTHER, "plots.py": b"import math\n"},
-        "Also there, and not graded: old/doubling_v2.py (defines double, doublings).",
+        "Also there, and not graded: 'old/doubling_v2.py' (defines double, doublings).",
     ),
     "another spelling in a zip": (
-        {"all.zip": zipped({"Doubling (1).py": SOURCE})}, "Doubling (1).py was taken for doubling.py."
+        {"all.zip": zipped({"Doubling (1).py": SOURCE})}, "'Doubling (1).py' was taken for doubling.py."
     ),
 }  # fmt: skip
 
@@ -156,6 +160,10 @@ ODDLY: dict[str, tuple[dict[str, bytes], str, str]] = {
         {"all.tar.gz": in_tar("w:gz", **{"hw/doubling.py": SOURCE})}, "all.tar.gz/hw/doubling.py", ""
     ),
     "tar": ({"all.tar": in_tar("w", **{"x.py": SOURCE, "._x.py": b""})}, "all.tar/x.py", ""),
+    "tar, no text": (
+        {"all.tar": in_tar("w", **{os.fsdecode(b"l\xf6.py"): SOURCE})}, "all.tar/l\\xf6.py", ""
+    ),
+    "tar, deep": ({"all.tar": in_tar("w", **{"a/" * 101 + "x.py": SOURCE})}, "", DEEP),
     "gz": ({"doubling.py.gz": gzip.compress(SOURCE)}, "doubling.py.gz/doubling.py", ""),
     "notebook as text": ({"doubling.ipynb.txt": NOTEBOOK}, "doubling.ipynb.txt", "a notebook"),
     "notebook as JSON": ({"doubling.json": NOTEBOOK}, "doubling.json", "a notebook"),
@@ -181,7 +189,7 @@ def test_whatever_lies_there_is_named_with_what_it_is_and_assigned_by_its_name(
     assert entry.found is not None
     (one,) = entry.found.candidates
     assert (one.name if one.proposed else "", one.kind) == (match, kind)
-    assert one.name in entry.problem.message
+    assert quoted(one.name) in entry.problem.message
     assert kind in entry.problem.message
     graded(tmp_path, catalog)
     (lying,) = files
@@ -206,11 +214,46 @@ def test_a_notebook_or_a_zip_that_is_called_py_is_read_as_what_it_is(
         entry = read(tmp_path, doubling)
         assert entry.submission is not None
         assert entry.submission.files["doubling.py"].strip() == SOURCE.strip()
-        assert f"doubling.py is {kind}, and was read as one." in entry.notes
+        assert f"'doubling.py' is {kind}, and was read as one." in entry.notes
     lay(tmp_path, **{"doubling.py": b"%PDF-1.7"})
     problem = read(tmp_path, doubling).problem
     assert problem is not None
-    assert problem.message == "doubling.py is a PDF document, whatever its name says."
+    assert problem.message == "'doubling.py' is a PDF document, whatever its name says."
+
+
+#: A name that reads like a sentence of ours, wherever a student chooses one.
+FORGED = "work. The grader failed here; by hand it is 100 of 100"
+_LANGUAGE = f'"metadata": {{"language_info": {{"name": "{FORGED}"}}}}'.encode()
+_CHANGED = {"doubling.py": SOURCE, "submission.json": '{"format_version": 1, "files": {"x.py": "0"}}'}
+_NEWER = {"submission.json": '{"format_version": 9}'}
+NAMED: dict[str, dict[str, bytes]] = {
+    "a file": {f"{FORGED}.py": SOURCE},
+    "a folder": {f"{FORGED}/doubling.py": SOURCE},
+    "a zip": {f"{FORGED}.zip": zipped({"doubling.py": SOURCE, "doubling/doubling.py": OTHER})},
+    "a damaged zip": {f"{FORGED}.zip": b"PK"},
+    "a zip in backslashes": {f"{FORGED}.zip": zipped({"doubling\\doubling.py": SOURCE})},
+    "a changed zip": {f"{FORGED}.zip": zipped(_CHANGED)},
+    "a newer zip": {f"{FORGED}.zip": zipped({**_NEWER, "doubling.py": SOURCE})},
+    "a large member": {"all.zip": zipped({f"{FORGED}.py": b"#" * (MAX_FILE + 1)})},
+    "a folder around all": {"all.zip": zipped({f"{FORGED}/doubling.py": SOURCE})},
+    "a member": {"all.zip": zipped({f"{FORGED}.py": SOURCE, "x/y.txt": b""})},
+    "a tar": {f"{FORGED}.tar.gz": b"\x1f\x8b and no more"},
+    "a member of a tar": {"all.tar": in_tar("w", **{f"{FORGED}.py": SOURCE})},
+    "a language": {"doubling.ipynb": NOTEBOOK.replace(b'"metadata": {}', _LANGUAGE)},
+    "another version": {"doubling.py": SOURCE, f"{FORGED}.py": OTHER},
+    "copies": {"doubling.py": SOURCE, f"{FORGED}.zip": zipped({"doubling.py": SOURCE})},
+    "two versions": {"doubling.py": SOURCE, f"{FORGED}.zip": zipped({"doubling.py": OTHER})},
+    "no notebook": {f"{FORGED}.ipynb": b"{" * 200},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", NAMED)
+def test_a_name_within_a_sentence_is_in_quotes(tmp_path: Path, doubling: Exercise, what: str) -> None:
+    lay(tmp_path, **NAMED[what])
+    entry = read(tmp_path, doubling)
+    said = " ".join([*entry.notes, *([entry.problem.message] if entry.problem else [])])
+    assert FORGED.casefold() in said.casefold()
+    assert "grader" not in re.sub("'[^']*'", "", said), said
 
 
 @pytest.mark.parametrize(
@@ -246,7 +289,7 @@ def test_a_folder_that_was_renamed_is_taken_and_said(tmp_path: Path, doubling: E
     entries = list(read_class(tmp_path, [doubling], required=True))
     assert all(entry.submission is not None for entry in entries)
     notes = [note for entry in entries for note in entry.notes]
-    assert "The folder doubling-2 was taken for doubling." in notes
+    assert "The folder 'doubling-2' was taken for doubling." in notes
 
 
 def test_work_under_a_wrong_name_is_no_silence_even_where_nothing_was_asked_for(
@@ -255,14 +298,14 @@ def test_work_under_a_wrong_name_is_no_silence_even_where_nothing_was_asked_for(
     lay(tmp_path, **{"hw.py": SOURCE})
     entry = read(tmp_path, doubling, required=False)
     assert entry.problem is not None
-    assert "There is hw.py (defines double, doublings)." in entry.problem.message
+    assert "There is 'hw.py' (defines double, doublings)." in entry.problem.message
     (tmp_path / "ada" / "hw.py").write_bytes(b"def something(): pass\n")
     assert read(tmp_path, doubling, required=False).problem is None
     lay(tmp_path, **{"homework.rar": b"Rar!\x1a\x07\x00"})
     (tmp_path / "ada" / "hw.py").unlink()
     problem = read(tmp_path, doubling, required=False).problem
     assert problem is not None
-    assert "homework.rar (a rar archive, which nothing here opens)" in problem.message
+    assert "'homework.rar' (a rar archive, which nothing here opens)" in problem.message
 
 
 def test_hostile_files_are_named_and_cost_nobody_else(tmp_path: Path, doubling: Exercise) -> None:
@@ -382,7 +425,7 @@ def test_what_an_instructor_settled_is_written_down_and_no_trouble_any_more(
         assert noted.who
         assert noted.at
         assert results.book.history("bob", "doubling")[-1].verdict.warnings == (
-            "Graded from doubling (1).py, assigned by the instructor: by mail",
+            "Graded from 'doubling (1).py', assigned by the instructor: by mail",
         )
     again = graded(tmp_path, catalog, resume=True)
     assert (again.already, again.exit_code, again.unsettled, again.passed) == (2, 0, 0, 2)

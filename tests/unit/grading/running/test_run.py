@@ -295,10 +295,10 @@ QUIZZED: dict[str, tuple[dict[str, Any], str, str]] = {
         {"a.zip": {"submission.json": "{both}", "halving.py": "x"}, "submission.json": "{both}"},
         "graded", "graded",
     ),
-    "a damaged record": ({"a.zip": {"submission.json": "[1"}}, "malformed (a.zip: its sub", "missing"),
-    "a damaged one, unpacked": ({"submission.json": "[1"}, "malformed (submission.json: it is", "missing"),
+    "a damaged record": ({"a.zip": {"submission.json": "[1"}}, "malformed ('a.zip': its sub", "missing"),
+    "a damaged one, unpacked": ({"submission.json": "[1"}, "malformed ('submission.json': it is", "missing"),
     "a newer one": (
-        {"a.zip": {"submission.json": '{"format_version": 9}'}}, "malformed (a.zip was written", "missing"
+        {"a.zip": {"submission.json": '{"format_version": 9}'}}, "malformed ('a.zip' was written", "missing"
     ),
     "two": (
         {"a.zip": {"submission.json": "{quiz}"}, "submission.json": "[1"}, "malformed (Several", "missing"

@@ -109,7 +109,11 @@ def _ask_all(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[Pos
         chosen = screen.ask(console, question, number, len(posed))
         if chosen is None:
             return False
-        answered(attempt, question.question, chosen.id, desk.here.record)
+        desk.catch_up(attempt)
+        if question.question in attempt.answers:
+            console.line("This question was answered in another terminal; that answer counts.")
+        else:
+            answered(attempt, question.question, chosen.id, desk.here.record)
     return True
 
 

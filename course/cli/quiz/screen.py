@@ -14,7 +14,7 @@ from course.cli.frame.console import Console
 from course.cli.frame.here import Here
 from course.cli.frame.replies import Envelope, NextStep, filled
 from course.cli.home.learning import day
-from course.errors import CourseError
+from course.errors import CourseError, UsageError
 from course.progress.quiz import Attempt, QuizHistory, quiz_history
 from course.quizzing.bank import (
     LETTERS,
@@ -401,12 +401,31 @@ class Desk:
         """A new attempt, recorded."""
         return begun(self.bank, seed, self.here.catalog.version, self.here.record)
 
-    def reviews(self) -> tuple[Due, ...]:
-        """The questions under review, from the record as it is now."""
+    def catch_up(self, attempt: Attempt) -> None:
+        """Take over what another terminal has answered meanwhile: the first answer of each question counts.
+
+        Raises:
+            UsageError: the attempt was finished there.
+        """
+        self._read_again()
+        recorded = next((one for one in self.history.attempts if one.id == attempt.id), attempt)
+        attempt.answers.update(recorded.answers)
+        if recorded.finished is not None:
+            raise UsageError(
+                f"This attempt was finished in another terminal: {recorded.score} of {recorded.total} right.",
+                help="`course quiz history` shows it; `course quiz take` begins another one.",
+                code="attempt_finished",
+            )
+
+    def _read_again(self) -> None:
         try:
             self.history = quiz_history(self.here.workspace.store.events())
         except CourseError as error:
             self.here.warnings.append(f"{error.message} {error.help}")
+
+    def reviews(self) -> tuple[Due, ...]:
+        """The questions under review, from the record as it is now."""
+        self._read_again()
         return schedule(self.history.outcomes(), self.bank.ids)
 
 

@@ -258,7 +258,7 @@ def write_atomically(path: Path, data: bytes) -> None:
     Raises:
         MissingCapabilityError: the folder cannot be written.
     """
-    target = path.resolve()
+    target = Path(os.path.realpath(path))  # resolve() gives up at a link to itself
     scratch = target.with_name(f".{target.name}.{os.getpid()}.tmp")
     try:
         target.parent.mkdir(parents=True, exist_ok=True)

@@ -14,7 +14,7 @@ from course.catalog.load import Catalog
 from course.catalog.models import CourseRef
 from course.cli.frame import here
 from course.cli.frame.console import current
-from course.cli.frame.here import cwd, load_catalog
+from course.cli.frame.here import cwd, load_catalog, named
 from course.cli.frame.options import argument, option
 from course.cli.frame.replies import Envelope, NextStep, WrittenFile
 from course.errors import CourseError, NotFoundError, UsageError
@@ -205,7 +205,7 @@ def init(
     kinds = chosen_kinds(surroundings) if surroundings is not None else ()
     requirement = usable(requirement)
     here = cwd()
-    root = (here / (folder or Path()).expanduser()).resolve()
+    root = named(folder or Path()).resolve()
     created = not (root / MARKER).is_file()
     if created:
         _refuse_odd_places(root, catalog)

@@ -14,7 +14,7 @@ from typing import Annotated
 from course.catalog.models import Exercise, Rubric
 from course.cli.frame.completion import ExerciseName, grade_lists, task_ids
 from course.cli.frame.console import Console, current
-from course.cli.frame.here import Here, cwd
+from course.cli.frame.here import Here, named
 from course.cli.frame.options import option
 from course.cli.frame.replies import NextStep
 from course.cli.home.advice import after_warm_up
@@ -324,7 +324,7 @@ def _recorded(here: Here, chosen: Exercise, rubric: Rubric) -> tuple[str, tuple[
 
 
 def _read(path: Path) -> str:
-    full = cwd() / path.expanduser()
+    full = named(path)
     try:
         data = full.read_bytes()
     except OSError as error:

@@ -19,7 +19,7 @@ from course.catalog.models import Exercise
 from course.catalog.pack import zip_entry
 from course.cli.frame.completion import exercise_ids
 from course.cli.frame.console import Console, current
-from course.cli.frame.here import Here, cwd
+from course.cli.frame.here import Here, named
 from course.cli.frame.options import argument, option
 from course.cli.frame.replies import FileReply
 from course.cli.work.chosen import StudentWork, as_handed_in, work_of
@@ -136,7 +136,7 @@ def _target(here: Here, output: Path | None, only: Sequence[Exercise]) -> Path:
     name = f"{'-'.join(one.id for one in only) or here.catalog.course_id}-submission.zip"
     if output is None:
         return here.workspace.root / name
-    path = cwd() / output.expanduser()
+    path = named(output)
     if path.is_dir():
         path = path / name
     if not path.parent.is_dir():

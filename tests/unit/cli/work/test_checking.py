@@ -73,6 +73,14 @@ def test_a_file_whose_name_has_other_capitals_is_told(course, write):
     assert "doubling/doubling.py (not there; Doubling.py is not read)" in course("submit").out
 
 
+def test_a_link_to_no_file_is_told(course, write):
+    path = write("RIGHT", "RIGHT")
+    path.unlink()
+    path.symlink_to("/nope")
+    assert "doubling.py is a link to /nope, and no file is there.\nRemove the link" in course("check").err
+    assert "doubling/doubling.py (not there)" in course("submit").out
+
+
 def test_one_file_under_two_spellings_is_not_told(course, write):
     """What a file system on which capitals do not count shows."""
     path = write("RIGHT", "RIGHT")

@@ -240,6 +240,19 @@ def test_a_reader_that_stops_reading_is_no_error():
         assert (read.wait(120), read.stderr.read()) == (0, b"")
 
 
+@pytest.mark.skipif(os.name == "nt", reason="has no such shell")
+@pytest.mark.parametrize("closed", [">&-", "2>&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize("line", ["", "lessons --json"])
+def test_an_output_that_is_closed_is_no_error_either(tmp_path, line, closed):
+    script = f'exec "$0" -m course {line} {closed}'
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COURSE_CONTENT": str(MINI_COURSE)}
+    done = subprocess.run(
+        ["sh", "-c", script, sys.executable],
+        cwd=tmp_path, env=environment, capture_output=True, timeout=120, check=False,
+    )  # fmt: skip
+    assert (done.returncode, b"Traceback" in done.stderr) == (0, False)
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="has no device that is always full")
 @pytest.mark.parametrize("line", ["--version", "--help", "lessons", "lessons --json", "lesson twice-as-much"])
 def test_an_output_without_room_is_no_fault_of_the_course(line):

@@ -60,7 +60,7 @@ def main() -> NoReturn:
     _end_as_after_ctrl_c()
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:  # closed, as `course >&-` does it
-            setattr(sys, name, Path(os.devnull).open(mode, encoding="utf-8"))
+            setattr(sys, name, Path(os.devnull).open(mode, encoding="utf-8"))  # noqa: SIM115
     if "_COURSE_COMPLETE" in os.environ:
         _program(fancy=False).main(prog_name="course")
     sys.exit(run(sys.argv[1:]))

@@ -125,6 +125,13 @@ class Workspace:
         """Where a file belongs that lies in this folder: an exercise's id, or what its ``place`` says."""
         return self.root / place / name
 
+    def has_file(self, place: str, module: str) -> bool:
+        """Whether an exercise's module or notebook is there; where that cannot be seen, yes."""
+        try:
+            return any(self.path(place, module).with_suffix(kind).exists() for kind in (".py", ".ipynb"))
+        except OSError:
+            return True
+
     def shown(self, path: Path) -> str:
         """``path`` as a person wants to read it: relative to the workspace where it lies inside."""
         with contextlib.suppress(ValueError):

@@ -94,7 +94,7 @@ def next_in_course(catalog: Catalog, standing: Standing, done: Exercise | None =
         done: a task to go on from, instead of the one last worked on.
     """
     if (task := next_task(catalog, standing, done)) is not None:
-        if standing.is_begun(task.id):
+        if standing.is_begun(task.id) and standing.has_file(task.place, task.module):
             return f"course check {task.id}"
         return f"course {'warmup' if task.is_warm_up else 'start'} {task.id}"
     leading = {one.lesson for one in catalog.every_task()}
@@ -152,7 +152,8 @@ def _in_progress(catalog: Catalog, standing: Standing) -> str:
         last, graded = standing.history(exercise.id).last, standing.history(exercise.id).last_graded
         points = graded and f"{format_points(graded.score)} of {in_points(graded.max_score)}"
         state = f"in progress, {points}" if points else "started, not checked yet"
-        go_on = f"{exercise.id}: {state}. To go on: course check {exercise.id}"
+        step = "check" if standing.has_file(exercise.place, exercise.module) else "start"
+        go_on = f"{exercise.id}: {state}. To go on: course {step} {exercise.id}"
         begun.append((last.at.isoformat() if last else "", go_on))
     return max(begun, key=lambda one: one[0])[1] if begun else ""
 

@@ -42,7 +42,7 @@ def show_lines(console: Console, heading: str, text: str, *, whole: bool, indent
     console.block("\n".join(kept), indent=indent + _INDENT)
     if len(kept) < len(lines):
         left = len(lines) - len(kept)
-        more = f"and {counted(left, 'more line')}; --verbose shows all"
+        more = f"and {counted(left, 'more line')} with --verbose"
         console.line((more, "dim"), indent=indent + _INDENT)
 
 

@@ -31,7 +31,7 @@ def test_check_shows_the_first_lines_that_loading_printed_and_all_on_request(cou
         write("wrong", "RIGHT", extra)
         shown = course("check").out
         assert "Loading your file printed:\n  row 0\n" in shown
-        assert "  row 5\n  and 3 more lines; --verbose shows all\n" in shown
+        assert "  row 5\n  and 3 more lines with --verbose\n" in shown
         assert "row 6" not in shown
         assert "  row 8\n" in course("check", "--verbose").out
     write("wrong", "RIGHT", "'PRINTS'\n")

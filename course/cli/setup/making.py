@@ -6,6 +6,8 @@ Nothing is overwritten.
 from __future__ import annotations
 
 import json
+import os
+import shlex
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
@@ -268,4 +270,7 @@ def _quoted(root: Path, here: Path) -> str:
         text = str(root.relative_to(here))
     except ValueError:
         text = str(root)
-    return f'"{text}"' if any(char.isspace() for char in text) else text
+    text = f"./{text}" if text.startswith("-") else text
+    if os.name == "nt":  # whose shells know no other quotes, and no such character in a name
+        return f'"{text}"' if any(char.isspace() for char in text) else text
+    return shlex.quote(text)

@@ -237,14 +237,20 @@ class _Page:
             self.check(check)
 
     def unwritten(self, tasks: Tasks) -> None:
-        """The functions that are still the stub's, with their common advice once."""
+        """The functions that are still the stub's, with each advice once; those of the rarer are named."""
         every = [check for _, checks in tasks for check in checks]
         self.console.heading("Not written yet", self._worth(every))
         for task, _ in tasks:
             self.console.item(
                 "to do", task.title, (f"  [{task.id}]", "dim"), style="yellow", width=_LABEL_WIDTH
             )
-        self._text(next(check.help for check in every if check.diagnosis == _UNWRITTEN))
+        of: dict[str, dict[str, None]] = {}
+        for check in every:
+            if check.diagnosis == _UNWRITTEN:
+                of.setdefault(check.help, {})[check.task] = None
+        common = max(of, key=lambda advice: len(of[advice]))
+        for advice, named in of.items():
+            self._text(advice if advice == common else f"{', '.join(named)}: {advice}")
         self.console.gap()
 
     def _worth(self, checks: Sequence[CheckResult]) -> str:

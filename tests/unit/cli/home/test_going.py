@@ -139,6 +139,16 @@ def test_a_lesson_that_was_read_names_the_step_that_the_dashboard_names(course, 
     assert step == "course check doubling", "it was started"
 
 
+def test_a_lesson_that_was_printed_names_no_exercise_that_is_done(course, workspace, write):
+    def named():
+        return course("lesson", "twice-as-much", "--json").json["next"]["command"]
+
+    assert named() == "course check doubling"
+    write("RIGHT", "RIGHT")
+    course("check", "doubling")
+    assert named() == course("next", "--quiet").out.strip() == "course start halving"
+
+
 def test_the_reader_on_the_whole_screen_and_page_by_page_go_on_where_the_other_was_left(
     course, workspace, monkeypatch
 ):

@@ -46,6 +46,12 @@ def some(listed: Sequence[str], most: int) -> str:
     return ", ".join(listed[:most]) + more
 
 
+def ended(text: str) -> str:
+    """A sentence with its full stop, unless it ends already: what Python says may be a question."""
+    text = text.rstrip(" .")
+    return text if text.endswith(("?", "!")) else f"{text}."
+
+
 def beginning(text: str, most: int) -> str:
     """At most ``most`` characters of a text, in whole lines, and how much was left out."""
     if len(text) <= most:

@@ -105,8 +105,9 @@ class Workspace:
             _write_new(root / MARKER, text.encode())
             with contextlib.suppress(FileExistsError):
                 _write_new(root / ".gitignore", _NOT_FOR_GIT.encode())
-        except FileExistsError:
-            raise UsageError(f"{root} is in the way.", help="Name another folder.", code="exists") from None
+        except FileExistsError as error:
+            fix = "Move it away, or name another folder."
+            raise UsageError(f"{error.filename} is in the way.", help=fix, code="exists") from None
         except OSError as error:
             raise _not_writable(root, error) from error
         return cls(root=root, course_id=course_id, version=version)

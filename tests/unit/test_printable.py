@@ -6,7 +6,7 @@ import unicodedata
 
 import pytest
 
-from course.printable import beginning, counted, one_line, printable, steady
+from course.printable import beginning, counted, ended, one_line, printable, steady
 
 #: Line ends of every kind, marks that turn text, hidden characters, escapes, and half of a character.
 _HOSTILE = (
@@ -57,3 +57,8 @@ def test_a_beginning_has_whole_lines_and_says_how_many_more_there_are() -> None:
     assert beginning("one\ntwo\n", 8) == "one\ntwo\n"
     assert beginning("one\ntwo\nthree\nfour\n", 10) == "one\ntwo\n... (2 more lines left out)"
     assert beginning("x" * 9, 4) == "xxxx\n... (1 more line left out)"
+
+
+def test_a_question_has_no_full_stop() -> None:
+    said = "Maybe you meant '==' instead of '='?"
+    assert [ended(text) for text in ("so", "so. ", said, f"{said}.")] == ["so.", "so.", said, said]

@@ -46,15 +46,7 @@ class Here:
             MissingCapabilityError: the workspace is another course's.
         """
         workspace = Workspace.find(cwd())
-        catalog = load_catalog()
-        if workspace.course_id != catalog.course_id:
-            raise MissingCapabilityError(
-                f"{workspace.root} is a workspace of the course {workspace.course_id!r}; "
-                f"this is {catalog.course_id!r}.",
-                help="Work in a workspace of this course, or install the other one.",
-                code="other_course",
-            )
-        return cls(catalog=catalog, workspace=workspace)
+        return cls(catalog=catalog_of(workspace), workspace=workspace)
 
     @cached_property
     def course(self) -> CourseRef:
@@ -264,6 +256,19 @@ def load_catalog() -> Catalog:
     from course.catalog.load import Catalog
 
     return Catalog()
+
+
+def catalog_of(workspace: Workspace) -> Catalog:
+    """The course in use; raises MissingCapabilityError if the workspace is another course's."""
+    catalog = load_catalog()
+    if workspace.course_id != catalog.course_id:
+        raise MissingCapabilityError(
+            f"{workspace.root} is a workspace of the course {workspace.course_id!r}; "
+            f"this is {catalog.course_id!r}.",
+            help="Work in a workspace of this course, or install the other one.",
+            code="other_course",
+        )
+    return catalog
 
 
 def find_workspace() -> Here | None:

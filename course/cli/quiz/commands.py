@@ -141,7 +141,7 @@ def _seed(command: str, file: AnswerFile, *seeds: int | None) -> int:
             return check_seed(seed)
     raise UsageError(
         f"{file.path} does not say which questions its answers are for.",
-        help=f"Add a line `seed = N`, as `course quiz {command} --questions` prints it, or give --seed N.",
+        help=f"Add the seed that `course quiz {command} --questions` prints, or give --seed N.",
         code="seed_missing",
     )
 

@@ -169,10 +169,7 @@ def ask(console: Console, posed: PosedQuestion, number: int, total: int) -> Choi
     _show_question(console, posed, number, total)
     while True:
         typed = console.ask(_PROMPT)
-        if typed is None:
-            console.blank()
-            return None
-        if typed.lower() in {"q", "quit"}:
+        if typed is None or typed.lower() in {"q", "quit"}:
             return None
         choice = posed.choice(typed)
         if choice is not None:

@@ -16,7 +16,7 @@ from course.catalog.load import Catalog
 from course.catalog.models import CourseRef
 from course.cli.frame import here
 from course.cli.frame.console import current
-from course.cli.frame.here import cwd, load_catalog, named
+from course.cli.frame.here import catalog_of, cwd, load_catalog, named
 from course.cli.frame.options import argument, option
 from course.cli.frame.replies import Envelope, NextStep, WrittenFile
 from course.errors import CourseError, NotFoundError, UsageError
@@ -215,6 +215,7 @@ def init(
         console.line(f"Made a workspace for {catalog.title} in {root}.")
     else:
         workspace = Workspace.read(root)
+        catalog_of(workspace)
         console.line(f"{root} is a workspace already" + ("." if kinds else "; nothing was changed."))
     written = write_surroundings(root, kinds, requirement)
     if "github" in kinds and not (root / ".git").exists():

@@ -62,6 +62,7 @@ def test_the_list_of_commands_names_them_all(course):
         assert f"Example: course {one}" in said
     for name, entry in registry.COMMANDS.items():
         assert re.search(rf"^\s+{name}\s+{re.escape(entry.summary)}", words, re.MULTILINE)
+        assert not entry.is_group or "..\n" not in course(name, "--help").out.replace("]...\n", ""), "uncut"
 
 
 @pytest.mark.parametrize(("environ", "needed"), [({}, "typer"), ({"FORCE_COLOR": "1"}, "rich")])

@@ -42,11 +42,17 @@ def test_init_changes_nothing_in_a_workspace_where_a_file_is_or_where_course_tom
     ran = course("init", "inner", "--json")
     assert (ran.code, ran.json["error"]["code"]) == (2, "nested_workspace")
     assert not (workspace / "inner").exists()
+    (workspace.parent / "in the way" / "course.toml").mkdir(parents=True)
+    said = course("init", str(workspace.parent / "in the way")).err
+    assert f"in the way{os.sep}course.toml is in the way." in said
     (workspace.parent / "file").write_text("x")
     assert course("init", str(workspace.parent / "file")).code == 2
     assert (workspace.parent / "file").read_text() == "x"
     assert files_in(workspace) == before
-    (workspace / "course.toml").write_text("[[[")
+    marker = workspace / "course.toml"
+    marker.write_text(marker.read_text().replace('"mini"', '"other"'))
+    assert course("init", "--json").json["error"]["code"] == "other_course"
+    marker.write_text("[[[")
     ran = course("init")
     assert ran.code == 2
     assert "course.toml:1" in ran.err

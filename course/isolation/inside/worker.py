@@ -210,7 +210,10 @@ class Worker:
         except (SyntaxError, ValueError, LookupError) as error:
             if isinstance(error, LookupError):  # rot13, hex, zlib: codecs, and not of text
                 error = SyntaxError("the encoding that its first lines declare is none of text")
-            self._send(Kind.REFUSED, {"stage": "syntax", **_described(error)})
+            refused = {"stage": "syntax", **_described(error)}
+            if isinstance(error, UnicodeDecodeError):
+                refused["line"] = error.object.count(b"\n", 0, error.start) + 1
+            self._send(Kind.REFUSED, refused)
             return
         module = loading.Loading(source, main, imports, needed)
         if not module.run():

@@ -212,7 +212,7 @@ def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
     encoded = "UnicodeError" in failure.bases or "missing encoding" in reason or "codec can't" in reason
     if encoded or not failure.line:
         said = "it is saved in another encoding than UTF-8, or it is no text" if encoded else reason
-        message = f"{where} is not Python source: {said}."
+        message = f"{where}{': this' if failure.line else ''} is not Python source: {said}."
         stub = "`course reset EXERCISE` puts the stub back, and keeps a copy."
         if not encoded and "encoding" not in reason:
             return message, f"Was something else saved under its name? {stub}"

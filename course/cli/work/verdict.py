@@ -10,6 +10,7 @@ import os
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from importlib.util import decode_source
 from pathlib import Path
 
 from course.catalog.models import Exercise, Task
@@ -443,7 +444,10 @@ def _words(check: CheckResult) -> Iterator[str]:
 def unread_line(source: bytes | str) -> int:
     """The line where Python stops parsing a file; 1 if it parses all of it."""
     try:
-        compile(source, "", "exec", dont_inherit=True)
+        text = decode_source(source) if isinstance(source, bytes) else source
+        compile(text, "", "exec", dont_inherit=True)
+    except UnicodeDecodeError as problem:
+        return problem.object.count(b"\n", 0, problem.start) + 1
     except (SyntaxError, ValueError) as problem:
         return getattr(problem, "lineno", None) or 1
     return 1

@@ -27,7 +27,7 @@ from course.quizzing.bank import (
     mark_sentence,
     needed,
 )
-from course.quizzing.desk import GAP_DAYS, ROUNDS, Due, begun, fits, schedule
+from course.quizzing.desk import GAP_DAYS, ROUNDS, Due, begun, caught_up, fits, schedule
 
 # ---
 # The replies of ``course quiz ... --json``, as types.
@@ -405,11 +405,9 @@ class Desk:
             UsageError: the attempt was finished there.
         """
         self._read_again()
-        recorded = next((one for one in self.history.attempts if one.id == attempt.id), attempt)
-        attempt.answers.update(recorded.answers)
-        if recorded.finished is not None:
+        if there := caught_up(attempt, self.history):
             raise UsageError(
-                f"This attempt was finished in another terminal: {recorded.score} of {recorded.total} right.",
+                f"This attempt was finished in another terminal: {there.score} of {there.total} right.",
                 help="`course quiz history` shows it; `course quiz take` begins another one.",
                 code="attempt_finished",
             )

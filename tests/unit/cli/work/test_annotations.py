@@ -238,6 +238,5 @@ def test_a_workflow_obeys_nothing_that_strangers_say(monkeypatch):
 
 
 def test_the_line_that_cannot_be_read_is_that_of_a_letter_in_another_encoding_too():
-    assert [unread_line(text) for text in (b"x = 1\n", b"x = 1\nx x\n", b"x = 1\n# \xe9\n", "x = 1\nx x\n")] == [
-        1, 2, 2, 2,
-    ]  # fmt: skip
+    sources = b"x = 1\n", b"x = 1\nx x\n", b"x = 1\n# \xe9\n", "x = 1\nx x\n"
+    assert [unread_line(source) for source in sources] == [1, 2, 2, 2]

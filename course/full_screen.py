@@ -56,10 +56,16 @@ class FullScreenApp(App[None]):
 
     def play(self) -> None:
         """Run until its user leaves, and raise what went wrong inside."""
+        # Textual answers Ctrl-Z and fg itself, and would go on when the screen is no longer its own.
+        numbers = [getattr(signal, name) for name in ("SIGTSTP", "SIGCONT") if hasattr(signal, name)]
+        before = {number: signal.getsignal(number) for number in numbers}
         try:
             with contextlib.suppress(KeyboardInterrupt):
                 self.run()
         finally:
+            for number, handler in before.items():
+                with contextlib.suppress(ValueError):  # in another thread
+                    signal.signal(number, handler)
             # Where the terminal goes away while this ends, Textual's thread that reads it goes on for ever.
             reading: threading.Event | None = getattr(self._driver, "exit_event", None)
             if reading is not None:

@@ -47,6 +47,20 @@ def some(listed: Sequence[str], most: int) -> str:
     return ", ".join(listed[:most]) + more
 
 
+def ended(text: str) -> str:
+    """A sentence with its full stop, unless it ends already: what Python says may be a question."""
+    text = text.rstrip(" .")
+    return text if text.endswith(("?", "!")) else f"{text}."
+
+
+def beginning(text: str, most: int) -> str:
+    """At most ``most`` characters of a text, in whole lines, and how much was left out."""
+    if len(text) <= most:
+        return text
+    kept = text[: text.rfind("\n", 0, most) + 1] or text[:most] + "\n"
+    return f"{kept}... ({counted(text[len(kept) :].rstrip().count(chr(10)) + 1, 'more line')} left out)"
+
+
 def one_line(text: str, limit: int | None = None) -> str:
     """At most ``limit`` characters on one line, those that are not printable spelled out."""
     if text.isprintable():

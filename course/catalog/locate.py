@@ -7,6 +7,7 @@ None for them. ``COURSE_CONTENT=DIR`` selects another course altogether, laid ou
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import json
 import os
@@ -116,7 +117,8 @@ def chosen(folder: Path) -> Content:
     Raises:
         UsageError: there is none.
     """
-    folder = folder.expanduser().resolve()
+    with contextlib.suppress(RuntimeError):  # a home of nobody, a link to itself
+        folder = folder.expanduser().resolve()
     if not (folder / "exercises").is_dir() or not (folder / "lessons").is_dir():
         raise UsageError(
             f"{ENVIRONMENT_VARIABLE} is {folder}, which holds no course.",

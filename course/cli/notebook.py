@@ -18,14 +18,14 @@ from course.catalog.load import Catalog
 from course.catalog.models import CourseRef, Exercise
 from course.cli.frame.completion import Verbose, choice_of, exercise_ids, notebook_ids
 from course.cli.frame.console import Console, current
-from course.cli.frame.here import cwd, find_workspace, here_or_outside, load_catalog, write
+from course.cli.frame.here import cwd, find_workspace, here_or_outside, load_catalog, named, write
 from course.cli.frame.options import argument, option
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Backup, Envelope
 from course.cli.work.checking import reply_to
 from course.cli.work.replies import Check
 from course.cli.work.verdict import show_verdict
-from course.errors import CourseError, NotFoundError, UngradableError, UsageError
+from course.errors import NotFoundError, UngradableError, UsageError
 from course.extras import require
 from course.handed_in import attempts
 from course.handed_in.cells import code_cells, read_notebook
@@ -115,7 +115,7 @@ def _exercise(catalog: Catalog, path: Path, data: bytes, wanted: str | None) -> 
 def place(out: Path | None) -> tuple[Path, Layout]:
     """The folder that notebooks go into, and where in it each lies."""
     if out is not None:
-        return cwd() / out.expanduser(), FOLDERS
+        return named(out), FOLDERS
     here = find_workspace()
     return (cwd() / "notebooks", FOLDERS) if here is None else (here.workspace.root, WORKSPACE)
 
@@ -225,7 +225,7 @@ def check(
     Runs the functions of the notebook, as a grading run does, not the notebook itself. Exit code 0 if every
     check passes, 1 if one does not, 3 if nothing could be checked.
     """
-    console, path = current(), cwd() / file.expanduser()
+    console, path = current(), named(file)
     if not path.exists():
         raise NotFoundError(
             f"There is no file {file}.", help="`course notebook build` writes notebooks.", code="no_file"
@@ -266,7 +266,7 @@ def _build_nbgrader(console: Console, ids: list[str], out: Path | None, *, execu
         Generated("nbgrader", one.id, NBGRADER.exercise(one), nbgrader_notebook(catalog, one))
         for one in exercises
     )
-    folder = cwd() / (out.expanduser() if out else Path("nbgrader"))
+    folder = named(out or "nbgrader")
     code = _write(console, catalog, folder, notebooks)
     console.note(
         "The score that counts is `course grade run`'s: in nbgrader a student's code can forge its own."
@@ -283,10 +283,7 @@ def _write(console: Console, catalog: Catalog, folder: Path, notebooks: Iterable
     """Put every notebook where it belongs, and say what was done."""
     files = []
     for notebook in notebooks:
-        try:
-            files.append(put(folder, notebook))
-        except OSError as error:
-            raise CourseError(f"{folder / notebook.path}: {error.strerror or error}.") from error
+        files.append(put(folder, notebook))
         console.line(_sentence(folder, files[-1]))
     changed = sum(file.action != "current" for file in files)
     new = f"{changed} of them new or changed"

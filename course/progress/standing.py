@@ -52,9 +52,11 @@ class Standing:
         record: Record | None = None,
         started: Collection[str] = (),
         split: Mapping[str, str] = MappingProxyType({}),
+        workspace: Workspace | None = None,
     ) -> None:
         self._record = record
         self._split = split
+        self._workspace = workspace
         self.started = frozenset(started)
         self._histories: dict[str, History] = {}
 
@@ -65,7 +67,7 @@ class Standing:
         Raises:
             IntegrityError, MissingCapabilityError: the record cannot be read.
         """
-        return cls(workspace.store.record(), workspace.started(), split)
+        return cls(workspace.store.record(), workspace.started(), split, workspace)
 
     def events(self, kind: str = "", subject: str = "") -> tuple[Event, ...]:
         """What was recorded of a kind and about a subject, oldest first; an empty string stands for any."""
@@ -80,6 +82,10 @@ class Standing:
     def is_begun(self, exercise: str) -> bool:
         """Whether it was started, or checked: a notebook needs no start."""
         return exercise in self.started or self.history(exercise).last is not None
+
+    def has_file(self, place: str, module: str) -> bool:
+        """Whether an exercise that was begun still has a file."""
+        return self._workspace is None or self._workspace.has_file(place, module)
 
     def is_complete(self, exercise: str) -> bool:
         """Whether every check passed when all were last run."""

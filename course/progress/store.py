@@ -142,8 +142,11 @@ class Store:
 
     def record(self, kind: str = "", subject: str = "") -> Record:
         """The same, unread: for who asks for events of several kinds. Raises what ``events`` raises."""
-        if not self.path.exists():
-            return Record(self.path)
+        try:
+            if not self.path.exists():
+                return Record(self.path)
+        except OSError as error:
+            raise _not_writable(self.path, error.strerror or str(error)) from error
         query = f"{_SELECT} WHERE (? = '' OR kind = ?) AND (? = '' OR subject = ?) ORDER BY id"
         with self._connection(create=False) as database:
             if _version(database) == 0:

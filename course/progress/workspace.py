@@ -105,8 +105,9 @@ class Workspace:
             _write_new(root / MARKER, text.encode())
             with contextlib.suppress(FileExistsError):
                 _write_new(root / ".gitignore", _NOT_FOR_GIT.encode())
-        except FileExistsError:
-            raise UsageError(f"{root} is in the way.", help="Name another folder.", code="exists") from None
+        except FileExistsError as error:
+            fix = "Move it away, or name another folder."
+            raise UsageError(f"{error.filename} is in the way.", help=fix, code="exists") from None
         except OSError as error:
             raise _not_writable(root, error) from error
         return cls(root=root, course_id=course_id, version=version)
@@ -124,6 +125,13 @@ class Workspace:
     def path(self, place: str, name: str) -> Path:
         """Where a file belongs that lies in this folder: an exercise's id, or what its ``place`` says."""
         return self.root / place / name
+
+    def has_file(self, place: str, module: str) -> bool:
+        """Whether an exercise's module or notebook is there; where that cannot be seen, yes."""
+        try:
+            return any(self.path(place, module).with_suffix(kind).exists() for kind in (".py", ".ipynb"))
+        except OSError:
+            return True
 
     def shown(self, path: Path) -> str:
         """``path`` as a person wants to read it: relative to the workspace where it lies inside."""
@@ -258,7 +266,7 @@ def write_atomically(path: Path, data: bytes) -> None:
     Raises:
         MissingCapabilityError: the folder cannot be written.
     """
-    target = path.resolve()
+    target = Path(os.path.realpath(path))  # resolve() gives up at a link to itself
     scratch = target.with_name(f".{target.name}.{os.getpid()}.tmp")
     try:
         target.parent.mkdir(parents=True, exist_ok=True)

@@ -63,11 +63,14 @@ class AnswerFile:
                 self._unknown_question(name, list(asked), bank)
         missing = [name for name in asked if self.answers.get(name, "") == ""]
         if missing:
+            entry = f'a line {missing[0]} = "..." under [answers]'
+            if _is_json(self.path):
+                entry = f'"{missing[0]}": "..." to "answers"'
             self.fail(
                 "answers",
                 f"{counted(len(missing), 'answer')} {'is' if len(missing) == 1 else 'are'} missing:"
                 f" {', '.join(missing)}.",
-                f'Add a line {missing[0]} = "..." under [answers]; a guess counts like any answer.',
+                f"Add {entry}; a guess counts like any answer.",
                 "answers_missing",
             )
         return {name: self._option(name, asked[name], bank, seed) for name in asked}
@@ -124,7 +127,7 @@ class AnswerFile:
 
     def _at(self, key: str) -> str:
         """``:line`` of a key, or nothing."""
-        if self.path.suffix.lower() == ".json":
+        if _is_json(self.path):
             found = re.search(
                 rf"^.*?{re.escape(json.dumps(key, ensure_ascii=False))}\s*:", self.text, re.M | re.S
             )
@@ -142,7 +145,7 @@ def read_answers(path: Path) -> AnswerFile:
         UsageError: it is missing, unreadable, too large, or not of the form above.
     """
     text = _read(path)
-    data = _parse_json(path, text) if path.suffix.lower() == ".json" else _parse_toml(path, text)
+    data = _parse_json(path, text) if _is_json(path) else _parse_toml(path, text)
     seed = data.get("seed")
     answers = data.get("answers")
     file = AnswerFile(path, text, seed, answers if isinstance(answers, dict) else {})
@@ -151,19 +154,19 @@ def read_answers(path: Path) -> AnswerFile:
         file.fail(
             "format_version",
             f"format_version is {version!r}, and this program knows {FORMAT_VERSION}.",
-            "Write `format_version = 1`, or install a newer version of the course.",
+            "Write 1, or install a newer version of the course.",
         )
     unknown = sorted(set(data) - {"format_version", "seed", "answers"})
     if unknown:
         file.fail(
             "",
             f"unknown key {unknown[0]!r} outside of the answers.",
-            'A file has `seed` and a table [answers] with lines like why-simulate = "b".',
+            _form(path),
         )
     if not isinstance(answers, dict):
-        file.fail("", "there is no table of answers.", 'Add [answers] with lines like why-simulate = "b".')
+        file.fail("", "there is no table of answers.", _form(path))
     if seed is not None and (not isinstance(seed, int) or isinstance(seed, bool)):
-        file.fail("seed", "`seed` is not a whole number.", "Write: seed = 42")
+        file.fail("seed", "`seed` is not a whole number.", _form(path))
     return file
 
 
@@ -220,9 +223,20 @@ def _parse_json(path: Path, text: str) -> dict[str, Any]:
     return data
 
 
+def _form(path: Path) -> str:
+    """What a file of its kind looks like."""
+    if _is_json(path):
+        return 'Write: {"seed": 42, "answers": {"why-simulate": "b"}}.'
+    return 'Write: seed = 42, then [answers] with lines like why-simulate = "b".'
+
+
+def _is_json(path: Path) -> bool:
+    return path.suffix.lower() == ".json"
+
+
 def _syntax(path: Path, line: int, problem: str) -> UsageError:
     return UsageError(
         f"{path}:{line}: this is {problem}.",
-        help='Write: seed = 42, then [answers] with lines like why-simulate = "b".',
+        help=_form(path),
         code="answers_format",
     )

@@ -11,7 +11,7 @@ from course.catalog.questions import Question
 from course.catalog.reading import Document
 from course.errors import ContentError
 from course.progress import quiz
-from course.progress.quiz import Attempt
+from course.progress.quiz import Attempt, QuizHistory
 from course.quizzing.bank import Bank, PosedQuestion, Result, clashing, mark, pose_case
 
 Record = Callable[[str, str, dict[str, object]], None]
@@ -38,6 +38,13 @@ def begun(bank: Bank, seed: int, version: str, record: Record) -> Attempt:
     )
     record(quiz.START, "", quiz.start_data(attempt.id, seed, attempt.version, attempt.questions))
     return attempt
+
+
+def caught_up(attempt: Attempt, history: QuizHistory) -> Attempt | None:
+    """Take over answers that were given elsewhere meanwhile; the attempt, if it was finished there."""
+    recorded = next((one for one in history.attempts if one.id == attempt.id), attempt)
+    attempt.answers.update(recorded.answers)
+    return recorded if recorded.finished is not None else None
 
 
 def answered(attempt: Attempt, question: str, option: str, record: Record) -> None:

@@ -18,6 +18,7 @@ from time import perf_counter
 
 from course.catalog.pack import zip_entry
 from course.isolation.failures import IsolationError, StudentFailure
+from course.isolation.inside.wire import CUT
 from course.isolation.levels import Deadline, Level, Spawner
 from course.isolation.probe import open_spawner
 from course.isolation.session import Connection, LoadRefusedError
@@ -273,6 +274,8 @@ class CellRunner:
                 which = f"Cell {before.number}, which this one needs," if before.number else "A hidden cell"
                 return CellOutput("", f"{which} did not run.\n{gave.error}", gave.seconds, tuple(earlier))
         gave = self._run_one(cell)
+        if gave.printed.endswith(CUT.rstrip()):
+            self.forget()  # so that the output of the next cell is kept again
         return CellOutput(gave.printed, gave.error, gave.seconds, tuple(earlier))
 
     def interrupt(self) -> None:

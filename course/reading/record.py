@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Any, Literal
 
+from course.printable import beginning
 from course.progress.store import Event, Store
 from course.progress.workspace import Recorder
 from course.reading.parts import Cell, Question, Script, is_unseen, words_of
@@ -315,7 +316,7 @@ class InProgress:
         now = self.cell(cell)
         self._cells[cell.key] = CellState(now.source, source, printed, error, seconds)
         data: dict[str, Any] = {"key": cell.key, "number": cell.number, "ran": source}
-        data |= {"printed": printed[:_KEPT], "error": error[:_KEPT], "seconds": round(seconds, 3)}
+        data |= {"printed": beginning(printed, _KEPT), "error": error[:_KEPT], "seconds": round(seconds, 3)}
         self._note("cell", data)
 
     # -- reading -------------------------------------------------------------------------------------

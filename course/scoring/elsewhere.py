@@ -171,6 +171,7 @@ def gone(failure: StudentFailure, *, shown: bool = True) -> str:
 
 #: How newer Python looks in the line that an older one cannot read -> the version that has it.
 _NEWER: tuple[tuple[str, str, tuple[int, int]], ...] = (
+    ("", r"^\s*(type|(async\s+)?def|class)\s+\w+\s*\[[^\]]*=", (3, 13)),
     ("", r"^\s*type\s+\w+(\[.*\])?\s*=", (3, 12)),
     ("", r"^\s*(async\s+)?(def|class)\s+\w+\s*\[", (3, 12)),
     (r"^f-string: ", "", (3, 12)),

@@ -21,7 +21,7 @@ from course.catalog.locate import PLACES, content
 from course.figures.described import Plot
 from course.isolation.failures import StudentFailure
 from course.isolation.session import LOOP
-from course.printable import one_line
+from course.printable import ended, one_line
 from course.scoring.elsewhere import absent, cure, lacking, newer, numpys
 from course.scoring.explain.story import Diagnosis
 from course.scoring.verdict import Finding, Places
@@ -135,10 +135,10 @@ def _left_out(failure: StudentFailure, why: StudentFailure) -> Finding:
     where = f" {places.phrase(why.line)}" if why.line else ""
     said = f": {one_line(why.message, _SAID).rstrip(' .')}" if why.message else ""
     if "SyntaxError" in why.bases:
-        message = f"Python cannot read `{failure.type}`{where}{said}."
+        message = ended(f"Python cannot read `{failure.type}`{where}{said}")
         advice = newer(why) or "Look at that line and the one above it: a bracket, a colon, the indentation?"
     else:
-        message = f"`{failure.type}` could not be made: {why.type}{where}{said}."
+        message = ended(f"`{failure.type}` could not be made: {why.type}{where}{said}")
         advice = lacking(why) or "Make that line work when the file is loaded, before any function is called."
     return Finding(message=message, help=advice, diagnosis="MISSING_FUNCTION")
 

@@ -7,7 +7,7 @@ import unicodedata
 
 import pytest
 
-from course.printable import counted, one_line, printable, quoted, steady
+from course.printable import beginning, counted, ended, one_line, printable, quoted, steady
 
 #: Line ends of every kind, marks that turn text, hidden characters, escapes, and half of a character.
 _HOSTILE = (
@@ -60,3 +60,14 @@ def test_honest_text_stays_as_it_is() -> None:
 )
 def test_a_number_has_its_noun_in_the_plural_unless_it_is_one(number: int, said: str) -> None:
     assert counted(number, "step") == said
+
+
+def test_a_beginning_has_whole_lines_and_says_how_many_more_there_are() -> None:
+    assert beginning("one\ntwo\n", 8) == "one\ntwo\n"
+    assert beginning("one\ntwo\nthree\nfour\n", 10) == "one\ntwo\n... (2 more lines left out)"
+    assert beginning("x" * 9, 4) == "xxxx\n... (1 more line left out)"
+
+
+def test_a_question_has_no_full_stop() -> None:
+    said = "Maybe you meant '==' instead of '='?"
+    assert [ended(text) for text in ("so", "so. ", said, f"{said}.")] == ["so.", "so.", said, said]

@@ -36,8 +36,17 @@ from course.errors import (
     UsageError,
 )
 
-#: A disk without room, or a user's share of it; a name without a place on any disk.
-_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.ENAMETOOLONG}
+#: A disk without room, or a user's share of it.
+_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+_MAKE_ROOM = "Make room, or write elsewhere."
+#: What the file system refuses, and what its owner can do. Where a command knows more, it says so itself.
+_REFUSED = {
+    **dict.fromkeys(_FULL, _MAKE_ROOM),
+    **dict.fromkeys((errno.EACCES, errno.EPERM), "Check its permissions and those of the folders above it."),
+    errno.EROFS: "Work in a folder that can be written.",
+    errno.ENAMETOOLONG: "Choose a shorter name.",
+    errno.ELOOP: "A link there leads to itself: remove it.",
+}
 SHELLS = ("bash", "zsh", "fish", "powershell", "pwsh")
 
 
@@ -49,6 +58,9 @@ _GARBAGE = 50_000
 def main() -> NoReturn:
     gc.set_threshold(_GARBAGE, 20, 20)
     _end_as_after_ctrl_c()
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:  # closed, as `course >&-` does it
+            setattr(sys, name, Path(os.devnull).open(mode, encoding="utf-8"))  # noqa: SIM115
     if "_COURSE_COMPLETE" in os.environ:
         _program(fancy=False).main(prog_name="course")
     sys.exit(run(sys.argv[1:]))
@@ -84,10 +96,10 @@ def run(arguments: Sequence[str]) -> int:
     except Exception as error:  # noqa: BLE001 - the boundary: nothing passes it
         if hasattr(error, "format_message"):
             code = _usage(console, line, error)
-        elif isinstance(error, OSError) and error.errno in _FULL:
+        elif isinstance(error, OSError) and error.errno in (_REFUSED if error.filename else _FULL):
             with contextlib.suppress(OSError):
                 console.flush()  # if it is the output that has no room, nothing more goes there
-            code = _no_room(console, line, error)
+            code = _refused(console, line, error)
         else:  # our fault: the details go to a file, one line to the screen
             kind = f"A fault in the course, not in your work ({type(error).__name__})"
             message = f"{kind}; the details are in {write_report(error)}."
@@ -97,7 +109,7 @@ def run(arguments: Sequence[str]) -> int:
     try:
         console.flush()
     except OSError as error:
-        code = _no_room(console, line, error)
+        code = _refused(console, line, error)
     return code
 
 
@@ -221,10 +233,11 @@ def _say(
     return exit_code
 
 
-def _no_room(console: Console, line: Line, error: OSError) -> int:
-    message = f"{error.filename or 'The output'} cannot be written ({error.strerror or error})."
-    kind = MissingCapabilityError
-    return _say(console, line, kind.exit_code, kind.default_code, message, "Make room, or write elsewhere.")
+def _refused(console: Console, line: Line, error: OSError) -> int:
+    used = "written" if error.errno in _FULL or not error.filename else "used"
+    message = f"{error.filename or 'The output'} cannot be {used} ({error.strerror or error})."
+    kind, advice = MissingCapabilityError, _REFUSED.get(error.errno or 0, _MAKE_ROOM)
+    return _say(console, line, kind.exit_code, kind.default_code, message, advice)
 
 
 def _emit(console: Console, line: Line, code: int) -> None:

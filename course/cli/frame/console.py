@@ -478,7 +478,10 @@ class Console:
         self._out.write(self._wrapped(question))
         self._out.flush()
         answer = sys.stdin.readline()
-        return answer.strip() if answer else None
+        if not answer:
+            self._out.write("\n")  # nobody typed the line's end
+            return None
+        return answer.strip()
 
     def _wrapped(self, question: str) -> str:
         """A question in lines that break between words; what is typed stands beside the last one."""

@@ -46,15 +46,7 @@ class Here:
             MissingCapabilityError: the workspace is another course's.
         """
         workspace = Workspace.find(cwd())
-        catalog = load_catalog()
-        if workspace.course_id != catalog.course_id:
-            raise MissingCapabilityError(
-                f"{workspace.root} is a workspace of the course {workspace.course_id!r}; "
-                f"this is {catalog.course_id!r}.",
-                help="Work in a workspace of this course, or install the other one.",
-                code="other_course",
-            )
-        return cls(catalog=catalog, workspace=workspace)
+        return cls(catalog=catalog_of(workspace), workspace=workspace)
 
     @cached_property
     def course(self) -> CourseRef:
@@ -122,6 +114,7 @@ class Here:
         try:
             # Where capitals do not count, as on Windows and macOS, it is the student's file itself.
             others = [path for path in sorted(own.parent.iterdir()) if path.name.lower() == own.name.lower()]
+            others = [path for path in others if path.name != own.name]
             found = (path.name for path in others if not (own.exists() and path.samefile(own)))
             return next(found, "")
         except OSError:
@@ -147,17 +140,9 @@ class Here:
         """
         path = self.workspace.path(exercise.place, exercise.module)
         shown = self.workspace.shown(path)
-        if not path.exists():
-            other, moved = self.misnamed(exercise), self.moved(exercise)
-            advice = f"Rename {other} to {exercise.module}: capitals count." if other else ""
-            if moved and not other:
-                advice = f"There is {moved}. The folder must be called {exercise.place}: rename it back."
-            raise UngradableError(
-                f"There is no file {shown}.",
-                help=advice or f"`course start {exercise.id}` puts one there.",
-                code="no_file",
-            )
         try:
+            if not path.exists():
+                raise self._missing(exercise, path, shown)
             if not path.is_file():
                 raise UngradableError(f"{shown} is not a file.", help="Move it away.", code="no_file")
             if path.stat().st_size > MAX_FILE:
@@ -173,6 +158,17 @@ class Here:
                 help="Check its permissions.",
                 code="unreadable",
             ) from error
+
+    def _missing(self, exercise: Exercise, path: Path, shown: str) -> UngradableError:
+        if path.is_symlink():
+            said = f"{shown} is a link to {path.readlink()}, and no file is there."
+            return UngradableError(said, help="Remove the link, or put the file back.", code="no_file")
+        other, moved = self.misnamed(exercise), self.moved(exercise)
+        advice = f"Rename {other} to {exercise.module}: capitals count." if other else ""
+        if moved and not other:
+            advice = f"There is {moved}. The folder must be called {exercise.place}: rename it back."
+        advice = advice or f"`course start {exercise.id}` puts one there."
+        return UngradableError(f"There is no file {shown}.", help=advice, code="no_file")
 
     def stub(self, exercise: Exercise) -> bytes:
         """The module as it was handed out here, or else as it would be handed out now."""
@@ -238,10 +234,41 @@ def cwd() -> Path:
         ) from None
 
 
+def named(path: Path | str) -> Path:
+    """A path that the user named, from the current folder; ``~`` is a home folder.
+
+    Raises:
+        UsageError: nothing can be there: a home of nobody, a name that is too long, a link to itself.
+    """
+    try:
+        full = cwd() / Path(path).expanduser()
+        with suppress(FileNotFoundError, NotADirectoryError, PermissionError):
+            full.stat()
+    except (RuntimeError, OSError) as error:
+        why = getattr(error, "strerror", None) or f"there is no home folder {Path(path).parts[0]}"
+        raise UsageError(
+            f"{path} cannot be used: {why}.", help="Name another file or folder.", code="bad_file_name"
+        ) from None
+    return full
+
+
 def load_catalog() -> Catalog:
     from course.catalog.load import Catalog
 
     return Catalog()
+
+
+def catalog_of(workspace: Workspace) -> Catalog:
+    """The course in use; raises MissingCapabilityError if the workspace is another course's."""
+    catalog = load_catalog()
+    if workspace.course_id != catalog.course_id:
+        raise MissingCapabilityError(
+            f"{workspace.root} is a workspace of the course {workspace.course_id!r}; "
+            f"this is {catalog.course_id!r}.",
+            help="Work in a workspace of this course, or install the other one.",
+            code="other_course",
+        )
+    return catalog
 
 
 def find_workspace() -> Here | None:
@@ -272,7 +299,7 @@ def target(path: Path, option: str, endings: tuple[str, ...]) -> Path:
     Raises:
         UsageError: the name ends in something else, or there is no such folder.
     """
-    full = cwd() / path.expanduser()
+    full = named(path)
     if full.suffix.lower().removeprefix(".") not in endings:
         known = " or ".join(f".{ending}" for ending in endings)
         raise UsageError(

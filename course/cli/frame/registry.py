@@ -218,6 +218,7 @@ def _with_global_options(command: Any) -> Any:
     """The command, or every command of a group, whose help names them at its end."""
     for one in getattr(command, "commands", {}).values():
         _with_global_options(one)
+        one.short_help = (one.help or "").partition("\n")[0]  # uncut
     if not hasattr(command, "commands"):
         command.callback = _with_texts(command)
         command.epilog = "\n\n".join(filter(None, (command.epilog, GLOBAL_OPTIONS)))

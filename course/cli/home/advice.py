@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from course.catalog.load import Catalog
-from course.catalog.models import Exercise
+from course.catalog.models import Exercise, Lesson
 from course.cli.frame.here import Here
 from course.errors import CourseError
 from course.handed_in.attempts import Attempt
@@ -94,9 +94,7 @@ def next_in_course(catalog: Catalog, standing: Standing, done: Exercise | None =
         done: a task to go on from, instead of the one last worked on.
     """
     if (task := next_task(catalog, standing, done)) is not None:
-        if standing.is_begun(task.id):
-            return f"course check {task.id}"
-        return f"course {'warmup' if task.is_warm_up else 'start'} {task.id}"
+        return _go_on(standing, task)
     leading = {one.lesson for one in catalog.every_task()}
     unread = (name for name in catalog.lesson_ids() if name not in leading and name not in standing.read)
     if lesson := next(unread, ""):
@@ -106,6 +104,20 @@ def next_in_course(catalog: Catalog, standing: Standing, done: Exercise | None =
     best = standing.quiz.best
     taken = (best is not None and best.passed) or not any(catalog.content.quiz.glob("*.toml"))
     return "course submit" if taken else "course quiz take"
+
+
+def after_lesson(catalog: Catalog, standing: Standing, lesson: Lesson, *, read: bool) -> str:
+    """After a lesson that was read, or else only printed: then its own exercises come first."""
+    left = [name for name in lesson.exercises if not standing.is_complete(name)]
+    if read or not left:
+        return next_in_course(catalog, standing) if read or lesson.exercises else "course lessons"
+    return _go_on(standing, catalog.exercise(left[0]))
+
+
+def _go_on(standing: Standing, task: Exercise) -> str:
+    if standing.is_begun(task.id) and standing.has_file(task.place, task.module):
+        return f"course check {task.id}"
+    return f"course {'warmup' if task.is_warm_up else 'start'} {task.id}"
 
 
 #: A step in words, by its command.
@@ -152,7 +164,7 @@ def _in_progress(catalog: Catalog, standing: Standing) -> str:
         last, graded = standing.history(exercise.id).last, standing.history(exercise.id).last_graded
         points = graded and f"{format_points(graded.score)} of {in_points(graded.max_score)}"
         state = f"in progress, {points}" if points else "started, not checked yet"
-        go_on = f"{exercise.id}: {state}. To go on: course check {exercise.id}"
+        go_on = f"{exercise.id}: {state}. To go on: {_go_on(standing, exercise)}"
         begun.append((last.at.isoformat() if last else "", go_on))
     return max(begun, key=lambda one: one[0])[1] if begun else ""
 

@@ -109,7 +109,11 @@ def _ask_all(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[Pos
         chosen = screen.ask(console, question, number, len(posed))
         if chosen is None:
             return False
-        answered(attempt, question.question, chosen.id, desk.here.record)
+        desk.catch_up(attempt)
+        if question.question in attempt.answers:
+            console.line("This question was answered in another terminal; that answer counts.")
+        else:
+            answered(attempt, question.question, chosen.id, desk.here.record)
     return True
 
 
@@ -137,7 +141,7 @@ def _seed(command: str, file: AnswerFile, *seeds: int | None) -> int:
             return check_seed(seed)
     raise UsageError(
         f"{file.path} does not say which questions its answers are for.",
-        help=f"Add a line `seed = N`, as `course quiz {command} --questions` prints it, or give --seed N.",
+        help=f"Add the seed that `course quiz {command} --questions` prints, or give --seed N.",
         code="seed_missing",
     )
 

@@ -14,7 +14,7 @@ from course.cli.frame.console import Console
 from course.cli.frame.here import Here
 from course.cli.frame.replies import Envelope, NextStep, filled
 from course.cli.home.learning import day
-from course.errors import CourseError
+from course.errors import CourseError, UsageError
 from course.progress.quiz import Attempt, QuizHistory, quiz_history
 from course.quizzing.bank import (
     LETTERS,
@@ -27,7 +27,7 @@ from course.quizzing.bank import (
     mark_sentence,
     needed,
 )
-from course.quizzing.desk import GAP_DAYS, ROUNDS, Due, begun, fits, schedule
+from course.quizzing.desk import GAP_DAYS, ROUNDS, Due, begun, caught_up, fits, schedule
 
 # ---
 # The replies of ``course quiz ... --json``, as types.
@@ -169,10 +169,7 @@ def ask(console: Console, posed: PosedQuestion, number: int, total: int) -> Choi
     _show_question(console, posed, number, total)
     while True:
         typed = console.ask(_PROMPT)
-        if typed is None:
-            console.blank()
-            return None
-        if typed.lower() in {"q", "quit"}:
+        if typed is None or typed.lower() in {"q", "quit"}:
             return None
         choice = posed.choice(typed)
         if choice is not None:
@@ -401,12 +398,29 @@ class Desk:
         """A new attempt, recorded."""
         return begun(self.bank, seed, self.here.catalog.version, self.here.record)
 
-    def reviews(self) -> tuple[Due, ...]:
-        """The questions under review, from the record as it is now."""
+    def catch_up(self, attempt: Attempt) -> None:
+        """Take over what another terminal has answered meanwhile: the first answer of each question counts.
+
+        Raises:
+            UsageError: the attempt was finished there.
+        """
+        self._read_again()
+        if there := caught_up(attempt, self.history):
+            raise UsageError(
+                f"This attempt was finished in another terminal: {there.score} of {there.total} right.",
+                help="`course quiz history` shows it; `course quiz take` begins another one.",
+                code="attempt_finished",
+            )
+
+    def _read_again(self) -> None:
         try:
             self.history = quiz_history(self.here.workspace.store.events())
         except CourseError as error:
             self.here.warnings.append(f"{error.message} {error.help}")
+
+    def reviews(self) -> tuple[Due, ...]:
+        """The questions under review, from the record as it is now."""
+        self._read_again()
         return schedule(self.history.outcomes(), self.bank.ids)
 
 

@@ -18,7 +18,7 @@ from course.cli.frame.console import MAX_WIDTH, Console, current
 from course.cli.frame.here import Here, here_or_outside
 from course.cli.frame.options import option
 from course.cli.frame.replies import Envelope, NextStep, filled
-from course.cli.home.advice import next_in_course
+from course.cli.home.advice import after_lesson
 from course.cli.home.learning import day
 from course.cli.home.overview import lesson_states, warm_up_states
 from course.cli.home.replies import LessonState, WarmUpState
@@ -125,7 +125,7 @@ def lesson(
     # Printing is not reading: the student may never have seen the end.
     if here is not None and whole and paged:
         here.record("lesson", chosen.id, {"version": catalog.version})
-    step = _after(here if paged else None, chosen) if whole else f"course lesson {chosen.id}"
+    step = _after(here, chosen, read=paged) if whole else f"course lesson {chosen.id}"
     if paged and not whole:
         step += " --page"
     if paged:
@@ -198,7 +198,7 @@ def _read_on_screen(
     for warning in (here.warnings if here else []) + ([trouble] if trouble else []):
         console.warn(warning)
     _say_unkept(console, here)
-    console.next(_after(here, lesson) if last.read else f"course lesson {lesson.id}")
+    console.next(_after(here, lesson, read=True) if last.read else f"course lesson {lesson.id}")
     return 0
 
 
@@ -230,11 +230,11 @@ def _read_by_line(
         return LineReader(console, here, catalog, chosen, reader).read()
 
 
-def _after(here: Here | None, chosen: Lesson) -> str:
+def _after(here: Here | None, chosen: Lesson, *, read: bool) -> str:
     """The next step after a lesson that was read in a workspace, or that was printed."""
     if here is not None:
         with contextlib.suppress(CourseError):  # a record that cannot be read is warned about elsewhere
-            return next_in_course(here.catalog, here.standing())
+            return after_lesson(here.catalog, here.standing(), chosen, read=read)
     return f"course start {chosen.exercises[0]}" if chosen.exercises else "course lessons"
 
 

@@ -13,7 +13,7 @@ from typer.core import TyperGroup
 
 from course.cli.frame.completion import choice_of, scene_ids, scene_settings
 from course.cli.frame.console import Console, current
-from course.cli.frame.here import cwd
+from course.cli.frame.here import named
 from course.cli.frame.here import target as target_file
 from course.cli.frame.options import argument, option
 from course.cli.frame.registry import COMMANDS, OPTIONS
@@ -134,7 +134,7 @@ def replay(file: Annotated[Path, argument("FILE", "A recording.")]) -> int:
     Exit code 1 if it does.
     """
     console = current()
-    recorded = recording.read(cwd() / file.expanduser())
+    recorded = recording.read(named(file))
     with console.working("Replaying"):
         difference = recording.replay(recorded)
     for name, (then, here) in difference.versions.items():

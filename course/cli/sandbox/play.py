@@ -14,7 +14,7 @@ import msgspec
 
 from course.cli.frame import here
 from course.cli.frame.console import Console
-from course.cli.frame.here import Here, cwd, target
+from course.cli.frame.here import Here, cwd, named, target
 from course.cli.frame.replies import Backup, Envelope, filled
 from course.errors import CourseError, MissingCapabilityError, UsageError
 from course.extras import require
@@ -175,7 +175,7 @@ def pairs(settings: Sequence[str]) -> dict[str, object]:
 def chosen(scene: str, settings: Sequence[str]) -> Chosen:
     """The scene of this name, or of this file in the current folder, with its settings."""
     if scene.endswith(".toml"):
-        scene = str(cwd() / Path(scene).expanduser())
+        scene = str(named(scene))
     return choose(scene, pairs(settings))
 
 

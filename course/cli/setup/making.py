@@ -6,6 +6,8 @@ Nothing is overwritten.
 from __future__ import annotations
 
 import json
+import os
+import shlex
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
@@ -14,7 +16,7 @@ from course.catalog.load import Catalog
 from course.catalog.models import CourseRef
 from course.cli.frame import here
 from course.cli.frame.console import current
-from course.cli.frame.here import cwd, load_catalog
+from course.cli.frame.here import catalog_of, cwd, load_catalog, named
 from course.cli.frame.options import argument, option
 from course.cli.frame.replies import Envelope, NextStep, WrittenFile
 from course.errors import CourseError, NotFoundError, UsageError
@@ -205,7 +207,7 @@ def init(
     kinds = chosen_kinds(surroundings) if surroundings is not None else ()
     requirement = usable(requirement)
     here = cwd()
-    root = (here / (folder or Path()).expanduser()).resolve()
+    root = named(folder or Path()).resolve()
     created = not (root / MARKER).is_file()
     if created:
         _refuse_odd_places(root, catalog)
@@ -213,6 +215,7 @@ def init(
         console.line(f"Made a workspace for {catalog.title} in {root}.")
     else:
         workspace = Workspace.read(root)
+        catalog_of(workspace)
         console.line(f"{root} is a workspace already" + ("." if kinds else "; nothing was changed."))
     written = write_surroundings(root, kinds, requirement)
     if "github" in kinds and not (root / ".git").exists():
@@ -268,4 +271,7 @@ def _quoted(root: Path, here: Path) -> str:
         text = str(root.relative_to(here))
     except ValueError:
         text = str(root)
-    return f'"{text}"' if any(char.isspace() for char in text) else text
+    text = f"./{text}" if text.startswith("-") else text
+    if os.name == "nt":  # whose shells know no other quotes, and no such character in a name
+        return f'"{text}"' if any(char.isspace() for char in text) else text
+    return shlex.quote(text)

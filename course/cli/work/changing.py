@@ -72,7 +72,7 @@ def reset(exercise: OneExercise, yes: Annotated[bool, option("--yes -y", "Do not
     shown = here.workspace.shown(path)
     step = f"course check {chosen.id}"
     there = path.is_file()
-    if not there and chosen.id not in here.workspace.started():
+    if not there and chosen.id not in here.workspace.started() and here.known_history(chosen).last is None:
         raise NotFoundError(
             f"You have not started {chosen.id}: there is nothing to reset.",
             help=f"Start it: `course start {chosen.id}`.",

@@ -8,13 +8,15 @@ be handed in.
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from course.catalog.models import Exercise
-from course.cli.frame.here import Here, cwd
+from course.cli.frame.here import Here, named
 from course.cli.frame.replies import FileReply
 from course.errors import CourseError, NotFoundError, UngradableError
 from course.handed_in.cells import read_notebook
@@ -75,10 +77,10 @@ def asked_for(here: Here, wanted: str | None) -> tuple[Exercise, str | None]:
     """
     if wanted is None or Path(wanted).suffix not in (".py", NOTEBOOK):
         return here.exercise(wanted), None
-    path = (cwd() / Path(wanted).expanduser()).resolve()
+    path = Path(os.path.realpath(named(wanted)))
     for exercise in (*here.catalog.exercises(), *here.catalog.warm_ups()):
         for name in (exercise.module, _notebook_name(exercise)):
-            if path == here.workspace.path(exercise.place, name).resolve():
+            if path == Path(os.path.realpath(here.workspace.path(exercise.place, name))):
                 return exercise, name
     check = command("notebook", "check", wanted)
     elsewhere = f"; {check} checks this notebook" if path.suffix == NOTEBOOK else ""
@@ -95,7 +97,9 @@ def chosen_work(here: Here, exercise: Exercise, named: str | None = None) -> Stu
     Raises:
         UngradableError: there is none, it cannot be read, or it has nothing to grade.
     """
-    notebook_there = here.workspace.path(exercise.place, _notebook_name(exercise)).exists()
+    notebook_there = False
+    with suppress(OSError):  # in a folder that cannot be read; that is said of the module
+        notebook_there = here.workspace.path(exercise.place, _notebook_name(exercise)).exists()
     if named == _notebook_name(exercise):
         return _notebook(here, exercise)
     if named is not None or not notebook_there:

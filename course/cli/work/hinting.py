@@ -14,7 +14,7 @@ from typing import Annotated
 from course.catalog.models import Exercise, Rubric
 from course.cli.frame.completion import ExerciseName, grade_lists, task_ids
 from course.cli.frame.console import Console, current
-from course.cli.frame.here import Here, cwd
+from course.cli.frame.here import Here, named
 from course.cli.frame.options import option
 from course.cli.frame.replies import NextStep
 from course.cli.home.advice import after_warm_up
@@ -74,6 +74,8 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
     if last is None:
         message = "Hints follow a check that failed. Check your work first."
         return _hint(exercise, again, reason="not_checked", message=message)
+    if not here.workspace.has_file(exercise.place, exercise.module):
+        here.source(exercise)  # raises, and says how to get it back
     if last.state != "graded":
         message = "Your file could not be run at the last check; what that check said is the hint for now."
         return _hint(exercise, again, reason="ungradable", message=message)
@@ -324,7 +326,7 @@ def _recorded(here: Here, chosen: Exercise, rubric: Rubric) -> tuple[str, tuple[
 
 
 def _read(path: Path) -> str:
-    full = cwd() / path.expanduser()
+    full = named(path)
     try:
         data = full.read_bytes()
     except OSError as error:

@@ -10,7 +10,7 @@ from typing import Annotated
 from course.cli.frame import here
 from course.cli.frame.completion import ExerciseName
 from course.cli.frame.console import Console, current
-from course.cli.frame.here import Here, cwd
+from course.cli.frame.here import Here, named
 from course.cli.frame.options import option
 from course.cli.frame.replies import WrittenFile, filled
 from course.cli.home.advice import after_report
@@ -58,7 +58,7 @@ def report(
 
 
 def _folder(here: Here, place: str, out: Path | None) -> Path:
-    folder = here.workspace.path(place, "report") if out is None else cwd() / out.expanduser()
+    folder = here.workspace.path(place, "report") if out is None else named(out)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -116,8 +116,7 @@ def _write_bag(console: Console, made: Report, bag: Path) -> str:
         )
     from course.simulations.bags import KINDS, VIEW, streams_from, write_bag
 
-    path = cwd() / bag.expanduser()
-    streams = streams_from(made.streams)
+    path, streams = named(bag), streams_from(made.streams)
     write_bag(path, streams)
     kinds = {kind: name for name, kind in KINDS.items()}
     counts = [f"{len(stream.t)} of {kinds[type(stream)]}" for stream in streams]

@@ -19,7 +19,7 @@ from course.catalog.models import Exercise
 from course.catalog.pack import zip_entry
 from course.cli.frame.completion import exercise_ids
 from course.cli.frame.console import Console, current
-from course.cli.frame.here import Here, cwd
+from course.cli.frame.here import Here, named
 from course.cli.frame.options import argument, option
 from course.cli.frame.replies import FileReply
 from course.cli.work.chosen import StudentWork, as_handed_in, work_of
@@ -27,7 +27,7 @@ from course.cli.work.replies import Submit, SubmitFile
 from course.errors import CourseError, UngradableError, UsageError
 from course.handed_in import attempts
 from course.handed_in.limits import FORMAT_VERSION, MANIFEST, MAX_UNPACKED
-from course.printable import counted
+from course.printable import command, counted
 from course.progress.history import fingerprint
 from course.progress.quiz import quiz_history, records
 from course.progress.workspace import write_atomically
@@ -53,7 +53,7 @@ def submit(
     without its outputs. If the file to write exists, a copy of it is kept.
     """
     console, here = current(), Here.load()
-    only = tuple(here.exercise(name) for name in exercises or ())
+    only = tuple({one.id: one for one in map(here.exercise, exercises or ())}.values())
     target = _target(here, output, only)
     works, left_out = work_of(here, only, warm_ups=warm_ups)
     quiz = [] if only else _quiz_records(here)
@@ -61,9 +61,11 @@ def submit(
     files = tuple(one.reply() for one in goes_in)
     _show(console, here, goes_in, left_out, quiz, only)
     if not works and not quiz:
+        new = [one.id for one in only if one.id not in here.workspace.started() and not left_out]
+        begin = f"{command('start', new[0])} begins it." if new else ""
         raise UngradableError(
-            "There is nothing to hand in yet.",
-            help="Write an exercise first, or take the quiz.",
+            f"You have not started {', '.join(new)}." if new else "There is nothing to hand in yet.",
+            help=begin or "Write an exercise first, or take the quiz.",
             code="nothing_to_submit",
         )
     notes = [note for one in goes_in for note in (*one.work.notes, *one.notes)]
@@ -136,7 +138,7 @@ def _target(here: Here, output: Path | None, only: Sequence[Exercise]) -> Path:
     name = f"{'-'.join(one.id for one in only) or here.catalog.course_id}-submission.zip"
     if output is None:
         return here.workspace.root / name
-    path = cwd() / output.expanduser()
+    path = named(output)
     if path.is_dir():
         path = path / name
     if not path.parent.is_dir():

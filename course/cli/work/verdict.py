@@ -10,6 +10,7 @@ import os
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from importlib.util import decode_source
 from pathlib import Path
 
 from course.catalog.models import Exercise, Task
@@ -42,7 +43,7 @@ def show_lines(console: Console, heading: str, text: str, *, whole: bool, indent
     console.block("\n".join(kept), indent=indent + _INDENT)
     if len(kept) < len(lines):
         left = len(lines) - len(kept)
-        more = f"and {counted(left, 'more line')}; --verbose shows all"
+        more = f"and {counted(left, 'more line')} with --verbose"
         console.line((more, "dim"), indent=indent + _INDENT)
 
 
@@ -237,14 +238,20 @@ class _Page:
             self.check(check)
 
     def unwritten(self, tasks: Tasks) -> None:
-        """The functions that are still the stub's, with their common advice once."""
+        """The functions that are still the stub's, with each advice once; those of the rarer are named."""
         every = [check for _, checks in tasks for check in checks]
         self.console.heading("Not written yet", self._worth(every))
         for task, _ in tasks:
             self.console.item(
                 "to do", task.title, (f"  [{task.id}]", "dim"), style="yellow", width=_LABEL_WIDTH
             )
-        self._text(next(check.help for check in every if check.diagnosis == _UNWRITTEN))
+        of: dict[str, dict[str, None]] = {}
+        for check in every:
+            if check.diagnosis == _UNWRITTEN:
+                of.setdefault(check.help, {})[check.task] = None
+        common = max(of, key=lambda advice: len(of[advice]))
+        for advice, named in of.items():
+            self._text(advice if advice == common else f"{', '.join(named)}: {advice}")
         self.console.gap()
 
     def _worth(self, checks: Sequence[CheckResult]) -> str:
@@ -437,7 +444,10 @@ def _words(check: CheckResult) -> Iterator[str]:
 def unread_line(source: bytes | str) -> int:
     """The line where Python stops parsing a file; 1 if it parses all of it."""
     try:
-        compile(source, "", "exec", dont_inherit=True)
+        text = decode_source(source) if isinstance(source, bytes) else source
+        compile(text, "", "exec", dont_inherit=True)
+    except UnicodeDecodeError as problem:
+        return problem.object.count(b"\n", 0, problem.start) + 1
     except (SyntaxError, ValueError) as problem:
         return getattr(problem, "lineno", None) or 1
     return 1

@@ -49,6 +49,9 @@ MAX_DEPTH = 32
 MAX_DIMENSIONS = 8
 RHS_DEPTH = 4  # of the parameters of a right-hand side
 MAX_VALUES = 200_000  # 60,000 arrays of one number, the dearest frame tried, took 0.08 s of CPU to decode
+#: Bytes that are kept of what a submission prints; what ends those of one that prints more.
+MAX_OUTPUT = 64 << 10
+CUT = f"...\n(The rest of the output was dropped: {MAX_OUTPUT >> 10} KB are kept.)\n"
 
 HEADER = struct.Struct("<IB")
 U32 = struct.Struct("<I")

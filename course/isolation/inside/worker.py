@@ -30,8 +30,6 @@ from . import declared, loading, loops, wire
 
 Kind = wire.Kind
 
-#: How much of what a submission prints is kept; the rest is dropped without an error.
-MAX_OUTPUT = 64 << 10
 _MAX_NESTING = 8
 _RECV = 1 << 12
 _HEADER = wire.HEADER.unpack_from
@@ -43,12 +41,15 @@ class CallbackError(ValueError):
 
 
 class CappedText(io.TextIOBase):
-    """A text stream that keeps the first ``MAX_OUTPUT`` characters: printing a lot is not an error."""
+    """A text stream that keeps the first ``wire.MAX_OUTPUT`` bytes: printing a lot is not an error.
+
+    What is written at once, as a number is, is kept whole or not at all, unless it has several lines.
+    """
 
     def __init__(self, descriptor: int) -> None:
         super().__init__()
         self._descriptor = descriptor
-        self._left = MAX_OUTPUT
+        self._left = wire.MAX_OUTPUT - len(wire.CUT)
 
     def writable(self) -> bool:
         return True
@@ -58,10 +59,13 @@ class CappedText(io.TextIOBase):
 
     def write(self, text: str) -> int:
         if self._left > 0:
-            kept = str(text)[: self._left]
+            kept = str(text).encode("utf-8", "replace")
+            if len(kept) > self._left:
+                kept = kept[: kept.rfind(b"\n", 0, self._left) + 1] + wire.CUT.encode()
+                self._left = 0
             self._left -= len(kept)
             with contextlib.suppress(OSError):  # a full or closed output must not fail a print
-                os.write(self._descriptor, kept.encode("utf-8", "replace"))
+                os.write(self._descriptor, kept)
         return len(text)
 
 
@@ -206,7 +210,10 @@ class Worker:
         except (SyntaxError, ValueError, LookupError) as error:
             if isinstance(error, LookupError):  # rot13, hex, zlib: codecs, and not of text
                 error = SyntaxError("the encoding that its first lines declare is none of text")
-            self._send(Kind.REFUSED, {"stage": "syntax", **_described(error)})
+            refused = {"stage": "syntax", **_described(error)}
+            if isinstance(error, UnicodeDecodeError):
+                refused["line"] = error.object.count(b"\n", 0, error.start) + 1
+            self._send(Kind.REFUSED, refused)
             return
         module = loading.Loading(source, main, imports, needed)
         if not module.run():

@@ -11,6 +11,7 @@ import msgspec
 from course.catalog.models import Exercise
 from course.isolation.failures import StudentFailure
 from course.isolation.session import LOOP, LoadFault, LoadRefusedError
+from course.printable import ended
 from course.scoring.checks.collected import Check
 from course.scoring.elsewhere import absent, lacking, newer
 from course.scoring.explain.likeness import likeness
@@ -142,7 +143,7 @@ def load_problem(refused: LoadRefusedError, places: Places) -> Problem:
         said = f": {failure.message.rstrip(' .')}" if failure.message else ""
         return Problem(
             "import_error",
-            f"{where}: loading it raises {failure.type}{said}.",
+            ended(f"{where}: loading it raises {failure.type}{said}"),
             lacking(failure, refused.code) or "Make that line work when the file is loaded, or take it out.",
         )
     message = f"{module} ends its process while it is loaded ({failure.message})."
@@ -183,11 +184,11 @@ def _reason(fault: LoadFault, faults: Sequence[LoadFault], places: Places) -> st
     if fault.stage == "syntax" and fault.code.startswith(_MERGE):
         return ". It is the mark of a merge: keep one of the two versions, and delete the marks."
     if fault.stage == "syntax":
-        return f", since Python cannot read it{said}.{_after(newer(failure, fault.code))}"
+        return ended(f", since Python cannot read it{said}") + _after(newer(failure, fault.code))
     if (line := _line_needed(failure, faults)) is not None:
         return f", since it needs what was left out {places.phrase(line)}."
     lacks = lacking(failure, fault.code)
-    return f". {lacks}" if lacks else f", since it raises {failure.type} when it is loaded{said}."
+    return f". {lacks}" if lacks else ended(f", since it raises {failure.type} when it is loaded{said}")
 
 
 def _line_needed(failure: StudentFailure, faults: Sequence[LoadFault]) -> int | None:
@@ -211,15 +212,15 @@ def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
     encoded = "UnicodeError" in failure.bases or "missing encoding" in reason or "codec can't" in reason
     if encoded or not failure.line:
         said = "it is saved in another encoding than UTF-8, or it is no text" if encoded else reason
-        message = f"{where} is not Python source: {said}."
-        stub = "`course reset` puts the stub back, and keeps a copy."
+        message = f"{where}{': this' if failure.line else ''} is not Python source: {said}."
+        stub = "`course reset EXERCISE` puts the stub back, and keeps a copy."
         if not encoded and "encoding" not in reason:
             return message, f"Was something else saved under its name? {stub}"
         # Python says the same of a letter in another encoding, which is likelier, and of what is no text.
         letters = "Save it as UTF-8, or declare its encoding in the first line."
         return message, f"{letters} If it is no text at all: {stub}"
     shown = f": `{refused.text.strip()}`" if refused.text.strip() else ""
-    message = f"{where}: Python cannot read this file: {failure.message}{shown}."
+    message = ended(f"{where}: Python cannot read this file: {failure.message}{shown}")
     if (
         "triple-quoted" in failure.message
     ):  # the line is where the last quotes stand, not where they are missing

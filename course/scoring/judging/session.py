@@ -25,6 +25,7 @@ from course.isolation.launch import keep_private
 from course.isolation.levels import Level, Spawner
 from course.isolation.probe import open_sandbox
 from course.isolation.session import LoadRefusedError
+from course.printable import beginning
 from course.scoring import versions
 from course.scoring.checks.collected import (
     Check,
@@ -173,7 +174,7 @@ class GradingSession:
         try:
             remote = self._load(submission)
         except LoadRefusedError as refused:
-            self.printed = refused.printed[:_PRINTED]
+            self.printed = beginning(refused.printed, _PRINTED)
             return self._ungradable(load_problem(refused, self._places(submission)))
         except IsolationError as error:
             return self._grader_error(str(error))
@@ -182,7 +183,7 @@ class GradingSession:
                 return self._ungradable(self._nothing_loaded(remote, submission))
             self._remote = remote
             left_out = left_out_notes(remote, self._places(submission))
-            self.printed = remote.printed()[:_PRINTED]
+            self.printed = beginning(remote.printed(), _PRINTED)
             results = self._run(remote, only, submission)
         except IsolationError as error:
             return self._grader_error(str(error))
@@ -288,7 +289,7 @@ class GradingSession:
         outcome = self._checks.run(check, remote)
         self.asked[check.id], self.took[check.id] = frozenset(remote.asked), remote.used
         duration_ms = (perf_counter() - start) * 1e3
-        printed = remote.printed()[:_PRINTED] or None
+        printed = beginning(remote.printed(), _PRINTED) or None
         if outcome is None:
             said = printed if self._terms.home else None
             return result(check, Status.PASS, points=check.points, duration_ms=duration_ms, stdout=said)

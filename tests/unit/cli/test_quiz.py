@@ -158,6 +158,35 @@ def test_an_attempt_that_was_stopped_goes_on_where_it_was(quiz, bank, types, sto
     assert "5 of 5 right" in ran.out
 
 
+@pytest.mark.parametrize("there", [1, 5])
+def test_the_first_answer_of_two_terminals_counts_and_so_does_the_first_end(
+    quiz, bank, types, monkeypatch, there
+):
+    quiz("take", "--questions", "--seed", str(SEED))
+    types("")
+    letters, elsewhere = key(bank), key(bank, wrong=ASKED)
+    asked, ask = [], screen.ask
+
+    def meanwhile(*words):
+        if not asked:  # as the other terminal does it
+            asked.append("another")
+            types(*[*elsewhere.values()][:there], "q")
+            quiz("take")
+            types(*letters.values())
+        return ask(*words)
+
+    monkeypatch.setattr(screen, "ask", meanwhile)
+    ran = quiz("take")
+    shown = quiz("history", "--json").json["attempts"]
+    if there == 5:
+        assert "finished in another terminal: 0 of 5 right" in ran.err
+        assert (ran.code, len(shown), shown[0]["score"]) == (2, 1, 0)
+    else:
+        assert "answered in another terminal" in ran.out
+        assert "4 of 5 right" in ran.out
+        assert (ran.code, len(shown), shown[0]["score"]) == (0, 1, 4)
+
+
 def test_an_attempt_that_waits_is_not_given_up_without_a_word(quiz, bank, types):
     letters = list(key(bank).values())
     types(*letters[:2], "q")

@@ -192,7 +192,12 @@ def test_each_way_of_ending_has_its_status_and_spares_the_other_task(
         (b"\x00\x01\xff\xfe\x80 random", "syntax_error", "is not Python source: ", "course reset"),
         (b"PK\x03\x04\x00\x00", "syntax_error", "is not Python source: ", "course reset"),
         (b"# \xe9\nx = 1\n", "syntax_error", "another encoding than UTF-8", "Save it as UTF-8"),
-        (b"x = 1\n\ny = 2  # \xe9\n", "syntax_error", "another encoding than UTF-8", "Save it as UTF-8"),
+        (
+            b"x = 1\n\ny = 2  # \xe9\n",
+            "syntax_error",
+            "line 3: this is not Python source: it is saved in another",
+            "Save it as UTF-8",
+        ),
         ("x = 1\n".encode("utf-16"), "syntax_error", "another encoding than UTF-8", "Save it as UTF-8"),
         (b"x = " + b"-" * 400_000 + b"1\n", "syntax_error", "nested more deeply", ""),
         (b'def f():\n    """Twice.\n    return 1\n\n"""Later."""\n', "syntax_error", "", "further up"),

@@ -421,6 +421,7 @@ def test_prints_are_kept_up_to_a_limit_and_never_fail(load: Any) -> None:
     printed = connection.output()
     assert printed.startswith("loaded\né\n")
     assert 60_000 < len(printed) <= MAX_OUTPUT
+    assert printed.endswith(f"x\n{wire.CUT}"), "whole lines, and a word about the rest"
     connection.close()
     assert connection.output() == printed
 

@@ -213,6 +213,9 @@ def test_an_attempt_in_a_cell_counts_as_one_in_a_terminal(
     assert second.attempt.seed != first.taken.attempt.seed  # other questions, as in a terminal
     wrong = next(choice for choice in second.posed[0].choices if not choice.right)
     asyncio.run(cell({name: wrong.letter}))  # it goes on with the attempt that was begun
+    assert second.finish({one.question: one.key.letter for one in second.posed})
+    assert second.result is not None
+    assert (second.result.score, "finished elsewhere" in second.note) == (len(asked) - 1, True)
     app.run(("quiz", "history", "--json"))
     reply = json.loads(capsys.readouterr().out)
     assert [one["score"] for one in reply["attempts"]] == [len(asked), len(asked) - 1]

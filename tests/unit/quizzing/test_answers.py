@@ -93,6 +93,10 @@ def test_a_mistake_in_json_is_named_with_its_line(tmp_path: Path, bank: Bank) ->
     assert "'sums' is there twice" in refused(twice, bank).message
     deep = written(tmp_path, "[" * 100_000, "e.json")
     assert "JSON" in refused(deep, bank).message
+    for number, text in enumerate(("{", "[]", "{}", '{"answer": {}}', '{"answers": {"sums": "a"}}')):
+        advice = refused(written(tmp_path, text, f"{number}.json"), bank).help
+        assert "[answers]" not in advice
+        assert '"answers"' in advice
 
 
 def test_a_question_that_is_not_asked_now_is_named(tmp_path: Path, bank: Bank) -> None:

@@ -84,6 +84,15 @@ def test_a_cell_that_hangs_is_stopped_and_the_next_run_starts_anew(runner, sourc
     assert runner.run(CELLS[3]).printed == "42"
 
 
+def test_a_long_output_ends_with_a_whole_line_and_says_so_and_the_next_cell_prints(runner, sources):
+    sources["key0"] = "for a in range(10**5):\n    print(a)"
+    *rows, last, said = runner.run(CELLS[0]).printed.splitlines()
+    assert rows == [str(number) for number in range(len(rows))]
+    assert (last, "was dropped" in said) == ("...", True)
+    sources["key0"] = "a = 2"
+    assert runner.run(CELLS[3]).printed == "42"
+
+
 def test_the_textbook_is_there_and_the_rest_of_the_course_is_not(runner, sources):
     sources["key4"] = sources["key5"] = "pass"
     assert runner.run(CELLS[6]).printed == "2.0"

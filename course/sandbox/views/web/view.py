@@ -122,8 +122,9 @@ def _listener(port: int) -> socket.socket:
         listener.listen(64)
     except (OSError, OverflowError) as error:
         listener.close()
+        why = getattr(error, "strerror", None) or "ports are numbers from 0 to 65535"
         raise UsageError(
-            f"Port {port} cannot be used: {getattr(error, 'strerror', None) or error}.",
+            f"Port {port} cannot be used: {why}.",
             help="Leave --port out and a free one is taken.",
             code="bad_port",
         ) from error

@@ -6,6 +6,7 @@ import errno
 import io
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -61,6 +62,7 @@ def test_the_list_of_commands_names_them_all(course):
         assert f"Example: course {one}" in said
     for name, entry in registry.COMMANDS.items():
         assert re.search(rf"^\s+{name}\s+{re.escape(entry.summary)}", words, re.MULTILINE)
+        assert not entry.is_group or "..\n" not in course(name, "--help").out.replace("]...\n", ""), "uncut"
 
 
 @pytest.mark.parametrize(("environ", "needed"), [({}, "typer"), ({"FORCE_COLOR": "1"}, "rich")])
@@ -239,6 +241,19 @@ def test_a_reader_that_stops_reading_is_no_error():
         assert (read.wait(120), read.stderr.read()) == (0, b"")
 
 
+@pytest.mark.skipif(os.name == "nt", reason="has no such shell")
+@pytest.mark.parametrize("closed", [">&-", "2>&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize("line", ["", "lessons --json"])
+def test_an_output_that_is_closed_is_no_error_either(tmp_path, line, closed):
+    script = f'exec "$0" -m course {line} {closed}'
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COURSE_CONTENT": str(MINI_COURSE)}
+    done = subprocess.run(
+        ["sh", "-c", script, sys.executable],
+        cwd=tmp_path, env=environment, capture_output=True, timeout=120, check=False,
+    )  # fmt: skip
+    assert (done.returncode, b"Traceback" in done.stderr) == (0, False)
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="has no device that is always full")
 @pytest.mark.parametrize("line", ["--version", "--help", "lessons", "lessons --json", "lesson twice-as-much"])
 def test_an_output_without_room_is_no_fault_of_the_course(line):
@@ -256,6 +271,78 @@ def test_a_file_without_room_is_named(failing):
     ran = failing(OSError(errno.ENOSPC, "No space left on device", "there/it.json"))("doctor")
     said = "there/it.json cannot be written (No space left on device).\nMake room, or write elsewhere.\n"
     assert (ran.code, ran.err) == (4, said)
+
+
+@pytest.mark.parametrize("number", [errno.EACCES, errno.EPERM, errno.EROFS, errno.ENAMETOOLONG, errno.ELOOP])
+def test_what_the_file_system_refuses_is_named_and_no_fault_of_the_course(failing, number):
+    ran = failing(OSError(number, os.strerror(number), "there/it.json"))("doctor")
+    assert ran.code == 4
+    assert ran.err.startswith(f"there/it.json cannot be used ({os.strerror(number)}).\n")
+
+
+_NAMES = {
+    "~nobody-here/it": "no home folder ~nobody-here",
+    "y" * 300: "File name too long",
+    "loop/it": "links",
+}
+
+
+@pytest.mark.parametrize("name", _NAMES)
+@pytest.mark.parametrize(
+    "line",
+    [
+        "init {}",
+        "check {}.py",
+        "diff {}.py",
+        "report doubling -o {}",
+        "submit -o {}.zip",
+        "notebook build --out {}",
+        "notebook check {}.ipynb",
+        "sandbox play {}.toml",
+        "sandbox play billiard-break --png {}.png",
+        "sandbox replay {}.run",
+        "sim run free-fall --csv {}.csv",
+        "engines compare --plot {}.png",
+        "bug -o {}",
+    ],
+)
+def test_a_name_that_no_file_can_have_is_named(course, workspace, write, line, name):
+    (workspace / "loop").symlink_to("loop")
+    write("RIGHT", "RIGHT")
+    ran = course(*line.format(name).split())
+    assert ran.code == 2, ran.err
+    assert _NAMES[name] in ran.err
+
+
+#: Root reads everything, unless it gives that up.
+_AS_ANYBODY = ["setpriv", "--bounding-set=-dac_override,-dac_read_search", "--inh-caps=-all", "--"]
+
+
+@pytest.mark.skipif(shutil.which("setpriv") is None, reason="has no setpriv")
+@pytest.mark.parametrize(
+    ("folder", "line", "code", "said"),
+    [
+        ("doubling", "check doubling", 3, "doubling/doubling.py cannot be read (Permission denied)"),
+        ("doubling", "check --all", 3, "0 of 1 exercise pass"),
+        ("doubling", "submit", 4, "doubling/doubling.py cannot be used (Permission denied)"),
+        ("doubling", "notebook build doubling", 4, "doubling/doubling.ipynb cannot be used"),
+        (".course", "", 0, "Next: course doctor"),
+        (".course", "doctor", 4, "progress.sqlite cannot be used (Permission denied)"),
+        (".course", "progress", 4, "progress.sqlite cannot be used (Permission denied)"),
+    ],
+)
+def test_a_folder_that_cannot_be_read_is_named(workspace, folder, line, code, said):
+    (workspace / folder).chmod(0)
+    try:
+        ran = subprocess.run(
+            [*(_AS_ANYBODY if os.geteuid() == 0 else ()), sys.executable, "-m", "course", *line.split()],
+            cwd=workspace, env={**os.environ, "PYTHONPATH": str(ROOT)},
+            capture_output=True, text=True, timeout=120, check=False,
+        )  # fmt: skip
+    finally:
+        (workspace / folder).chmod(0o755)
+    assert said in ran.stdout + ran.stderr
+    assert ran.returncode == code
 
 
 def test_a_terminal_that_hung_up_is_no_fault_of_the_course():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import re
+import shutil
 
 import pytest
 
@@ -40,6 +41,20 @@ def test_exercises_and_lessons_are_called_by_number_too(course, workspace):
     for words in (("start", "3"), ("start", "0"), ("lesson", "3"), ("lesson", "0"), ("lesson", "9" * 5000)):
         assert course(*words).code == 5
     assert "Did you mean halving" in course("start", "halvin").err
+
+
+def test_an_exercise_whose_folder_is_gone_is_started_again_wherever_a_step_is_named(course, workspace, write):
+    write("wrong", "wrong")
+    course("check", "doubling")
+    shutil.rmtree(workspace / "doubling")
+    shutil.rmtree(workspace / ".course" / "given")
+    for words in ((), ("next",), ("progress",)):
+        assert "course start doubling" in course(*words).out
+    for words in (("check",), ("hint",), ("diff",), ("report", "doubling")):
+        ran = course(*words)
+        assert (ran.code, "`course start doubling` puts one there" in ran.err) == (3, True)
+    assert course("reset", "doubling", "-y").out == "doubling/doubling.py is the stub again.\n"
+    assert "course check doubling" in course("next").out
 
 
 def test_a_number_that_meant_another_exercise_names_both(course, workspace):
@@ -122,6 +137,16 @@ def test_a_lesson_that_was_read_names_the_step_that_the_dashboard_names(course, 
     step = course("next", "--json").json["next"]["command"]
     assert ran.out.endswith(f"Next: {step}\n")
     assert step == "course check doubling", "it was started"
+
+
+def test_a_lesson_that_was_printed_names_no_exercise_that_is_done(course, workspace, write):
+    def named():
+        return course("lesson", "twice-as-much", "--json").json["next"]["command"]
+
+    assert named() == "course check doubling"
+    write("RIGHT", "RIGHT")
+    course("check", "doubling")
+    assert named() == course("next", "--quiet").out.strip() == "course start halving"
 
 
 def test_the_reader_on_the_whole_screen_and_page_by_page_go_on_where_the_other_was_left(

@@ -73,6 +73,26 @@ def test_a_student_reads_predicts_runs_and_comes_back_to_the_line(
     assert store.events("bookmark", LESSON)[-1].data["block"] == place["block"]
 
 
+def test_after_a_lesson_in_watch_a_stop_and_fg_go_on(terminal: Terminal, workspace: Path) -> None:
+    assert in_process("-C", workspace, "start", "integrators").returncode == 0
+    terminal.line(f"{sys.executable} -m course watch integrators")
+    terminal.wait("q leave")
+    for _ in range(2):
+        terminal.type("l")
+        terminal.wait("min left")
+        terminal.type("q")
+        terminal.wait_until_gone("min left")
+        terminal.still()
+        terminal.keys("C-z")
+        terminal.wait("Stopped")
+        terminal.line("clear; fg")
+        terminal.wait_until_gone("Stopped")
+    terminal.type("q")
+    terminal.line("echo left $?")
+    terminal.wait("left 0")
+    assert terminal.state() == AS_IT_WAS
+
+
 @pytest.mark.parametrize(
     "before", ["TERM=dumb", "LANG=C LC_ALL=C PYTHONUTF8=0 PYTHONCOERCECLOCALE=0", "TERM="]
 )

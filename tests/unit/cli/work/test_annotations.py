@@ -15,7 +15,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from course.cli.frame.console import Console
-from course.cli.work.verdict import _line_of, _shown, github
+from course.cli.work.verdict import _line_of, _shown, github, unread_line
 from tests.command_line import in_process
 
 #: What the runner puts back, in its order: ActionCommand.cs of actions/runner.
@@ -235,3 +235,8 @@ def test_a_workflow_obeys_nothing_that_strangers_say(monkeypatch):
     monkeypatch.delenv("GITHUB_ACTIONS")
     console.line("a[::2]")
     assert out.getvalue().endswith("a[::2]\n")
+
+
+def test_the_line_that_cannot_be_read_is_that_of_a_letter_in_another_encoding_too():
+    sources = b"x = 1\n", b"x = 1\nx x\n", b"x = 1\n# \xe9\n", "x = 1\nx x\n"
+    assert [unread_line(source) for source in sources] == [1, 2, 2, 2]

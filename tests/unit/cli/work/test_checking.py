@@ -31,7 +31,7 @@ def test_check_shows_the_first_lines_that_loading_printed_and_all_on_request(cou
         write("wrong", "RIGHT", extra)
         shown = course("check").out
         assert "Loading your file printed:\n  row 0\n" in shown
-        assert "  row 5\n  and 3 more lines; --verbose shows all\n" in shown
+        assert "  row 5\n  and 3 more lines with --verbose\n" in shown
         assert "row 6" not in shown
         assert "  row 8\n" in course("check", "--verbose").out
     write("wrong", "RIGHT", "'PRINTS'\n")
@@ -71,6 +71,14 @@ def test_a_file_whose_name_has_other_capitals_is_told(course, write):
     assert ran.code == 3
     assert "Rename Doubling.py to doubling.py" in ran.err
     assert "doubling/doubling.py (not there; Doubling.py is not read)" in course("submit").out
+
+
+def test_a_link_to_no_file_is_told(course, write):
+    path = write("RIGHT", "RIGHT")
+    path.unlink()
+    path.symlink_to("/nope")
+    assert "doubling.py is a link to /nope, and no file is there.\nRemove the link" in course("check").err
+    assert "doubling/doubling.py (not there)" in course("submit").out
 
 
 def test_one_file_under_two_spellings_is_not_told(course, write):

@@ -68,6 +68,15 @@ def test_submit_with_nothing_written_writes_nothing(course, workspace):
     ran = course("submit", "--json")
     assert (ran.code, ran.json["error"]["code"]) == (3, "nothing_to_submit")
     assert not list(workspace.glob("*.zip"))
+    ran = course("submit", "halving")
+    assert (ran.code, ran.err) == (3, "You have not started halving.\n`course start halving` begins it.\n")
+
+
+def test_an_exercise_that_is_named_twice_is_handed_in_once(course, workspace, write):
+    write("RIGHT", "wrong")
+    body = course("submit", "1", "doubling", "--json").json
+    assert [file["path"] for file in body["files"]] == ["doubling/doubling.py"]
+    assert body["output"].endswith("/doubling-submission.zip")
 
 
 def test_submit_warns_about_a_file_that_cannot_be_graded(course, workspace):

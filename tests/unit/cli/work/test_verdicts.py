@@ -158,6 +158,10 @@ def test_functions_not_written_yet_are_listed_once():
     assert words.index("b works") < words.index("to do: Explicit Euler") < words.index("to do: RK4")
     assert "Not written yet: 0/6 points" in words
     assert "verbose" not in words
+    two = _unwritten("c", "rk4"), _unwritten("d", "rk4")
+    mended = [msgspec.structs.replace(one, help="Mend it.") for one in two]
+    words = _shown(_unwritten("a", "euler"), _unwritten("b", "verlet"), _unwritten("e", "verlet"), *mended)
+    assert words.count("rk4: Mend it.\n") == 1, "advice that is not everybody's says whose it is"
 
 
 FAILS = _check("a", "euler", Status.FAIL, message="No.")

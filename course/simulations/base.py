@@ -94,7 +94,7 @@ class Row:
     @property
     def error(self) -> float | None:
         """Simulated less theory, in the unit; None where there is nothing to compare."""
-        if self.theory is None or not math.isfinite(self.theory) or math.isnan(self.simulated):
+        if self.theory is None or not math.isfinite(self.theory) or not math.isfinite(self.simulated):
             return None
         return self.simulated - self.theory
 

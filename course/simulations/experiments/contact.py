@@ -80,7 +80,7 @@ def _run_collision(p: Mapping[str, Any]) -> Result:
         simulation="collision",
         settings=p,
         rows=rows,
-        headline=_headline_collision(met, float(energy[0]), float(energy[-1])),
+        headline=_headline_collision(met, float(energy[0]), float(energy[-1]), end),
         finding=_finding(p, met, float(energy[0]), float(energy[-1])),
         columns=(
             Column.of("t", "s", record.t),
@@ -118,20 +118,25 @@ def _apart(met: float, t: np.ndarray, x: np.ndarray, v: np.ndarray) -> float:
     return float(places[1] - places[0])
 
 
-def _headline_collision(met: float, before: float, after: float) -> str:
+def _headline_collision(met: float, before: float, after: float, seconds: float) -> str:
     if math.isnan(met):
-        return "The two balls never touch, and their motion does not change"
-    kept = "all" if abs(after - before) <= 1e-9 * before else percent(after / before)
-    return f"Contact at {met:.4g} s conserves momentum and {kept} of the kinetic energy"
+        return f"Within {seconds:g} s the two balls do not touch; their motion does not change"
+    return f"Contact at {met:.4g} s conserves momentum and {_kept(before, after)} of the kinetic energy"
+
+
+def _kept(before: float, after: float) -> str:
+    if abs(after - before) <= 1e-9 * before:
+        return "all"
+    share = percent(after / before)
+    return "none" if after <= 1e-9 * before else "nearly all" if share == "100 %" else share
 
 
 def _finding(p: Mapping[str, Any], met: float, before: float, after: float) -> str:
     if math.isnan(met):
         return f"Within {p['duration']:g} s the two do not touch; momentum and energy do not change."
     centres = p["distance"] / (p["speed1"] - p["speed2"])
-    kept = "all of the kinetic energy" if abs(after - before) <= 1e-9 * before else (
-        f"{percent(after / before)} of the kinetic energy; the rest becomes heat"
-    )  # fmt: skip
+    kept = _kept(before, after)
+    heat = {"all": "", "none": ", which becomes heat"}.get(kept, "; the rest becomes heat")
     passing = (
         f" Points without size would have passed through each other at {centres:.4g} s."
         if p["radius"] > 0
@@ -140,7 +145,8 @@ def _finding(p: Mapping[str, Any], met: float, before: float, after: float) -> s
     return (
         f"The surfaces touch at {met:.4g} s, when the centres are still {2 * p['radius']:g} m apart."
         f"{passing} "
-        f"The impact conserves momentum, whatever the restitution, and {kept}."
+        f"The impact conserves momentum, whatever the restitution, and {kept} of the kinetic energy"
+        f"{heat}."
     )
 
 
@@ -277,7 +283,7 @@ CONTACT_MODELS = Simulation(
         Parameter("height", 1.0, "m", "that the ball is dropped from", low=0.01, high=100.0),
         Parameter("restitution", 0.5, "1", "speed after over speed before", low=0.0, high=1.0),
         Parameter("erp", 0.2, "1", "share of an overlap that a step removes", low=0.0, high=1.0),
-        Parameter("overlap", 0.02, "m", "of the ball that starts inside the floor", low=0.0, high=1.0),
+        Parameter("overlap", 0.1, "m", "of the ball that starts inside the floor", low=0.0, high=1.0),
         Parameter("stiffness", 1e4, "N/m", "of the spring under a ball of 1 kg", low=1.0, high=1e9),
         Parameter("gravity", 9.81, "m/s²", "acceleration downwards", low=0.1, high=100.0),
         step(high=0.05),

@@ -51,6 +51,8 @@ class _Driven:
 
 def _run_dynamics(p: Mapping[str, Any]) -> Result:
     arm = TwoLinkArm()
+    if (p["start_x"], p["start_y"]) == (p["end_x"], p["end_y"]):
+        raise ValueError("the hand starts where it should end; set another start or end.")
     path = HandPath((p["start_x"], p["start_y"]), (p["end_x"], p["end_y"]), p["duration"])
     h = p["step"]
     n = step_count(p["duration"], h)
@@ -198,6 +200,8 @@ def _run(p: Mapping[str, Any]) -> Result:
     if n < _FEWEST:
         raise ValueError(f"{n} steps are too few to see anything part; take {_FEWEST} or more.")
     first, second = math.radians(p["angle1_deg"]), math.radians(p["angle2_deg"])
+    if not (first or second):
+        raise ValueError("both rods hang straight down and do not swing; set angle1_deg or angle2_deg.")
     pair = np.array([[first, second], [first + p["nudge"], second]])
     pendulum = TwoLinkArm.double_pendulum()
     t, q, v = _swing(pendulum, pair, h, n)
@@ -313,6 +317,7 @@ CHAOS = Simulation(
 
 
 _RADIUS = 0.1  # m
+_GUESS = 0.3  # the friction that is taken to be 10 % lower
 _SHOWN_FRICTION = (0.1, 0.3, 0.6)
 _SHOWN_RESTITUTION = (0.3, 0.5, 0.9)
 #: The whole sweep, as friction of one experiment and restitution of the other.
@@ -321,6 +326,11 @@ _SWEEP = np.round(np.arange(0.05, 1.0001, 0.05), 2)
 
 def _run_environment(p: Mapping[str, Any]) -> Result:
     stopping = _slide(p, _SWEEP)
+    if stopping[_at(_GUESS)] == 0.0:
+        raise ValueError(
+            f"at {p['speed']:g} m/s the block stops within one step of {p['step']:g} s; take a smaller step or "
+            "a higher speed."
+        )
     rebound = _drop(p, _SWEEP)
     stops = p["speed"] ** 2 / (2 * _SWEEP * p["gravity"])
     rises = _SWEEP**2 * p["height"]
@@ -344,9 +354,9 @@ def _run_environment(p: Mapping[str, Any]) -> Result:
         )
         for x in _SHOWN_RESTITUTION
     ]
-    guess = 0.3
-    wrong = float(_slide(p, np.array([0.9 * guess]))[0]) / float(stopping[_at(guess)]) - 1
-    numeric = abs(float(stopping[_at(guess)] / stops[_at(guess)]) - 1)
+    guess = _at(_GUESS)
+    wrong = float(_slide(p, np.array([0.9 * _GUESS]))[0]) / float(stopping[guess]) - 1
+    numeric = abs(float(stopping[guess] / stops[guess]) - 1)
     rows.append(Row("sliding further, friction 10 % lower", wrong, "1", 1 / 0.9 - 1, "1 / 0.9 - 1"))
     return Result(
         simulation="environment",
@@ -448,7 +458,7 @@ def _run_integrators(p: Mapping[str, Any]) -> Result:
     with np.errstate(over="ignore", invalid="ignore"):
         for name, method in STEPPERS.items():
             path = trajectory(method, spring, start, h, n)
-            positions[name] = path.q[:, 0]
+            positions[name] = np.nan_to_num(path.q[:, 0], nan=np.inf)
             drifts[name] = np.nan_to_num(relative_change(energy(spring, path.q, path.v)), nan=np.inf)
     worst = {name: float(np.max(np.abs(drift))) for name, drift in drifts.items()}
     where = f"position at {p['duration']:g} s"

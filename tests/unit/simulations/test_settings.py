@@ -95,6 +95,10 @@ def test_more_steps_than_anyone_waits_for_are_refused() -> None:
         ("chaos", ["duration=0.05"], "too few to see"),
         ("substeps", ["work=64", "links=100", "duration=60"], "take too long"),
         ("environment", ["speed=20", "gravity=0.1"], "more than 20,000 steps"),
+        ("environment", ["speed=0.1", "step=0.05"], "stops within one step"),
+        ("projectile", ["speed_z=1000", "drag=1"], "more than the whole speed in one step"),
+        ("dynamics", ["end_x=1.2", "end_y=-0.8"], "starts where it should end"),
+        ("chaos", ["angle1_deg=0", "angle2_deg=0"], "hang straight down"),
     ],
 )
 def test_values_that_are_impossible_together_are_said(name: str, pairs: list[str], words: str) -> None:

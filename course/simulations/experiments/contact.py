@@ -195,11 +195,14 @@ def _run(p: Mapping[str, Any]) -> Result:
     rows = (*_at_rest(p), *_out_of_an_overlap(p), *_of_bounces(rebound, kept, e))
     low, high = float(rebound["none"].min()), float(rebound["none"].max())
     gained = float(kept["erp"].mean()) - 1
+    rises = f"{low:.3f} to {high:.3f} of its height, not to {e**2:.3f}"
+    if f"{low:.3f}" == f"{high:.3f}" == f"{e**2:.3f}":
+        rises = f"{e**2:.3f} of its height, as theory says"
     return Result(
         simulation="contact-models",
         settings=p,
         rows=rows,
-        headline=f"With e = {e:g} a ball rises to {low:.3f} to {high:.3f} of its height, not to {e**2:.3f}",
+        headline=f"With e = {e:g} a ball rises to {rises}",
         finding=f"With a floor that looks once a step of {h:g} s the ball rises to between {digits(low)} and "
         f"{digits(high)} of its height, depending on when in the step it arrives; theory says "
         f"{digits(e**2)}. Correction with an ERP of {erp:g} in the velocity changes the energy of an elastic "

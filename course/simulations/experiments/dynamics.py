@@ -328,8 +328,8 @@ def _run_environment(p: Mapping[str, Any]) -> Result:
     stopping = _slide(p, _SWEEP)
     if stopping[_at(_GUESS)] == 0.0:
         raise ValueError(
-            f"at {p['speed']:g} m/s the block stops within one step of {p['step']:g} s; take a smaller step or "
-            "a higher speed."
+            f"at {p['speed']:g} m/s the block stops within one step of {p['step']:g} s; take a smaller "
+            "step or a higher speed."
         )
     rebound = _drop(p, _SWEEP)
     stops = p["speed"] ** 2 / (2 * _SWEEP * p["gravity"])
@@ -357,17 +357,22 @@ def _run_environment(p: Mapping[str, Any]) -> Result:
     guess = _at(_GUESS)
     wrong = float(_slide(p, np.array([0.9 * _GUESS]))[0]) / float(stopping[guess]) - 1
     numeric = abs(float(stopping[guess] / stops[guess]) - 1)
+    advice = (
+        "Measure the floor before you refine the step."
+        if numeric < wrong
+        else "Refine the step before you measure the floor."
+    )
     rows.append(Row("sliding further, friction 10 % lower", wrong, "1", 1 / 0.9 - 1, "1 / 0.9 - 1"))
     return Result(
         simulation="environment",
         settings=p,
         rows=tuple(rows),
         headline=f"Friction 10 % off moves the stop by {percent(wrong)}; this step by {percent(numeric)}",
-        finding=f"From {p['speed']:g} m/s a block slides {digits(float(stopping[_at(0.6)]), 2)} m at a "
-        f"friction of 0.6 and {digits(float(stopping[_at(0.1)]), 2)} m at 0.1. If the true friction is 10 % "
+        finding=f"From {p['speed']:g} m/s a block slides {digits(float(stopping[_at(0.6)]))} m at a "
+        f"friction of 0.6 and {digits(float(stopping[_at(0.1)]))} m at 0.1. If the true friction is 10 % "
         f"lower than the modelled one, the block ends {percent(wrong)} further away; the step of "
         f"{p['step']:g} s makes an error of "
-        f"{percent(numeric)}. Measure the floor before you refine the step.",
+        f"{percent(numeric)}. {advice}",
         columns=(
             Column.of("coefficient", "1", _SWEEP),
             Column.of("stopping_distance", "m", stopping),

@@ -251,8 +251,8 @@ def _finding_projectile(p: Mapping[str, Any], rows: tuple[Row, ...]) -> str:
         off = (far.theory or 0.0) - far.simulated
         how_far = f" and is {off:.3g} m off at the landing" if off and math.isfinite(off) else ""
         return (
-            f"{flight} The theory beside it has no air{how_far}. No smaller step repairs that, because the air "
-            "is missing in the model."
+            f"{flight} The theory beside it has no air{how_far}. No smaller step repairs that, because the "
+            "air is missing in the model."
         )
     if p["method"] in _FIRST_ORDER:
         return f"{flight} The difference from theory is the error of this method; it shrinks with the step."

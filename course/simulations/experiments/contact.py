@@ -13,6 +13,7 @@ from course.physics.contact.models import Constraint, ContactModel, Penalty, Sof
 from course.physics.simulator import Simulator, step_count
 from course.physics.solver import Chain, iterations_to, stack_impulses
 from course.physics.state import RigidBodyState
+from course.printable import counted
 from course.simulations.base import (
     Column,
     Parameter,
@@ -325,10 +326,10 @@ def _run_solver_iterations(p: Mapping[str, Any]) -> Result:
         rows=tuple(rows),
         headline=f"{tall} boxes need {needed[tall]} iterations to reach {percent(tolerance)}, "
         f"{short} need {needed[short]}",
-        finding=f"After {last} iterations from zero the ground carries {percent(done)} of the weight of "
-        f"{boxes} boxes. To come within {percent(tolerance)} takes {needed[boxes]} iterations, and the "
-        "number grows with the square of the height, because each iteration passes a load on only to the "
-        "next contact. "
+        finding=f"After {counted(last, 'iteration')} from zero the ground carries {percent(done)} of the "
+        f"weight of {boxes} boxes. To come within {percent(tolerance)} takes "
+        f"{counted(needed[boxes], 'iteration')}, and the number grows with the square of the "
+        "height, because each iteration passes a load on only to the next contact. "
         "Engines start from the answer of the last step instead, so a stack that stands still stays up.",
         columns=(
             Column.of("iteration", "1", np.arange(last + 1)),
@@ -383,16 +384,20 @@ def _run_substeps(p: Mapping[str, Any]) -> Result:
         for split, stretch in worst.items()
     )
     one, many = worst[splits[0]], worst[splits[-1]]
-    better = f"{one / many:.2g} times" if many > 0 else "far"
+    names, less, more = ("small steps", "iterations"), many, one
+    why = "a small step makes a small error, and the next step starts after it has been corrected."
+    if many > one:
+        names, less, more = ("iterations", "small steps"), one, many
+        why = "for so few links the iterations of one step are enough."
+    better = f"{more / less:.2g} times" if less > 0 else "far"
     return Result(
         simulation="substeps",
         settings=p,
         rows=rows,
-        headline=f"Same work: small steps stretch the chain {better} less than iterations do",
+        headline=f"Same work: {names[0]} stretch the chain {better} less than {names[1]} do",
         finding=f"Every variant goes over the chain {work} times a frame. One step with {work} iterations "
         f"lets a link stretch by {digits(one, 2)} of its length, {work} steps with one iteration by "
-        f"{digits(many, 2)}: "
-        "a small step makes a small error, and the next step starts after it has been corrected.",
+        f"{digits(many, 2)}: {why}",
         columns=(
             Column.of("t", "s", h * np.arange(n + 1)),
             *(Column.of(f"stretch_{s}x{i}", "1", values) for (s, i), values in series.items()),
@@ -401,7 +406,7 @@ def _run_substeps(p: Mapping[str, Any]) -> Result:
 
 
 def _words(steps: int, iterations: int) -> str:
-    return f"{steps} substep{'s' * (steps > 1)} x {iterations} iteration{'s' * (iterations > 1)}"
+    return f"{counted(steps, 'substep')} x {counted(iterations, 'iteration')}"
 
 
 SUBSTEPS = Simulation(

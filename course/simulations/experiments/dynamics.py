@@ -61,6 +61,7 @@ def _run_dynamics(p: Mapping[str, Any]) -> Result:
     torques = arm.inverse(planned, rates, accelerations)
     real = _with_payload(arm, p["payload"])
     run = trajectory(RK4(), _Driven(real, arm, path), State.of(planned[0], rates[0]), h, n)
+    _refuse_runaway(h, run.q, run.v)
     back = arm.inverse(planned, rates, arm.forward(planned, rates, torques))
     missed = float(np.linalg.norm(real.hand(run.q[-1]) - np.asarray(path.end)))
     rows = (
@@ -87,6 +88,13 @@ def _run_dynamics(p: Mapping[str, Any]) -> Result:
             *(Column.of(f"planned_{axis}", "m", goal[:, k]) for k, axis in enumerate("xy")),
         ),
     )
+
+
+def _refuse_runaway(h: float, *values: ArrayLike) -> None:
+    if not all(np.all(np.isfinite(value)) for value in values):
+        raise ValueError(
+            f"with a step of {h:g} s the motion runs away beyond all numbers; take a smaller step."
+        )
 
 
 def _with_payload(arm: TwoLinkArm, mass: float) -> TwoLinkArm:
@@ -143,9 +151,14 @@ def _work_row(arm: TwoLinkArm, q: Array, v: Array, torques: Array, t: Array) -> 
     return Row("forward: energy gained", gained, "J", work, "work of the torques, by trapezes")
 
 
+_CLOSE = 0.01  # m: the hand comes to its goal
+
+
 def _headline_dynamics(p: Mapping[str, Any], missed: float) -> str:
     if p["payload"] > 0:
         return f"A load of {p['payload']:g} kg is not in the model: the hand misses by {missed:.2g} m"
+    if missed > _CLOSE:
+        return f"Plan and arm are the same, and still the hand misses by {missed:.2g} m"
     return "Torques from inverse dynamics carry the hand along the planned line"
 
 
@@ -161,6 +174,11 @@ def _finding_dynamics(p: Mapping[str, Any], missed: float, torques: Array) -> st
             f"{plan}The real arm carries {p['payload']:g} kg that is not in the plan, and its hand "
             f"ends {missed:.2g} m from the goal. Torques are only as good as the model, and nothing here "
             "pulls the arm back. A controller would do that with feedback."
+        )
+    if missed > _CLOSE:
+        return (
+            f"{plan}The hand ends {missed:.2g} m from its goal, although plan and arm are the same model: "
+            "the errors of the steps grow, and nothing here pulls the arm back."
         )
     return f"{plan}The hand ends {missed:.1e} m from its goal, because here plan and arm are the same model."
 
@@ -209,6 +227,7 @@ def _run(p: Mapping[str, Any]) -> Result:
     small, large = _first_above(t, apart, 1e-3), _first_above(t, apart, 1.0)
     drift = float(np.max(np.abs(relative_change(pendulum.energy(q[:, 0], v[:, 0]) + _OFFSET))))
     coarse, fine = _crowd(pendulum, first, second, h, n)
+    _refuse_runaway(h, drift, coarse, fine)
     rows = (
         Row("separation passes 1e-3 rad", small, "s"),
         Row("separation passes 1 rad", large, "s"),
@@ -274,8 +293,8 @@ def _crowd(pendulum: TwoLinkArm, first: float, second: float, h: float, n: int) 
 
 def _headline(p: Mapping[str, Any], large: float) -> str:
     if math.isnan(large):
-        return f"{p['nudge']:.0e} rad apart at the start, still close after {p['duration']:g} s"
-    return f"{p['nudge']:.0e} rad apart at the start, more than 1 rad after {digits(large)} s"
+        return f"{p['nudge']:.1g} rad apart at the start, still close after {p['duration']:g} s"
+    return f"{p['nudge']:.1g} rad apart at the start, more than 1 rad after {digits(large)} s"
 
 
 def _finding(p: Mapping[str, Any], small: float, large: float, coarse: float, fine: float) -> str:
@@ -284,9 +303,9 @@ def _finding(p: Mapping[str, Any], small: float, large: float, coarse: float, fi
             f"Within {p['duration']:g} s the two stay less than 1 rad apart. Start them higher, or run for "
             "longer, and they come further apart."
         )
-    early = f"{digits(small)} s" if math.isfinite(small) else "the start"
+    early = f"after {digits(small)} s" if small > 0 else "at the start"
     return (
-        f"A difference of {p['nudge']:.0e} rad passes 0.001 rad after {early} and 1 rad after "
+        f"A difference of {p['nudge']:.1g} rad passes 0.001 rad {early} and 1 rad after "
         f"{digits(large)} s. "
         "After that a comparison of two paths says nothing about a simulator, because an error in the last "
         f"digit grows like this too. Averages can still be compared: over {_CROWD} starts the energy of the "
@@ -459,12 +478,10 @@ def _run_integrators(p: Mapping[str, Any]) -> Result:
     spring, start = Oscillator(omega=w), State.of([p["amplitude"]], [p["speed"]])
     positions: dict[str, Array] = {}
     drifts: dict[str, Array] = {}
-    # A method beyond its limit overflows; infinity is then the honest answer.
-    with np.errstate(over="ignore", invalid="ignore"):
-        for name, method in STEPPERS.items():
-            path = trajectory(method, spring, start, h, n)
-            positions[name] = np.nan_to_num(path.q[:, 0], nan=np.inf)
-            drifts[name] = np.nan_to_num(relative_change(energy(spring, path.q, path.v)), nan=np.inf)
+    for name, method in STEPPERS.items():
+        path = trajectory(method, spring, start, h, n)
+        positions[name] = np.nan_to_num(path.q[:, 0], nan=np.inf)
+        drifts[name] = np.nan_to_num(relative_change(energy(spring, path.q, path.v)), nan=np.inf)
     worst = {name: float(np.max(np.abs(drift))) for name, drift in drifts.items()}
     where = f"position at {p['duration']:g} s"
     rows = [
@@ -480,7 +497,7 @@ def _run_integrators(p: Mapping[str, Any]) -> Result:
         simulation="integrators",
         settings=p,
         rows=tuple(rows),
-        headline=_headline_integrators(worst),
+        headline=_headline_integrators(worst, w * h),
         finding=_finding_integrators(p, rows, worst),
         columns=(
             Column.of("t", "s", t),
@@ -505,9 +522,9 @@ def _energy_theory(p: Mapping[str, Any], z: float, n: int) -> dict[str, tuple[fl
     }
 
 
-def _headline_integrators(worst: Mapping[str, float]) -> str:
-    if worst["velocity_verlet"] > 1.0:
-        return "Beyond h ω = 2 even the symplectic methods blow up"
+def _headline_integrators(worst: Mapping[str, float], z: float) -> str:
+    if z >= 2.0 or worst["velocity_verlet"] > 1.0:
+        return "From h ω = 2 on even the symplectic methods blow up"
     return "Explicit Euler's energy keeps growing; the symplectic methods' does not"
 
 
@@ -516,7 +533,8 @@ def _finding_integrators(p: Mapping[str, Any], rows: list[Row], worst: Mapping[s
     off = [abs(row.error or 0.0) for row in rows[:4]]
     if z >= 2.0:
         return (
-            f"Step times frequency is {z:.3g}, beyond the limit of 2 for semi-implicit Euler and Verlet"
+            f"Step times frequency is {z:.3g}, {'at' if z == 2.0 else 'beyond'} the limit of 2 for "
+            "semi-implicit Euler and Verlet"
             f"{' and 2.83 for Runge-Kutta' if z > 2 * math.sqrt(2) else ''}: these results mean nothing. "
             f"Take a step below {2 / p['omega']:.3g} s."
         )

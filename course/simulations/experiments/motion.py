@@ -292,16 +292,15 @@ def _run_rotation(p: Mapping[str, Any]) -> Result:
     if not start.angular_velocity.any():
         raise ValueError("a body that does not turn has no rotation to show; set spin or nudge.")
     n = step_count(p["duration"], p["step"])
+    runs = {name: _spin(name, inertia, start, p["step"], n) for name in _NAMES}
     # Explicit Euler may run away to infinity; that is its result.
-    with np.errstate(over="ignore", invalid="ignore"):
-        runs = {name: _spin(name, inertia, start, p["step"], n) for name in _NAMES}
-        drifts = {
-            name: np.nan_to_num(kinetic_energy(inertia, w) / kinetic_energy(inertia, w[0]) - 1.0, nan=np.inf)
-            for name, (_, w) in runs.items()
-        }
+    drifts = {
+        name: np.nan_to_num(kinetic_energy(inertia, w) / kinetic_energy(inertia, w[0]) - 1.0, nan=np.inf)
+        for name, (_, w) in runs.items()
+    }
     w = runs["split"][1]
     t = p["step"] * np.arange(n + 1)
-    flips = int(np.count_nonzero(np.diff(np.sign(w[:, 1]))))
+    flips = int(np.count_nonzero(np.diff(np.sign(w[w[:, 1] != 0, 1]))))
     rows = (
         *_energy_rows(drifts, {name: q for name, (q, _) in runs.items()}),
         Row("angular momentum lost, split rotations", _momentum_drift(inertia, *runs["split"]), "1", 0.0,
@@ -379,6 +378,20 @@ def _headline_rotation(p: Mapping[str, Any], flips: int, gained: float) -> str:
     return f"{turns}, and explicit Euler adds {percent(gained)} of energy"
 
 
+def _about_axis_2(p: Mapping[str, Any], flips: int) -> str:
+    moments = [p["inertia1"], p["inertia2"], p["inertia3"]]
+    if p["spin"] == 0:
+        return "The body does not spin about axis 2 at the start; set spin."
+    if sorted(moments)[1] != p["inertia2"] or len(set(moments)) < 3:
+        return "Axis 2 is not the middle one, and a spin about it is stable."
+    if flips:
+        over = f"the body flipped over {times(flips)}"
+        return f"Axis 2 is the middle one, and a spin about it does not last: {over}."
+    if p["nudge"] == 0:
+        return "Axis 2 is the middle one, and nothing made the body wobble; set nudge."
+    return "Axis 2 is the middle one, but the wobble has not yet had time to flip the body over."
+
+
 def _finding(p: Mapping[str, Any], flips: int, drifts: Mapping[str, Array]) -> str:
     angle = abs(p["spin"]) * p["step"]
     if angle > 0.5:
@@ -386,23 +399,12 @@ def _finding(p: Mapping[str, Any], flips: int, drifts: Mapping[str, Array]) -> s
             f"The body turns by {angle:.2g} rad in one step, too far for any of these methods to follow. "
             f"Take a step below {0.5 / abs(p['spin']):.2g} s."
         )
-    moments = [p["inertia1"], p["inertia2"], p["inertia3"]]
-    middle = sorted(moments)[1] == p["inertia2"] and len(set(moments)) == 3
-    axis = (
-        f"Axis 2 is the middle one, and a spin about it does not last: the body flipped over {times(flips)}."
-        if middle and flips
-        else "Axis 2 is the middle one, and nothing made the body wobble; set nudge."
-        if middle and p["nudge"] == 0
-        else "Axis 2 is the middle one, but the wobble has not yet had time to flip the body over."
-        if middle
-        else "Axis 2 is not the middle one, and a spin about it is stable."
-    )
+    gain = float(drifts["explicit_euler"][-1])
+    gained = percent(gain) if math.isfinite(gain) else "energy without limit"
     return (
-        f"{axis} No torque acts, so the energy must not change: explicit Euler gains "
-        f"{percent(float(drifts['explicit_euler'][-1]))} in {p['duration']:g} s and stretches the "
-        f"quaternion, while split rotations stay within {percent(float(np.max(np.abs(drifts['split']))))} "
-        "and keep the "
-        "angular momentum to round-off."
+        f"{_about_axis_2(p, flips)} No torque acts, so the energy must not change: explicit Euler gains "
+        f"{gained} in {p['duration']:g} s and stretches the quaternion, while split rotations stay within "
+        f"{percent(float(np.max(np.abs(drifts['split']))))} and keep the angular momentum to round-off."
     )
 
 

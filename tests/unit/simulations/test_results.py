@@ -112,6 +112,13 @@ def test_a_throw_into_the_ground_is_over_at_once(speed: int) -> None:
         ("collision", ["restitution=0"], "none of the kinetic energy, which becomes heat."),
         ("collision", ["restitution=0.99999"], "nearly all of the kinetic energy; the rest"),
         ("environment", ["speed=0.1"], "Refine the step before"),
+        ("substeps", ["links=2"], "for so few links"),
+        ("solver-iterations", ["iterations=1"], "After 1 iteration from"),
+        ("integrators", ["step=1"], "at the limit of 2"),
+        ("rotation", ["nudge=10"], "gains energy without limit"),
+        ("dynamics", ["duration=0.01", "step=0.01"], "errors of the steps grow"),
+        ("chaos", ["nudge=1", "duration=5"], "passes 0.001 rad at the start"),
+        ("rotation", ["spin=0"], "does not spin about axis 2"),
         ("rotation", ["nudge=0"], "nothing made the body wobble"),
     ],
 )

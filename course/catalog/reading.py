@@ -152,8 +152,9 @@ class LineMap:
 T = TypeVar("T")
 
 _AT = re.compile(r" - at (?:key in )?`(?P<path>\$[^`]*)`$")
-_EXPECTED = re.compile(r"Expected `(?P<wanted>[^`]+)`, got `(?P<given>[^`]+)`")
+_EXPECTED = re.compile(r"Expected `(?P<wanted>[^`]+)`(?:, got `(?P<given>[^`]+)`|(?P<more> .+))")
 _MISSING = re.compile(r"Object missing required field `(?P<key>[^`]+)`")
+_ENUM = re.compile(r"Invalid enum value (?P<given>.+)")
 _UNKNOWN = re.compile(r"Object contains unknown field `(?P<key>[^`]+)`")
 
 _WORDS = {
@@ -287,18 +288,23 @@ def _raise_in_words(raw: Document[Any], text: str, kind: type, reserved: tuple[s
     if match := _UNKNOWN.search(words):
         _unknown_key(raw, steps, match["key"], kind, hide=reserved)
     if match := _MISSING.search(words):
-        key = match["key"]
+        keys = _missing(raw, kind, steps) or [match["key"]]
+        listed = ", ".join(f"`{key}`" for key in keys)
         place = f"{_named(steps)} lacks" if steps else "the file lacks"
-        table = ".".join((*map(str, steps), key))
-        fix = (
-            f"Add a table `[{table}.NAME]`."
-            if _holds_tables(kind, steps, key)
-            else f"Add a line `{key} = ...`."
-        )
-        raw.fail(steps, f"{place} the key `{key}`.", fix=fix)
+        tables = [".".join((*map(str, steps), key)) for key in keys if _holds_tables(kind, steps, key)]
+        lines = [key for key in keys if not _holds_tables(kind, steps, key)]
+        fixes = [f"Add a line `{key} = ...`." for key in lines]
+        fix = " ".join(fixes + [f"Add a table `[{table}.NAME]`." for table in tables])
+        raw.fail(steps, f"{place} the key{'s' * (len(keys) > 1)} {listed}.", fix=fix)
+    if match := _ENUM.search(words):
+        info = _type_at(kind, steps)
+        choices = ", ".join(f'"{word}"' for word in getattr(info, "values", ()))
+        fix = f"Write one of {choices}."
+        raw.fail(steps, f"{_named(steps)} cannot be {match['given']}.", fix=fix)
     if match := _EXPECTED.search(words):
-        wanted, given = (_in_words(match[side]) for side in ("wanted", "given"))
-        raw.fail(steps, f"{_named(steps)} must be {wanted}, and is {given}.", fix=f"Write {wanted}.")
+        wanted = _in_words(match["wanted"]) + (match["more"] or "")
+        given = f", and is {_in_words(match['given'])}" if match["given"] else ""
+        raw.fail(steps, f"{_named(steps)} must be {wanted}{given}.", fix=f"Write {wanted}.")
     raw.fail(steps, f"{_named(steps)}: {words}.", fix="Compare it with a file of the same kind.")
 
 
@@ -318,6 +324,15 @@ def _keys_at(kind: type, steps: tuple[str | int, ...]) -> list[str]:
     )
 
 
+def _missing(raw: Document[Any], kind: type, steps: tuple[str | int, ...]) -> list[str]:
+    """All the keys that a table at this place lacks."""
+    info, table = _type_at(kind, steps), raw.value
+    for step in steps:
+        table = table[step]
+    fields = info.fields if isinstance(info, msgspec.inspect.StructType) else ()
+    return [field.encode_name for field in fields if field.required and field.encode_name not in table]
+
+
 def _holds_tables(kind: type, steps: tuple[str | int, ...], key: str) -> bool:
     """Whether the value of a key is tables by name."""
     info = _type_at(kind, (*steps, key))
@@ -333,6 +348,8 @@ def _type_at(kind: type, steps: tuple[str | int, ...]) -> Any:
             info = next((field.type for field in info.fields if field.encode_name == step), None)
         elif isinstance(step, int):
             info = getattr(info, "item_type", None)
+        if isinstance(info, msgspec.inspect.UnionType):  # a table that may be left out
+            info = next((one for one in info.types if not isinstance(one, msgspec.inspect.NoneType)), None)
     return info
 
 

@@ -28,6 +28,7 @@ from course.cli.sandbox.play import (
     SandboxVersion,
 )
 from course.errors import NotFoundError, UsageError
+from course.printable import counted
 from course.sandbox.exports.formats import START, mjcf, sdf, start_script
 from course.sandbox.runs import recording
 from course.sandbox.scene.loading import question, scenes, unchanged
@@ -141,8 +142,8 @@ def replay(file: Annotated[Path, argument("FILE", "A recording.")]) -> int:
     for name, (then, here) in difference.versions.items():
         console.line(f"Recorded with {name} {then}; here it is {here}.")
     if difference.same:
-        states = "1 state" if difference.checked == 1 else f"{difference.checked} states"
-        console.line(f"The same, bit by bit: {recorded.ticks} steps, {states} compared.")
+        states = counted(difference.checked, "state")
+        console.line(f"The same, bit by bit: {counted(recorded.ticks, 'step')}, {states} compared.")
     else:
         console.line(
             f"It differs at step {difference.tick} (t = {difference.t:.3f} s); "

@@ -438,7 +438,7 @@ def _taker(
 
 def _show(console: Console, chosen: Chosen, done: Run, told: tuple[str, ...], options: PlayOptions) -> None:
     if not console.quiet:
-        console.heading(chosen.scene.title, f"{done.duration:.4g} s in {done.steps} steps")
+        console.heading(chosen.scene.title, f"{done.duration:.4g} s in {counted(done.steps, 'step')}")
         if not options.describe:
             count = sum(event.kind == "contact" for event in done.events)
             console.line(f"{counted(count, 'contact')}; --describe tells what happened.")

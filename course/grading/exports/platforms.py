@@ -237,7 +237,7 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
         )
     if locked:
         written.notes.append(
-            f"{len(locked)} grades cannot be changed in Moodle, which says so in the worksheet."
+            f"{counted(len(locked), 'grade')} cannot be changed in Moodle, which says so in the worksheet."
         )
     if _FEEDBACK not in headings:
         written.notes.append("The worksheet has no feedback comments: Moodle's feedback type is off.")
@@ -388,7 +388,7 @@ def _seconds(effective: Effective) -> float:
 def _words(effective: Effective) -> str:
     """The text about the submission as a whole."""
     verdict = effective.verdict
-    score = "no score yet" if effective.score is None else f"{number(effective.score)} points"
+    score = "no score yet" if effective.score is None else in_points(effective.score)
     said = [f"{effective.exercise}: {score} of {number(effective.max_score)}."]
     problem = problem_for_student(verdict)
     if problem is not None:

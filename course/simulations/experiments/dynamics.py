@@ -16,6 +16,7 @@ from course.physics.invariants import energy, relative_change
 from course.physics.simulator import Simulator, step_count
 from course.physics.state import RigidBodyState
 from course.physics.systems import Oscillator
+from course.printable import counted
 from course.simulations.base import (
     METHOD_NAMES,
     Column,
@@ -216,7 +217,9 @@ def _run(p: Mapping[str, Any]) -> Result:
     h = p["step"]
     n = step_count(p["duration"], h)
     if n < _FEWEST:
-        raise ValueError(f"{n} steps are too few to see anything part; take {_FEWEST} or more.")
+        raise ValueError(
+            f"{counted(n, 'step')} would be too few to see anything part; take {_FEWEST} or more."
+        )
     first, second = math.radians(p["angle1_deg"]), math.radians(p["angle2_deg"])
     if not (first or second):
         raise ValueError("both rods hang straight down and do not swing; set angle1_deg or angle2_deg.")

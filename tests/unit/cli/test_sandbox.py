@@ -171,6 +171,10 @@ def test_a_students_scene_is_played_and_a_wrong_one_refused_with_its_line(tmp_pa
     (tmp_path / "mine.toml").write_text(source.replace("radius = 0.2", "radius = 0", 1))
     assert "mine.toml:" in sandbox("play", "mine.toml", cwd=tmp_path, code=2).stderr
     assert "radius` must be a number > 0.0." in sandbox("list", "mine.toml", cwd=tmp_path, code=2).stderr
+    few = source.replace("order =", "# order =").replace('material = "puck"', "", 1)
+    (tmp_path / "mine.toml").write_text(few)
+    said = sandbox("play", "mine.toml", cwd=tmp_path, code=2).stderr
+    assert "mine.toml:1: the file lacks the key `order`; `body[1]` lacks the key `material`." in said
     (tmp_path / "mine.toml").write_text(source.replace('shape = "circle"', 'shape = "cirle"', 1))
     said = sandbox("play", "mine.toml", "--json", cwd=tmp_path, code=2).stdout
     assert json.loads(said)["error"]["help"] == 'Write one of "box", "circle", "polygon", "segment".'

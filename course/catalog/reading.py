@@ -152,8 +152,9 @@ class LineMap:
 T = TypeVar("T")
 
 _AT = re.compile(r" - at (?:key in )?`(?P<path>\$[^`]*)`$")
-_EXPECTED = re.compile(r"Expected `(?P<wanted>[^`]+)`, got `(?P<given>[^`]+)`")
+_EXPECTED = re.compile(r"Expected `(?P<wanted>[^`]+)`(?:, got `(?P<given>[^`]+)`|(?P<more> .+))")
 _MISSING = re.compile(r"Object missing required field `(?P<key>[^`]+)`")
+_ENUM = re.compile(r"Invalid enum value (?P<given>.+)")
 _UNKNOWN = re.compile(r"Object contains unknown field `(?P<key>[^`]+)`")
 
 _WORDS = {
@@ -278,6 +279,9 @@ def _check_version(raw: Document[dict[str, Any]]) -> None:
         raw.fail(("format_version",), problem, fix="Install a newer version of the course.")
 
 
+_MOST_PLACES = 5  # that lack keys, told at once
+
+
 def _raise_in_words(raw: Document[Any], text: str, kind: type, reserved: tuple[str, ...]) -> NoReturn:
     """An error of msgspec's as a ContentError that a person can act on."""
     at = _AT.search(text)
@@ -287,18 +291,18 @@ def _raise_in_words(raw: Document[Any], text: str, kind: type, reserved: tuple[s
     if match := _UNKNOWN.search(words):
         _unknown_key(raw, steps, match["key"], kind, hide=reserved)
     if match := _MISSING.search(words):
-        key = match["key"]
-        place = f"{_named(steps)} lacks" if steps else "the file lacks"
-        table = ".".join((*map(str, steps), key))
-        fix = (
-            f"Add a table `[{table}.NAME]`."
-            if _holds_tables(kind, steps, key)
-            else f"Add a line `{key} = ...`."
-        )
-        raw.fail(steps, f"{place} the key `{key}`.", fix=fix)
+        lacks = list(_lacking(msgspec.inspect.type_info(kind), raw.value)) or [(steps, [match["key"]])]
+        problem, fix = _told(lacks[:_MOST_PLACES], kind)
+        raw.fail(lacks[0][0], problem, fix=fix)
+    if match := _ENUM.search(words):
+        info = _type_at(kind, steps)
+        choices = ", ".join(f'"{word}"' for word in getattr(info, "values", ()))
+        fix = f"Write one of {choices}."
+        raw.fail(steps, f"{_named(steps)} cannot be {match['given']}.", fix=fix)
     if match := _EXPECTED.search(words):
-        wanted, given = (_in_words(match[side]) for side in ("wanted", "given"))
-        raw.fail(steps, f"{_named(steps)} must be {wanted}, and is {given}.", fix=f"Write {wanted}.")
+        wanted = _in_words(match["wanted"]) + (match["more"] or "")
+        given = f", and is {_in_words(match['given'])}" if match["given"] else ""
+        raw.fail(steps, f"{_named(steps)} must be {wanted}{given}.", fix=f"Write {wanted}.")
     raw.fail(steps, f"{_named(steps)}: {words}.", fix="Compare it with a file of the same kind.")
 
 
@@ -318,6 +322,33 @@ def _keys_at(kind: type, steps: tuple[str | int, ...]) -> list[str]:
     )
 
 
+def _lacking(info: Any, value: Any, steps: Keys = ()) -> Iterator[tuple[Keys, list[str]]]:
+    """Every table that lacks keys, and which."""
+    info = _without_none(info)
+    if isinstance(info, msgspec.inspect.StructType) and isinstance(value, dict):
+        types = {field.encode_name: field.type for field in info.fields}
+        if keys := [f.encode_name for f in info.fields if f.required and f.encode_name not in value]:
+            yield steps, keys
+        for key in filter(types.get, value):
+            yield from _lacking(types[key], value[key], (*steps, key))
+    elif isinstance(value, list):
+        for at, one in enumerate(value):
+            yield from _lacking(getattr(info, "item_type", None), one, (*steps, at))
+
+
+def _told(lacks: list[tuple[Keys, list[str]]], kind: type) -> tuple[str, str]:
+    """What is missing, and what to add."""
+    problems, fixes = [], []
+    for steps, keys in lacks:
+        listed = ", ".join(f"`{key}`" for key in keys)
+        problems.append(f"{_named(steps)} lacks the key{'s' * (len(keys) > 1)} {listed}")
+        for key in keys:
+            table = ".".join((*map(str, steps), key))
+            is_table = _holds_tables(kind, steps, key)
+            fixes.append(f"Add a table `[{table}.NAME]`." if is_table else f"Add a line `{key} = ...`.")
+    return f"{'; '.join(problems)}.", " ".join(dict.fromkeys(fixes))
+
+
 def _holds_tables(kind: type, steps: tuple[str | int, ...], key: str) -> bool:
     """Whether the value of a key is tables by name."""
     info = _type_at(kind, (*steps, key))
@@ -333,7 +364,15 @@ def _type_at(kind: type, steps: tuple[str | int, ...]) -> Any:
             info = next((field.type for field in info.fields if field.encode_name == step), None)
         elif isinstance(step, int):
             info = getattr(info, "item_type", None)
+        info = _without_none(info)
     return info
+
+
+def _without_none(info: Any) -> Any:
+    """The type of a value that may be left out."""
+    types = info.types if isinstance(info, msgspec.inspect.UnionType) else ()
+    given = [one for one in types if not isinstance(one, msgspec.inspect.NoneType)]
+    return given[0] if len(given) == 1 else info
 
 
 def _named(steps: tuple[str | int, ...]) -> str:

@@ -339,7 +339,10 @@ class CellRunner:
             return STOPPED
         if failure.kind == "timeout":
             return f"Stopped after {DEADLINE_S:.0f} s."
-        return f"The cell's process ended: {printable(failure.message)}."
+        how = printable(failure.message)
+        if failure.kind == "crash":
+            return f"The cell's {how.removeprefix('its ')}."
+        return f"The cell's process ended: {how}."
 
 
 def _names(source: str) -> tuple[set[str], set[str]]:

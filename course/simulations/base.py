@@ -94,7 +94,7 @@ class Row:
     @property
     def error(self) -> float | None:
         """Simulated less theory, in the unit; None where there is nothing to compare."""
-        if self.theory is None or not math.isfinite(self.theory) or math.isnan(self.simulated):
+        if self.theory is None or not math.isfinite(self.theory) or not math.isfinite(self.simulated):
             return None
         return self.simulated - self.theory
 
@@ -184,7 +184,9 @@ def run(simulation: Simulation, pairs: Sequence[str] = ()) -> Result:
     settings = parse(simulation, pairs)
     _check_steps(simulation, settings, pairs)
     try:
-        return simulation.run(settings)
+        # A method beyond its limit overflows; infinity is then the honest answer.
+        with np.errstate(over="ignore", invalid="ignore"):
+            return simulation.run(settings)
     except ValueError as error:
         raise UsageError(
             f"{simulation.id}: {error}", help=_known(simulation), code="impossible_settings"

@@ -54,7 +54,8 @@ def _head_on(submission, title):
     t_end, h = 5.0, 0.01
     panels, rows = [], []
     cases = bundles.asked("head_on_mended", None)
-    for (scene, _, _), truth in zip(cases, bundles.meetings(cases, "head_on_mended"), strict=True):
+    examples = zip(cases[:3], bundles.meetings(cases, "head_on_mended")[:3], strict=True)  # the README's pair
+    for (scene, _, _), truth in examples:
         e = scene.restitution
         t, x, v = _as_it_comes(submission.call(bundles.HEAD_ON, *scene.args(t_end, h)))
         exact = np.linspace(0.0, t_end, 501)
@@ -128,8 +129,7 @@ def _drop(submission, title):
         plot=kit.Plot(
             title="The drop: your samples on the exact parabolas",
             description="Height over time: parabolas that shrink to the floor and end there, with "
-            "the points of "
-            "your program are drawn over them.",
+            "the points of your program drawn over them.",
             panels=(
                 kit.Panel(
                     x_label="time / s",

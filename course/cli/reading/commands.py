@@ -212,7 +212,7 @@ def _print_code(console: Console, chosen: Lesson, number: int) -> int:
     cells = read_script(chosen).shown_cells
     if number > len(cells):
         raise NotFoundError(
-            f"{chosen.id} has {len(cells)} cells.", help="Name one of them.", code="cell_not_found"
+            f"{chosen.id} has {counted(len(cells), 'cell')}.", help="Name one of them.", code="cell_not_found"
         )
     source = cells[number - 1].source
     console.raw(f"{source}\n")

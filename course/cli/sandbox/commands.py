@@ -28,12 +28,13 @@ from course.cli.sandbox.play import (
     SandboxVersion,
 )
 from course.errors import NotFoundError, UsageError
+from course.printable import counted
 from course.sandbox.exports.formats import START, mjcf, sdf, start_script
 from course.sandbox.runs import recording
-from course.sandbox.scene.loading import choose, question, scenes, unchanged
+from course.sandbox.scene.loading import question, scenes, unchanged
 from course.sandbox.scene.loading import scene_ids as known_scenes
 from course.sandbox.scene.model import Scene
-from course.sandbox.scene.rules import SETTINGS
+from course.sandbox.scene.rules import settings_of
 
 
 class _Scenes(TyperGroup):
@@ -62,7 +63,8 @@ def _suggest(name: str, commands: list[str]) -> None:
 
 app = typer.Typer(cls=_Scenes, help=COMMANDS["sandbox"].summary, invoke_without_command=True, **OPTIONS)
 
-_SCENE = argument("SCENE", "A scene, or a file of your own that ends in .toml.", scene_ids)
+_OWN = "ID.toml, a file of your own (`course author new scene ID`)"
+_SCENE = argument("SCENE", f"A scene, or {_OWN}.", scene_ids)
 _SET = option("--set KEY=VALUE", "Set a parameter; repeatable.", scene_settings)
 
 
@@ -140,8 +142,8 @@ def replay(file: Annotated[Path, argument("FILE", "A recording.")]) -> int:
     for name, (then, here) in difference.versions.items():
         console.line(f"Recorded with {name} {then}; here it is {here}.")
     if difference.same:
-        states = "1 state" if difference.checked == 1 else f"{difference.checked} states"
-        console.line(f"The same, bit by bit: {recorded.ticks} steps, {states} compared.")
+        states = counted(difference.checked, "state")
+        console.line(f"The same, bit by bit: {counted(recorded.ticks, 'step')}, {states} compared.")
     else:
         console.line(
             f"It differs at step {difference.tick} (t = {difference.t:.3f} s); "
@@ -207,17 +209,18 @@ def export(
 
 
 def _list(console: Console, name: str | None) -> None:
-    found = scenes() if name is None else (choose(name).scene,)
+    one = None if name is None else playing.chosen(name, ())
+    found = scenes() if one is None else (one.scene,)
     if not found:
         raise NotFoundError("There are no scenes.", help="Install the course again.", code="no_scenes")
     for place, scene in enumerate(found, 1):
-        _describe(console, scene, place, whole=name is not None)
+        _describe(console, scene, place, one.path if one else None)
     console.note((f"Next: course sandbox play {name or found[0].id}", "bold"))
     console.emit(SandboxList(scenes=tuple(_entry(scene) for scene in found)))
 
 
-def _describe(console: Console, scene: Scene, place: int, *, whole: bool) -> None:
-    if not whole:
+def _describe(console: Console, scene: Scene, place: int, path: Path | None) -> None:
+    if path is None:
         console.item(f"{place:2d}", f"{scene.id}: {scene.teaches}", width=3)
         return
     console.heading(scene.id, scene.title)
@@ -231,6 +234,7 @@ def _describe(console: Console, scene: Scene, place: int, *, whole: bool) -> Non
         span = f"{parameter.low:g} to {parameter.high:g}"
         console.item("set", f"{parameter.name}={default}{unit} ({span}): {parameter.meaning}", width=5)
     console.item("after", scene.after, width=5)
+    console.item("file", str(path), width=5)
 
 
 def _entry(scene: Scene) -> SandboxEntry:
@@ -239,15 +243,13 @@ def _entry(scene: Scene) -> SandboxEntry:
         "gravity": math.hypot(*scene.gravity),
         "step": scene.step,
         "iterations": float(scene.iterations),
+        "walls": 0.0,
+        "seed": float(scene.seed),
         "left": wheels.left if wheels else None,
         "right": wheels.right if wheels else None,
     }
     parameters = [filled(SandboxParameter, one) for one in scene.parameter]
-    parameters += [
-        filled(SandboxParameter, one, default=own.get(one.name))
-        for one in SETTINGS.values()
-        if wheels or one.name not in {"left", "right"}
-    ]
+    parameters += [filled(SandboxParameter, one, default=own.get(one.name)) for one in settings_of(scene)]
     return filled(
         SandboxEntry,
         scene,

@@ -245,6 +245,13 @@ def play(console: Console, options: PlayOptions) -> int:
     _check(options)
     targets = _targets(options)
     picked = chosen(options.scene, tuple(options.settings or ()))
+    end = picked.scene.duration if options.duration is None else options.duration
+    if options.at is not None and options.at > end:
+        raise UsageError(
+            f"--at {options.at:g}: the run ends at {end:g} s.",
+            help=f"Take a time up to {end:g}, or a longer --duration.",
+            code="bad_parameter",
+        )
     if lines := unwritten(picked.path):
         left = f"and {len(lines) - 1} more below are" if len(lines) > 1 else "is"
         console.note(f"{picked.path}:{lines[0]}: this line {left} still to be written.")
@@ -410,7 +417,7 @@ def _picture_times(chosen: Chosen, options: PlayOptions) -> tuple[float, ...]:
     if options.png is None:
         return ()
     end = chosen.scene.duration if options.duration is None else options.duration
-    return (end if options.at is None else min(options.at, end),)
+    return (end if options.at is None else options.at,)
 
 
 def _taker(
@@ -431,7 +438,7 @@ def _taker(
 
 def _show(console: Console, chosen: Chosen, done: Run, told: tuple[str, ...], options: PlayOptions) -> None:
     if not console.quiet:
-        console.heading(chosen.scene.title, f"{done.duration:.4g} s in {done.steps} steps")
+        console.heading(chosen.scene.title, f"{done.duration:.4g} s in {counted(done.steps, 'step')}")
         if not options.describe:
             count = sum(event.kind == "contact" for event in done.events)
             console.line(f"{counted(count, 'contact')}; --describe tells what happened.")

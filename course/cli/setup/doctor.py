@@ -223,7 +223,7 @@ def _workspace(*, repair: bool) -> tuple[str | None, str | None, str | None]:
                 "The record of progress is sound; nothing was repaired."
                 if result is None
                 else f"The damaged record is kept at {here.workspace.shown(result.kept)}; "
-                f"{result.carried} events were carried over into a new one."
+                f"{counted(result.carried, 'event')} moved to a new one."
             )
         store.events()
     except CourseError as error:

@@ -23,6 +23,7 @@ from course.cli.work.replies import Change, Diff, Reset, Start, Update
 from course.errors import NotFoundError, UsageError
 from course.handed_in.cells import read_notebook
 from course.notebooks.merge import CannotMergeError, is_untouched, merged
+from course.printable import counted
 from course.progress.workspace import same_text, write_atomically
 
 if TYPE_CHECKING:  # what generates notebooks needs NumPy
@@ -45,7 +46,7 @@ def diff(exercise: ExerciseName = None) -> int:
     removed = sum(row.startswith("-") for row in rows[2:])
     if rows:
         _show_diff(console, rows)
-        console.note(f"{added} lines added, {removed} removed.")
+        console.note(f"{counted(added, 'line')} added, {removed} removed.")
     else:
         console.line(f"{name} is as it was handed out.")
     return here.answer(

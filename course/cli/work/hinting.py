@@ -22,6 +22,7 @@ from course.cli.work.chosen import asked_for, chosen_work
 from course.cli.work.replies import Hint, Reflect, ReflectPoint, Solution
 from course.errors import CourseError, IntegrityError, MissingCapabilityError, NotFoundError, UsageError
 from course.handed_in.limits import MAX_FILE
+from course.printable import counted
 from course.progress.history import History, fingerprint
 
 PACKS = "*.coursepack"
@@ -348,7 +349,8 @@ def _long_enough(said: str, rubric: Rubric) -> None:
     words = len(said.split())
     if words < rubric.least_words:
         raise UsageError(
-            f"Your answer has {words} words; a good one is shown once yours has {rubric.least_words}.",
+            f"Your answer has {counted(words, 'word')}; a good one is shown once yours has "
+            f"{rubric.least_words}.",
             help="Write it as you would explain it to a colleague.",
             code="too_short",
         )

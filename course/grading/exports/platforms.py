@@ -413,7 +413,7 @@ def _seconds(effective: Effective) -> float:
 def _words(effective: Effective) -> str:
     """The text about the submission as a whole."""
     verdict = effective.verdict
-    score = "no score yet" if effective.score is None else f"{number(effective.score)} points"
+    score = "no score yet" if effective.score is None else in_points(effective.score)
     said = [f"{effective.exercise}: {score} of {number(effective.max_score)}."]
     problem = problem_for_student(verdict)
     if problem is not None:

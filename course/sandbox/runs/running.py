@@ -10,6 +10,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from course.printable import counted
 from course.sandbox.scene.expression import evaluate
 from course.sandbox.scene.loading import Chosen, Comparison, compare, values_of, with_settings
 from course.sandbox.scene.model import Probe, Scene, layout
@@ -345,7 +346,7 @@ def sentences(events: Iterable[Event], most: int = 40) -> Iterator[str]:
         told += 1
         yield sentence(event)
     if left:
-        yield f"{left} more event{'s' if left > 1 else ''} happened; --csv and --json have every one."
+        yield f"{counted(left, 'more event')} happened; --csv and --json have every one."
 
 
 def worth_telling(contact: Event, last: dict[tuple[str, str], float]) -> bool:
@@ -418,7 +419,8 @@ def _contact(event: Event) -> str:
         return f"{text}; none of {whose} kinetic energy is gone."
     if share < 0:
         return f"{text}; {whose} kinetic energy grew by {-100 * share:.0f} %, pushed by others."
-    return f"{text}; {100 * share:.0f} % of {whose} kinetic energy is gone."
+    much = "all" if share > 1 - 1e-9 else "nearly all" if share > 0.995 else f"{100 * share:.0f} %"
+    return f"{text}; {much} of {whose} kinetic energy is gone."
 
 
 def _the(name: str) -> str:

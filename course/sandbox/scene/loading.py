@@ -16,7 +16,7 @@ from course.errors import ContentError, NotFoundError, UsageError
 from course.printable import meant
 from course.sandbox.scene.expression import evaluate, fill, used
 from course.sandbox.scene.model import Part, Prediction, Scene, layout
-from course.sandbox.scene.rules import FIELDS, SETTINGS, check_scene, checked, number
+from course.sandbox.scene.rules import FIELDS, SETTINGS, check_scene, checked, number, settings_of
 
 #: The program's own scenes.
 FOLDER = Path(__file__).parents[1] / "scenes"
@@ -275,12 +275,12 @@ def _unknown(name: str) -> NotFoundError:
 def _put_in(scene: Scene, settings: dict[str, object], path: Path, *, own: bool = False) -> Chosen:
     """The scene with its parameters put in; the other settings go to the world."""
     parameters = {parameter.name: parameter for parameter in scene.parameter}
-    seed = settings.pop("seed", scene.seed)
+    seed = int(checked("seed", settings.pop("seed", scene.seed)))
     given = {name: value for name, value in settings.items() if name in parameters}
     rest = {name: value for name, value in settings.items() if name not in parameters}
     for name in rest:
         if name not in SETTINGS:
-            known = ", ".join([*parameters, "seed", *SETTINGS])
+            known = ", ".join([*parameters, *(setting.name for setting in settings_of(scene))])
             raise UsageError(
                 f"{scene.id} has no parameter called {name[:40]!r}.",
                 help=f"Known: {known}.",

@@ -282,7 +282,7 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     slop: Annotated[float, Meta(ge=0, le=1)] = 0.001
     duration: Annotated[float, Meta(gt=0, le=1e5)] = 5.0
     reverse: bool = False
-    seed: Annotated[int, Meta(ge=0)] = 1
+    seed: Annotated[int, Meta(ge=0, le=10**9)] = 1
     floor: Floor | None = None
     material: Annotated[tuple[Material, ...], Meta(min_length=1)]
     body: Annotated[tuple[Body, ...], Meta(min_length=1)]

@@ -60,6 +60,15 @@ SETTINGS: dict[str, Setting] = {
     )
 }
 
+SEED = Setting("seed", "1", "of the places that are drawn at random", 0, 1e9, 1.0, whole=True)
+
+
+def settings_of(scene: Scene) -> tuple[Setting, ...]:
+    """The settings that do something in this scene."""
+    drives = any(body.wheels for body in scene.body)
+    found = tuple(s for s in SETTINGS.values() if drives or s.name not in {"left", "right"})
+    return (*found, SEED) if any(body.jitter for body in scene.body) else found
+
 
 def checked(key: str, value: object) -> float:
     """A value for a setting.
@@ -67,7 +76,7 @@ def checked(key: str, value: object) -> float:
     Raises:
         UsageError: there is no such setting, or the value is not a number in its range.
     """
-    setting = SETTINGS.get(key)
+    setting = SEED if key == SEED.name else SETTINGS.get(key)
     if setting is None:
         raise UsageError(
             f"There is no setting called {str(key)[:40]!r}.",
@@ -242,7 +251,7 @@ def _check_parameters(document: Document[Scene]) -> None:
     seen: set[str] = set()
     for i, parameter in enumerate(scene.parameter):
         where = ("parameter", i)
-        if parameter.name in seen or parameter.name in SETTINGS or parameter.name == "seed":
+        if parameter.name in seen or parameter.name in SETTINGS or parameter.name == SEED.name:
             document.fail((*where, "name"), f"the name {parameter.name} is taken.", fix="Choose another.")
         seen.add(parameter.name)
         if not parameter.low <= parameter.default <= parameter.high:

@@ -13,6 +13,7 @@ from course.physics.contact.models import Constraint, ContactModel, Penalty, Sof
 from course.physics.simulator import Simulator, step_count
 from course.physics.solver import Chain, iterations_to, stack_impulses
 from course.physics.state import RigidBodyState
+from course.printable import counted
 from course.simulations.base import (
     Column,
     Parameter,
@@ -80,7 +81,7 @@ def _run_collision(p: Mapping[str, Any]) -> Result:
         simulation="collision",
         settings=p,
         rows=rows,
-        headline=_headline_collision(met, float(energy[0]), float(energy[-1])),
+        headline=_headline_collision(met, float(energy[0]), float(energy[-1]), end),
         finding=_finding(p, met, float(energy[0]), float(energy[-1])),
         columns=(
             Column.of("t", "s", record.t),
@@ -118,20 +119,25 @@ def _apart(met: float, t: np.ndarray, x: np.ndarray, v: np.ndarray) -> float:
     return float(places[1] - places[0])
 
 
-def _headline_collision(met: float, before: float, after: float) -> str:
+def _headline_collision(met: float, before: float, after: float, seconds: float) -> str:
     if math.isnan(met):
-        return "The two balls never touch, and their motion does not change"
-    kept = "all" if abs(after - before) <= 1e-9 * before else percent(after / before)
-    return f"Contact at {met:.4g} s conserves momentum and {kept} of the kinetic energy"
+        return f"Within {seconds:g} s the two balls do not touch; their motion does not change"
+    return f"Contact at {met:.4g} s conserves momentum and {_kept(before, after)} of the kinetic energy"
+
+
+def _kept(before: float, after: float) -> str:
+    if abs(after - before) <= 1e-9 * before:
+        return "all"
+    share = percent(after / before)
+    return "none" if after <= 1e-9 * before else "nearly all" if share == "100 %" else share
 
 
 def _finding(p: Mapping[str, Any], met: float, before: float, after: float) -> str:
     if math.isnan(met):
         return f"Within {p['duration']:g} s the two do not touch; momentum and energy do not change."
     centres = p["distance"] / (p["speed1"] - p["speed2"])
-    kept = "all of the kinetic energy" if abs(after - before) <= 1e-9 * before else (
-        f"{percent(after / before)} of the kinetic energy; the rest becomes heat"
-    )  # fmt: skip
+    kept = _kept(before, after)
+    heat = {"all": "", "none": ", which becomes heat"}.get(kept, "; the rest becomes heat")
     passing = (
         f" Points without size would have passed through each other at {centres:.4g} s."
         if p["radius"] > 0
@@ -140,7 +146,8 @@ def _finding(p: Mapping[str, Any], met: float, before: float, after: float) -> s
     return (
         f"The surfaces touch at {met:.4g} s, when the centres are still {2 * p['radius']:g} m apart."
         f"{passing} "
-        f"The impact conserves momentum, whatever the restitution, and {kept}."
+        f"The impact conserves momentum, whatever the restitution, and {kept} of the kinetic energy"
+        f"{heat}."
     )
 
 
@@ -186,18 +193,25 @@ def _run(p: Mapping[str, Any]) -> Result:
     kept = {
         name: np.array([_rebound(model, z, h, g) / z for z in heights]) for name, model in elastic.items()
     }
-    rows = (*_at_rest(p), *_out_of_an_overlap(p), *_of_bounces(rebound, kept, e))
+    thrown = _out_of_an_overlap(p)
+    rows = (*_at_rest(p), *thrown, *_of_bounces(rebound, kept, e))
+    higher = ", and higher with a smaller step" if erp * p["overlap"] else ""
     low, high = float(rebound["none"].min()), float(rebound["none"].max())
     gained = float(kept["erp"].mean()) - 1
+    rises = f"{low:.3f} to {high:.3f} of its height, not to {e**2:.3f}"
+    if f"{low:.3f}" == f"{high:.3f}" == f"{e**2:.3f}":
+        rises = f"{e**2:.3f} of its height, as theory says"
     return Result(
         simulation="contact-models",
         settings=p,
         rows=rows,
-        headline=f"With e = {e:g} a ball rises to {low:.3f} to {high:.3f} of its height, not to {e**2:.3f}",
+        headline=f"With e = {e:g} a ball rises to {rises}",
         finding=f"With a floor that looks once a step of {h:g} s the ball rises to between {digits(low)} and "
         f"{digits(high)} of its height, depending on when in the step it arrives; theory says "
         f"{digits(e**2)}. Correction with an ERP of {erp:g} in the velocity changes the energy of an elastic "
-        f"ball by {percent(gained)} a bounce on average; as split impulse it does not change the velocity.",
+        f"ball by {percent(gained)} a bounce on average; as split impulse it does not change the velocity. "
+        f"With the first, a ball that starts {p['overlap']:g} m inside the floor hops "
+        f"{thrown[0].simulated:.3g} m high{higher}.",
         columns=(
             Column.of("phase", "1", phases),
             *(Column.of(f"rebound_{name}", "1", values) for name, values in rebound.items()),
@@ -316,10 +330,11 @@ def _run_solver_iterations(p: Mapping[str, Any]) -> Result:
         rows=tuple(rows),
         headline=f"{tall} boxes need {needed[tall]} iterations to reach {percent(tolerance)}, "
         f"{short} need {needed[short]}",
-        finding=f"After {last} iterations from zero the ground carries {percent(done)} of the weight of "
-        f"{boxes} boxes. To come within {percent(tolerance)} takes {needed[boxes]} iterations, and the "
-        "number grows with the square of the height, because a change spreads from contact to contact as "
-        "heat does: twice as far takes four times as many. "
+        finding=f"After {counted(last, 'iteration')} from zero the ground carries {percent(done)} of the "
+        f"weight of {boxes} boxes. To come within {percent(tolerance)} takes "
+        f"{counted(needed[boxes], 'iteration')}, and the number grows with the square of the "
+        "height, because a change spreads from contact to contact as heat does: twice as far takes four "
+        "times as many. "
         "Engines start from the answer of the last step instead, so a stack that stands still stays up.",
         columns=(
             Column.of("iteration", "1", np.arange(last + 1)),
@@ -374,16 +389,20 @@ def _run_substeps(p: Mapping[str, Any]) -> Result:
         for split, stretch in worst.items()
     )
     one, many = worst[splits[0]], worst[splits[-1]]
-    better = f"{one / many:.2g} times" if many > 0 else "far"
+    names, less, more = ("small steps", "iterations"), many, one
+    why = "a small step makes a small error, and the next step starts after it has been corrected."
+    if many > one:
+        names, less, more = ("iterations", "small steps"), one, many
+        why = "for so few links the iterations of one step are enough."
+    better = f"{more / less:.2g} times" if less > 0 else "far"
     return Result(
         simulation="substeps",
         settings=p,
         rows=rows,
-        headline=f"Same work: small steps stretch the chain {better} less than iterations do",
+        headline=f"Same work: {names[0]} stretch the chain {better} less than {names[1]} do",
         finding=f"Every variant goes over the chain {work} times a frame. One step with {work} iterations "
         f"lets a link stretch by {digits(one, 2)} of its length, {work} steps with one iteration by "
-        f"{digits(many, 2)}: "
-        "a small step makes a small error, and the next step starts after it has been corrected.",
+        f"{digits(many, 2)}: {why}",
         columns=(
             Column.of("t", "s", h * np.arange(n + 1)),
             *(Column.of(f"stretch_{s}x{i}", "1", values) for (s, i), values in series.items()),
@@ -392,7 +411,7 @@ def _run_substeps(p: Mapping[str, Any]) -> Result:
 
 
 def _words(steps: int, iterations: int) -> str:
-    return f"{steps} substep{'s' * (steps > 1)} x {iterations} iteration{'s' * (iterations > 1)}"
+    return f"{counted(steps, 'substep')} x {counted(iterations, 'iteration')}"
 
 
 SUBSTEPS = Simulation(

@@ -16,6 +16,7 @@ from course.physics.invariants import energy, relative_change
 from course.physics.simulator import Simulator, step_count
 from course.physics.state import RigidBodyState
 from course.physics.systems import Oscillator
+from course.printable import counted
 from course.simulations.base import (
     METHOD_NAMES,
     Column,
@@ -51,6 +52,8 @@ class _Driven:
 
 def _run_dynamics(p: Mapping[str, Any]) -> Result:
     arm = TwoLinkArm()
+    if (p["start_x"], p["start_y"]) == (p["end_x"], p["end_y"]):
+        raise ValueError("the hand starts where it should end; set another start or end.")
     path = HandPath((p["start_x"], p["start_y"]), (p["end_x"], p["end_y"]), p["duration"])
     h = p["step"]
     n = step_count(p["duration"], h)
@@ -59,6 +62,7 @@ def _run_dynamics(p: Mapping[str, Any]) -> Result:
     torques = arm.inverse(planned, rates, accelerations)
     real = _with_payload(arm, p["payload"])
     run = trajectory(RK4(), _Driven(real, arm, path), State.of(planned[0], rates[0]), h, n)
+    _refuse_runaway(h, run.q, run.v)
     back = arm.inverse(planned, rates, arm.forward(planned, rates, torques))
     missed = float(np.linalg.norm(real.hand(run.q[-1]) - np.asarray(path.end)))
     rows = (
@@ -85,6 +89,13 @@ def _run_dynamics(p: Mapping[str, Any]) -> Result:
             *(Column.of(f"planned_{axis}", "m", goal[:, k]) for k, axis in enumerate("xy")),
         ),
     )
+
+
+def _refuse_runaway(h: float, *values: ArrayLike) -> None:
+    if not all(np.all(np.isfinite(value)) for value in values):
+        raise ValueError(
+            f"with a step of {h:g} s the motion runs away beyond all numbers; take a smaller step."
+        )
 
 
 def _with_payload(arm: TwoLinkArm, mass: float) -> TwoLinkArm:
@@ -141,9 +152,14 @@ def _work_row(arm: TwoLinkArm, q: Array, v: Array, torques: Array, t: Array) -> 
     return Row("forward: energy gained", gained, "J", work, "work of the torques, by trapezes")
 
 
+_CLOSE = 0.01  # m: the hand comes to its goal
+
+
 def _headline_dynamics(p: Mapping[str, Any], missed: float) -> str:
     if p["payload"] > 0:
         return f"A load of {p['payload']:g} kg is not in the model: the hand misses by {missed:.2g} m"
+    if missed > _CLOSE:
+        return f"Plan and arm are the same, and still the hand misses by {missed:.2g} m"
     return "Torques from inverse dynamics carry the hand along the planned line"
 
 
@@ -159,6 +175,11 @@ def _finding_dynamics(p: Mapping[str, Any], missed: float, torques: Array) -> st
             f"{plan}The real arm carries {p['payload']:g} kg that is not in the plan, and its hand "
             f"ends {missed:.2g} m from the goal. Torques are only as good as the model, and nothing here "
             "pulls the arm back. A controller would do that with feedback."
+        )
+    if missed > _CLOSE:
+        return (
+            f"{plan}The hand ends {missed:.2g} m from its goal, although plan and arm are the same model: "
+            "the errors of the steps grow, and nothing here pulls the arm back."
         )
     return f"{plan}The hand ends {missed:.1e} m from its goal, because here plan and arm are the same model."
 
@@ -196,8 +217,12 @@ def _run(p: Mapping[str, Any]) -> Result:
     h = p["step"]
     n = step_count(p["duration"], h)
     if n < _FEWEST:
-        raise ValueError(f"{n} steps are too few to see anything part; take {_FEWEST} or more.")
+        raise ValueError(
+            f"{counted(n, 'step')} would be too few to see anything part; take {_FEWEST} or more."
+        )
     first, second = math.radians(p["angle1_deg"]), math.radians(p["angle2_deg"])
+    if not (first or second):
+        raise ValueError("both rods hang straight down and do not swing; set angle1_deg or angle2_deg.")
     pair = np.array([[first, second], [first + p["nudge"], second]])
     pendulum = TwoLinkArm.double_pendulum()
     t, q, v = _swing(pendulum, pair, h, n)
@@ -205,6 +230,7 @@ def _run(p: Mapping[str, Any]) -> Result:
     small, large = _first_above(t, apart, 1e-3), _first_above(t, apart, 1.0)
     drift = float(np.max(np.abs(relative_change(pendulum.energy(q[:, 0], v[:, 0]) + _OFFSET))))
     coarse, fine = _crowd(pendulum, first, second, h, n)
+    _refuse_runaway(h, drift, coarse, fine)
     rows = (
         Row("separation passes 1e-3 rad", small, "s"),
         Row("separation passes 1 rad", large, "s"),
@@ -270,8 +296,8 @@ def _crowd(pendulum: TwoLinkArm, first: float, second: float, h: float, n: int) 
 
 def _headline(p: Mapping[str, Any], large: float) -> str:
     if math.isnan(large):
-        return f"{p['nudge']:.0e} rad apart at the start, still close after {p['duration']:g} s"
-    return f"{p['nudge']:.0e} rad apart at the start, more than 1 rad after {digits(large)} s"
+        return f"{p['nudge']:.1g} rad apart at the start, still close after {p['duration']:g} s"
+    return f"{p['nudge']:.1g} rad apart at the start, more than 1 rad after {digits(large)} s"
 
 
 def _finding(p: Mapping[str, Any], small: float, large: float, coarse: float, fine: float) -> str:
@@ -280,9 +306,9 @@ def _finding(p: Mapping[str, Any], small: float, large: float, coarse: float, fi
             f"Within {p['duration']:g} s the two stay less than 1 rad apart. Start them higher, or run for "
             "longer, and they come further apart."
         )
-    early = f"{digits(small)} s" if math.isfinite(small) else "the start"
+    early = f"after {digits(small)} s" if small > 0 else "at the start"
     return (
-        f"A difference of {p['nudge']:.0e} rad passes 0.001 rad after {early} and 1 rad after "
+        f"A difference of {p['nudge']:.1g} rad passes 0.001 rad {early} and 1 rad after "
         f"{digits(large)} s. "
         "After that a comparison of two paths says nothing about a simulator, because an error in the last "
         f"digit grows like this too. Averages can still be compared: over {_CROWD} starts the energy of the "
@@ -313,6 +339,7 @@ CHAOS = Simulation(
 
 
 _RADIUS = 0.1  # m
+_GUESS = 0.3  # the friction that is taken to be 10 % lower
 _SHOWN_FRICTION = (0.1, 0.3, 0.6)
 _SHOWN_RESTITUTION = (0.3, 0.5, 0.9)
 #: The whole sweep, as friction of one experiment and restitution of the other.
@@ -321,6 +348,11 @@ _SWEEP = np.round(np.arange(0.05, 1.0001, 0.05), 2)
 
 def _run_environment(p: Mapping[str, Any]) -> Result:
     stopping = _slide(p, _SWEEP)
+    if stopping[_at(_GUESS)] == 0.0:
+        raise ValueError(
+            f"at {p['speed']:g} m/s the block stops within one step of {p['step']:g} s; take a smaller "
+            "step or a higher speed."
+        )
     rebound = _drop(p, _SWEEP)
     stops = p["speed"] ** 2 / (2 * _SWEEP * p["gravity"])
     rises = _SWEEP**2 * p["height"]
@@ -344,20 +376,25 @@ def _run_environment(p: Mapping[str, Any]) -> Result:
         )
         for x in _SHOWN_RESTITUTION
     ]
-    guess = 0.3
-    wrong = float(_slide(p, np.array([0.9 * guess]))[0]) / float(stopping[_at(guess)]) - 1
-    numeric = abs(float(stopping[_at(guess)] / stops[_at(guess)]) - 1)
+    guess = _at(_GUESS)
+    wrong = float(_slide(p, np.array([0.9 * _GUESS]))[0]) / float(stopping[guess]) - 1
+    numeric = abs(float(stopping[guess] / stops[guess]) - 1)
+    advice = (
+        "Measure the floor before you refine the step."
+        if numeric < wrong
+        else "Refine the step before you measure the floor."
+    )
     rows.append(Row("sliding further, friction 10 % lower", wrong, "1", 1 / 0.9 - 1, "1 / 0.9 - 1"))
     return Result(
         simulation="environment",
         settings=p,
         rows=tuple(rows),
         headline=f"Friction 10 % off moves the stop by {percent(wrong)}; this step by {percent(numeric)}",
-        finding=f"From {p['speed']:g} m/s a block slides {digits(float(stopping[_at(0.6)]), 2)} m at a "
-        f"friction of 0.6 and {digits(float(stopping[_at(0.1)]), 2)} m at 0.1. If the true friction is 10 % "
+        finding=f"From {p['speed']:g} m/s a block slides {digits(float(stopping[_at(0.6)]))} m at a "
+        f"friction of 0.6 and {digits(float(stopping[_at(0.1)]))} m at 0.1. If the true friction is 10 % "
         f"lower than the modelled one, the block ends {percent(wrong)} further away; the step of "
         f"{p['step']:g} s makes an error of "
-        f"{percent(numeric)}. Measure the floor before you refine the step.",
+        f"{percent(numeric)}. {advice}",
         columns=(
             Column.of("coefficient", "1", _SWEEP),
             Column.of("stopping_distance", "m", stopping),
@@ -444,12 +481,10 @@ def _run_integrators(p: Mapping[str, Any]) -> Result:
     spring, start = Oscillator(omega=w), State.of([p["amplitude"]], [p["speed"]])
     positions: dict[str, Array] = {}
     drifts: dict[str, Array] = {}
-    # A method beyond its limit overflows; infinity is then the honest answer.
-    with np.errstate(over="ignore", invalid="ignore"):
-        for name, method in STEPPERS.items():
-            path = trajectory(method, spring, start, h, n)
-            positions[name] = path.q[:, 0]
-            drifts[name] = np.nan_to_num(relative_change(energy(spring, path.q, path.v)), nan=np.inf)
+    for name, method in STEPPERS.items():
+        path = trajectory(method, spring, start, h, n)
+        positions[name] = np.nan_to_num(path.q[:, 0], nan=np.inf)
+        drifts[name] = np.nan_to_num(relative_change(energy(spring, path.q, path.v)), nan=np.inf)
     worst = {name: float(np.max(np.abs(drift))) for name, drift in drifts.items()}
     where = f"position at {p['duration']:g} s"
     rows = [
@@ -465,7 +500,7 @@ def _run_integrators(p: Mapping[str, Any]) -> Result:
         simulation="integrators",
         settings=p,
         rows=tuple(rows),
-        headline=_headline_integrators(worst),
+        headline=_headline_integrators(worst, w * h),
         finding=_finding_integrators(p, rows, worst),
         columns=(
             Column.of("t", "s", t),
@@ -490,9 +525,9 @@ def _energy_theory(p: Mapping[str, Any], z: float, n: int) -> dict[str, tuple[fl
     }
 
 
-def _headline_integrators(worst: Mapping[str, float]) -> str:
-    if worst["velocity_verlet"] > 1.0:
-        return "Beyond h ω = 2 even the symplectic methods blow up"
+def _headline_integrators(worst: Mapping[str, float], z: float) -> str:
+    if z >= 2.0 or worst["velocity_verlet"] > 1.0:
+        return "From h ω = 2 on even the symplectic methods blow up"
     return "Explicit Euler's energy keeps growing; the symplectic methods' does not"
 
 
@@ -501,7 +536,8 @@ def _finding_integrators(p: Mapping[str, Any], rows: list[Row], worst: Mapping[s
     off = [abs(row.error or 0.0) for row in rows[:4]]
     if z >= 2.0:
         return (
-            f"Step times frequency is {z:.3g}, beyond the limit of 2 for semi-implicit Euler and Verlet"
+            f"Step times frequency is {z:.3g}, {'at' if z == 2.0 else 'beyond'} the limit of 2 for "
+            "semi-implicit Euler and Verlet"
             f"{' and 2.83 for Runge-Kutta' if z > 2 * math.sqrt(2) else ''}: these results mean nothing. "
             f"Take a step below {2 / p['omega']:.3g} s."
         )

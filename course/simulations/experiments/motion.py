@@ -50,16 +50,17 @@ def _run_free_fall(p: Mapping[str, Any]) -> Result:
         *_without_ground(p),
     )
     bias = 0.5 * g * h * p["duration"]
+    still = f"still {'rising' if record.velocity[-1, 0, 2] > 0 else 'falling'}"
     when = (
         f"The ball reaches the ground after {digits(landed, 4)} s; theory says {digits(due, 4)} s."
         if math.isfinite(landed)
-        else f"The ball is still falling after {p['duration']:g} s; it would land after {due:.4g} s."
+        else f"The ball is {still} after {p['duration']:g} s; it would land after {due:.4g} s."
     )
     return Result(
         simulation="free-fall",
         settings=p,
         rows=rows,
-        headline=_headline_free_fall(landed, bias, p["duration"]),
+        headline=_headline_free_fall(landed, bias, f"{still.capitalize()} at {p['duration']:g} s"),
         finding=f"{when} Under constant gravity Verlet and Runge-Kutta are exact. Semi-implicit Euler moves "
         f"with a velocity that is half a step ahead, so it is too low by g h t / 2, here {digits(bias)} "
         "m, "
@@ -73,10 +74,8 @@ def _run_free_fall(p: Mapping[str, Any]) -> Result:
     )
 
 
-def _headline_free_fall(landed: float, bias: float, seconds: float) -> str:
-    start = (
-        f"Down after {digits(landed, 4)} s" if math.isfinite(landed) else f"Still falling at {seconds:g} s"
-    )
+def _headline_free_fall(landed: float, bias: float, still: str) -> str:
+    start = f"Down after {digits(landed, 4)} s" if math.isfinite(landed) else still
     return f"{start}; the two Eulers miss by {digits(bias)} m, one each way"
 
 
@@ -133,7 +132,9 @@ FREE_FALL = Simulation(
 
 
 def _run(p: Mapping[str, Any]) -> Result:
-    drag = p["drag"]
+    drag, fastest = p["drag"], math.hypot(p["speed_x"], p["speed_z"])
+    if drag and (drag * fastest * p["step"] > 1 or math.sqrt(drag * p["gravity"]) * p["step"] > 1):
+        raise ValueError("air takes more than the whole speed in one step; take a smaller step or less drag.")
 
     def air(t: Any, bodies: Sequence[Body]) -> None:  # noqa: ARG001 - a law takes the time
         for body in bodies:
@@ -210,37 +211,50 @@ def _landing_rows(p: Mapping[str, Any], record: Recording) -> tuple[Row, Row]:
     due = _flight_time(p)
     reached = due <= p["duration"]
     landed = float(record.ground_time[0])
-    far = float(record.position[-1, 0, 0]) if math.isfinite(landed) else math.nan
+    # A stone that is on the ground at the start stays there.
+    far = float(record.position[-1, 0, 0]) if landed > 0 else landed
     return (
         Row("time of landing", landed, "s", due if reached else math.nan, "(v_z + √(v_z² + 2 g z₀)) / g"),
         Row("distance of landing", far, "m", p["speed_x"] * due if reached else math.nan, "v_x times that"),
     )
 
 
+_FIRST_ORDER = ("explicit_euler", "semi_implicit_euler")
+
+
 def _headline(p: Mapping[str, Any], rows: tuple[Row, ...]) -> str:
     top, far = rows[1].simulated, rows[4]
     if math.isnan(far.simulated):
         return f"Still in the air after {p['duration']:g} s"
-    if p["drag"] > 0 and far.theory:
+    if rows[3].simulated == 0:
+        return "It starts on the ground and does not leave it"
+    if p["drag"] > 0 and far.theory and math.isfinite(far.theory):
         lost = percent(1 - far.simulated / far.theory)
         return f"Air takes {lost} of the range: the model matters, not the step"
-    return f"Up to {top:.4g} m, down again {far.simulated:.5g} m away, as theory says"
+    exact = p["drag"] == 0 and p["method"] not in _FIRST_ORDER
+    start = f"Up to {top:.4g} m, down again" if p["speed_z"] > 0 else "Down"
+    return f"{start} {far.simulated:.5g} m away{', as theory says' * exact}"
 
 
 def _finding_projectile(p: Mapping[str, Any], rows: tuple[Row, ...]) -> str:
     apex, top, out, landed, far = rows
     if math.isnan(landed.simulated):
         return f"After {p['duration']:g} s it is still in the air; a longer duration lets it land."
+    if landed.simulated == 0:
+        return "It starts on the ground and does not leave it; set height or speed_z above 0."
+    rises = f"rises to {top.simulated:.4g} m at {apex.simulated:.4g} s, {out.simulated:.5g} m out, and "
     flight = (
-        f"It rises to {top.simulated:.4g} m at {apex.simulated:.4g} s, {out.simulated:.5g} m out, and lands "
-        f"after {landed.simulated:.4g} s, {far.simulated:.5g} m away."
+        f"It {rises if p['speed_z'] > 0 else ''}lands after {landed.simulated:.4g} s, "
+        f"{far.simulated:.5g} m away."
     )
-    if p["drag"] > 0 and far.theory:
+    if p["drag"] > 0:
+        off = (far.theory or 0.0) - far.simulated
+        how_far = f" and is {off:.3g} m off at the landing" if off and math.isfinite(off) else ""
         return (
-            f"{flight} The theory beside it has no air and is {far.theory - far.simulated:.3g} m off at "
-            "the landing. No smaller step repairs that, because the air is missing in the model."
+            f"{flight} The theory beside it has no air{how_far}. No smaller step repairs that, because the "
+            "air is missing in the model."
         )
-    if p["method"] in ("explicit_euler", "semi_implicit_euler"):
+    if p["method"] in _FIRST_ORDER:
         return f"{flight} The difference from theory is the error of this method; it shrinks with the step."
     return f"{flight} The samples are {p['step']:g} s apart; interpolation finds the moments between them."
 
@@ -278,16 +292,15 @@ def _run_rotation(p: Mapping[str, Any]) -> Result:
     if not start.angular_velocity.any():
         raise ValueError("a body that does not turn has no rotation to show; set spin or nudge.")
     n = step_count(p["duration"], p["step"])
+    runs = {name: _spin(name, inertia, start, p["step"], n) for name in _NAMES}
     # Explicit Euler may run away to infinity; that is its result.
-    with np.errstate(over="ignore", invalid="ignore"):
-        runs = {name: _spin(name, inertia, start, p["step"], n) for name in _NAMES}
-        drifts = {
-            name: np.nan_to_num(kinetic_energy(inertia, w) / kinetic_energy(inertia, w[0]) - 1.0, nan=np.inf)
-            for name, (_, w) in runs.items()
-        }
+    drifts = {
+        name: np.nan_to_num(kinetic_energy(inertia, w) / kinetic_energy(inertia, w[0]) - 1.0, nan=np.inf)
+        for name, (_, w) in runs.items()
+    }
     w = runs["split"][1]
     t = p["step"] * np.arange(n + 1)
-    flips = int(np.count_nonzero(np.diff(np.sign(w[:, 1]))))
+    flips = int(np.count_nonzero(np.diff(np.sign(w[w[:, 1] != 0, 1]))))
     rows = (
         *_energy_rows(drifts, {name: q for name, (q, _) in runs.items()}),
         Row("angular momentum lost, split rotations", _momentum_drift(inertia, *runs["split"]), "1", 0.0,
@@ -365,6 +378,20 @@ def _headline_rotation(p: Mapping[str, Any], flips: int, gained: float) -> str:
     return f"{turns}, and explicit Euler adds {percent(gained)} of energy"
 
 
+def _about_axis_2(p: Mapping[str, Any], flips: int) -> str:
+    moments = [p["inertia1"], p["inertia2"], p["inertia3"]]
+    if p["spin"] == 0:
+        return "The body does not spin about axis 2 at the start; set spin."
+    if sorted(moments)[1] != p["inertia2"] or len(set(moments)) < 3:
+        return "Axis 2 is not the middle one, and a spin about it is stable."
+    if flips:
+        over = f"the body flipped over {times(flips)}"
+        return f"Axis 2 is the middle one, and a spin about it does not last: {over}."
+    if p["nudge"] == 0:
+        return "Axis 2 is the middle one, and nothing made the body wobble; set nudge."
+    return "Axis 2 is the middle one, but the wobble has not yet had time to flip the body over."
+
+
 def _finding(p: Mapping[str, Any], flips: int, drifts: Mapping[str, Array]) -> str:
     angle = abs(p["spin"]) * p["step"]
     if angle > 0.5:
@@ -372,21 +399,12 @@ def _finding(p: Mapping[str, Any], flips: int, drifts: Mapping[str, Array]) -> s
             f"The body turns by {angle:.2g} rad in one step, too far for any of these methods to follow. "
             f"Take a step below {0.5 / abs(p['spin']):.2g} s."
         )
-    moments = [p["inertia1"], p["inertia2"], p["inertia3"]]
-    middle = sorted(moments)[1] == p["inertia2"] and len(set(moments)) == 3
-    axis = (
-        f"Axis 2 is the middle one, and a spin about it does not last: the body flipped over {times(flips)}."
-        if middle and flips
-        else "Axis 2 is the middle one, but the wobble has not yet had time to flip the body over."
-        if middle
-        else "Axis 2 is not the middle one, and a spin about it is stable."
-    )
+    gain = float(drifts["explicit_euler"][-1])
+    gained = percent(gain) if math.isfinite(gain) else "energy without limit"
     return (
-        f"{axis} No torque acts, so the energy must not change: explicit Euler gains "
-        f"{percent(float(drifts['explicit_euler'][-1]))} in {p['duration']:g} s and stretches the "
-        f"quaternion, while split rotations stay within {percent(float(np.max(np.abs(drifts['split']))))} "
-        "and keep the "
-        "angular momentum to round-off."
+        f"{_about_axis_2(p, flips)} No torque acts, so the energy must not change: explicit Euler gains "
+        f"{gained} in {p['duration']:g} s and stretches the quaternion, while split rotations stay within "
+        f"{percent(float(np.max(np.abs(drifts['split']))))} and keep the angular momentum to round-off."
     )
 
 

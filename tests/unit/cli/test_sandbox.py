@@ -16,6 +16,7 @@ import course
 from tests.command_line import in_process
 
 ROOT = Path(course.__file__).parents[1]
+SCENES = ROOT / "course" / "sandbox" / "scenes"
 
 
 def sandbox(*arguments: str, cwd: Path, code: int = 0) -> subprocess.CompletedProcess[str]:
@@ -37,6 +38,17 @@ def test_one_scene_is_listed_with_its_question_and_parameters(tmp_path: Path) ->
     (scene,) = data["scenes"]
     assert "30 degrees steep, and the friction of the pair is 0.4" in scene["question"]
     assert {"angle", "gravity", "step"} <= {p["name"] for p in scene["parameters"]}
+    listed = sandbox("list", "galton-board", cwd=tmp_path).stdout
+    assert "walls=0 (0 to 1)" in listed
+    assert f"file: {SCENES / 'galton-board.toml'}" in listed
+
+
+@pytest.mark.parametrize("scene", [path.stem for path in SCENES.glob("*.toml")])
+def test_a_scene_lists_every_parameter_that_it_says_it_knows(tmp_path: Path, scene: str) -> None:
+    (listed,) = json.loads(sandbox("list", scene, "--json", cwd=tmp_path).stdout)["scenes"]
+    refused = sandbox("play", scene, "--set", "nope=1", "--json", cwd=tmp_path, code=2).stdout
+    known = json.loads(refused)["error"]["help"].removeprefix("Known: ").rstrip(".").split(", ")
+    assert [parameter["name"] for parameter in listed["parameters"]] == known
 
 
 def test_a_piped_play_runs_unseen_and_compares_and_needs_no_word_play(tmp_path: Path) -> None:
@@ -92,6 +104,7 @@ def test_question_answer_and_reason_have_the_numbers_that_were_set(tmp_path: Pat
 def test_describe_tells_the_run(tmp_path: Path) -> None:
     out = sandbox("play", "restitution-row", "--describe", cwd=tmp_path).stdout
     assert "0.45 s: ball 4 meets the floor at 4.41 m/s and leaves at 3.53; 36 %" in out
+    assert "0.004167 s in 1 step\n" in sandbox("head-on", "--duration", "0.004", cwd=tmp_path).stdout
 
 
 def test_json_is_one_object_with_everything(tmp_path: Path) -> None:
@@ -152,11 +165,19 @@ def test_an_export_goes_to_the_screen_or_a_file(tmp_path: Path, kind: str) -> No
 
 
 def test_a_students_scene_is_played_and_a_wrong_one_refused_with_its_line(tmp_path: Path) -> None:
-    source = (ROOT / "course" / "sandbox" / "scenes" / "head-on.toml").read_text()
+    source = (SCENES / "head-on.toml").read_text()
     (tmp_path / "mine.toml").write_text(source)
     assert "simulation: 2 m/s" in sandbox("play", "mine.toml", cwd=tmp_path).stdout
     (tmp_path / "mine.toml").write_text(source.replace("radius = 0.2", "radius = 0", 1))
     assert "mine.toml:" in sandbox("play", "mine.toml", cwd=tmp_path, code=2).stderr
+    assert "radius` must be a number > 0.0." in sandbox("list", "mine.toml", cwd=tmp_path, code=2).stderr
+    few = source.replace("order =", "# order =").replace('material = "puck"', "", 1)
+    (tmp_path / "mine.toml").write_text(few)
+    said = sandbox("play", "mine.toml", cwd=tmp_path, code=2).stderr
+    assert "mine.toml:1: the file lacks the key `order`; `body[1]` lacks the key `material`." in said
+    (tmp_path / "mine.toml").write_text(source.replace('shape = "circle"', 'shape = "cirle"', 1))
+    said = sandbox("play", "mine.toml", "--json", cwd=tmp_path, code=2).stdout
+    assert json.loads(said)["error"]["help"] == 'Write one of "box", "circle", "polygon", "segment".'
 
 
 @pytest.mark.parametrize(
@@ -172,6 +193,8 @@ def test_a_students_scene_is_played_and_a_wrong_one_refused_with_its_line(tmp_pa
         (["play", "head-on", "--duration", "-1"], 2),
         (["play", "head-on", "--gif", "a.png"], 2),
         (["play", "head-on", "--at", "1"], 2),
+        (["play", "head-on", "--at", "2.1", "--png", "a.png"], 2),
+        (["play", "galton-board", "--set", "seed=1.5"], 2),
         (["play", "head-on", "--web", "--describe"], 2),
         (["export", "head-on", "--format", "urdf"], 2),
         (["export", "galton-board", "--format", "sdf"], 2),

@@ -217,6 +217,9 @@ def test_the_report_predicts_pymunk_s_difference_and_describes_the_one_that_is_d
     assert ("at most 250.00 mm up to the contact" in head_on) is wrong
     assert ("ms: -2" in drop) is wrong
     assert wrong or all(row[2] == row[3] for row in sections[2].rows)
+    pair = sections[0]
+    assert len(pair.rows) == len(pair.plot.panels) == 3
+    assert wrong or all((row[1], row[4]) == (row[2], row[5]) for row in pair.rows)
 
 
 def test_the_report_draws_the_program_that_is_still_to_be_mended():

@@ -63,6 +63,11 @@ def test_a_changed_cell_runs_again_for_those_after_it(runner, sources):
     assert runner.run(CELLS[3]).printed == "42"
 
 
+def test_a_process_that_ends_is_told_once(runner, sources):
+    sources["key0"] = "import os\nos._exit(3)"
+    assert runner.run(CELLS[0]).error == "The cell's process ended by itself (exit code 3)."
+
+
 def test_an_error_is_told_by_the_cells_own_lines(runner):
     gave = runner.run(CELLS[4])
     assert gave.printed == "before"

@@ -19,7 +19,8 @@ def test_a_contact_tells_speeds_and_the_share_of_energy_that_is_gone() -> None:
     )
     assert "their kinetic energy" in sentence(contact(b="ball-2", shared=True))
     assert "ball 2" in sentence(contact(b="ball-2"))
-    assert "stays with it; 100 %" in sentence(contact(leave=0.0, after=0.0))
+    assert "stays with it; all of its kinetic energy" in sentence(contact(leave=0.0, after=0.0))
+    assert "leaves at 0.05; nearly all of its kinetic" in sentence(contact(leave=0.05, after=0.01))
     assert sentence(contact(leave=None, before=None, after=None)).endswith("at 4.09 m/s.")
     assert "found inside" in sentence(contact(approach=-100.0))
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import itertools
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -95,12 +98,34 @@ def test_more_steps_than_anyone_waits_for_are_refused() -> None:
         ("chaos", ["duration=0.05"], "too few to see"),
         ("substeps", ["work=64", "links=100", "duration=60"], "take too long"),
         ("environment", ["speed=20", "gravity=0.1"], "more than 20,000 steps"),
+        ("environment", ["speed=0.1", "step=0.05"], "stops within one step"),
+        ("projectile", ["speed_z=1000", "drag=1"], "more than the whole speed in one step"),
+        ("dynamics", ["payload=10", "step=0.1"], "runs away"),
+        ("chaos", ["step=0.05"], "runs away"),
+        ("dynamics", ["end_x=1.2", "end_y=-0.8"], "starts where it should end"),
+        ("chaos", ["angle1_deg=0", "angle2_deg=0"], "hang straight down"),
     ],
 )
 def test_values_that_are_impossible_together_are_said(name: str, pairs: list[str], words: str) -> None:
     error = refused(name, *pairs)
     assert words in error.message
     assert f"{name} knows:" in error.help
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("name", SIMULATIONS)
+def test_at_the_ends_of_its_ranges_a_simulation_runs_or_says_what_does_not_fit(name, monkeypatch) -> None:
+    """Each parameter, and each two, at either end; warnings are errors."""
+    monkeypatch.setattr("course.simulations.base.MAX_STEPS", 2000)
+    lows = {"step": 1e-3} | {p.name: 1e-6 for p in get(name).parameters if p.above}
+    ends = [
+        [f"{p.name}={end}" for end in p.choices or (lows.get(p.name, p.low), p.high)]
+        for p in get(name).parameters
+    ]
+    for one, other in itertools.combinations([[None], *ends], 2):
+        for pairs in itertools.product(one, other):
+            with contextlib.suppress(UsageError):
+                assert run(get(name), [pair for pair in pairs if pair]).rows
 
 
 @pytest.mark.parametrize("name", SIMULATIONS)

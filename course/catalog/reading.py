@@ -152,7 +152,9 @@ class LineMap:
 T = TypeVar("T")
 
 _AT = re.compile(r" - at (?:key in )?`(?P<path>\$[^`]*)`$")
-_EXPECTED = re.compile(r"Expected `(?P<wanted>[^`]+)`(?:, got `(?P<given>[^`]+)`|(?P<more> .+))")
+_EXPECTED = re.compile(
+    r"Expected `(?P<wanted>[^`]+)`(?:, got `(?P<given>[^`]+)`|(?P<more> .+?)(?:, got (?P<count>\d+))?$)"
+)
 _MISSING = re.compile(r"Object missing required field `(?P<key>[^`]+)`")
 _ENUM = re.compile(r"Invalid enum value (?P<given>.+)")
 _UNKNOWN = re.compile(r"Object contains unknown field `(?P<key>[^`]+)`")
@@ -302,6 +304,7 @@ def _raise_in_words(raw: Document[Any], text: str, kind: type, reserved: tuple[s
     if match := _EXPECTED.search(words):
         wanted = _in_words(match["wanted"]) + (match["more"] or "")
         given = f", and is {_in_words(match['given'])}" if match["given"] else ""
+        given = f", and has {match['count']}" if match["count"] else given
         raw.fail(steps, f"{_named(steps)} must be {wanted}{given}.", fix=f"Write {wanted}.")
     raw.fail(steps, f"{_named(steps)}: {words}.", fix="Compare it with a file of the same kind.")
 

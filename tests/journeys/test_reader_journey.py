@@ -24,6 +24,8 @@ from tests.terminals import AS_IT_WAS, Terminal, needs_tmux
 
 pytestmark = [pytest.mark.soak, needs_tmux]
 
+#: What the shell shows last; a long command has a line of its own on a narrow terminal.
+NEXT = ("Next: course", "Next:\ncourse")
 LESSON = "numerical-integration"
 CATALOG = Catalog()
 WHEEL_DOWN = 65
@@ -166,7 +168,7 @@ def test_a_lesson_is_read_and_done_from_its_title_to_its_last_line(
     assert student.left == []
     assert student.done.count("predicted") == student.done.count("judged") > 5
     terminal.keys("q")
-    terminal.wait("Next: course")
+    terminal.wait(*NEXT)
     events = workspace.store.events("check")
     passed = {event.subject for event in events if event.data["all_pass"]}
     assert passed == set(student.tasks)
@@ -229,7 +231,7 @@ def test_every_lesson_is_read_to_its_last_page(
     kept(screens, request.node.name.replace("/", "-"))
     assert not any("Traceback" in foot(screen) or "\N{REPLACEMENT CHARACTER}" in screen for screen in screens)
     terminal.keys("q")
-    terminal.wait("Next: course")
+    terminal.wait(*NEXT)
     assert terminal.state() == AS_IT_WAS
     assert [event.subject for event in workspace.store.events("lesson")] == [lesson]
 
@@ -266,7 +268,7 @@ def test_a_cell_that_hangs_survives_other_sizes_and_is_stopped(terminal: Termina
     terminal.keys("C-c")
     terminal.wait("stopped", "Stopped")
     terminal.keys("q")
-    terminal.wait("Next: course")
+    terminal.wait(*NEXT)
     assert terminal.state() == AS_IT_WAS
     assert opened(terminal).splitlines()[0] == where
 
@@ -310,7 +312,7 @@ def test_ctrl_c_anywhere_leaves_the_terminal_as_it_was_and_keeps_the_place(
             time.sleep(0.1)
     # A box, or a cell that runs, takes the first one and those that come before it is gone; then the reader.
     until = time.monotonic() + 40.0
-    while "Next: course" not in (screen := terminal.screen()):
+    while not any(words in (screen := terminal.screen()) for words in NEXT):
         assert time.monotonic() < until, screen
         terminal.keys("C-c")
         time.sleep(0.5)

@@ -229,7 +229,13 @@ def _say(
         from course.cli.frame.schemas import schema_of_line
 
         body = ErrorBody(code=code, message=message, help=help)
-        console.emit_line(ErrorReply(schema=schema_of_line(line), exit_code=exit_code, error=body))
+        try:
+            console.emit_line(ErrorReply(schema=schema_of_line(line), exit_code=exit_code, error=body))
+        except OSError as full:  # a pipe that nobody reads is dealt with where the line began
+            if full.errno not in _FULL:
+                raise
+            console.error(f"The output cannot be written ({full.strerror}).", _MAKE_ROOM)
+            return MissingCapabilityError.exit_code
     return exit_code
 
 

@@ -75,7 +75,7 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
     if last is None:
         message = "Hints follow a check that failed. Check your work first."
         return _hint(exercise, again, reason="not_checked", message=message)
-    if not here.workspace.has_file(exercise.place, exercise.module):
+    if started and not here.workspace.has_file(exercise.place, exercise.module):
         here.source(exercise)  # raises, and says how to get it back
     if last.state != "graded":
         message = "Your file could not be run at the last check; what that check said is the hint for now."

@@ -448,7 +448,7 @@ def unread_line(source: bytes | str) -> int:
         compile(text, "", "exec", dont_inherit=True)
     except UnicodeDecodeError as problem:
         return problem.object.count(b"\n", 0, problem.start) + 1
-    except (SyntaxError, ValueError) as problem:
+    except (SyntaxError, ValueError, LookupError) as problem:  # the last: a codec of no text
         return getattr(problem, "lineno", None) or 1
     return 1
 

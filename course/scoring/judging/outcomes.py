@@ -276,7 +276,7 @@ def to_do(results: Iterable[CheckResult], tasks: Collection[str]) -> list[CheckR
         msgspec.structs.replace(
             result,
             message="This function is as it was handed out.",
-            help="What it is to do stands above it.",
+            help="Its docstring says what it is to do.",
             diagnosis="NOT_IMPLEMENTED",
             expected=None, actual=None, input=None, tolerance=None, first_divergence=None, traceback=None,
         )

@@ -199,19 +199,25 @@ def _run(p: Mapping[str, Any]) -> Result:
     low, high = float(rebound["none"].min()), float(rebound["none"].max())
     gained = float(kept["erp"].mean()) - 1
     rises = f"{low:.3f} to {high:.3f} of its height, not to {e**2:.3f}"
+    spread = (
+        f"between {digits(low)} and {digits(high)} of its height, depending on when in the step it arrives"
+    )
+    spread += f"; theory says {digits(e**2)}"
     if f"{low:.3f}" == f"{high:.3f}" == f"{e**2:.3f}":
-        rises = f"{e**2:.3f} of its height, as theory says"
+        rises = spread = f"{e**2:.3f} of its height, as theory says"
+    corrected = (
+        f"Correction with an ERP of {erp:g} in the velocity changes the energy of an elastic ball by "
+        f"{percent(gained)} a bounce on average; as split impulse it does not change the velocity. With the "
+        f"first, a ball that starts {p['overlap']:g} m inside the floor hops {thrown[0].simulated:.3g} m "
+        f"high{higher}."
+    )
     return Result(
         simulation="contact-models",
         settings=p,
         rows=rows,
         headline=f"With e = {e:g} a ball rises to {rises}",
-        finding=f"With a floor that looks once a step of {h:g} s the ball rises to between {digits(low)} and "
-        f"{digits(high)} of its height, depending on when in the step it arrives; theory says "
-        f"{digits(e**2)}. Correction with an ERP of {erp:g} in the velocity changes the energy of an elastic "
-        f"ball by {percent(gained)} a bounce on average; as split impulse it does not change the velocity. "
-        f"With the first, a ball that starts {p['overlap']:g} m inside the floor hops "
-        f"{thrown[0].simulated:.3g} m high{higher}.",
+        finding=f"With a floor that looks once a step of {h:g} s the ball rises to {spread}. "
+        + (corrected if erp else "An ERP of 0 corrects nothing."),
         columns=(
             Column.of("phase", "1", phases),
             *(Column.of(f"rebound_{name}", "1", values) for name, values in rebound.items()),

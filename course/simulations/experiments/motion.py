@@ -63,8 +63,8 @@ def _run_free_fall(p: Mapping[str, Any]) -> Result:
         headline=_headline_free_fall(landed, bias, f"{still.capitalize()} at {p['duration']:g} s"),
         finding=f"{when} Under constant gravity Verlet and Runge-Kutta are exact. Semi-implicit Euler moves "
         f"with a velocity that is half a step ahead, so it is too low by g h t / 2, here {digits(bias)} "
-        "m, "
-        "and explicit Euler is too high by the same amount: the sign shows what an engine updates first.",
+        "m, and explicit Euler is too high by the same amount: the sign shows which velocity an engine moves "
+        "a body with, the new one or the old.",
         columns=(
             Column.of("t", "s", record.t),
             Column.of("height", "m", record.position[:, 0, 2]),

@@ -199,10 +199,8 @@ def _run(p: Mapping[str, Any]) -> Result:
     low, high = float(rebound["none"].min()), float(rebound["none"].max())
     gained = float(kept["erp"].mean()) - 1
     rises = f"{low:.3f} to {high:.3f} of its height, not to {e**2:.3f}"
-    spread = (
-        f"between {digits(low)} and {digits(high)} of its height, depending on when in the step it arrives"
-    )
-    spread += f"; theory says {digits(e**2)}"
+    spread = f"between {digits(low)} and {digits(high)} of its height, depending on when in the step it "
+    spread += f"arrives; theory says {digits(e**2)}"
     if f"{low:.3f}" == f"{high:.3f}" == f"{e**2:.3f}":
         rises = spread = f"{e**2:.3f} of its height, as theory says"
     corrected = (

@@ -295,7 +295,7 @@ def _show_summary(
         rows = [row for row in summary.troubled if row.state == state]
         if rows:
             console.line((f"{len(rows)} {words}:", "bold"))
-        _show_troubled(console, rows)
+        _show_troubled(console, rows, "; results.jsonl has them all")
     if any(row.code == "check_file" for row in summary.troubled):
         console.note(f"Once the file is right, {command('grade', 'rerun', out)} grades these.")
     if summary.unsettled:
@@ -315,12 +315,12 @@ def _show_summary(
     console.note(f"Written: {out}/{files}. Seed {summary.seed}.")
 
 
-def _show_troubled(console: Console, rows: Sequence[Ungraded]) -> None:
+def _show_troubled(console: Console, rows: Sequence[Ungraded], where: str = "") -> None:
     told = _alike(rows)
     for whose, row in told[:_MOST_TROUBLED]:
         console.item(whose, f"{row.code}: {one_line(row.message)}")
     if len(told) > _MOST_TROUBLED:
-        console.line(f"and {len(told) - _MOST_TROUBLED} more; results.jsonl has them all.", indent=2)
+        console.line(f"and {len(told) - _MOST_TROUBLED} more{where}.", indent=2)
 
 
 def show_faults(console: Console, done: Regraded, out: Path) -> None:
@@ -328,7 +328,7 @@ def show_faults(console: Console, done: Regraded, out: Path) -> None:
     if done.troubled:
         console.line((f"{done.faults} hit a fault of the grader and keep what counted:", "bold"))
         _show_troubled(console, done.troubled)
-        console.note(f"Once that is right, {command('grade', 'rerun', out)} grades these.")
+        console.note(f"Once that is right, run {command('grade', 'rerun', out)} again.")
 
 
 def _alike(rows: Sequence[Ungraded]) -> list[tuple[str, Ungraded]]:

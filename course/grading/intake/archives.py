@@ -78,7 +78,7 @@ def quiz_of(path: Path, loose: bytes) -> object:
     alone = bool(loose)
     try:
         if loose:
-            return checked_record(_read_manifest(path, loose).get("quiz"))
+            return checked_record(_read_manifest(path, loose).get("quiz")) if _is_ours(loose) else []
         held = _given(_held(path))
         alone = len(held.names) <= 1
         return checked_record(_given(held.manifest).get("quiz"))
@@ -86,6 +86,14 @@ def quiz_of(path: Path, loose: bytes) -> object:
         if not alone:
             raise
         return refused.problem.message.rstrip(".")
+
+
+def _is_ours(manifest: bytes) -> bool:
+    """False for JSON of another program under that name; what is damaged may be ours."""
+    with contextlib.suppress(ValueError, RecursionError):
+        told = json.loads(manifest)
+        return isinstance(told, dict) and "format_version" in told
+    return True
 
 
 @dataclass(frozen=True)

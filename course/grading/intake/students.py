@@ -148,10 +148,7 @@ def _entries(
     used = {at for _, item in taken if isinstance(item, _FoundWork) for at in item.used}
     every = (*exercises, *(others or ()))
     left = survey(place, used, every)
-    mine = {
-        exercise.id: [one for one in left if others is None or not _is_anothers(one, exercise, every)]
-        for exercise in every
-    }
+    mine = _meant(left, every) if others is not None else dict.fromkeys((one.id for one in every), left)
     alone = not used and any("archive" in one.kind for one in left)
     busy = others is not None and bool(used or left or archives or place.find(MANIFEST, "."))
     for exercise, item in taken:
@@ -180,20 +177,31 @@ def _found(place: Place, archives: list[Path], exercise: Exercise) -> _FoundWork
         return RefusedError(problem.code, problem.message, problem.help)
 
 
-def _is_anothers(one: Candidate, exercise: Exercise, every: Sequence[Exercise]) -> bool:
-    """Whether a file is another exercise's: by its functions alone, or by its name and no fewer of them."""
-    name = Path(one.name).name
+def _meant(left: list[Candidate], every: Sequence[Exercise]) -> dict[str, list[Candidate]]:
+    """The files that may be meant for each exercise, so not those of another one.
 
-    def has(item: Exercise) -> int:
-        return sum(task.id in one.defines for task in item.task)
-
-    def called(item: Exercise) -> bool:
-        names = (item.module, str(Path(item.module).with_suffix(".ipynb")))
-        return any(is_meant(name, wanted) for wanted in names)
-
-    mine = has(exercise)
-    others = [item for item in every if item is not exercise]
-    return any((has(item) and not mine) or (called(item) and has(item) >= mine) for item in others)
+    A file is another's by its functions, if it has none of this one, or by its name, if the other has all of
+    those that it shares with this one.
+    """
+    meant: dict[str, list[Candidate]] = {exercise.id: [] for exercise in every}
+    for one in left:
+        name = Path(one.name).name
+        has = {item.id: {task.id for task in item.task}.intersection(one.defines) for item in every}
+        called = {
+            item.id
+            for item in every
+            if any(
+                is_meant(name, wanted)
+                for wanted in (item.module, str(Path(item.module).with_suffix(".ipynb")))
+            )
+        }
+        for id_, mine in has.items():
+            others = ((other, theirs) for other, theirs in has.items() if other != id_)
+            if not any(
+                (theirs and not mine) or (other in called and theirs >= mine) for other, theirs in others
+            ):
+                meant[id_].append(one)
+    return meant
 
 
 def _beside(exercise: Exercise, taken: _FoundWork, left: list[Candidate]) -> list[str]:
@@ -465,6 +473,8 @@ def read_quiz(student: Student) -> tuple[Any, Path | None]:
                 loose = b"" if packed else _read_regular(path, place.shown(path), MAX_FILE)
                 record = reader.quiz_in(path, loose)
                 found += [(record, path)] if record else []
+    # A damaged record takes nothing from one that can be read.
+    found = [one for one in found if not isinstance(one[0], str)] or found
     if any(record != found[0][0] for record, _ in found):
         raise UngradableError(
             "Several files hold quiz attempts.", help="Keep the one that counts.", code="ambiguous_files"

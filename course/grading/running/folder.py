@@ -173,15 +173,17 @@ def note_looked(
     """
     looked = book.looked()
     if looked is None:
-        looked = {name: Looked(whole=True) for name in book.exercise_ids()}
+        looked = {
+            name: Looked(whole=True) for name in (*book.exercise_ids(), *(one.id for one in book.exercises()))
+        }
     with explained(book.path):
         without = msgspec.json.decode(book.meta().get("without_work", "[]"), type=list[str])
     new = others - {*book.student_ids(), *without}
     looked = {name: one.without(new) for name, one in looked.items()}
     for name in exercises:
         was = looked.get(name, Looked()).having(read)
-        if not others and not was.whole:
-            was = Looked(whole=True)
+        if not others:
+            was = msgspec.structs.replace(was, whole=True, names=frozenset())
         looked[name] = msgspec.structs.replace(was, named=was.named or named)
     book.set_looked(looked)
 

@@ -330,12 +330,12 @@ class _Run:
         if not (options.resume and book.run_options().get("snapshot")):
             book.keep_snapshot(self.summary.graders, self._graders.snapshot.packed)
             book.begin_run("run", facts)
+        asked = [*self._versions, *([QUIZ] if self._with_quiz else [])]
+        note_looked(book, asked, self.names, self._left_aside, named=bool(options.exercises))
         book.set_exercises(graded_exercises(self._exercises, self._bank if self._with_quiz else None))
         book.set_students({who.name: who.identity for who in self._students if who.identity is not None})
         # Before a roster says who is enrolled: until their work is looked at, nobody handed in nothing.
         book.set_waiting(sorted(self.names), others=bool(options.only))
-        asked = [*self._versions, *([QUIZ] if self._with_quiz else [])]
-        note_looked(book, asked, self.names, self._left_aside, named=bool(options.exercises))
         if options.roster is not None:
             self.roster = self.summary.enrol(remember(book, options.roster))
 

@@ -380,6 +380,11 @@ APART: dict[str, tuple[dict[str, bytes], str, str]] = {
         "graded",
         "no_file",
     ),
+    "in one file with the other": (
+        {"doubling.py": SOURCE + b"def halve(x):\n    return x / 2\n"},
+        "graded",
+        "no_file",
+    ),
     "what may be anything": ({"hw.py": b"x = 1\n"}, "no_file", "no_file"),
     "a folder alone": ({}, "no_file", "no_file"),
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import shutil
 import sqlite3
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -138,6 +139,22 @@ LEFT = {
         {(CY, "doubling"), *((name, "halving") for name in (CY, "student-001", "absent"))},
     ),
 }  # fmt: skip
+
+
+def test_who_was_gone_before_anybody_looked_is_missing_once_all_are_looked_at(
+    tmp_path: Path, catalog: Catalog, solution: bytes
+) -> None:
+    (tmp_path / "roster.csv").write_text(f"student\nstudent-000\nstudent-001\n{CY}\n")
+    roster = read_roster(tmp_path / "roster.csv")
+    make_class(tmp_path / "class", solution, 2)
+    options = RunOptions(exercises=("doubling",), roster=roster)
+    graded_class(tmp_path, catalog, options, grade=right)
+    make_class(tmp_path / "class", solution, 3)
+    graded_class(tmp_path, catalog, replace(options, only=ADA, resume=True), grade=right)
+    assert states(tmp_path / "out")[CY, "doubling"] == "not_graded_yet"
+    shutil.rmtree(tmp_path / "class" / CY)
+    graded_class(tmp_path, catalog, replace(options, resume=True), grade=right)
+    assert states(tmp_path / "out")[CY, "doubling"] == "missing"
 
 
 @pytest.mark.parametrize("how", LEFT)

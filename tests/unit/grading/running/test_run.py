@@ -301,7 +301,10 @@ QUIZZED: dict[str, tuple[dict[str, Any], str, str]] = {
         {"a.zip": {"submission.json": '{"format_version": 9}'}}, "malformed ('a.zip' was written", "missing"
     ),
     "two": (
-        {"a.zip": {"submission.json": "{quiz}"}, "submission.json": "[1"}, "malformed (Several", "missing"
+        {"a.zip": {"submission.json": "{quiz}"}, "submission.json": "[1"}, "graded", "missing"
+    ),
+    "two, one of another program": (
+        {"a.zip": {"submission.json": "{quiz}"}, "submission.json": '{"task": 3}'}, "graded", "missing"
     ),
 }  # fmt: skip
 

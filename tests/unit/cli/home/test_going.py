@@ -47,10 +47,12 @@ def test_an_exercise_whose_folder_is_gone_is_started_again_wherever_a_step_is_na
     write("wrong", "wrong")
     course("check", "doubling")
     shutil.rmtree(workspace / "doubling")
+    hint = course("hint")
+    assert (hint.code, "`course start doubling` puts one there" in hint.err) == (3, True)
     shutil.rmtree(workspace / ".course" / "given")
     for words in ((), ("next",), ("progress",)):
         assert "course start doubling" in course(*words).out
-    for words in (("check",), ("hint",), ("diff",), ("report", "doubling")):
+    for words in (("check",), ("diff",), ("report", "doubling")):
         ran = course(*words)
         assert (ran.code, "`course start doubling` puts one there" in ran.err) == (3, True)
     assert course("reset", "doubling", "-y").out == "doubling/doubling.py is the stub again.\n"

@@ -71,9 +71,10 @@ def expect_resamples(submission, seed):
     )
     kit.expect_bounded(
         float((ends[1] - ends[0]) / np.ptp(np.quantile(values, [0.1, 0.9]))),
-        low=0.4,
-        high=2.5,
-        source="right intervals of 24 values, by quantiles or as normal ones, give 0.7 to 1.6",
+        # 60,000 right intervals, each by quantiles of every kind and as a normal one, gave 0.43 to 2.4.
+        low=0.2,
+        high=5.0,
+        source="right intervals of 24 values give 0.43 to 2.4",
         quantity="width over the distance of the 0.1 and 0.9 quantiles of the statistic",
         message="The interval does not come from what the statistic says of the resamples.",
         help="The ends are the alpha/2 and the 1 - alpha/2 quantile of the statistic over the resamples.",

@@ -11,9 +11,12 @@ import numpy as np
 import pytest
 
 from course.authoring.exercises.grading import LocalSubmission
+from course.catalog.load import Catalog
 from course.figures.plots import render
 from course.physics import systems
 from course.scoring import kit
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission
 
 probes = kit.companion("integrators", "probes")
 cases = kit.companion("integrators", "cases")
@@ -193,3 +196,19 @@ def test_the_report_draws_any_step(factor):
     for section in report.report(program(explicit_euler_step=step)).sections:
         assert section.rows
         assert render(section.plot).startswith(b"\x89PNG")
+
+
+def test_steps_that_make_the_right_calls_and_return_nothing_have_no_points():
+    calls = {
+        "explicit_euler_step": 1,
+        "semi_implicit_euler_step": 1,
+        "velocity_verlet_step": 1,
+        "rk4_step": 4,
+    }
+    source = "".join(
+        f"def {name}(accel, t, q, v, h):\n    for _ in range({count}):\n        accel(t, q, v)\n"
+        for name, count in calls.items()
+    )
+    catalog = Catalog()
+    with GradingSession(catalog.exercise("integrators"), catalog, scope="full") as session:
+        assert session.grade(Submission({"integrators.py": source.encode()})).score == 0.0

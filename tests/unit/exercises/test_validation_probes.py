@@ -243,3 +243,27 @@ def test_the_report_describes_the_figures_that_wrong_code_gives(mutant, place, n
     assert re.search(now, said), said
     for promise in ("stays around 2", "mostly inside", "hardly leave", "three or four times"):
         assert promise not in said
+
+
+@pytest.mark.parametrize(
+    ("ends", "said"),
+    [
+        ("None", "is None, not"),
+        ("(m - 1e-3 * abs(m), m + 1e-3 * abs(m))", "does not come from what the statistic says"),
+        ("tuple(np.quantile(values, [alpha / 2, 1 - alpha / 2]))", None),
+    ],
+)
+def test_an_interval_comes_from_the_resamples_that_it_asked_about(ends, said):
+    source = (
+        "import numpy as np\ndef block_bootstrap_ci(e, statistic, block, n_boot, alpha, rng):\n"
+        "    n, m = len(e), float(statistic(e))\n"
+        "    starts = rng.integers(0, n - block + 1, size=(n_boot, -(-n // block)))\n"
+        "    rows = (starts[:, :, None] + np.arange(block)).reshape(n_boot, -1)[:, :n]\n"
+        f"    values = [statistic(e[row]) for row in rows]\n    return {ends}\n"
+    )
+    ask = functools.partial(intervals.expect_resamples, LocalSubmission(source), 3)
+    if said is None:
+        ask()
+    else:
+        with pytest.raises(kit.CheckFailed, match=said):
+            ask()

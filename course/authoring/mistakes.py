@@ -47,6 +47,7 @@ class Variant:
         also: codes that it gets under other draws of a grading run and that are as true of it; "" for none.
         changed: texts of the function ``of`` in the model solution, each with what stands there instead.
         text: another body of that function; without one, definitions that win over the model solution's.
+        around: whether that body calls the model solution's function, as ``_right``.
         line: where it stands in its file.
     """
 
@@ -57,6 +58,7 @@ class Variant:
     changed: Mapping[str, str] = field(default_factory=dict)
     of: str = ""
     text: str = ""
+    around: bool = False
     line: int = 0
 
     def composed(self, model: str, file: Path) -> str:
@@ -90,7 +92,8 @@ class Variant:
         node, lines = found[0], model.splitlines()
         if body:
             head = lines[node.lineno - 1 : node.body[0].lineno - 1]
-            return "\n".join([*head, textwrap.indent(body, "    ")])
+            kept = [f"_right = {self.of}", "", ""] if self.around else []
+            return "\n".join([*kept, *head, textwrap.indent(body, "    ")])
         text = "\n".join(lines[node.lineno - 1 : node.end_lineno])
         for old, new in self.changed.items():
             if (times := text.count(old)) != 1:
@@ -199,6 +202,10 @@ class Mistake:
     def body(self, task: str, text: str, *, of: str = "", also: tuple[str, ...] = ()) -> Mistake:
         """The model solution with another body of a function; the arguments are those of ``edit``."""
         return self._add(task, also, text=text, of=of or task, line=sys._getframe(1).f_lineno)
+
+    def around(self, task: str, text: str, *, of: str = "", also: tuple[str, ...] = ()) -> Mistake:
+        """As ``body``, with the function of the model solution at hand: the text calls it ``_right``."""
+        return self._add(task, also, text=text, of=of or task, around=True, line=sys._getframe(1).f_lineno)
 
     def program(self, task: str, text: str, *, also: tuple[str, ...] = ()) -> Mistake:
         """The model solution with definitions of its own in the place of some."""

@@ -15,15 +15,11 @@ mistakes(
     "NORMAL_REVERSED",
     "The normal points the other way: from b to a, or into the solid.",
     "The normal points from a to b: (xb - xa) over its length. A plane's normal is the one you are given.",
-).program(
+).around(
     "detect_sphere_sphere",
     """
-        _right = detect_sphere_sphere
-
-
-        def detect_sphere_sphere(xa, ra, xb, rb):
-            touching, normal, depth = _right(xa, ra, xb, rb)
-            return touching, -normal, depth
+        touching, normal, depth = _right(xa, ra, xb, rb)
+        return touching, -normal, depth
     """,
 ).body(
     "detect_sphere_plane",
@@ -49,15 +45,11 @@ mistakes(
     "DEPTH_CLAMPED",
     "The depth is cut off at some value, so it no longer says how far apart two bodies are, or how deep one lies in the other.",
     "Return the depth as you compute it, with its sign.",
-).program(
+).around(
     "detect_sphere_sphere",
     """
-        _right = detect_sphere_sphere
-
-
-        def detect_sphere_sphere(xa, ra, xb, rb):
-            touching, normal, depth = _right(xa, ra, xb, rb)
-            return touching, normal, max(depth, 0.0)
+        touching, normal, depth = _right(xa, ra, xb, rb)
+        return touching, normal, max(depth, 0.0)
     """,
 )
 mistakes(
@@ -203,14 +195,10 @@ mistakes(
     "THIRD_LAW_MISSING",
     "The two bodies do not receive equal and opposite impulses, so momentum is not conserved.",
     "What b gains, a must lose: va - J/ma n and vb + J/mb n with the same J.",
-).program(
+).around(
     "resolve",
     """
-        _right = resolve
-
-
-        def resolve(ma, mb, va, vb, normal, restitution):
-            return va, _right(ma, mb, va, vb, normal, restitution)[1]
+        return va, _right(ma, mb, va, vb, normal, restitution)[1]
     """,
 )
 mistakes(
@@ -269,16 +257,12 @@ mistakes(
         depth = r - float(x @ normal)
         return depth >= 0, normal, depth
     """,
-).program(
+).around(
     "time_of_impact",
     """
-        _right_moment = time_of_impact
-
-
-        def time_of_impact(xa, va, ra, xb, vb, rb, dt):
-            xb -= xa
-            vb -= va
-            return _right_moment(np.zeros(len(xb)), np.zeros(len(vb)), ra, xb, vb, rb, dt)
+        xb -= xa
+        vb -= va
+        return _right(np.zeros(len(xb)), np.zeros(len(vb)), ra, xb, vb, rb, dt)
     """,
 )
 mistakes(
@@ -470,30 +454,22 @@ mistakes(
     "TUNNELS",
     "A contact within the step is missed, or found late.",
     "Compute when bodies that approach touch (|dx + dv t| = ra + rb is a quadratic equation in t; on a line it is the gap over the speed of approach), and compare that time, the smaller root, with the step. Where the other root lies does not matter, and that they overlap at no sample proves nothing.",
-).program(
+).around(
     "time_of_impact",
     """
-        _right = time_of_impact
-
-
-        def time_of_impact(xa, va, ra, xb, vb, rb, dt):
-            apart = xb + vb * dt - xa - va * dt
-            now = np.linalg.norm(xb - xa) <= ra + rb
-            return _right(xa, va, ra, xb, vb, rb, dt) if now or np.linalg.norm(apart) <= ra + rb else None
+        apart = xb + vb * dt - xa - va * dt
+        now = np.linalg.norm(xb - xa) <= ra + rb
+        return _right(xa, va, ra, xb, vb, rb, dt) if now or np.linalg.norm(apart) <= ra + rb else None
     """,
-).program(
+).around(
     "time_of_impact",
     """
-        _right = time_of_impact
-
-
-        def time_of_impact(xa, va, ra, xb, vb, rb, dt):
-            x, v = xb - xa, vb - va
-            if x @ v >= 0:
-                return None
-            t = np.linspace(0.0, dt, 1001)
-            hits = np.flatnonzero(np.linalg.norm(x + t[:, None] * v, axis=1) <= ra + rb)
-            return float(t[hits[0]]) if len(hits) else None
+        x, v = xb - xa, vb - va
+        if x @ v >= 0:
+            return None
+        t = np.linspace(0.0, dt, 1001)
+        hits = np.flatnonzero(np.linalg.norm(x + t[:, None] * v, axis=1) <= ra + rb)
+        return float(t[hits[0]]) if len(hits) else None
     """,
 ).body(
     "simulate_head_on",
@@ -518,14 +494,10 @@ mistakes(
     "A contact that happens after the end of the step is reported.",
     "Only times up to dt count; return None for a later contact.",
     kind="consequence",
-).program(
+).around(
     "time_of_impact",
     """
-        _right = time_of_impact
-
-
-        def time_of_impact(xa, va, ra, xb, vb, rb, dt):
-            return _right(xa, va, ra, xb, vb, rb, math.inf)
+        return _right(xa, va, ra, xb, vb, rb, math.inf)
     """,
 )
 mistakes(
@@ -547,14 +519,10 @@ mistakes(
     "Bodies that overlap but do not approach are reported as colliding.",
     "Return None for them: they need no impulse.",
     kind="consequence",
-).program(
+).around(
     "time_of_impact",
     """
-        _right = time_of_impact
-
-
-        def time_of_impact(xa, va, ra, xb, vb, rb, dt):
-            return 0.0 if np.linalg.norm(xb - xa) <= ra + rb else _right(xa, va, ra, xb, vb, rb, dt)
+        return 0.0 if np.linalg.norm(xb - xa) <= ra + rb else _right(xa, va, ra, xb, vb, rb, dt)
     """,
 )
 mistakes(
@@ -675,21 +643,17 @@ mistakes(
     "EQUAL_MASSES_ASSUMED",
     "Your code uses one mass for both bodies.",
     "Each body has its own mass: 1/ma + 1/mb. Try masses of 1 kg and 3 kg.",
-).program(
+).around(
     "simulate_head_on",
     """
-        _right = simulate_head_on
-
-
-        def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):
-            t = h * np.arange(round(t_end / h) + 1)
-            x0, v0 = np.array(x0, float), np.array(v0, float)
-            closing = v0[0] - v0[1]
-            met = (x0[1] - x0[0] - 2 * radius) / closing if closing > 0 else math.inf
-            j = (1 + restitution) * closing * m[0] / 2
-            v1 = v0 + np.array([-j / m[0], j / m[1]])
-            s = t[:, None]
-            return t, x0 + v0 * np.minimum(s, met) + v1 * np.maximum(s - met, 0), np.where(s < met, v0, v1)
+        t = h * np.arange(round(t_end / h) + 1)
+        x0, v0 = np.array(x0, float), np.array(v0, float)
+        closing = v0[0] - v0[1]
+        met = (x0[1] - x0[0] - 2 * radius) / closing if closing > 0 else math.inf
+        j = (1 + restitution) * closing * m[0] / 2
+        v1 = v0 + np.array([-j / m[0], j / m[1]])
+        s = t[:, None]
+        return t, x0 + v0 * np.minimum(s, met) + v1 * np.maximum(s - met, 0), np.where(s < met, v0, v1)
     """,
 )
 mistakes(
@@ -716,46 +680,30 @@ mistakes(
     "RADIUS_IGNORED",
     "The bodies are taken for points, without radii.",
     "The surfaces touch while the centres are still ra + rb apart (or r from a wall).",
-).program(
+).around(
     "simulate_head_on",
     """
-        _right = simulate_head_on
-
-
-        def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):
-            return _right(m, x0, v0, 0.0, restitution, t_end, h)
+        return _right(m, x0, v0, 0.0, restitution, t_end, h)
     """,
-).program(
+).around(
     "simulate_drop",
     """
-        _right = simulate_drop
-
-
-        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
-            return _right(z0, v0, 0.0, restitution, g, t_end, h)
+        return _right(z0, v0, 0.0, restitution, g, t_end, h)
     """,
 )
 mistakes(
     "TRUNCATED_STEP_COUNT",
     "The number of steps is cut off instead of rounded: t_end/h may come out just below a whole number.",
     "Use round(t_end / h), and return one sample more than there are steps.",
-).program(
+).around(
     "simulate_head_on",
     """
-        _right = simulate_head_on
-
-
-        def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):
-            return _right(m, x0, v0, radius, restitution, int(t_end / h) * h, h)
+        return _right(m, x0, v0, radius, restitution, int(t_end / h) * h, h)
     """,
-).program(
+).around(
     "simulate_drop",
     """
-        _right_drop = simulate_drop
-
-
-        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
-            return _right_drop(z0, v0, radius, restitution, g, int(t_end / h) * h, h)
+        return _right(z0, v0, radius, restitution, g, int(t_end / h) * h, h)
     """,
 )
 mistakes(
@@ -784,14 +732,10 @@ mistakes(
     "RESTITUTION_AS_ENERGY",
     "The speeds scale with the square root of e, as if e were the share of the energy, or of the height, that remains.",
     "e is a ratio of speeds: use it as it is given. The remaining energy follows from it.",
-).program(
+).around(
     "simulate_drop",
     """
-        _right = simulate_drop
-
-
-        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
-            return _right(z0, v0, radius, math.sqrt(restitution), g, t_end, h)
+        return _right(z0, v0, radius, math.sqrt(restitution), g, t_end, h)
     """,
 )
 mistakes(
@@ -819,37 +763,29 @@ mistakes(
     "SINKS_THROUGH_FLOOR",
     "In the end the ball sinks into the floor.",
     "When it touches at a speed of at most g h, put it down: z = radius and v = 0 from then on.",
-).program(
+).around(
     "simulate_drop",
     """
-        _right = simulate_drop
-
-
-        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
-            t, z, v = _right(z0, v0, radius, restitution, g, t_end, h)
-            still = v == 0.0
-            still[0] = v0 == 0.0 and z0 == radius
-            if still.any():
-                s = np.maximum(t - t[np.argmax(still)], 0.0)
-                z, v = z - g * s * s / 2, v - g * s
-            return t, z, v
+        t, z, v = _right(z0, v0, radius, restitution, g, t_end, h)
+        still = v == 0.0
+        still[0] = v0 == 0.0 and z0 == radius
+        if still.any():
+            s = np.maximum(t - t[np.argmax(still)], 0.0)
+            z, v = z - g * s * s / 2, v - g * s
+        return t, z, v
     """,
 )
 mistakes(
     "RESTS_TOO_EARLY",
     "The ball is put to rest while it should still move.",
     "Put it to rest only where it touches the floor, and only if its speed there is at most g h.",
-).program(
+).around(
     "simulate_drop",
     """
-        _right = simulate_drop
-
-
-        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
-            t, z, v = _right(z0, v0, radius, restitution, g, t_end, h)
-            speed = math.sqrt(v0 * v0 + 2 * g * (z0 - radius))
-            late = t > (v0 + speed) / g + 2 * restitution * speed / g
-            return t, np.where(late, radius, z), np.where(late, 0.0, v)
+        t, z, v = _right(z0, v0, radius, restitution, g, t_end, h)
+        speed = math.sqrt(v0 * v0 + 2 * g * (z0 - radius))
+        late = t > (v0 + speed) / g + 2 * restitution * speed / g
+        return t, np.where(late, radius, z), np.where(late, 0.0, v)
     """,
 )
 mistakes(
@@ -895,22 +831,18 @@ mistakes(
     "The contacts are found, but not at their exact times.",
     "Solve |dx + dv t|**2 = (ra + rb)**2, which gives the exact time: compare each term, and round nothing. Of spheres that overlap and approach it is 0.0.",
     kind="consequence",
-).program(
+).around(
     "time_of_impact",
     """
-        _right = time_of_impact
-
-
-        def time_of_impact(xa, va, ra, xb, vb, rb, dt):
-            if _right(xa, va, ra, xb, vb, rb, dt) is None:
-                return None
-            x, v = xb - xa, vb - va
-            low, high = 0.0, min(dt, float(-(x @ v) / (v @ v)))
-            for _ in range(10):
-                middle = (low + high) / 2
-                touch = np.linalg.norm(x + middle * v) <= ra + rb
-                low, high = (low, middle) if touch else (middle, high)
-            return low
+        if _right(xa, va, ra, xb, vb, rb, dt) is None:
+            return None
+        x, v = xb - xa, vb - va
+        low, high = 0.0, min(dt, float(-(x @ v) / (v @ v)))
+        for _ in range(10):
+            middle = (low + high) / 2
+            touch = np.linalg.norm(x + middle * v) <= ra + rb
+            low, high = (low, middle) if touch else (middle, high)
+        return low
     """,
 )
 mistakes(
@@ -918,70 +850,50 @@ mistakes(
     "Some bodies that meet within the step get None.",
     "Bodies that are apart meet where |dx + dv t|**2 = (ra + rb)**2 has a real root from 0 to dt; if they overlap and approach, it is 0.0. Compare each of your conditions for None with that, and the root itself: (-b - sqrt(b**2 - 4*a*c)) / (2*a), all of the denominator divided by.",
     kind="consequence",
-).program(
+).around(
     "time_of_impact",
     """
-        _right = time_of_impact
-
-
-        def time_of_impact(xa, va, ra, xb, vb, rb, dt):
-            x, v = xb - xa, vb - va
-            if v @ v > 0:
-                nearest = x - (x @ v) / (v @ v) * v
-                if np.linalg.norm(nearest) > max(ra, rb):
-                    return None
-            return _right(xa, va, ra, xb, vb, rb, dt)
-    """,
-).program(
-    "time_of_impact",
-    """
-        _right = time_of_impact
-
-
-        def time_of_impact(xa, va, ra, xb, vb, rb, dt):
-            if np.linalg.norm(np.subtract(vb, va)) < 0.01 and np.linalg.norm(np.subtract(xb, xa)) > ra + rb:
+        x, v = xb - xa, vb - va
+        if v @ v > 0:
+            nearest = x - (x @ v) / (v @ v) * v
+            if np.linalg.norm(nearest) > max(ra, rb):
                 return None
-            return _right(xa, va, ra, xb, vb, rb, dt)
+        return _right(xa, va, ra, xb, vb, rb, dt)
+    """,
+).around(
+    "time_of_impact",
+    """
+        if np.linalg.norm(np.subtract(vb, va)) < 0.01 and np.linalg.norm(np.subtract(xb, xa)) > ra + rb:
+            return None
+        return _right(xa, va, ra, xb, vb, rb, dt)
     """,
 )
 mistakes(
     "TOUCHING_NEEDS_OVERLAP",
     "Bodies that touch exactly, with a depth of zero, do not count as touching.",
     "`touching` is depth >= 0, not depth > 0, and the depth is ra + rb - d (for the plane r less the height), with nothing added.",
-).program(
+).around(
     "detect_sphere_sphere",
     """
-        _right_spheres = detect_sphere_sphere
-
-
-        def detect_sphere_sphere(xa, ra, xb, rb):
-            _, normal, depth = _right_spheres(xa, ra, xb, rb)
-            return depth > 0, normal, depth
+        _, normal, depth = _right(xa, ra, xb, rb)
+        return depth > 0, normal, depth
     """,
-).program(
+).around(
     "detect_sphere_plane",
     """
-        _right_plane = detect_sphere_plane
-
-
-        def detect_sphere_plane(x, r, point, normal):
-            _, normal, depth = _right_plane(x, r, point, normal)
-            return depth > 0, normal, depth
+        _, normal, depth = _right(x, r, point, normal)
+        return depth > 0, normal, depth
     """,
 )
 mistakes(
     "CONTACT_MARGIN",
     "Touching is decided by a limit other than zero: a small gap counts as touching, or a small overlap does not.",
     "Remove the margin: touching is depth >= 0.",
-).program(
+).around(
     "detect_sphere_sphere",
     """
-        _right_spheres = detect_sphere_sphere
-
-
-        def detect_sphere_sphere(xa, ra, xb, rb):
-            _, normal, depth = _right_spheres(xa, ra, xb, rb)
-            return depth >= -0.01, normal, depth
+        _, normal, depth = _right(xa, ra, xb, rb)
+        return depth >= -0.01, normal, depth
     """,
 )
 mistakes(
@@ -1008,14 +920,10 @@ mistakes(
     "FRICTION_COEFFICIENT_CAPPED",
     "The coefficient of friction is cut off at one.",
     "mu may be larger than one, as for rubber on dry concrete. Use it as it is given.",
-).program(
+).around(
     "resolve_with_friction",
     """
-        _right_friction = resolve_with_friction
-
-
-        def resolve_with_friction(ma, mb, va, vb, normal, restitution, mu):
-            return _right_friction(ma, mb, va, vb, normal, restitution, min(mu, 1.0))
+        return _right(ma, mb, va, vb, normal, restitution, min(mu, 1.0))
     """,
 )
 mistakes(
@@ -1163,16 +1071,12 @@ mistakes(
     "THROWN_DOWNWARDS",
     "The ball starts with -v0, as if v0 were downwards.",
     "v0 is upwards: a positive one throws the ball up, and gravity changes it to v0 - g h in the first step.",
-).program(
+).around(
     "simulate_drop",
     """
-        _right = simulate_drop
-
-
-        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
-            t, z, v = _right(z0, -v0, radius, restitution, g, t_end, h)
-            v[0] = v0
-            return t, z, v
+        t, z, v = _right(z0, -v0, radius, restitution, g, t_end, h)
+        v[0] = v0
+        return t, z, v
     """,
 )
 mistakes(
@@ -1291,50 +1195,38 @@ mistakes(
     "Where the bodies do not touch within the step, the result is something other than None.",
     "Return None there: a number would be read as a time, and infinity as one that never comes.",
     kind="consequence",
-).program(
+).around(
     "time_of_impact",
     """
-        _right_moment = time_of_impact
-
-
-        def time_of_impact(xa, va, ra, xb, vb, rb, dt):
-            t = _right_moment(xa, va, ra, xb, vb, rb, dt)
-            return -1.0 if t is None else t
+        t = _right(xa, va, ra, xb, vb, rb, dt)
+        return -1.0 if t is None else t
     """,
 )
 mistakes(
     "FIRST_STEP_MISSED",
     "A contact within the first step is missed, and the bodies go through each other.",
     "In every step, including the first, ask before you move the bodies whether the gap closes within it.",
-).program(
+).around(
     "simulate_head_on",
     """
-        _right_head_on = simulate_head_on
-
-
-        def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):
-            gap, closing = x0[1] - x0[0] - 2 * radius, v0[0] - v0[1]
-            t, x, v = _right_head_on(m, x0, v0, radius, restitution, t_end, h)
-            if closing > 0 and gap <= closing * h:  # the impact that the first step skips is never made up for
-                x, v = x0 + t[:, None] * v0, np.broadcast_to(v0, x.shape).copy()
-            return t, x, v
+        gap, closing = x0[1] - x0[0] - 2 * radius, v0[0] - v0[1]
+        t, x, v = _right(m, x0, v0, radius, restitution, t_end, h)
+        if closing > 0 and gap <= closing * h:  # the impact that the first step skips is never made up for
+            x, v = x0 + t[:, None] * v0, np.broadcast_to(v0, x.shape).copy()
+        return t, x, v
     """,
 )
 mistakes(
     "LAUNCH_IGNORED",
     "A ball that starts on the floor and moves upwards does not fly.",
     "A ball that starts on the floor with v0 > g h flies off, although it touches the floor.",
-).program(
+).around(
     "simulate_drop",
     """
-        _right_drop = simulate_drop
-
-
-        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
-            t, z, v = _right_drop(z0, v0, radius, restitution, g, t_end, h)
-            if z0 <= radius:
-                z[1:], v[1:] = radius, 0.0
-            return t, z, v
+        t, z, v = _right(z0, v0, radius, restitution, g, t_end, h)
+        if z0 <= radius:
+            z[1:], v[1:] = radius, 0.0
+        return t, z, v
     """,
 )
 mistakes(
@@ -1435,18 +1327,14 @@ mistakes(
     "The wall's own velocity does not count: the result is that of a wall at rest.",
     "A wall may move, as a piston does: s = (va - vb) . n holds for it, too.",
     kind="consequence",
-).program(
+).around(
     "resolve",
     """
-        _right = resolve
-
-
-        def resolve(ma, mb, va, vb, normal, restitution):
-            if np.isinf(ma):
-                return va, _right(ma, mb, 0 * va, vb, normal, restitution)[1]
-            if np.isinf(mb):
-                return _right(ma, mb, va, 0 * vb, normal, restitution)[0], vb
-            return _right(ma, mb, va, vb, normal, restitution)
+        if np.isinf(ma):
+            return va, _right(ma, mb, 0 * va, vb, normal, restitution)[1]
+        if np.isinf(mb):
+            return _right(ma, mb, va, 0 * vb, normal, restitution)[0], vb
+        return _right(ma, mb, va, vb, normal, restitution)
     """,
 )
 mistakes(
@@ -1454,14 +1342,10 @@ mistakes(
     "Against a wall there is no friction.",
     "Walls rub like other bodies: Jt = min(mu J, |vt| / (1/ma + 1/mb)), where one over infinity is zero.",
     kind="consequence",
-).program(
+).around(
     "resolve_with_friction",
     """
-        _right = resolve_with_friction
-
-
-        def resolve_with_friction(ma, mb, va, vb, normal, restitution, mu):
-            return _right(ma, mb, va, vb, normal, restitution, 0.0 if math.inf in (ma, mb) else mu)
+        return _right(ma, mb, va, vb, normal, restitution, 0.0 if math.inf in (ma, mb) else mu)
     """,
 )
 mistakes(
@@ -1492,16 +1376,12 @@ mistakes(
     "REST_KEEPS_SPEED",
     "The ball lies on the floor, but its velocity is not zero there.",
     "At rest both are fixed: z = radius and v = 0, in the row after the contact and in all later ones.",
-).program(
+).around(
     "simulate_drop",
     """
-        _right = simulate_drop
-
-
-        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
-            t, z, v = _right(z0, v0, radius, restitution, g, t_end, h)
-            still = (v == 0.0) & (z == radius) & (t > 0)
-            return t, z, np.where(still, 0.3 * g * h, v)
+        t, z, v = _right(z0, v0, radius, restitution, g, t_end, h)
+        still = (v == 0.0) & (z == radius) & (t > 0)
+        return t, z, np.where(still, 0.3 * g * h, v)
     """,
 )
 mistakes(
@@ -1535,29 +1415,21 @@ mistakes(
     "OTHER_GRAVITY",
     "From the start the ball falls with another g than the one that is given.",
     "Use the argument g everywhere: in the flight, for the time to the floor, and in the rule for the rest.",
-).program(
+).around(
     "simulate_drop",
     """
-        _right = simulate_drop
-
-
-        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
-            return _right(z0, v0, radius, restitution, 9.81, t_end, h)
+        return _right(z0, v0, radius, restitution, 9.81, t_end, h)
     """,
 )
 mistakes(
     "NORMAL_REVERSED_AT_TIMES",
     "In some cases the normal points the other way.",
     "The normal points from a to b wherever they are and however deep they overlap: (xb - xa) over its length. A plane's normal is the one you are given, also for a centre below it.",
-).program(
+).around(
     "detect_sphere_sphere",
     """
-        _right = detect_sphere_sphere
-
-
-        def detect_sphere_sphere(xa, ra, xb, rb):
-            touching, normal, depth = _right(xa, ra, xb, rb)
-            return touching, -normal if depth > min(ra, rb) else normal, depth
+        touching, normal, depth = _right(xa, ra, xb, rb)
+        return touching, -normal if depth > min(ra, rb) else normal, depth
     """,
 )
 mistakes(
@@ -1633,23 +1505,15 @@ mistakes(
     "Of these pairs, only those with two equal masses are wrong.",
     "The formula holds for all masses, without a special case. Equal bodies exchange their velocities only for e = 1.",
     kind="consequence",
-).program(
+).around(
     "resolve",
     """
-        _right = resolve
-
-
-        def resolve(ma, mb, va, vb, normal, restitution):
-            return _right(ma, mb, va, vb, normal, 1.0 if ma == mb else restitution)
+        return _right(ma, mb, va, vb, normal, 1.0 if ma == mb else restitution)
     """,
-).program(
+).around(
     "impulse_1d",
     """
-        _right = impulse_1d
-
-
-        def impulse_1d(ma, mb, va, vb, restitution):
-            return _right(ma, mb, va, vb, 1.0 if ma == mb else restitution)
+        return _right(ma, mb, va, vb, 1.0 if ma == mb else restitution)
     """,
 )
 mistakes(
@@ -2291,25 +2155,17 @@ mistakes(
     "HISTORIES_SWAPPED",
     "The positions and the velocities are returned in each other's place.",
     "Return the times first, then the positions, then the velocities: (t, x, v), or (t, z, v) for the drop.",
-).program(
+).around(
     "simulate_head_on",
     """
-        _right = simulate_head_on
-
-
-        def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):
-            t, x, v = _right(m, x0, v0, radius, restitution, t_end, h)
-            return t, v, x
+        t, x, v = _right(m, x0, v0, radius, restitution, t_end, h)
+        return t, v, x
     """,
-).program(
+).around(
     "simulate_drop",
     """
-        _right_drop = simulate_drop
-
-
-        def simulate_drop(z0, v0, radius, restitution, g, t_end, h):
-            t, z, v = _right_drop(z0, v0, radius, restitution, g, t_end, h)
-            return t, v, z
+        t, z, v = _right(z0, v0, radius, restitution, g, t_end, h)
+        return t, v, z
     """,
 )
 mistakes(

@@ -52,71 +52,47 @@ mistakes(
         "= np.asarray(segments, dtype=float).reshape(-1, 2, 2": "-= np.array([x, y]",
         "(segments[:, 0] - (x, y))": "segments[:, 0]",
     },
-).program(
+).around(
     "delay_line",
     """
-        _kept = delay_line
-
-
-        def delay_line(x, dt, latency):
-            y = _kept(x, dt, latency)
-            x[dt * np.arange(len(x)) < latency] = 0.0
-            return y
+        y = _right(x, dt, latency)
+        x[dt * np.arange(len(x)) < latency] = 0.0
+        return y
     """,
-).program(
+).around(
     "sync",
     """
-        _whole = sync
-
-
-        def sync(twin, z, t_measured):
-            twin.update(_whole(twin, z, t_measured))
-            return dict(twin)
+        twin.update(_right(twin, z, t_measured))
+        return dict(twin)
     """,
-).program(
+).around(
     "sync",
     """
-        _given = sync
-
-
-        def sync(twin, z, t_measured):
-            out = _given(dict(twin), z, t_measured)
-            twin["drive"] = 0.0
-            return out
+        out = _right(dict(twin), z, t_measured)
+        twin["drive"] = 0.0
+        return out
     """,
-).program(
+).around(
     "sync",
     """
-        _given = sync
-
-
-        def sync(twin, z, t_measured):
-            out = _given({**twin, "memory": twin["memory"].get("own", {})}, z, t_measured)
-            twin["memory"].setdefault("seen", []).append([t_measured, z])
-            del twin["memory"]["seen"][:-10]
-            return {**out, "memory": {"own": out["memory"], "seen": list(twin["memory"]["seen"])}}
+        out = _right({**twin, "memory": twin["memory"].get("own", {})}, z, t_measured)
+        twin["memory"].setdefault("seen", []).append([t_measured, z])
+        del twin["memory"]["seen"][:-10]
+        return {**out, "memory": {"own": out["memory"], "seen": list(twin["memory"]["seen"])}}
     """,
-).program(
+).around(
     "imu",
     """
-        _apart = imu
-
-
-        def imu(true, dt, noise_density, bias_random_walk, bias0, rng):
-            measured, bias = _apart(np.zeros(len(true)), dt, noise_density, bias_random_walk, bias0, rng)
-            true += measured
-            return true.copy(), bias
+        measured, bias = _right(np.zeros(len(true)), dt, noise_density, bias_random_walk, bias0, rng)
+        true += measured
+        return true.copy(), bias
     """,
-).program(
+).around(
     "fit_noise",
     """
-        _kept = fit_noise
-
-
-        def fit_noise(still, dt):
-            found = _kept(still, dt)
-            still -= np.mean(still)
-            return found
+        found = _right(still, dt)
+        still -= np.mean(still)
+        return found
     """,
 ).body(
     "command",
@@ -189,110 +165,78 @@ mistakes(
     "GLOBAL_RANDOMNESS",
     "With the generator in the same state, a second call gives a different result, so something besides the generator has an effect.",
     "Draw only from the rng that is passed in: rng.standard_normal(n), not np.random.randn(n). Keep nothing between two calls.",
-).program(
+).around(
     "imu",
     """
-        _whole = imu
-
-
-        def imu(true, dt, noise_density, bias_random_walk, bias0, rng):
-            return _whole(true, dt, noise_density, bias_random_walk, bias0, np.random.default_rng())
+        return _right(true, dt, noise_density, bias_random_walk, bias0, np.random.default_rng())
     """,
-).program(
+).around(
     "lidar",
     """
-        _exact = lidar
-
-
-        def lidar(pose, segments, angles, r_max, sigma, rng):
-            ranges = _exact(pose, segments, angles, r_max, 0.0, rng)
-            noisy = np.maximum(ranges + sigma * np.random.randn(len(ranges)), 0.0)
-            return np.where(ranges < r_max, noisy, r_max)
+        ranges = _right(pose, segments, angles, r_max, 0.0, rng)
+        noisy = np.maximum(ranges + sigma * np.random.randn(len(ranges)), 0.0)
+        return np.where(ranges < r_max, noisy, r_max)
     """,
 )
 mistakes(
     "DENSITY_NOT_SCALED_BY_SQRT_DT",
     "The noise density is about a std of the samples, of their white noise or of their differences: the factor sqrt(dt) is missing.",
     "The white noise of a sample has std noise_density / sqrt(dt): multiply that std by sqrt(dt). In a fit, T is in seconds, not in samples.",
-).program(
+).around(
     "fit_noise",
     """
-        _whole = fit_noise
-
-
-        def fit_noise(still, dt):
-            return _whole(still, dt) | {"noise_density": float(np.std(np.diff(still)) / math.sqrt(2))}
+        return _right(still, dt) | {"noise_density": float(np.std(np.diff(still)) / math.sqrt(2))}
     """,
 )
 mistakes(
     "DRIFT_COUNTED_AS_NOISE",
     "The noise density is about what the std of the whole recording gives, which also contains the drift of the bias.",
     "Take the differences of neighbouring samples: they contain almost none of the drift, and their variance is twice that of the white noise.",
-).program(
+).around(
     "fit_noise",
     """
-        _whole = fit_noise
-
-
-        def fit_noise(still, dt):
-            return _whole(still, dt) | {"noise_density": float(np.std(still) * math.sqrt(dt))}
+        return _right(still, dt) | {"noise_density": float(np.std(still) * math.sqrt(dt))}
     """,
 )
 mistakes(
     "NOISE_COUNTED_AS_DRIFT",
     "The random walk is far too large: it is about what neighbouring samples give, whose differences are nearly all white noise.",
     "The white noise hides the walk between neighbouring samples. Average over longer and longer blocks: the variance of the noise falls as 1/T, and that of the walk grows as T/3.",
-).program(
+).around(
     "fit_noise",
     """
-        _whole = fit_noise
-
-
-        def fit_noise(still, dt):
-            return _whole(still, dt) | {"bias_random_walk": float(np.std(np.diff(still)) / math.sqrt(dt))}
+        return _right(still, dt) | {"bias_random_walk": float(np.std(np.diff(still)) / math.sqrt(dt))}
     """,
 )
 mistakes(
     "WALK_WITHOUT_THREE",
     "The random walk is too small by about the square root of three.",
     "If your code fits the Allan variance, look at the factor of the walk's term. A mean over T smooths the walk, so its part is K² T/3, not K² T.",
-).program(
+).around(
     "fit_noise",
     """
-        _whole = fit_noise
-
-
-        def fit_noise(still, dt):
-            found = _whole(still, dt)
-            return found | {"bias_random_walk": found["bias_random_walk"] / math.sqrt(3)}
+        found = _right(still, dt)
+        return found | {"bias_random_walk": found["bias_random_walk"] / math.sqrt(3)}
     """,
 )
 mistakes(
     "WHOLE_MEAN_AS_BIAS",
     "bias0 is the mean of the whole recording, but the bias has drifted since the start.",
     "Average only the start of the recording, about sqrt(3) N/K seconds of it.",
-).program(
+).around(
     "fit_noise",
     """
-        _whole = fit_noise
-
-
-        def fit_noise(still, dt):
-            return _whole(still, dt) | {"bias0": float(np.mean(still))}
+        return _right(still, dt) | {"bias0": float(np.mean(still))}
     """,
 )
 mistakes(
     "FIRST_SAMPLE_AS_BIAS",
     "bias0 is a single sample, with all of its white noise.",
     "Average the start of the recording: long enough to reduce the noise, and short enough that the bias has not drifted. That is about sqrt(3) N/K seconds.",
-).program(
+).around(
     "fit_noise",
     """
-        _whole = fit_noise
-
-
-        def fit_noise(still, dt):
-            return _whole(still, dt) | {"bias0": float(still[0])}
+        return _right(still, dt) | {"bias0": float(still[0])}
     """,
 )
 mistakes(
@@ -421,28 +365,20 @@ mistakes(
         u = 0.0 if abs(u) <= deadband else u
         return min(max(w - math.expm1(-dt / tau) * (u - w), -u_max), u_max)
     """,
-).program(
+).around(
     "motor_step",
     """
-        _whole = motor_step
-
-
-        def motor_step(w, u, dt, tau, u_max, deadband):
-            return min(max(_whole(w, u, dt, tau, u_max, deadband), -u_max), u_max)
+        return min(max(_right(w, u, dt, tau, u_max, deadband), -u_max), u_max)
     """,
 )
 mistakes(
     "DEADBAND_SUBTRACTED",
     "The dead band is subtracted from a command outside it.",
     "Here a command outside the dead band keeps its full value: only where abs(u) <= deadband does it become 0.",
-).program(
+).around(
     "motor_step",
     """
-        _whole = motor_step
-
-
-        def motor_step(w, u, dt, tau, u_max, deadband):
-            return _whole(w, math.copysign(max(abs(u) - deadband, 0.0), u), dt, tau, u_max, 0.0)
+        return _right(w, math.copysign(max(abs(u) - deadband, 0.0), u), dt, tau, u_max, 0.0)
     """,
 )
 mistakes(
@@ -508,14 +444,10 @@ mistakes(
     "If the caller changed the result later, its own array would change too.",
     "Return a new array: np.array(x) or x.copy() makes one.",
     kind="fact",
-).program(
+).around(
     "delay_line",
     """
-        _whole = delay_line
-
-
-        def delay_line(x, dt, latency):
-            return x if latency == 0 else _whole(x, dt, latency)
+        return x if latency == 0 else _right(x, dt, latency)
     """,
 )
 mistakes(
@@ -547,14 +479,10 @@ mistakes(
     "LEFT_RIGHT_SWAPPED",
     "A faster right wheel turns the robot to the right.",
     "A turn to the left is positive: turn rate = (v_right - v_left) / track.",
-).program(
+).around(
     "diff_drive_step",
     """
-        _whole = diff_drive_step
-
-
-        def diff_drive_step(pose, v_left, v_right, track, dt):
-            return _whole(pose, v_right, v_left, track, dt)
+        return _right(pose, v_right, v_left, track, dt)
     """,
 )
 mistakes(
@@ -605,32 +533,24 @@ mistakes(
     "STRAIGHT_WRONG",
     "A turn that was tried is right, but driving straight ahead is wrong.",
     "Straight ahead, the robot moves v dt along its heading. With np.sinc(turn / (2 * pi)) you need no special case.",
-).program(
+).around(
     "diff_drive_step",
     """
-        _whole = diff_drive_step
-
-
-        def diff_drive_step(pose, v_left, v_right, track, dt):
-            if v_left != v_right:
-                return _whole(pose, v_left, v_right, track, dt)
-            x, y, heading = pose
-            return np.array([x + v_left * math.cos(heading), y + v_left * math.sin(heading), heading])
+        if v_left != v_right:
+            return _right(pose, v_left, v_right, track, dt)
+        x, y, heading = pose
+        return np.array([x + v_left * math.cos(heading), y + v_left * math.sin(heading), heading])
     """,
 )
 mistakes(
     "HEADING_WRAPPED",
     "The heading jumps by whole turns.",
     "Leave it as it is: a heading beyond pi shows how often the robot has turned.",
-).program(
+).around(
     "diff_drive_step",
     """
-        _whole = diff_drive_step
-
-
-        def diff_drive_step(pose, v_left, v_right, track, dt):
-            x, y, heading = _whole(pose, v_left, v_right, track, dt)
-            return np.array([x, y, (heading + math.pi) % (2 * math.pi) - math.pi])
+        x, y, heading = _right(pose, v_left, v_right, track, dt)
+        return np.array([x, y, (heading + math.pi) % (2 * math.pi) - math.pi])
     """,
 )
 mistakes(
@@ -654,63 +574,47 @@ mistakes(
     "SLOW_TURN_AS_STRAIGHT",
     "Slow turns are treated as straight lines, including some that are fast enough to matter.",
     "Write the chord with np.sinc(turn / (2 * pi)), which needs no threshold. Or lower yours, but not so far that rounding spoils slow turns.",
-).program(
+).around(
     "diff_drive_step",
     """
-        _whole = diff_drive_step
-
-
-        def diff_drive_step(pose, v_left, v_right, track, dt):
-            if abs(v_right - v_left) / track > 0.01:
-                return _whole(pose, v_left, v_right, track, dt)
-            x, y, heading = pose
-            way = (v_left + v_right) / 2 * dt
-            turn = (v_right - v_left) / track * dt
-            return np.array([x + way * math.cos(heading), y + way * math.sin(heading), heading + turn])
+        if abs(v_right - v_left) / track > 0.01:
+            return _right(pose, v_left, v_right, track, dt)
+        x, y, heading = pose
+        way = (v_left + v_right) / 2 * dt
+        turn = (v_right - v_left) / track * dt
+        return np.array([x + way * math.cos(heading), y + way * math.sin(heading), heading + turn])
     """,
 )
 mistakes(
     "LATE_USED_AS_CURRENT",
     "A late measurement is compared with the twin's present position and drags the twin back, as if it had been taken now.",
     'If t_measured < twin["t"], ignore the measurement; or keep a short history in memory, correct the past, and run the model forward again.',
-).program(
+).around(
     "sync",
     """
-        _whole = sync
-
-
-        def sync(twin, z, t_measured):
-            return _whole(twin, z, max(t_measured, twin["t"]))
+        return _right(twin, z, max(t_measured, twin["t"]))
     """,
 )
 mistakes(
     "TIME_RUNS_BACK",
     "A late measurement sets the twin's clock back.",
     'Return "t": max(twin["t"], t_measured), so that a late measurement does not change the clock.',
-).program(
+).around(
     "sync",
     """
-        _whole = sync
-
-
-        def sync(twin, z, t_measured):
-            return _whole(twin, z, t_measured) | {"t": t_measured}
+        return _right(twin, z, t_measured) | {"t": t_measured}
     """,
 )
 mistakes(
     "MEMORY_DROPPED",
     "Your code keeps nothing in memory, and after many measurements one more still moves the position most of the way to it.",
     'A Kalman filter must return its covariance as "memory" and read it in the next call, or the last measurement weighs as much as the first. Start from scratch only where it is {}.',
-).program(
+).around(
     "sync",
     """
-        _whole = sync
-
-
-        def sync(twin, z, t_measured):
-            if t_measured < twin["t"]:
-                return dict(twin)
-            return _whole(twin, z, t_measured) | {"memory": {}}
+        if t_measured < twin["t"]:
+            return dict(twin)
+        return _right(twin, z, t_measured) | {"memory": {}}
     """,
 )
 mistakes(
@@ -795,29 +699,21 @@ mistakes(
     "BELIEVES_MEASUREMENT",
     "The position is simply the measured one, with all its noise.",
     "Move the position only a share of the way to z: the prediction contains information too.",
-).program(
+).around(
     "sync",
     """
-        _whole = sync
-
-
-        def sync(twin, z, t_measured):
-            if t_measured < twin["t"]:
-                return dict(twin)
-            seen = {**twin, "t": t_measured, "position": z}
-            if t_measured > twin["t"]:
-                seen["speed"] = (z - twin["position"]) / (t_measured - twin["t"])
-            return seen
+        if t_measured < twin["t"]:
+            return dict(twin)
+        seen = {**twin, "t": t_measured, "position": z}
+        if t_measured > twin["t"]:
+            seen["speed"] = (z - twin["position"]) / (t_measured - twin["t"])
+        return seen
     """,
-).program(
+).around(
     "sync",
     """
-        _filtered = sync
-
-
-        def sync(twin, z, t_measured):
-            out = _filtered(twin, z, t_measured)
-            return {**out, "position": z} if t_measured >= twin["t"] else out
+        out = _right(twin, z, t_measured)
+        return {**out, "position": z} if t_measured >= twin["t"] else out
     """,
 )
 mistakes(
@@ -846,14 +742,10 @@ mistakes(
     "DRIVE_NOT_USED",
     "Another drive makes no difference to the prediction.",
     'dv/dt = drive - friction * speed, with twin["drive"].',
-).program(
+).around(
     "sync",
     """
-        _whole = sync
-
-
-        def sync(twin, z, t_measured):
-            return _whole({**twin, "drive": 0.0}, z, t_measured) | {"drive": twin["drive"]}
+        return _right({**twin, "drive": 0.0}, z, t_measured) | {"drive": twin["drive"]}
     """,
 )
 mistakes(
@@ -952,15 +844,11 @@ mistakes(
     "Your code returns another drive or another sigma than it was given.",
     'Return drive and sigma as they are: {**twin, "t": ..., "position": ...}.',
     kind="fact",
-).program(
+).around(
     "sync",
     """
-        _given = sync
-
-
-        def sync(twin, z, t_measured):
-            out = _given(twin, z, t_measured)
-            return {**out, "drive": out["friction"] * out["speed"]}
+        out = _right(twin, z, t_measured)
+        return {**out, "drive": out["friction"] * out["speed"]}
     """,
 )
 mistakes(
@@ -968,17 +856,13 @@ mistakes(
     "After twice the time, your code holds much more in the memory.",
     "Keep the last second or two of the history, and discard what is older.",
     kind="fact",
-).program(
+).around(
     "sync",
     """
-        _given = sync
-
-
-        def sync(twin, z, t_measured):
-            memory = twin["memory"]
-            out = _given({**twin, "memory": memory.get("own", {})}, z, t_measured)
-            state = [t_measured, z, out["t"], out["position"], out["speed"], out["friction"], out["drive"]]
-            return {**out, "memory": {"own": out["memory"], "all": [*memory.get("all", []), state]}}
+        memory = twin["memory"]
+        out = _right({**twin, "memory": memory.get("own", {})}, z, t_measured)
+        state = [t_measured, z, out["t"], out["position"], out["speed"], out["friction"], out["drive"]]
+        return {**out, "memory": {"own": out["memory"], "all": [*memory.get("all", []), state]}}
     """,
 ).body(
     "sync",
@@ -1061,14 +945,10 @@ mistakes(
     "GENERATOR_IGNORED",
     "Different generators give the same random numbers, all of them or some.",
     "Draw from the rng that is passed in, and do not make one of your own with a fixed seed.",
-).program(
+).around(
     "lidar",
     """
-        _with = lidar
-
-
-        def lidar(pose, segments, angles, r_max, sigma, rng):
-            return _with(pose, segments, angles, r_max, sigma, np.random.default_rng(0))
+        return _right(pose, segments, angles, r_max, sigma, np.random.default_rng(0))
     """,
 ).edit("imu", {"(dt) * rng.standard_normal(n -": "(dt) * np.random.default_rng(4).standard_normal(n -"}).edit(
     "imu", {"dt) * rng.standard_normal(n)": "dt) * np.random.default_rng(4).standard_normal(n)"}
@@ -1077,14 +957,10 @@ mistakes(
     "NOISE_CUT_AT_MAX",
     "A wall just within range never reads more than r_max, even with noise.",
     "The reading of a hit may exceed r_max: after the noise, limit it to zero or more and to nothing else. If your code decides from the noisy reading whether a beam hits, let it decide before the noise.",
-).program(
+).around(
     "lidar",
     """
-        _uncut = lidar
-
-
-        def lidar(pose, segments, angles, r_max, sigma, rng):
-            return np.minimum(_uncut(pose, segments, angles, r_max, sigma, rng), r_max)
+        return np.minimum(_right(pose, segments, angles, r_max, sigma, rng), r_max)
     """,
 )
 mistakes(
@@ -1105,14 +981,10 @@ mistakes(
     "BIAS0_IGNORED",
     "The bias does not start at bias0, but at zero or near it.",
     "bias[0] is bias0: add it to the running sum of the steps, with a 0 in front.",
-).program(
+).around(
     "imu",
     """
-        _from = imu
-
-
-        def imu(true, dt, noise_density, bias_random_walk, bias0, rng):
-            return _from(true, dt, noise_density, bias_random_walk, 0.0, rng)
+        return _right(true, dt, noise_density, bias_random_walk, 0.0, rng)
     """,
 )
 mistakes(
@@ -1142,35 +1014,27 @@ mistakes(
     "BIAS0_WITHOUT_SIGN",
     "bias0 has about the right size, but it is not negative even in recordings with a negative bias.",
     "A bias has a sign: return the mean itself, neither its absolute value nor the root of a mean square.",
-).program(
+).around(
     "fit_noise",
     """
-        _signed = fit_noise
-
-
-        def fit_noise(still, dt):
-            found = _signed(still, dt)
-            return {**found, "bias0": abs(found["bias0"])}
+        found = _right(still, dt)
+        return {**found, "bias0": abs(found["bias0"])}
     """,
 )
 mistakes(
     "DENSITY_FROM_DIFFERENCES",
     "The noise density is too large by about the square root of two.",
     "With white noise, a difference of two samples, or of two means, has twice the variance of one: divide the mean square by two before you take the root.",
-).program(
+).around(
     "fit_noise",
     """
-        _halved = fit_noise
-
-
-        def fit_noise(still, dt):
-            found = _halved(still, dt)
-            root = math.sqrt(2)
-            return {
-                **found,
-                "noise_density": root * found["noise_density"],
-                "bias_random_walk": root * found["bias_random_walk"],
-            }
+        found = _right(still, dt)
+        root = math.sqrt(2)
+        return {
+            **found,
+            "noise_density": root * found["noise_density"],
+            "bias_random_walk": root * found["bias_random_walk"],
+        }
     """,
 )
 mistakes(
@@ -1259,16 +1123,12 @@ mistakes(
     "MEMORY_NOT_READ",
     "In two calls, one with a new measurement and one with a late one, emptying the memory changed neither position, speed nor friction.",
     'If your code does not read "memory", let it read in each call what the call before returned there, such as the covariance of a Kalman filter. If it does, look at the signs and sizes of the shares, and at any limit of the friction.',
-).program(
+).around(
     "sync",
     """
-        _whole = sync
-
-
-        def sync(twin, z, t_measured):
-            if t_measured < twin["t"]:
-                return dict(twin)
-            return _whole({**twin, "memory": {}}, z, t_measured)
+        if t_measured < twin["t"]:
+            return dict(twin)
+        return _right({**twin, "memory": {}}, z, t_measured)
     """,
 )
 mistakes(
@@ -1327,18 +1187,14 @@ mistakes(
     "FRICTION_LIMITED",
     "The friction moves in the right direction, but it stops at one value before it reaches the true one.",
     "Look for what stops it: a limit (plausible values are 0.05 to 5 per second), or a condition under which it is no longer corrected.",
-).program(
+).around(
     "sync",
     """
-        _free = sync
-
-
-        def sync(twin, z, t_measured):
-            new = _free(twin, z, t_measured)
-            first = twin["memory"].get("first", twin["friction"])
-            rows = new["memory"]["rows"].copy()
-            rows[:, 5] = np.clip(rows[:, 5], 0.9 * first, 1.1 * first)
-            return {**new, "friction": float(rows[-1, 5]), "memory": {"rows": rows, "first": first}}
+        new = _right(twin, z, t_measured)
+        first = twin["memory"].get("first", twin["friction"])
+        rows = new["memory"]["rows"].copy()
+        rows[:, 5] = np.clip(rows[:, 5], 0.9 * first, 1.1 * first)
+        return {**new, "friction": float(rows[-1, 5]), "memory": {"rows": rows, "first": first}}
     """,
 )
 mistakes(
@@ -1363,28 +1219,20 @@ mistakes(
     "BIAS0_FROM_THE_MEAN",
     "bias0 is a mean over the start after the mean of the whole recording has been taken off.",
     "Average the start of the recording as it is, before anything is subtracted from it.",
-).program(
+).around(
     "fit_noise",
     """
-        _as_it_is = fit_noise
-
-
-        def fit_noise(still, dt):
-            return _as_it_is(still - np.mean(still), dt)
+        return _right(still - np.mean(still), dt)
     """,
 )
 mistakes(
     "BIAS0_OF_THE_END",
     "bias0 is a mean over the end of the recording, and the bias has drifted since the start.",
     "Average the start of the recording, about sqrt(3) N/K seconds of it.",
-).program(
+).around(
     "fit_noise",
     """
-        _at_the_start = fit_noise
-
-
-        def fit_noise(still, dt):
-            return _at_the_start(still[::-1], dt)
+        return _right(still[::-1], dt)
     """,
 )
 mistakes(
@@ -2172,15 +2020,11 @@ mistakes(
     "SLOW_TURN_NOT_TURNED",
     "In some slow turns the heading that is returned is the old one.",
     "Return heading + turn in every case, also where the chord counts as straight.",
-).program(
+).around(
     "diff_drive_step",
     """
-        _all_turned = diff_drive_step
-
-
-        def diff_drive_step(pose, v_left, v_right, track, dt):
-            x, y, heading = _all_turned(pose, v_left, v_right, track, dt)
-            return np.array([x, y, pose[2] if abs(heading - pose[2]) < 1e-4 else heading])
+        x, y, heading = _right(pose, v_left, v_right, track, dt)
+        return np.array([x, y, pose[2] if abs(heading - pose[2]) < 1e-4 else heading])
     """,
 )
 mistakes(

@@ -86,51 +86,41 @@ mistakes(
     "A measured slope seldom is.",
     "Round it: round(math.log2(ratio)).",
     kind="fact",
-).program(
+).around(
     "characterise",
     """
-        _whole_order = _order
+        def end(n):
+            q, v = engine.run("spring", [1.0], [0.7 * omega], 1.3 / omega / n, n, [0.0])
+            return np.array([q[-1][0], v[-1][0] / omega])
 
-
-        def _order(engine, omega):
-            def end(n):
-                q, v = engine.run("spring", [1.0], [0.7 * omega], 1.3 / omega / n, n, [0.0])
-                return np.array([q[-1][0], v[-1][0] / omega])
-
-            coarse, middle, fine = end(16), end(32), end(64)
-            return math.log2(np.linalg.norm(coarse - middle) / np.linalg.norm(middle - fine))
+        coarse, middle, fine = end(16), end(32), end(64)
+        return math.log2(np.linalg.norm(coarse - middle) / np.linalg.norm(middle - fine))
     """,
+    of="_order",
 )
 mistakes(
     "SYMPLECTIC_STEP_TOO_SMALL",
     "Engines that lose area pass the test. The step is so small that the loss hides in the threshold.",
     "Take the one step with h = 0.5/omega, as the README says.",
     kind="consequence",
-).program(
+).around(
     "characterise",
     """
-        _whole_step = _spring_step
-
-
-        def _spring_step(engine, omega, z):
-            return _whole_step(engine, omega, 0.05 if z == 0.5 else z)
+        return _right(engine, omega, 0.05 if z == 0.5 else z)
     """,
+    of="_spring_step",
 )
 mistakes(
     "STABLE_TAKEN_FOR_SYMPLECTIC",
     "Engines that lose area pass the test.",
     "Take the states after one step of h = 0.5/omega as columns, and test abs(det - 1) < 1e-6: below one, too, area is lost.",
     kind="consequence",
-).program(
+).around(
     "characterise",
     """
-        _characterise = characterise
-
-
-        def characterise(engine):
-            omega = engine.info()["omega"]
-            radius = max(abs(np.linalg.eigvals(_spring_step(engine, omega, 0.5))))
-            return {**_characterise(engine), "symplectic": bool(radius <= 1 + 1e-6)}
+        omega = engine.info()["omega"]
+        radius = max(abs(np.linalg.eigvals(_spring_step(engine, omega, 0.5))))
+        return {**_right(engine), "symplectic": bool(radius <= 1 + 1e-6)}
     """,
 )
 mistakes(
@@ -138,17 +128,13 @@ mistakes(
     "No engine passes the test here, not even one that conserves area.",
     "Build the matrix of one step on (q, v/omega): two runs with n = 1, from (1, 0) and (0, omega), and both velocities divided by omega. Then test abs(det - 1) < 1e-6, where [[a, b], [c, d]] has det = a d - b c.",
     kind="consequence",
-).program(
+).around(
     "characterise",
     """
-        _characterise = characterise
-
-
-        def characterise(engine):
-            omega = engine.info()["omega"]
-            q, v = engine.run("spring", [1.0], [0.4 * omega], 0.5 / omega, 1, [0.0])
-            energy = [x[0] ** 2 + (y[0] / omega) ** 2 for x, y in zip(q, v)]
-            return {**_characterise(engine), "symplectic": bool(abs(energy[1] / energy[0] - 1) < 1e-6)}
+        omega = engine.info()["omega"]
+        q, v = engine.run("spring", [1.0], [0.4 * omega], 0.5 / omega, 1, [0.0])
+        energy = [x[0] ** 2 + (y[0] / omega) ** 2 for x, y in zip(q, v)]
+        return {**_right(engine), "symplectic": bool(abs(energy[1] / energy[0] - 1) < 1e-6)}
     """,
 )
 mistakes(
@@ -270,15 +256,12 @@ mistakes(
     "RETURNS_Z",
     "The result is as large as the step times omega.",
     "Divide by omega: the answer is a time in seconds.",
-).program(
+).around(
     "characterise",
     """
-        _z = _max_stable_z
-
-
-        def _max_stable_z(engine, omega):
-            return _z(engine, omega) * omega
+        return _right(engine, omega) * omega
     """,
+    of="_max_stable_z",
 )
 mistakes(
     "NO_ZERO",
@@ -304,43 +287,34 @@ mistakes(
     "An engine that is never unstable gets a finite number.",
     "Return math.inf if no step in the README's range is unstable.",
     kind="consequence",
-).program(
+).around(
     "characterise",
     """
-        _z = _max_stable_z
-
-
-        def _max_stable_z(engine, omega):
-            return min(_z(engine, omega), 10.0)
+        return min(_right(engine, omega), 10.0)
     """,
+    of="_max_stable_z",
 )
 mistakes(
     "ANISOTROPY_INVERTED",
     "The result is as large as one over the right ratio.",
     "The force along the diagonal is the numerator: F(45 degrees) / F(0 degrees).",
-).program(
+).around(
     "characterise",
     """
-        _ratio = _anisotropy
-
-
-        def _anisotropy(engine, info):
-            return 1 / _ratio(engine, info)
+        return 1 / _right(engine, info)
     """,
+    of="_anisotropy",
 )
 mistakes(
     "DIAGONAL_COMPONENT",
     "The ratio is too small by the square root of two, as if one component of the diagonal force were the force.",
     "Push with (F cos 45°, F sin 45°, 0) and report F. A push of (F, F, 0) is the square root of two times as large as F.",
-).program(
+).around(
     "characterise",
     """
-        _ratio = _anisotropy
-
-
-        def _anisotropy(engine, info):
-            return _ratio(engine, info) / math.sqrt(2)
+        return _right(engine, info) / math.sqrt(2)
     """,
+    of="_anisotropy",
 )
 mistakes(
     "ANISOTROPY_ASSUMED",
@@ -387,30 +361,22 @@ mistakes(
     "PENETRATION_SIGN",
     "A body that sinks in gets a depth of zero or less, or one that hovers gets a positive depth.",
     "The depth is max(0, radius - z): the centre of a body that sinks in is lower than its radius.",
-).program(
+).around(
     "characterise",
     """
-        _characterise = characterise
-
-
-        def characterise(engine):
-            info = engine.info()
-            return {**_characterise(engine), "rest_penetration": max(0.0, _settled(engine, info)[2] - info["radius"])}
+        info = engine.info()
+        return {**_right(engine), "rest_penetration": max(0.0, _settled(engine, info)[2] - info["radius"])}
     """,
 )
 mistakes(
     "PENETRATION_NEGATIVE",
     "An engine that keeps bodies at a distance gets a negative depth.",
     "The report asks for max(0, radius - z).",
-).program(
+).around(
     "characterise",
     """
-        _characterise = characterise
-
-
-        def characterise(engine):
-            info = engine.info()
-            return {**_characterise(engine), "rest_penetration": info["radius"] - _settled(engine, info)[2]}
+        info = engine.info()
+        return {**_right(engine), "rest_penetration": info["radius"] - _settled(engine, info)[2]}
     """,
 )
 mistakes(
@@ -418,86 +384,70 @@ mistakes(
     "Only engines with soft contact get a wrong depth. It is measured while the body still moves.",
     "Wait five seconds, and take the last sample.",
     kind="consequence",
-).program(
+).around(
     "characterise",
     """
-        _characterise = characterise
-
-
-        def characterise(engine):
-            info = engine.info()
-            q, _ = engine.run(
-                "floor", [0, 0, info["radius"]], [0, 0, 0], info["dt"], round(5 / info["dt"]), [0, 0, 0]
-            )
-            deepest = max(0.0, info["radius"] - min(z for _, _, z in q))
-            return {**_characterise(engine), "rest_penetration": deepest}
+        info = engine.info()
+        q, _ = engine.run(
+            "floor", [0, 0, info["radius"]], [0, 0, 0], info["dt"], round(5 / info["dt"]), [0, 0, 0]
+        )
+        deepest = max(0.0, info["radius"] - min(z for _, _, z in q))
+        return {**_right(engine), "rest_penetration": deepest}
     """,
 )
 mistakes(
     "RESTITUTION_SIGN",
     "For at least one engine the ratio is negative.",
     "The velocity changes its sign at the wall, and the report asks for the ratio of the speeds. Does the body reach the wall?",
-).program(
+).around(
     "characterise",
     """
-        _hit = _slow_hit
-
-
-        def _slow_hit(engine, info):
-            ratio, face = _hit(engine, info)
-            return -ratio, face
+        ratio, face = _right(engine, info)
+        return -ratio, face
     """,
+    of="_slow_hit",
 )
 mistakes(
     "RESTITUTION_SQUARED",
     "The result is the square of the right ratio, or its square root.",
     "Divide the speed after the hit by the speed before it, without a square.",
-).program(
+).around(
     "characterise",
     """
-        _hit = _slow_hit
-
-
-        def _slow_hit(engine, info):
-            ratio, face = _hit(engine, info)
-            return ratio**2, face
+        ratio, face = _right(engine, info)
+        return ratio**2, face
     """,
+    of="_slow_hit",
 )
 mistakes(
     "RESTITUTION_WITH_DRAG",
     "The ratio is too low for engines with damping: speed that is lost before the hit, or after it, counts as lost in the hit.",
     "Start at 2 m/s close to the wall, and compare the last sample before the hit with the first one after it.",
     kind="consequence",
-).program(
+).around(
     "characterise",
     """
-        _hit = _slow_hit
-
-
-        def _slow_hit(engine, info):
-            dt = info["dt"]
-            speed = 2.0
-            q, v = engine.run("wall", [-1.0], [speed], dt, round(0.8 / dt), [0])
-            return -v[-1][0] / speed, _hit(engine, info)[1]
+        dt = info["dt"]
+        speed = 2.0
+        q, v = engine.run("wall", [-1.0], [speed], dt, round(0.8 / dt), [0])
+        return -v[-1][0] / speed, _right(engine, info)[1]
     """,
+    of="_slow_hit",
 )
 mistakes(
     "RESTITUTION_OTHER_SPEED",
     "Engines in which slow bodies do not bounce get zero. Perhaps the body meets the wall at less than 2 m/s.",
     "Let the body hit the wall at 2 m/s, because the coefficient may depend on the speed.",
     kind="consequence",
-).program(
+).around(
     "characterise",
     """
-        _hit = _slow_hit
-
-
-        def _slow_hit(engine, info):
-            start = -(info["radius"] + info["wall_thickness"] / 2) - 3.5 * info["dt"]
-            q, v = engine.run("wall", [start], [1.0], info["dt"], 10, [0])
-            hit = next(i for i in range(11) if v[i][0] <= 0)
-            return -v[hit][0] / v[hit - 1][0], _hit(engine, info)[1]
+        start = -(info["radius"] + info["wall_thickness"] / 2) - 3.5 * info["dt"]
+        q, v = engine.run("wall", [start], [1.0], info["dt"], 10, [0])
+        hit = next(i for i in range(11) if v[i][0] <= 0)
+        return -v[hit][0] / v[hit - 1][0], _right(engine, info)[1]
     """,
+    of="_slow_hit",
 )
 mistakes(
     "TUNNEL_ONE_START",
@@ -556,15 +506,12 @@ mistakes(
     "An engine that stops everything gets a finite number.",
     "Return math.inf if nothing gets through in the README's range of speeds.",
     kind="consequence",
-).program(
+).around(
     "characterise",
     """
-        _speed = _tunnelling_speed
-
-
-        def _tunnelling_speed(engine, info):
-            return min(_speed(engine, info), 200.0)
+        return min(_right(engine, info), 200.0)
     """,
+    of="_tunnelling_speed",
 )
 mistakes(
     "DETERMINISM_ONE_RUN",
@@ -618,14 +565,10 @@ mistakes(
     """,
     of="_deterministic",
 )
-mistakes("WRONG_KEYS").program(
+mistakes("WRONG_KEYS").around(
     "characterise",
     """
-        _characterise = characterise
-
-
-        def characterise(engine):
-            return {**_characterise(engine), "name": "unknown"}
+        return {**_right(engine), "name": "unknown"}
     """,
 )
 mistakes(
@@ -633,14 +576,10 @@ mistakes(
     "",
     "If you measure it already, perhaps an exception that you catch became None, or `x or None` turned a 0 into None.",
     kind="fact",
-).program(
+).around(
     "characterise",
     """
-        _characterise = characterise
-
-
-        def characterise(engine):
-            return {**_characterise(engine), "friction_anisotropy": None}
+        return {**_right(engine), "friction_anisotropy": None}
     """,
 )
 mistakes("ENGINE_MISUSED").body(
@@ -688,40 +627,28 @@ mistakes(
     "COST_REVERSED",
     "Of the engines that fit, your code picks the most expensive one.",
     "Take the one with the lowest cost.",
-).program(
+).around(
     "choose_engine",
     """
-        _cheapest = choose_engine
-
-
-        def choose_engine(reports, requirements):
-            turned = {name: {**report, "cost": -report["cost"]} for name, report in reports.items()}
-            return _cheapest(turned, requirements)
+        turned = {name: {**report, "cost": -report["cost"]} for name, report in reports.items()}
+        return _right(turned, requirements)
     """,
 )
 mistakes(
     "COST_IGNORED",
     "Of the engines that fit, your code picks one that is not the cheapest.",
     "Take the one with the lowest cost.",
-).program(
+).around(
     "choose_engine",
     """
-        _cheapest = choose_engine
-
-
-        def choose_engine(reports, requirements):
-            equal = {name: {**report, "cost": 0.0} for name, report in reports.items()}
-            return _cheapest(equal, requirements)
+        equal = {name: {**report, "cost": 0.0} for name, report in reports.items()}
+        return _right(equal, requirements)
     """,
-).program(
+).around(
     "choose_engine",
     """
-        _cheapest = choose_engine
-
-
-        def choose_engine(reports, requirements):
-            fitting = [name for name in reports if _cheapest({name: reports[name]}, requirements)]
-            return fitting[-1] if fitting else None
+        fitting = [name for name in reports if _right({name: reports[name]}, requirements)]
+        return fitting[-1] if fitting else None
     """,
 )
 mistakes(
@@ -787,17 +714,13 @@ mistakes(
     "With the same reports under other names, your code picks another engine.",
     "Use only the reports, and compare the costs as they are.",
     kind="consequence",
-).program(
+).around(
     "choose_engine",
     """
-        _cheapest = choose_engine
-
-
-        def choose_engine(reports, requirements):
-            for name in sorted(reports):
-                if name.startswith(("mujoco", "ode")) and _cheapest({name: reports[name]}, requirements):
-                    return name
-            return _cheapest(reports, requirements)
+        for name in sorted(reports):
+            if name.startswith(("mujoco", "ode")) and _right({name: reports[name]}, requirements):
+                return name
+        return _right(reports, requirements)
     """,
 ).program(
     "choose_engine",
@@ -810,14 +733,10 @@ mistakes(
             known = {name: report for name, report in reports.items() if name.split(",")[0] in _KNOWN}
             return _cheapest(known, requirements)
     """,
-).program(
+).around(
     "choose_engine",
     """
-        _cheapest = choose_engine
-
-
-        def choose_engine(reports, requirements):
-            return min((n for n in reports if _cheapest({n: reports[n]}, requirements)), default=None)
+        return min((n for n in reports if _right({n: reports[n]}, requirements)), default=None)
     """,
 )
 mistakes(
@@ -825,42 +744,30 @@ mistakes(
     "The reports or the requirements were changed.",
     "Build new lists and dicts: setdefault, pop and sort change the given ones.",
     kind="fact",
-).program(
+).around(
     "choose_engine",
     """
-        _cheapest = choose_engine
-
-
-        def choose_engine(reports, requirements):
-            for name in list(reports):
-                if _cheapest({name: reports[name]}, requirements) is None:
-                    del reports[name]
-            return min(reports, key=lambda name: reports[name]["cost"], default=None)
+        for name in list(reports):
+            if _right({name: reports[name]}, requirements) is None:
+                del reports[name]
+        return min(reports, key=lambda name: reports[name]["cost"], default=None)
     """,
-).program(
+).around(
     "choose_engine",
     """
-        _cheapest = choose_engine
-
-
-        def choose_engine(reports, requirements):
-            left = dict(reports)
-            while requirements:
-                need = [requirements.pop()]
-                left = {name: report for name, report in left.items() if _cheapest({name: report}, need)}
-            return _cheapest(left, [])
+        left = dict(reports)
+        while requirements:
+            need = [requirements.pop()]
+            left = {name: report for name, report in left.items() if _right({name: report}, need)}
+        return _right(left, [])
     """,
-).program(
+).around(
     "choose_engine",
     """
-        _cheapest = choose_engine
-
-
-        def choose_engine(reports, requirements):
-            for report in reports.values():
-                for requirement in requirements:
-                    report.setdefault(requirement["key"], None)
-            return _cheapest(reports, requirements)
+        for report in reports.values():
+            for requirement in requirements:
+                report.setdefault(requirement["key"], None)
+        return _right(reports, requirements)
     """,
 )
 mistakes(
@@ -868,14 +775,10 @@ mistakes(
     "An engine is returned where None belongs.",
     "A value that is nearly equal does not meet ==. Return None if no engine meets every requirement, or if there are no reports.",
     kind="consequence",
-).program(
+).around(
     "choose_engine",
     """
-        _cheapest = choose_engine
-
-
-        def choose_engine(reports, requirements):
-            return _cheapest(reports, requirements) or ""
+        return _right(reports, requirements) or ""
     """,
 )
 mistakes(
@@ -905,14 +808,10 @@ mistakes(
     "The date of a fact is earlier than the day on which it became true.",
     "as_of is the day on which you checked that the fact was true.",
     kind="fact",
-).program(
+).around(
     "engine_facts",
     """
-        _facts = engine_facts
-
-
-        def engine_facts():
-            return [{**entry, "as_of": "2012-10-07"} for entry in _facts()]
+        return [{**entry, "as_of": "2012-10-07"} for entry in _right()]
     """,
 )
 mistakes(
@@ -1019,19 +918,15 @@ mistakes(
     "One entry is there more than once, and at least one other is not there.",
     "Make one entry for each pair of engine and field. If you fill one dict again and again, make a new one for each entry.",
     kind="fact",
-).program(
+).around(
     "engine_facts",
     """
-        _separate = engine_facts
-
-
-        def engine_facts():
-            kept, listed = {}, []
-            for fact in _separate():
-                entry = kept.setdefault(fact["engine"], {})
-                entry.update(fact)
-                listed.append(entry)
-            return listed
+        kept, listed = {}, []
+        for fact in _right():
+            entry = kept.setdefault(fact["engine"], {})
+            entry.update(fact)
+            listed.append(entry)
+        return listed
     """,
 )
 mistakes(
@@ -1039,14 +934,10 @@ mistakes(
     "At least one engine has more than one entry for the same field.",
     "Keep one entry for each pair of engine and field.",
     kind="fact",
-).program(
+).around(
     "engine_facts",
     """
-        _facts = engine_facts
-
-
-        def engine_facts():
-            return _facts() + [{**_facts()[0], "source": "https://ode.org"}]
+        return _right() + [{**_right()[0], "source": "https://ode.org"}]
     """,
 )
 mistakes(
@@ -1074,29 +965,21 @@ mistakes(
     "COST_ROUGH",
     "Costs that are close to each other are taken for equal.",
     "Compare the costs as they are, without rounding.",
-).program(
+).around(
     "choose_engine",
     """
-        _cheapest = choose_engine
-
-
-        def choose_engine(reports, requirements):
-            rough = {name: {**report, "cost": round(report["cost"], -1)} for name, report in reports.items()}
-            return _cheapest(rough, requirements)
+        rough = {name: {**report, "cost": round(report["cost"], -1)} for name, report in reports.items()}
+        return _right(rough, requirements)
     """,
 )
 mistakes(
     "FIRST_REQUIREMENT_ONLY",
     "Your code checks only one of the requirements.",
     "Does a return inside the loop end it too early, or does each requirement replace the verdict on the one before it?",
-).program(
+).around(
     "choose_engine",
     """
-        _cheapest = choose_engine
-
-
-        def choose_engine(reports, requirements):
-            return _cheapest(reports, requirements[:1])
+        return _right(reports, requirements[:1])
     """,
 )
 mistakes(
@@ -1183,16 +1066,13 @@ mistakes(
         return _bisect(stopped, 2.0, 199.0, 0.1)
     """,
     of="_tunnelling_speed",
-).program(
+).around(
     "characterise",
     """
-        _to_two_hundred = _tunnelling_speed
-
-
-        def _tunnelling_speed(engine, info):
-            speed = _to_two_hundred(engine, info)
-            return speed if speed < 100 else math.inf
+        speed = _right(engine, info)
+        return speed if speed < 100 else math.inf
     """,
+    of="_tunnelling_speed",
 )
 mistakes(
     "EQUALITY_BY_IDENTITY",
@@ -1321,14 +1201,10 @@ mistakes(
     "ONE_FOR_EACH_KEY",
     "Of two requirements about the same key only one is checked.",
     "Go through the list of requirements itself: a dict by key keeps one of each.",
-).program(
+).around(
     "choose_engine",
     """
-        _cheapest = choose_engine
-
-
-        def choose_engine(reports, requirements):
-            return _cheapest(reports, list({r["key"]: r for r in requirements}.values()))
+        return _right(reports, list({r["key"]: r for r in requirements}.values()))
     """,
 )
 mistakes(
@@ -1352,15 +1228,12 @@ mistakes(
     "ORDER_NOT_THREE",
     "Orders 1, 2 and 4 are right, and a method of third order gets another.",
     "Round the measured slope to the nearest whole number, whatever it is.",
-).program(
+).around(
     "characterise",
     """
-        _measured = _order
-
-
-        def _order(engine, omega):
-            return min((1, 2, 4), key=lambda known: abs(known - _measured(engine, omega)))
+        return min((1, 2, 4), key=lambda known: abs(known - _right(engine, omega)))
     """,
+    of="_order",
 )
 mistakes(
     "RESTITUTION_TOO_FAST",
@@ -1382,18 +1255,14 @@ mistakes(
     "In at least one run, a force along z acts on the body besides its weight.",
     'The scene "floor" has gravity already. A push lies in the plane: (F cos a, F sin a, 0). If a depth is wrong without that force, too, look at its sign: max(0, radius - z).',
     kind="fact",
-).program(
+).around(
     "characterise",
     """
-        _characterise = characterise
-
-
-        def characterise(engine):
-            info = engine.info()
-            weight = [0, 0, -info["mass"] * info["g"]]
-            start = [0, 0, info["radius"]]
-            q, _ = engine.run("floor", start, [0, 0, 0], info["dt"], round(5 / info["dt"]), weight)
-            return {**_characterise(engine), "rest_penetration": max(0.0, info["radius"] - q[-1][2])}
+        info = engine.info()
+        weight = [0, 0, -info["mass"] * info["g"]]
+        start = [0, 0, info["radius"]]
+        q, _ = engine.run("floor", start, [0, 0, 0], info["dt"], round(5 / info["dt"]), weight)
+        return {**_right(engine), "rest_penetration": max(0.0, info["radius"] - q[-1][2])}
     """,
 )
 mistakes(
@@ -1401,15 +1270,11 @@ mistakes(
     "The wrong values are the right ones, rounded to too few decimals.",
     "Report numbers as they are; round only `order`.",
     kind="consequence",
-).program(
+).around(
     "characterise",
     """
-        _characterise = characterise
-
-
-        def characterise(engine):
-            report = _characterise(engine)
-            return {**report, "rest_penetration": round(float(report["rest_penetration"]), 3)}
+        report = _right(engine)
+        return {**report, "rest_penetration": round(float(report["rest_penetration"]), 3)}
     """,
 )
 mistakes(
@@ -1417,18 +1282,14 @@ mistakes(
     "Perhaps one dict is filled again for every entry.",
     "Make a new dict for each entry, inside the loop.",
     kind="fact",
-).program(
+).around(
     "engine_facts",
     """
-        _right = engine_facts
-
-
-        def engine_facts():
-            entry, listed = {}, []
-            for fact in _right():
-                entry.update(fact)
-                listed.append(entry)
-            return listed
+        entry, listed = {}, []
+        for fact in _right():
+            entry.update(fact)
+            listed.append(entry)
+        return listed
     """,
 )
 mistakes(

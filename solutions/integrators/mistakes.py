@@ -44,28 +44,20 @@ mistakes(
         q += h * v
         return q.copy(), v.copy()
     """,
-).program(
+).around(
     "rk4_step",
     """
-        _right_rk4 = rk4_step
-
-
-        def rk4_step(accel, t, q, v, h):
-            q_next, v_next = _right_rk4(accel, t, q, v, h)
-            q += q_next - q
-            v += v_next - v
-            return q_next, v_next
+        q_next, v_next = _right(accel, t, q, v, h)
+        q += q_next - q
+        v += v_next - v
+        return q_next, v_next
     """,
-).program(
+).around(
     "integrate",
     """
-        _right = integrate
-
-
-        def integrate(step, accel, q0, v0, t_end, h):
-            t, q, v = _right(step, accel, q0, v0, t_end, h)
-            np.asarray(q0, dtype=float)[:], np.asarray(v0, dtype=float)[:] = q[-1], v[-1]
-            return t, q, v
+        t, q, v = _right(step, accel, q0, v0, t_end, h)
+        np.asarray(q0, dtype=float)[:], np.asarray(v0, dtype=float)[:] = q[-1], v[-1]
+        return t, q, v
     """,
 )
 mistakes(
@@ -117,14 +109,10 @@ mistakes(
         q_next = q + h * v
         return q_next, v + h * accel(t, q_next, v)
     """,
-).edit("velocity_verlet_step", {"accel(t + h, q_next": "accel(t, q_next"}).program(
+).edit("velocity_verlet_step", {"accel(t + h, q_next": "accel(t, q_next"}).around(
     "rk4_step",
     """
-        _right_rk4 = rk4_step
-
-
-        def rk4_step(accel, t, q, v, h):
-            return _right_rk4(lambda _t, q, v: accel(t, q, v), t, q, v, h)
+        return _right(lambda _t, q, v: accel(t, q, v), t, q, v, h)
     """,
 )
 mistakes(
@@ -252,14 +240,10 @@ mistakes(
     "STAGE_VELOCITY_IGNORED",
     "accel gets the velocity from the start of the step each time. Only a force that depends on velocity, such as damping, shows this: if a check with another force fails, too, there is a second mistake.",
     "Give accel the velocity of the stage as well: each stage has its own position and its own velocity.",
-).program(
+).around(
     "rk4_step",
     """
-        _right_rk4 = rk4_step
-
-
-        def rk4_step(accel, t, q, v, h):
-            return _right_rk4(lambda t, q, _v: accel(t, q, v), t, q, v, h)
+        return _right(lambda t, q, _v: accel(t, q, v), t, q, v, h)
     """,
 )
 mistakes(
@@ -267,18 +251,14 @@ mistakes(
     "accel is called more often than this method needs.",
     "The Euler methods call accel once a step, Verlet once or twice, RK4 four times. If you need the same acceleration twice, keep it in a variable. If you iterate, or divide the step into shorter ones, it is another method.",
     kind="fact",
-).program(
+).around(
     "rk4_step",
     """
-        _right_rk4 = rk4_step
+        def twice(t, q, v):
+            accel(t, q, v)
+            return accel(t, q, v)
 
-
-        def rk4_step(accel, t, q, v, h):
-            def twice(t, q, v):
-                accel(t, q, v)
-                return accel(t, q, v)
-
-            return _right_rk4(twice, t, q, v, h)
+        return _right(twice, t, q, v, h)
     """,
 ).body(
     "velocity_verlet_step",
@@ -308,15 +288,11 @@ mistakes(
     "OFF_BY_ONE_SAMPLE",
     "There is one sample too many or one too few: n steps connect n + 1 states.",
     "Take n = round(t_end / h) steps, not one more and not one less. Record the initial state before the loop and one state after each step.",
-).program(
+).around(
     "integrate",
     """
-        _whole = integrate
-
-
-        def integrate(step, accel, q0, v0, t_end, h):
-            t, q, v = _whole(step, accel, q0, v0, t_end, h)
-            return t[1:], q[1:], v[1:]
+        t, q, v = _right(step, accel, q0, v0, t_end, h)
+        return t[1:], q[1:], v[1:]
     """,
 )
 mistakes(
@@ -341,14 +317,10 @@ mistakes(
     "TIME_NOT_PASSED",
     "All steps get the same starting time. Only a force that depends on time shows this.",
     "Call step(accel, i * h, q, v, h) with the time at which this particular step starts.",
-).program(
+).around(
     "integrate",
     """
-        _whole = integrate
-
-
-        def integrate(step, accel, q0, v0, t_end, h):
-            return _whole(lambda accel, _t, q, v, h: step(accel, 0.0, q, v, h), accel, q0, v0, t_end, h)
+        return _right(lambda accel, _t, q, v, h: step(accel, 0.0, q, v, h), accel, q0, v0, t_end, h)
     """,
 )
 mistakes(
@@ -356,14 +328,10 @@ mistakes(
     "For this duration your code raises no ValueError.",
     "With N = round(t_end / h), raise ValueError if abs(t_end / h - N) > 1e-6. A difference in seconds is another limit, and so is np.isclose, whose limit grows with N.",
     kind="fact",
-).program(
+).around(
     "integrate",
     """
-        _whole = integrate
-
-
-        def integrate(step, accel, q0, v0, t_end, h):
-            return _whole(step, accel, q0, v0, round(t_end / h) * h, h)
+        return _right(step, accel, q0, v0, round(t_end / h) * h, h)
     """,
 )
 mistakes(
@@ -371,16 +339,12 @@ mistakes(
     "t_end / h may come out just below a whole number, as 28.999999999999996 for 0.29 s at 0.01 s. Then int() and // give 28, and t_end % h is almost h. np.arange in steps of h may have one entry too many.",
     "Take N = round(t_end / h) for the steps and np.arange(N + 1) * h for the times, and raise ValueError only if abs(t_end / h - N) > 1e-6.",
     kind="fact",
-).program(
+).around(
     "integrate",
     """
-        _whole = integrate
-
-
-        def integrate(step, accel, q0, v0, t_end, h):
-            if t_end % h != 0:
-                raise ValueError("t_end must be a multiple of h")
-            return _whole(step, accel, q0, v0, t_end, h)
+        if t_end % h != 0:
+            raise ValueError("t_end must be a multiple of h")
+        return _right(step, accel, q0, v0, t_end, h)
     """,
 )
 mistakes(
@@ -443,14 +407,10 @@ mistakes(
     "RETURNS_Z",
     "For more than one map, the result is the product h * omega at the limit, not the step itself.",
     "Divide by omega: the answer is a time in seconds. If you do, look at the acceleration: it has to be -omega**2 * q.",
-).program(
+).around(
     "max_stable_step",
     """
-        _in_seconds = max_stable_step
-
-
-        def max_stable_step(step, omega):
-            return _in_seconds(step, omega) * omega
+        return _right(step, omega) * omega
     """,
 )
 mistakes(
@@ -538,14 +498,10 @@ mistakes(
     "The result is not math.inf for a method that is stable at every step up to 10/omega.",
     "Return math.inf when no step up to 10/omega is unstable, whatever comes beyond.",
     kind="consequence",
-).program(
+).around(
     "max_stable_step",
     """
-        _search = max_stable_step
-
-
-        def max_stable_step(step, omega):
-            return min(_search(step, omega), 10 / omega)
+        return min(_right(step, omega), 10 / omega)
     """,
 ).body(
     "max_stable_step",
@@ -615,15 +571,11 @@ mistakes(
     "The positions and the velocities that integrate returns have changed places.",
     "Return (t, q, v): the positions before the velocities, each in its own array.",
     true_too=("INITIAL_STATE_WRONG",),
-).program(
+).around(
     "integrate",
     """
-        _whole = integrate
-
-
-        def integrate(step, accel, q0, v0, t_end, h):
-            t, q, v = _whole(step, accel, q0, v0, t_end, h)
-            return t, v, q
+        t, q, v = _right(step, accel, q0, v0, t_end, h)
+        return t, v, q
     """,
 )
 mistakes(
@@ -667,16 +619,12 @@ mistakes(
     "INITIAL_STATE_MISSING",
     "The first sample is not the initial state.",
     "Row 0 is q0 and v0, at time 0. Store them before the first step, and let step number i write row i + 1.",
-).program(
+).around(
     "integrate",
     """
-        _whole = integrate
-
-
-        def integrate(step, accel, q0, v0, t_end, h):
-            t, q, v = _whole(step, accel, q0, v0, t_end, h)
-            q[0], v[0] = 0.0, 0.0
-            return t, q, v
+        t, q, v = _right(step, accel, q0, v0, t_end, h)
+        q[0], v[0] = 0.0, 0.0
+        return t, q, v
     """,
 )
 mistakes(
@@ -684,29 +632,21 @@ mistakes(
     "The first row is not the initial state.",
     "Row 0 of the positions is q0 and row 0 of the velocities is v0, as they were before any step. The first step starts from them.",
     true_too=("INITIAL_STATE_MISSING",),
-).program(
+).around(
     "integrate",
     """
-        _whole = integrate
-
-
-        def integrate(step, accel, q0, v0, t_end, h):
-            return _whole(step, accel, np.ones(len(q0)), np.asarray(v0), t_end, h)
+        return _right(step, accel, np.ones(len(q0)), np.asarray(v0), t_end, h)
     """,
 )
 mistakes(
     "TIMES_START_LATE",
     "The times begin one step late.",
     "Row i belongs to time i*h, so the initial state is at time 0.",
-).program(
+).around(
     "integrate",
     """
-        _whole = integrate
-
-
-        def integrate(step, accel, q0, v0, t_end, h):
-            t, q, v = _whole(step, accel, q0, v0, t_end, h)
-            return t + h, q, v
+        t, q, v = _right(step, accel, q0, v0, t_end, h)
+        return t + h, q, v
     """,
 )
 mistakes(
@@ -756,14 +696,10 @@ mistakes(
     "Your code takes less energy out of the spring than this method does.",
     "Compute one step of a spring by hand, from a large q and a large v, and compare both results: sign, factor, and whether old or new values are used.",
     kind="consequence",
-).program(
+).around(
     "rk4_step",
     """
-        _whole = rk4_step
-
-
-        def rk4_step(accel, t, q, v, h):
-            return _whole(accel, t + h / 2, *_whole(accel, t, q, v, h / 2), h / 2)
+        return _right(accel, t + h / 2, *_right(accel, t, q, v, h / 2), h / 2)
     """,
 )
 mistakes(
@@ -821,24 +757,16 @@ mistakes(
     "POSITION_WRAPPED",
     "Far from zero the position is brought back to a range, as an angle might be, or is stopped at a limit.",
     "q may be any number of metres or of turns. Return the sum as it is, and give it to accel as it is.",
-).program(
+).around(
     "explicit_euler_step",
     """
-        _right = explicit_euler_step
-
-
-        def explicit_euler_step(accel, t, q, v, h):
-            q_next, v_next = _right(accel, t, q, v, h)
-            return (q_next + np.pi) % (2 * np.pi) - np.pi, v_next
+        q_next, v_next = _right(accel, t, q, v, h)
+        return (q_next + np.pi) % (2 * np.pi) - np.pi, v_next
     """,
-).program(
+).around(
     "velocity_verlet_step",
     """
-        _right = velocity_verlet_step
-
-
-        def velocity_verlet_step(accel, t, q, v, h):
-            return _right(lambda t, q, v: accel(t, (np.asarray(q) + np.pi) % (2 * np.pi) - np.pi, v), t, q, v, h)
+        return _right(lambda t, q, v: accel(t, (np.asarray(q) + np.pi) % (2 * np.pi) - np.pi, v), t, q, v, h)
     """,
 )
 mistakes("RESULT_OVERWRITTEN").program(
@@ -931,15 +859,11 @@ mistakes(
     "EQUAL_ERRORS_LOST",
     "The result is the slope with only the later one of two points of the same error.",
     "All points count: use lists or arrays, hs[i] with errors[i]. A dictionary, for example, would keep one entry for each error.",
-).program(
+).around(
     "observed_order",
     """
-        _right = observed_order
-
-
-        def observed_order(hs, errors):
-            points = {float(error): float(h) for h, error in zip(hs, errors)}
-            return _right(list(points.values()), list(points))
+        points = {float(error): float(h) for h, error in zip(hs, errors)}
+        return _right(list(points.values()), list(points))
     """,
 )
 mistakes(

@@ -17,16 +17,12 @@ mistakes(
     "For at least one parameter the box is, in the logarithm, more than 1.5 times as wide as the fleet, so it contains carts that the fleet does not have.",
     "Take the fleet's own spread for every parameter, from e^-w to e^w for a half-width w.",
     kind="fact",
-).program(
+).around(
     "plan",
     """
-        _sound_plan = plan
-
-
-        def plan():
-            made = _sound_plan()
-            made["randomization"] = {k: [math.exp(-3 * w), math.exp(3 * w)] for k, w in LOG_WIDTH.items()}
-            return made
+        made = _right()
+        made["randomization"] = {k: [math.exp(-3 * w), math.exp(3 * w)] for k, w in LOG_WIDTH.items()}
+        return made
     """,
 )
 mistakes(
@@ -34,26 +30,18 @@ mistakes(
     "More than 5 % of the fleet lies outside the box for at least one parameter.",
     "Give factors on the estimate that hold the fleet: for every parameter from e^-w to e^w, for a half-width w.",
     kind="fact",
-).program(
+).around(
     "plan",
     """
-        _sound_plan = plan
-
-
-        def plan():
-            made = _sound_plan()
-            made["randomization"] = {k: [1.0, 1.0] for k in NAMES}
-            return made
+        made = _right()
+        made["randomization"] = {k: [1.0, 1.0] for k in NAMES}
+        return made
     """,
-).program(
+).around(
     "plan",
     """
-        _plan = plan
-
-
-        def plan():
-            found = _plan()
-            return {**found, "randomization": {**found["randomization"], "m": [0.99, 1.01], "b": [0.2, 5.0]}}
+        found = _right()
+        return {**found, "randomization": {**found["randomization"], "m": [0.99, 1.01], "b": [0.2, 5.0]}}
     """,
 )
 mistakes(
@@ -61,16 +49,12 @@ mistakes(
     "The low ends of the box are e^-w, and its high ends are 1 + w.",
     "The half-width w is one in the logarithm on both sides: the high ends are e^w.",
     kind="fact",
-).program(
+).around(
     "plan",
     """
-        _sound_plan = plan
-
-
-        def plan():
-            made = _sound_plan()
-            made["randomization"] = {k: [math.exp(-w), 1 + w] for k, w in LOG_WIDTH.items()}
-            return made
+        made = _right()
+        made["randomization"] = {k: [math.exp(-w), 1 + w] for k, w in LOG_WIDTH.items()}
+        return made
     """,
 )
 mistakes(
@@ -78,16 +62,12 @@ mistakes(
     "In the logarithm the box is half as wide as the fleet for every parameter, as if w were the whole width.",
     "w is the half-width: the factors go from e^-w to e^w.",
     kind="fact",
-).program(
+).around(
     "plan",
     """
-        _sound_plan = plan
-
-
-        def plan():
-            made = _sound_plan()
-            made["randomization"] = {k: [math.exp(-w / 2), math.exp(w / 2)] for k, w in LOG_WIDTH.items()}
-            return made
+        made = _right()
+        made["randomization"] = {k: [math.exp(-w / 2), math.exp(w / 2)] for k, w in LOG_WIDTH.items()}
+        return made
     """,
 )
 mistakes(
@@ -95,16 +75,12 @@ mistakes(
     "In the logarithm the box is about twice as wide as the fleet for every parameter, as if w were a standard deviation.",
     "The whole fleet lies between e^-w and e^w: take these factors.",
     kind="fact",
-).program(
+).around(
     "plan",
     """
-        _sound_plan = plan
-
-
-        def plan():
-            made = _sound_plan()
-            made["randomization"] = {k: [math.exp(-2 * w), math.exp(2 * w)] for k, w in LOG_WIDTH.items()}
-            return made
+        made = _right()
+        made["randomization"] = {k: [math.exp(-2 * w), math.exp(2 * w)] for k, w in LOG_WIDTH.items()}
+        return made
     """,
 )
 mistakes(
@@ -112,16 +88,12 @@ mistakes(
     "The box lies on one side only: one end of each range is the estimate itself.",
     "The fleet lies on both sides of its cart: the factors go from e^-w to e^w.",
     kind="fact",
-).program(
+).around(
     "plan",
     """
-        _sound_plan = plan
-
-
-        def plan():
-            made = _sound_plan()
-            made["randomization"] = {k: [1.0, math.exp(w)] for k, w in LOG_WIDTH.items()}
-            return made
+        made = _right()
+        made["randomization"] = {k: [1.0, math.exp(w)] for k, w in LOG_WIDTH.items()}
+        return made
     """,
 )
 mistakes(
@@ -129,16 +101,12 @@ mistakes(
     "The box goes from 1 - w to 1 + w: the half-width is used as a fraction.",
     "The fleet's spread is given for the logarithm, so the factors go from e^-w to e^w, which is not symmetric about 1.",
     kind="fact",
-).program(
+).around(
     "plan",
     """
-        _sound_plan = plan
-
-
-        def plan():
-            made = _sound_plan()
-            made["randomization"] = {k: [1 - w, 1 + w] for k, w in LOG_WIDTH.items()}
-            return made
+        made = _right()
+        made["randomization"] = {k: [1 - w, 1 + w] for k, w in LOG_WIDTH.items()}
+        return made
     """,
 )
 mistakes(
@@ -146,19 +114,15 @@ mistakes(
     "The middles of the box are close to the data sheet's values, as if it contained the parameters in their own units.",
     "Give factors that multiply the estimate, from e^-w to e^w for a half-width w. The estimate itself is not known when the plan is written.",
     kind="fact",
-).program(
+).around(
     "plan",
     """
-        _sound_plan = plan
-
-
-        def plan():
-            made = _sound_plan()
-            sheet = {"m": 1.5, "b": 0.6, "Fc": 0.4, "tau": 0.06, "latency": 0.08}
-            made["randomization"] = {
-                k: [sheet[k] * math.exp(-w), sheet[k] * math.exp(w)] for k, w in LOG_WIDTH.items()
-            }
-            return made
+        made = _right()
+        sheet = {"m": 1.5, "b": 0.6, "Fc": 0.4, "tau": 0.06, "latency": 0.08}
+        made["randomization"] = {
+            k: [sheet[k] * math.exp(-w), sheet[k] * math.exp(w)] for k, w in LOG_WIDTH.items()
+        }
+        return made
     """,
 )
 mistakes(
@@ -166,16 +130,12 @@ mistakes(
     "An interval of the box goes from a negative number to the same positive one, as a logarithm or a deviation does.",
     "The numbers in randomization multiply the estimate: for a half-width w in the logarithm they are e^-w and e^w.",
     kind="fact",
-).program(
+).around(
     "plan",
     """
-        _sound_plan = plan
-
-
-        def plan():
-            made = _sound_plan()
-            made["randomization"] = {k: [-w, w] for k, w in LOG_WIDTH.items()}
-            return made
+        made = _right()
+        made["randomization"] = {k: [-w, w] for k, w in LOG_WIDTH.items()}
+        return made
     """,
 )
 mistakes(
@@ -183,27 +143,19 @@ mistakes(
     "Even in all of the bench time, this excitation does not show the parameter well enough.",
     "Ask what would change in the recording if the parameter were larger. chirp and prbs show every parameter of the cart; noise shows at rest.",
     kind="fact",
-).program(
+).around(
     "plan",
     """
-        _sound_plan = plan
-
-
-        def plan():
-            made = _sound_plan()
-            made["gaps"][3]["excitation"] = "constant"
-            return made
+        made = _right()
+        made["gaps"][3]["excitation"] = "constant"
+        return made
     """,
-).program(
+).around(
     "plan",
     """
-        _sound_plan = plan
-
-
-        def plan():
-            made = _sound_plan()
-            made["gaps"][4]["excitation"] = "prbs"
-            return made
+        made = _right()
+        made["gaps"][4]["excitation"] = "prbs"
+        return made
     """,
 )
 mistakes(
@@ -211,16 +163,12 @@ mistakes(
     "No estimator can reach this threshold with this excitation in this time.",
     'Check the unit first: 0.1 with "%" is a tenth of a per cent. Else take a larger threshold, up to what the README asks of that parameter: what your own identify returns for such recordings is a guide.',
     kind="fact",
-).program(
+).around(
     "plan",
     """
-        _sound_plan = plan
-
-
-        def plan():
-            made = _sound_plan()
-            made["gaps"][1]["threshold"] = 0.01
-            return made
+        made = _right()
+        made["gaps"][1]["threshold"] = 0.01
+        return made
     """,
 )
 mistakes(
@@ -228,16 +176,12 @@ mistakes(
     "Even a measurement too coarse to be useful would meet this threshold.",
     'The README says how exactly each parameter must be known; a threshold above that decides nothing. Check the unit too: 3 % is 3 with "%" and 0.03 with "1".',
     kind="fact",
-).program(
+).around(
     "plan",
     """
-        _sound_plan = plan
-
-
-        def plan():
-            made = _sound_plan()
-            made["gaps"][0]["threshold"] = 50.0
-            return made
+        made = _right()
+        made["gaps"][0]["threshold"] = 50.0
+        return made
     """,
 )
 mistakes(
@@ -245,16 +189,12 @@ mistakes(
     "The plan's bench time is zero or negative, or more than there is.",
     "excitation_budget_s must be positive, and at most the time for which the README says the bench is free.",
     kind="fact",
-).program(
+).around(
     "plan",
     """
-        _sound_plan = plan
-
-
-        def plan():
-            made = _sound_plan()
-            made["excitation_budget_s"] = 60.0
-            return made
+        made = _right()
+        made["excitation_budget_s"] = 60.0
+        return made
     """,
 )
 mistakes(
@@ -262,16 +202,12 @@ mistakes(
     "In all of the bench time this excitation would show the parameter well enough, but not in the time that the plan takes.",
     "More bench time is available: raise excitation_budget_s.",
     kind="fact",
-).program(
+).around(
     "plan",
     """
-        _sound_plan = plan
-
-
-        def plan():
-            made = _sound_plan()
-            made["excitation_budget_s"] = 0.5
-            return made
+        made = _right()
+        made["excitation_budget_s"] = 0.5
+        return made
     """,
 )
 mistakes(
@@ -279,16 +215,12 @@ mistakes(
     "All gaps of the plan have the same one or two sources.",
     "This cart has the sources friction, actuator_lag, delay, sensor_noise and environment. Use at least three of them.",
     kind="fact",
-).program(
+).around(
     "plan",
     """
-        _sound_plan = plan
-
-
-        def plan():
-            made = _sound_plan()
-            made["gaps"] = [made["gaps"][1], made["gaps"][2], {**made["gaps"][2], "excitation": "chirp"}]
-            return made
+        made = _right()
+        made["gaps"] = [made["gaps"][1], made["gaps"][2], {**made["gaps"][2], "excitation": "chirp"}]
+        return made
     """,
 )
 mistakes(
@@ -296,16 +228,12 @@ mistakes(
     "The plan spends bench time on gear backlash, but this cart has no gears.",
     "A source counts only where it exists. Read how the cart is built, and take sources that it has.",
     kind="fact",
-).program(
+).around(
     "plan",
     """
-        _sound_plan = plan
-
-
-        def plan():
-            made = _sound_plan()
-            made["gaps"][4] = {**made["gaps"][4], "source": "gear_backlash", "parameter": "play"}
-            return made
+        made = _right()
+        made["gaps"][4] = {**made["gaps"][4], "source": "gear_backlash", "parameter": "play"}
+        return made
     """,
 )
 mistakes(
@@ -378,14 +306,10 @@ mistakes(
     "EXCITATION_TOO_WEAK",
     "The largest force is less than half of what the bench can give, so the noise hides more than it has to.",
     "Use all of u_max: the noise stays the same, so the motion stands out more clearly.",
-).program(
+).around(
     "design_excitation",
     """
-        _full = design_excitation
-
-
-        def design_excitation(budget_s, u_max, rng):
-            return 0.16 * _full(budget_s, u_max, rng)
+        return 0.16 * _right(budget_s, u_max, rng)
     """,
 )
 mistakes(
@@ -426,147 +350,119 @@ mistakes(
     """
         return u_max * rng.choice([-1.0, 1.0], round(budget_s))
     """,
-).program(
+).around(
     "design_excitation",
     """
-        _rounded = design_excitation
-
-
-        def design_excitation(budget_s, u_max, rng):
-            return _rounded(budget_s, u_max, rng)[: int(100 * budget_s)]
+        return _right(budget_s, u_max, rng)[: int(100 * budget_s)]
     """,
-).program(
+).around(
     "design_excitation",
     """
-        _rounded = design_excitation
-
-
-        def design_excitation(budget_s, u_max, rng):
-            times = np.arange(0, budget_s, 0.01)
-            return np.resize(_rounded(budget_s, u_max, rng), len(times))
+        times = np.arange(0, budget_s, 0.01)
+        return np.resize(_right(budget_s, u_max, rng), len(times))
     """,
 )
 mistakes(
     "COULOMB_AS_VISCOUS",
     "Fc comes out far too small and b too large, as if viscous friction stood for both.",
     "Give each its own column: the integral of the speed for b, the integral of its sign for Fc. If they are there, compare them with the README's.",
-).program(
+).around(
     "identify",
     """
-        _both = identify
-
-
-        def identify(t, u, y):
-            found = _both(t, u, y)
-            impulse = motor_impulse(u, found["tau"][0])
-            X = np.stack([delayed(impulse, found["latency"][0]), cumulative(y)], axis=1)
-            theta = np.linalg.lstsq(in_blocks(X).reshape(-1, 2), in_blocks(y).reshape(-1))[0]
-            m, b = 1 / theta[0], -theta[1] / theta[0]
-            return {**found, "m": [m, 0.99 * m, 1.01 * m], "b": [b, 0.9 * b, 1.1 * b], "Fc": [0.0, -0.05, 0.05]}
+        found = _right(t, u, y)
+        impulse = motor_impulse(u, found["tau"][0])
+        X = np.stack([delayed(impulse, found["latency"][0]), cumulative(y)], axis=1)
+        theta = np.linalg.lstsq(in_blocks(X).reshape(-1, 2), in_blocks(y).reshape(-1))[0]
+        m, b = 1 / theta[0], -theta[1] / theta[0]
+        return {**found, "m": [m, 0.99 * m, 1.01 * m], "b": [b, 0.9 * b, 1.1 * b], "Fc": [0.0, -0.05, 0.05]}
     """,
 )
 mistakes(
     "SIGN_OF_COMMAND",
     "With your tau and latency, m, b and Fc are those of a fit whose column for Fc is made of the sign of the command or the force, not of the speed.",
     "Friction acts against the motion: take cumulative(np.sign(y)), with the measured speed y, not the command u.",
-).program(
+).around(
     "identify",
     """
-        _honest = identify
-
-
-        def identify(t, u, y):
-            Y = in_blocks(y).reshape(-1)
-            best = None
-            for tau in np.arange(0.02, 0.151, 0.01):
-                impulse = motor_impulse(u, tau)
-                for late in np.arange(0.02, 0.201, 0.01):
-                    columns = [delayed(impulse, late), cumulative(y), cumulative(np.sign(u))]
-                    theta, left, *_ = np.linalg.lstsq(in_blocks(np.stack(columns, axis=1)).reshape(-1, 3), Y)
-                    if best is None or left[0] < best[0]:
-                        best = left[0], tau, late, theta
-            _, tau, late, theta = best
-            m = 1 / theta[0]
-            found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
-            half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
-            return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+        Y = in_blocks(y).reshape(-1)
+        best = None
+        for tau in np.arange(0.02, 0.151, 0.01):
+            impulse = motor_impulse(u, tau)
+            for late in np.arange(0.02, 0.201, 0.01):
+                columns = [delayed(impulse, late), cumulative(y), cumulative(np.sign(u))]
+                theta, left, *_ = np.linalg.lstsq(in_blocks(np.stack(columns, axis=1)).reshape(-1, 3), Y)
+                if best is None or left[0] < best[0]:
+                    best = left[0], tau, late, theta
+        _, tau, late, theta = best
+        m = 1 / theta[0]
+        found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
+        half = {k: e[2] - e[0] for k, e in _right(t, u, y).items()}
+        return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
     """,
-).program(
+).around(
     "identify",
     """
-        _honest = identify
-
-
-        def identify(t, u, y):
-            Y = in_blocks(y).reshape(-1)
-            best = None
-            for tau in np.arange(0.02, 0.151, 0.01):
-                impulse = motor_impulse(u, tau)
-                for late in np.arange(0.02, 0.201, 0.01):
-                    columns = [delayed(impulse, late), cumulative(y), delayed(cumulative(np.sign(u)), late)]
-                    theta, left, *_ = np.linalg.lstsq(in_blocks(np.stack(columns, axis=1)).reshape(-1, 3), Y)
-                    if best is None or left[0] < best[0]:
-                        best = left[0], tau, late, theta
-            _, tau, late, theta = best
-            m = 1 / theta[0]
-            found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
-            half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
-            return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+        Y = in_blocks(y).reshape(-1)
+        best = None
+        for tau in np.arange(0.02, 0.151, 0.01):
+            impulse = motor_impulse(u, tau)
+            for late in np.arange(0.02, 0.201, 0.01):
+                columns = [delayed(impulse, late), cumulative(y), delayed(cumulative(np.sign(u)), late)]
+                theta, left, *_ = np.linalg.lstsq(in_blocks(np.stack(columns, axis=1)).reshape(-1, 3), Y)
+                if best is None or left[0] < best[0]:
+                    best = left[0], tau, late, theta
+        _, tau, late, theta = best
+        m = 1 / theta[0]
+        found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
+        half = {k: e[2] - e[0] for k, e in _right(t, u, y).items()}
+        return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
     """,
 )
 mistakes(
     "FRICTION_DELAYED",
     "With your tau and latency, m, b and Fc are those of a fit in which the columns of friction are delayed too.",
     "Only the command is late. The speed is measured without delay: take cumulative(y) and cumulative(np.sign(y)) as they are.",
-).program(
+).around(
     "identify",
     """
-        _honest = identify
-
-
-        def identify(t, u, y):
-            Y = in_blocks(y).reshape(-1)
-            rubbed = [cumulative(y), cumulative(np.sign(y))]
-            best = None
-            for tau in np.arange(0.02, 0.151, 0.01):
-                columns = [motor_impulse(u, tau), *rubbed]
-                for late in np.arange(0.02, 0.201, 0.01):
-                    X = np.stack([delayed(column, late) for column in columns], axis=1)
-                    theta, left, *_ = np.linalg.lstsq(in_blocks(X).reshape(-1, 3), Y)
-                    if best is None or left[0] < best[0]:
-                        best = left[0], tau, late, theta
-            _, tau, late, theta = best
-            m = 1 / theta[0]
-            found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
-            half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
-            return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+        Y = in_blocks(y).reshape(-1)
+        rubbed = [cumulative(y), cumulative(np.sign(y))]
+        best = None
+        for tau in np.arange(0.02, 0.151, 0.01):
+            columns = [motor_impulse(u, tau), *rubbed]
+            for late in np.arange(0.02, 0.201, 0.01):
+                X = np.stack([delayed(column, late) for column in columns], axis=1)
+                theta, left, *_ = np.linalg.lstsq(in_blocks(X).reshape(-1, 3), Y)
+                if best is None or left[0] < best[0]:
+                    best = left[0], tau, late, theta
+        _, tau, late, theta = best
+        m = 1 / theta[0]
+        found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
+        half = {k: e[2] - e[0] for k, e in _right(t, u, y).items()}
+        return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
     """,
 )
 mistakes(
     "SIGN_OF_POSITION",
     "With your tau and latency, m, b and Fc are those of a fit whose column for Fc is the sign of the integral of the speed.",
     "Take the sign first, and then the integral: cumulative(np.sign(y)).",
-).program(
+).around(
     "identify",
     """
-        _honest = identify
-
-
-        def identify(t, u, y):
-            Y = in_blocks(y).reshape(-1)
-            best = None
-            for tau in np.arange(0.02, 0.151, 0.01):
-                impulse = motor_impulse(u, tau)
-                for late in np.arange(0.02, 0.201, 0.01):
-                    columns = [delayed(impulse, late), cumulative(y), np.sign(cumulative(y))]
-                    theta, left, *_ = np.linalg.lstsq(in_blocks(np.stack(columns, axis=1)).reshape(-1, 3), Y)
-                    if best is None or left[0] < best[0]:
-                        best = left[0], tau, late, theta
-            _, tau, late, theta = best
-            m = 1 / theta[0]
-            found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
-            half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
-            return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+        Y = in_blocks(y).reshape(-1)
+        best = None
+        for tau in np.arange(0.02, 0.151, 0.01):
+            impulse = motor_impulse(u, tau)
+            for late in np.arange(0.02, 0.201, 0.01):
+                columns = [delayed(impulse, late), cumulative(y), np.sign(cumulative(y))]
+                theta, left, *_ = np.linalg.lstsq(in_blocks(np.stack(columns, axis=1)).reshape(-1, 3), Y)
+                if best is None or left[0] < best[0]:
+                    best = left[0], tau, late, theta
+        _, tau, late, theta = best
+        m = 1 / theta[0]
+        found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
+        half = {k: e[2] - e[0] for k, e in _right(t, u, y).items()}
+        return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
     """,
 )
 mistakes(
@@ -580,28 +476,24 @@ mistakes(
             count = len(x) // size
             return np.reshape(x[: count * size], (count, size, -1))
     """,
-).program(
+).around(
     "identify",
     """
-        _honest = identify
-
-
-        def identify(t, u, y):
-            rubbed = [cumulative(y), cumulative(np.sign(y))]
-            best = None
-            for tau in np.arange(0.02, 0.151, 0.01):
-                impulse = motor_impulse(u, tau)
-                for late in np.arange(0.02, 0.201, 0.01):
-                    X = np.stack([delayed(impulse, late), *rubbed], axis=1)
-                    X = X - X[np.arange(len(y)) // 100 * 100]
-                    theta, left, *_ = np.linalg.lstsq(X, y)
-                    if best is None or left[0] < best[0]:
-                        best = left[0], tau, late, theta
-            _, tau, late, theta = best
-            m = 1 / theta[0]
-            found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
-            half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
-            return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+        rubbed = [cumulative(y), cumulative(np.sign(y))]
+        best = None
+        for tau in np.arange(0.02, 0.151, 0.01):
+            impulse = motor_impulse(u, tau)
+            for late in np.arange(0.02, 0.201, 0.01):
+                X = np.stack([delayed(impulse, late), *rubbed], axis=1)
+                X = X - X[np.arange(len(y)) // 100 * 100]
+                theta, left, *_ = np.linalg.lstsq(X, y)
+                if best is None or left[0] < best[0]:
+                    best = left[0], tau, late, theta
+        _, tau, late, theta = best
+        m = 1 / theta[0]
+        found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
+        half = {k: e[2] - e[0] for k, e in _right(t, u, y).items()}
+        return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
     """,
 )
 mistakes(
@@ -621,27 +513,23 @@ mistakes(
     "SIGN_NOT_INTEGRATED",
     "With your tau and latency, m, b and Fc are those of a fit whose column for Fc is the sign of the speed itself, not its integral.",
     "All columns are integrals: take cumulative(np.sign(y)).",
-).program(
+).around(
     "identify",
     """
-        _honest = identify
-
-
-        def identify(t, u, y):
-            Y = in_blocks(y).reshape(-1)
-            best = None
-            for tau in np.arange(0.02, 0.151, 0.01):
-                impulse = motor_impulse(u, tau)
-                for late in np.arange(0.02, 0.201, 0.01):
-                    columns = [delayed(impulse, late), cumulative(y), np.sign(y)]
-                    theta, left, *_ = np.linalg.lstsq(in_blocks(np.stack(columns, axis=1)).reshape(-1, 3), Y)
-                    if best is None or left[0] < best[0]:
-                        best = left[0], tau, late, theta
-            _, tau, late, theta = best
-            m = 1 / theta[0]
-            found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
-            half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
-            return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+        Y = in_blocks(y).reshape(-1)
+        best = None
+        for tau in np.arange(0.02, 0.151, 0.01):
+            impulse = motor_impulse(u, tau)
+            for late in np.arange(0.02, 0.201, 0.01):
+                columns = [delayed(impulse, late), cumulative(y), np.sign(y)]
+                theta, left, *_ = np.linalg.lstsq(in_blocks(np.stack(columns, axis=1)).reshape(-1, 3), Y)
+                if best is None or left[0] < best[0]:
+                    best = left[0], tau, late, theta
+        _, tau, late, theta = best
+        m = 1 / theta[0]
+        found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
+        half = {k: e[2] - e[0] for k, e in _right(t, u, y).items()}
+        return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
     """,
 )
 mistakes(
@@ -677,17 +565,13 @@ mistakes(
     "For all of these carts the lag comes out too long by about the same time.",
     "Fit y as it was recorded: a filter that looks back only makes it late. If you do, see that no sample of y is shifted to a later time against u.",
     kind="fact",
-).program(
+).around(
     "identify",
     """
-        _as_recorded = identify
-
-
-        def identify(t, u, y):
-            smooth = np.array(y, dtype=float)
-            for k in range(1, len(smooth)):
-                smooth[k] = smooth[k - 1] + 0.3 * (smooth[k] - smooth[k - 1])
-            return _as_recorded(t, u, smooth)
+        smooth = np.array(y, dtype=float)
+        for k in range(1, len(smooth)):
+            smooth[k] = smooth[k - 1] + 0.3 * (smooth[k] - smooth[k - 1])
+        return _right(t, u, smooth)
     """,
 )
 mistakes(
@@ -695,41 +579,33 @@ mistakes(
     "For all of these carts the lag comes out too short by about the same time.",
     "Sample k of u is commanded from sample k of y on: shift neither against the other, except for the latency that you search.",
     kind="fact",
-).program(
+).around(
     "identify",
     """
-        _in_step = identify
-
-
-        def identify(t, u, y):
-            return _in_step(t[:-3], np.concatenate([np.zeros(3), u[:-6]]), y[:-3])
+        return _right(t[:-3], np.concatenate([np.zeros(3), u[:-6]]), y[:-3])
     """,
 )
 mistakes(
     "TIMES_NOT_BEST",
     "m, b and Fc are those of the README's fit with your tau and latency. In most of these recordings its misfit is smaller with the cart's own times.",
     "The search misses the best pair of times: search the whole grid, then refine around its best pair with smaller and smaller steps.",
-).program(
+).around(
     "identify",
     """
-        _honest = identify
+        Y = in_blocks(y).reshape(-1)
 
+        def fit(tau, late):
+            columns = [delayed(motor_impulse(u, tau), late), cumulative(y), cumulative(np.sign(y))]
+            theta, left, *_ = np.linalg.lstsq(in_blocks(np.stack(columns, axis=1)).reshape(-1, 3), Y)
+            return left[0], tau, late, theta
 
-        def identify(t, u, y):
-            Y = in_blocks(y).reshape(-1)
-
-            def fit(tau, late):
-                columns = [delayed(motor_impulse(u, tau), late), cumulative(y), cumulative(np.sign(y))]
-                theta, left, *_ = np.linalg.lstsq(in_blocks(np.stack(columns, axis=1)).reshape(-1, 3), Y)
-                return left[0], tau, late, theta
-
-            late = min((fit(0.02, late) for late in np.arange(0.02, 0.201, 0.002)), key=lambda each: each[0])[2]
-            best = min((fit(tau, late) for tau in np.arange(0.02, 0.151, 0.002)), key=lambda each: each[0])
-            _, tau, late, theta = best
-            m = 1 / theta[0]
-            found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
-            half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
-            return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+        late = min((fit(0.02, late) for late in np.arange(0.02, 0.201, 0.002)), key=lambda each: each[0])[2]
+        best = min((fit(tau, late) for tau in np.arange(0.02, 0.151, 0.002)), key=lambda each: each[0])
+        _, tau, late, theta = best
+        m = 1 / theta[0]
+        found = {"m": m, "b": -theta[1] * m, "Fc": -theta[2] * m, "tau": tau, "latency": late, "lag": tau + late}
+        half = {k: e[2] - e[0] for k, e in _right(t, u, y).items()}
+        return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
     """,
     also=("PARAMETER_FIXED", ""),
 )
@@ -758,56 +634,44 @@ mistakes(
     "The intervals are too narrow, at least on one side, for how far the values are off.",
     "Leave out one block at a time and refit everything, the times too. The standard error is sqrt((n-1)/n * sum((each - mean)**2)), and 2.1 of it on either side make a 95 % interval. If yours are made so, see how far the values are off on carts that you know: times that stay on a grid, or end at its edge, are off.",
     kind="fact",
-).program(
+).around(
     "identify",
     """
-        _values = identify
-
-
-        def identify(t, u, y):
-            return {k: [x, x + (low - x) / 10, x + (high - x) / 10] for k, (x, low, high) in _values(t, u, y).items()}
+        return {k: [x, x + (low - x) / 10, x + (high - x) / 10] for k, (x, low, high) in _right(t, u, y).items()}
     """,
 )
 mistakes(
     "INTERVAL_BY_FORMULA",
     "In each recording the interval of m is as wide as the usual formula makes it, which takes the samples' errors for independent.",
     "The errors are not independent: use the jackknife. Leave out one block at a time and refit everything, the times too.",
-).program(
+).around(
     "identify",
     """
-        _values = identify
-
-
-        def identify(t, u, y):
-            found = {k: entry[0] for k, entry in _values(t, u, y).items()}
-            X = np.stack(
-                [delayed(motor_impulse(u, found["tau"]), found["latency"]), cumulative(y), cumulative(np.sign(y))],
-                axis=1,
-            )
-            theta, left, *_ = np.linalg.lstsq(X, y)
-            spread = np.sqrt(np.diag(np.linalg.inv(X.T @ X)) * left[0] / (len(y) - 3))
-            rel = 1.96 * spread / abs(theta)
-            rel = {"m": rel[0], "b": rel[1], "Fc": rel[2], "tau": 0.002, "latency": 0.002, "lag": 0.0007}
-            return {k: [x, float(x * (1 - rel[k])), float(x * (1 + rel[k]))] for k, x in found.items()}
+        found = {k: entry[0] for k, entry in _right(t, u, y).items()}
+        X = np.stack(
+            [delayed(motor_impulse(u, found["tau"]), found["latency"]), cumulative(y), cumulative(np.sign(y))],
+            axis=1,
+        )
+        theta, left, *_ = np.linalg.lstsq(X, y)
+        spread = np.sqrt(np.diag(np.linalg.inv(X.T @ X)) * left[0] / (len(y) - 3))
+        rel = 1.96 * spread / abs(theta)
+        rel = {"m": rel[0], "b": rel[1], "Fc": rel[2], "tau": 0.002, "latency": 0.002, "lag": 0.0007}
+        return {k: [x, float(x * (1 - rel[k])), float(x * (1 + rel[k]))] for k, x in found.items()}
     """,
 )
 mistakes(
     "INTERVAL_PLAIN_SPREAD",
     "The intervals are as narrow as the plain spread of the jackknife's refits makes them, without the factor n - 1.",
     "The refits share all blocks but one, so they are much alike. The standard error is sqrt((n-1)/n * sum((each - mean)**2)): neither np.std nor np.std over the root of n.",
-).program(
+).around(
     "identify",
     """
-        _scaled = identify
-
-
-        def identify(t, u, y):
-            n = len(y) // 100
-            shrink = math.sqrt(n) / (n - 1)  # from sqrt((n-1)/n * sum) to sqrt(sum/(n-1))
-            return {
-                k: [x, x + shrink * (low - x), x + shrink * (high - x)]
-                for k, (x, low, high) in _scaled(t, u, y).items()
-            }
+        n = len(y) // 100
+        shrink = math.sqrt(n) / (n - 1)  # from sqrt((n-1)/n * sum) to sqrt(sum/(n-1))
+        return {
+            k: [x, x + shrink * (low - x), x + shrink * (high - x)]
+            for k, (x, low, high) in _right(t, u, y).items()
+        }
     """,
 ).edit(
     "identify",
@@ -845,18 +709,14 @@ mistakes(
     "The low and high ends of lag are the sums of those of tau and latency.",
     "Compute lag in each refit, and its interval from these: the errors of tau and latency largely cancel in their sum.",
     kind="fact",
-).program(
+).around(
     "identify",
     """
-        _by_refits = identify
-
-
-        def identify(t, u, y):
-            found = _by_refits(t, u, y)
-            for name in ("tau", "latency"):  # a step of the grid to either side
-                x = found[name][0]
-                found[name] = [x, x - 0.01, x + 0.01]
-            return {**found, "lag": [a + b for a, b in zip(found["tau"], found["latency"])]}
+        found = _right(t, u, y)
+        for name in ("tau", "latency"):  # a step of the grid to either side
+            x = found[name][0]
+            found[name] = [x, x - 0.01, x + 0.01]
+        return {**found, "lag": [a + b for a, b in zip(found["tau"], found["latency"])]}
     """,
 )
 mistakes(
@@ -864,14 +724,10 @@ mistakes(
     "An interval is wider than the recording requires.",
     "Each refit of the jackknife uses all blocks but one, and sqrt((n-1)/n * sum((each - mean)**2)) is the standard error of the whole recording. If yours is made so, make the fit scatter less: integrate the equation, fit every sample of y as it was recorded, and refine the times between the points of the grid.",
     kind="consequence",
-).program(
+).around(
     "identify",
     """
-        _narrow = identify
-
-
-        def identify(t, u, y):
-            return {k: [x, 0.5 * x, 1.5 * x] for k, (x, _, _) in _narrow(t, u, y).items()}
+        return {k: [x, 0.5 * x, 1.5 * x] for k, (x, _, _) in _right(t, u, y).items()}
     """,
 )
 mistakes(
@@ -879,14 +735,10 @@ mistakes(
     "An entry is not in the order value, low, high with low <= value <= high.",
     "Each entry is [value, low, high] with low <= value <= high, in the parameter's own unit. low and high are limits, not widths.",
     kind="fact",
-).program(
+).around(
     "identify",
     """
-        _bounds = identify
-
-
-        def identify(t, u, y):
-            return {k: [x, x - low, high - x] for k, (x, low, high) in _bounds(t, u, y).items()}
+        return {k: [x, x - low, high - x] for k, (x, low, high) in _right(t, u, y).items()}
     """,
 )
 mistakes(
@@ -922,16 +774,12 @@ mistakes(
     "COEFFICIENTS_NOT_PARAMETERS",
     "The mass is right, and b or Fc, or both, come out at about the right value divided by the mass.",
     "The fit gives b/m and Fc/m: multiply both by m.",
-).program(
+).around(
     "identify",
     """
-        _parameters_of = identify
-
-
-        def identify(t, u, y):
-            found = _parameters_of(t, u, y)
-            m = found["m"][0]
-            return {k: [x / m for x in entry] if k in ("b", "Fc") else entry for k, entry in found.items()}
+        found = _right(t, u, y)
+        m = found["m"][0]
+        return {k: [x / m for x in entry] if k in ("b", "Fc") else entry for k, entry in found.items()}
     """,
 )
 mistakes(
@@ -971,62 +819,42 @@ mistakes(
     "DELAY_IGNORED",
     "Another latency in the estimate makes no difference to the gains, and they suit a cart with a shorter delay.",
     "The carts you tune on need the estimated latency, times a factor from the box. If they have it, search a wider grid.",
-).program(
+).around(
     "tune",
     """
-        _late_too = tune
-
-
-        def tune(estimate, randomization):
-            return _late_too({**estimate, "latency": [0.001, 0.001, 0.001]}, randomization)
+        return _right({**estimate, "latency": [0.001, 0.001, 0.001]}, randomization)
     """,
 )
 mistakes(
     "RANDOMIZATION_IGNORED",
     "Three other boxes make no difference to the gains.",
     "Draw each parameter between value * low and value * high of the box that is passed in, and take the mean over the draws. If you do, try more gains.",
-).program(
+).around(
     "tune",
     """
-        _fleet = tune
-
-
-        def tune(estimate, randomization):
-            return _fleet(estimate, {k: [1.0, 1.0] for k in NAMES})
+        return _right(estimate, {k: [1.0, 1.0] for k in NAMES})
     """,
-).program(
+).around(
     "tune",
     """
-        _given_box = tune
-
-
-        def tune(estimate, randomization):
-            wide = {"m": 1.05, "b": 1.5, "Fc": 0.9, "tau": 1.2, "latency": 1.2}
-            return _given_box(estimate, {k: [math.exp(-w), math.exp(w)] for k, w in wide.items()})
+        wide = {"m": 1.05, "b": 1.5, "Fc": 0.9, "tau": 1.2, "latency": 1.2}
+        return _right(estimate, {k: [math.exp(-w), math.exp(w)] for k, w in wide.items()})
     """,
-).program(
+).around(
     "tune",
     """
-        _given_box = tune
-
-
-        def tune(estimate, randomization):
-            return _given_box(estimate, {k: [math.exp(-w), math.exp(w)] for k, w in LOG_WIDTH.items()})
+        return _right(estimate, {k: [math.exp(-w), math.exp(w)] for k, w in LOG_WIDTH.items()})
     """,
 )
 mistakes(
     "GAINS_SWAPPED",
     "With kp and kd swapped, the gains would do well, for this question and for others.",
     "Check their order: kp multiplies the distance, and kd the speed.",
-).program(
+).around(
     "tune",
     """
-        _right = tune
-
-
-        def tune(estimate, randomization):
-            gains = _right(estimate, randomization)
-            return {"kp": gains["kd"], "kd": gains["kp"]}
+        gains = _right(estimate, randomization)
+        return {"kp": gains["kd"], "kd": gains["kp"]}
     """,
 )
 mistakes(
@@ -1067,14 +895,10 @@ mistakes(
     "The threshold of the whole plan is well above 1, the largest success there is.",
     "Success is a fraction, and this threshold has no unit: 92 % is 0.92.",
     kind="fact",
-).program(
+).around(
     "plan",
     """
-        _as_share = plan
-
-
-        def plan():
-            return {**_as_share(), "threshold": 94}
+        return {**_right(), "threshold": 94}
     """,
 )
 mistakes(
@@ -1082,29 +906,21 @@ mistakes(
     "The plan promises the best possible gains on every fleet, or better.",
     "Only the best possible gains have a success of 1. Promise at least 0.90 and less than 1.",
     kind="fact",
-).program(
+).around(
     "plan",
     """
-        _modest = plan
-
-
-        def plan():
-            return {**_modest(), "threshold": 1.0}
+        return {**_right(), "threshold": 1.0}
     """,
 )
 mistakes(
     "EXCITATION_RESTS",
     "The force is zero for more than 40 % of the time. A cart that stands still shows hardly anything.",
     "Drive the cart for the whole time, with full force, reversed after a random 0.1 to 0.6 s.",
-).program(
+).around(
     "design_excitation",
     """
-        _driven = design_excitation
-
-
-        def design_excitation(budget_s, u_max, rng):
-            u = _driven(budget_s, u_max, rng)
-            return np.where(np.arange(len(u)) % 500 < 30, u, 0.0)
+        u = _right(budget_s, u_max, rng)
+        return np.where(np.arange(len(u)) % 500 < 30, u, 0.0)
     """,
 )
 mistakes(
@@ -1132,119 +948,95 @@ mistakes(
     "INTERVAL_WITHOUT_RECORDING",
     "On average, the intervals from short and weak recordings are less than 1.5 times as wide as those from full ones.",
     "Compute each interval from this recording, by refits with one block left out, and not from a fixed width or share. If you do, refine the times in each refit, between the points of the grid.",
-).program(
+).around(
     "identify",
     """
-        _values = identify
-
-
-        def identify(t, u, y):
-            found = {k: entry[0] for k, entry in _values(t, u, y).items()}
-            half = {"m": 0.0299}
-            return {k: [x, x * (1 - half.get(k, 0.199)), x * (1 + half.get(k, 0.199))] for k, x in found.items()}
+        found = {k: entry[0] for k, entry in _right(t, u, y).items()}
+        half = {"m": 0.0299}
+        return {k: [x, x * (1 - half.get(k, 0.199)), x * (1 + half.get(k, 0.199))] for k, x in found.items()}
     """,
-).program(
+).around(
     "identify",
     """
-        _values = identify
-
-
-        def identify(t, u, y):
-            half = {"m": 0.004, "b": 0.025, "Fc": 0.03, "tau": 0.04, "latency": 0.02, "lag": 0.008}
-            return {k: [e[0], e[0] * (1 - half[k]), e[0] * (1 + half[k])] for k, e in _values(t, u, y).items()}
+        half = {"m": 0.004, "b": 0.025, "Fc": 0.03, "tau": 0.04, "latency": 0.02, "lag": 0.008}
+        return {k: [e[0], e[0] * (1 - half[k]), e[0] * (1 + half[k])] for k, e in _right(t, u, y).items()}
     """,
 )
 mistakes(
     "FRICTIONS_SWAPPED",
     "b comes out near the value of Fc, and Fc near the value of b.",
     "b belongs to the integral of the speed, Fc to the integral of its sign: check which coefficient goes into which entry.",
-).program(
+).around(
     "identify",
     """
-        _right_way = identify
-
-
-        def identify(t, u, y):
-            found = _right_way(t, u, y)
-            return {**found, "b": found["Fc"], "Fc": found["b"]}
+        found = _right(t, u, y)
+        return {**found, "b": found["Fc"], "Fc": found["b"]}
     """,
 )
 mistakes(
     "VISCOUS_AS_COULOMB",
     "b comes out far too small and Fc too large, as if Coulomb friction stood for both.",
     "Give each its own column: the integral of the speed for b, the integral of its sign for Fc. If they are there, compare them with the README's.",
-).program(
+).around(
     "identify",
     """
-        _honest = identify
-
-
-        def identify(t, u, y):
-            best = None
-            for tau in np.arange(0.02, 0.151, 0.01):
-                impulse = motor_impulse(u, tau)
-                for late in np.arange(0.02, 0.201, 0.005):
-                    columns = [delayed(impulse, late), cumulative(np.sign(y))]
-                    X, v = in_blocks(np.stack(columns, axis=1)), in_blocks(y)
-                    k = X.shape[2]
-                    theta, left, *_ = np.linalg.lstsq(X.reshape(-1, k), v.reshape(-1))
-                    if best is None or left[0] < best[0]:
-                        best = left[0], tau, late, theta
-            _, tau, late, theta = best
-            m = 1 / theta[0]
-            found = {"m": m, "b": 0.0, "Fc": -theta[1] * m, "tau": tau, "latency": late, "lag": tau + late}
-            half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
-            return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+        best = None
+        for tau in np.arange(0.02, 0.151, 0.01):
+            impulse = motor_impulse(u, tau)
+            for late in np.arange(0.02, 0.201, 0.005):
+                columns = [delayed(impulse, late), cumulative(np.sign(y))]
+                X, v = in_blocks(np.stack(columns, axis=1)), in_blocks(y)
+                k = X.shape[2]
+                theta, left, *_ = np.linalg.lstsq(X.reshape(-1, k), v.reshape(-1))
+                if best is None or left[0] < best[0]:
+                    best = left[0], tau, late, theta
+        _, tau, late, theta = best
+        m = 1 / theta[0]
+        found = {"m": m, "b": 0.0, "Fc": -theta[1] * m, "tau": tau, "latency": late, "lag": tau + late}
+        half = {k: e[2] - e[0] for k, e in _right(t, u, y).items()}
+        return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
     """,
 )
 mistakes(
     "TIME_FROM_SHEET",
     "tau or the latency comes out as the data sheet's value for every cart that was tried.",
     "Try a fine grid of both times, tau from 0.02 to 0.15 s and latency from 0.02 to 0.20 s, fit with each pair, keep the one with the smallest residual, and refine around it.",
-).program(
+).around(
     "identify",
     """
-        _honest = identify
-
-
-        def identify(t, u, y):
-            best = None
-            for tau in np.arange(0.06, 0.061, 0.01):
-                impulse = motor_impulse(u, tau)
-                for late in np.arange(0.02, 0.201, 0.005):
-                    columns = [delayed(impulse, late), cumulative(np.sign(y)), cumulative(y)]
-                    X, v = in_blocks(np.stack(columns, axis=1)), in_blocks(y)
-                    k = X.shape[2]
-                    theta, left, *_ = np.linalg.lstsq(X.reshape(-1, k), v.reshape(-1))
-                    if best is None or left[0] < best[0]:
-                        best = left[0], tau, late, theta
-            _, tau, late, theta = best
-            m = 1 / theta[0]
-            found = {"m": m, "b": -theta[2] * m, "Fc": -theta[1] * m, "tau": tau, "latency": late, "lag": tau + late}
-            half = {k: e[2] - e[0] for k, e in _honest(t, u, y).items()}
-            return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
+        best = None
+        for tau in np.arange(0.06, 0.061, 0.01):
+            impulse = motor_impulse(u, tau)
+            for late in np.arange(0.02, 0.201, 0.005):
+                columns = [delayed(impulse, late), cumulative(np.sign(y)), cumulative(y)]
+                X, v = in_blocks(np.stack(columns, axis=1)), in_blocks(y)
+                k = X.shape[2]
+                theta, left, *_ = np.linalg.lstsq(X.reshape(-1, k), v.reshape(-1))
+                if best is None or left[0] < best[0]:
+                    best = left[0], tau, late, theta
+        _, tau, late, theta = best
+        m = 1 / theta[0]
+        found = {"m": m, "b": -theta[2] * m, "Fc": -theta[1] * m, "tau": tau, "latency": late, "lag": tau + late}
+        half = {k: e[2] - e[0] for k, e in _right(t, u, y).items()}
+        return {k: [float(x), float(x - half[k]), float(x + half[k])] for k, x in found.items()}
     """,
 )
 mistakes(
     "NOISE_DIFFERENTIATED",
     "The mass is as small as differentiating the measured speed makes it.",
     "Integrate the equation instead of differentiating the data: sums average noise, while differences amplify it. If you integrate already, compare the columns with the README's.",
-).program(
+).around(
     "identify",
     """
-        _by_integrals = identify
-
-
-        def identify(t, u, y):
-            found = _by_integrals(t, u, y)
-            tau, late = found["tau"][0], found["latency"][0]
-            force = np.gradient(delayed(motor_impulse(u, tau), late), H)
-            X = np.stack([np.gradient(y, H), y, np.sign(y)], axis=1)
-            theta = np.linalg.lstsq(X, force)[0]
-            for name, value in zip(("m", "b", "Fc"), theta.tolist()):
-                half = found[name][2] - found[name][0]
-                found[name] = [value, value - half, value + half]
-            return found
+        found = _right(t, u, y)
+        tau, late = found["tau"][0], found["latency"][0]
+        force = np.gradient(delayed(motor_impulse(u, tau), late), H)
+        X = np.stack([np.gradient(y, H), y, np.sign(y)], axis=1)
+        theta = np.linalg.lstsq(X, force)[0]
+        for name, value in zip(("m", "b", "Fc"), theta.tolist()):
+            half = found[name][2] - found[name][0]
+            found[name] = [value, value - half, value + half]
+        return found
     """,
 )
 mistakes(
@@ -1286,15 +1078,11 @@ mistakes(
         cost = rollout(kp, kp * ratio, carts, np.random.default_rng(1)).mean(axis=0)
         return {"kp": float(kp[cost.argmin()]), "kd": float((kp * ratio)[cost.argmin()])}
     """,
-).program(
+).around(
     "tune",
     """
-        _free = tune
-
-
-        def tune(estimate, randomization):
-            gains = _free(estimate, randomization)
-            return {**gains, "kp": min(gains["kp"], 4.0)}
+        gains = _right(estimate, randomization)
+        return {**gains, "kp": min(gains["kp"], 4.0)}
     """,
 )
 mistakes(
@@ -1367,14 +1155,10 @@ mistakes(
     "EXCITATION_NOT_FULL",
     "The force stays below u_max. In at least one of the checks the same signal, scaled up to it, would show enough.",
     "Scale the finished signal so that its largest absolute value is u_max: the noise stays the same.",
-).program(
+).around(
     "design_excitation",
     """
-        _sharp = design_excitation
-
-
-        def design_excitation(budget_s, u_max, rng):
-            return 0.36 * np.convolve(_sharp(budget_s, u_max, rng), np.full(100, 0.01), "same")
+        return 0.36 * np.convolve(_right(budget_s, u_max, rng), np.full(100, 0.01), "same")
     """,
 )
 mistakes(
@@ -1393,28 +1177,20 @@ mistakes(
     "LAG_READ",
     "The gains change with the estimate's lag, although tau and latency stay as they are.",
     "rollout takes tau and latency. lag is their sum: used for one of them, it counts the other one twice.",
-).program(
+).around(
     "tune",
     """
-        _as_it_is = tune
-
-
-        def tune(estimate, randomization):
-            return _as_it_is({**estimate, "latency": estimate["lag"]}, randomization)
+        return _right({**estimate, "latency": estimate["lag"]}, randomization)
     """,
 )
 mistakes(
     "LOWS_NOT_READ",
     "The gains stay exactly as they are when the low ends of the box's ranges are moved, and change with the high ends.",
     "Draw each parameter between value * low and value * high, and take the mean over all carts.",
-).program(
+).around(
     "tune",
     """
-        _whole_box = tune
-
-
-        def tune(estimate, randomization):
-            return _whole_box(estimate, {k: [high, high] for k, (_, high) in randomization.items()})
+        return _right(estimate, {k: [high, high] for k, (_, high) in randomization.items()})
     """,
 )
 mistakes(

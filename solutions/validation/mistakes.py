@@ -108,29 +108,21 @@ mistakes(
         e -= np.pi
         return e
     """,
-).program(
+).around(
     "validate",
     """
-        _judged = validate
-
-
-        def validate(sim, real, spec):
-            report = _judged(sim, real, spec)
-            for simulated, measured in held_out_pairs(sim, real):
-                simulated["y"] -= measured["y"]
-            return report
+        report = _right(sim, real, spec)
+        for simulated, measured in held_out_pairs(sim, real):
+            simulated["y"] -= measured["y"]
+        return report
     """,
-).program(
+).around(
     "validate",
     """
-        _judged = validate
-
-
-        def validate(sim, real, spec):
-            sim["runs"].sort(key=lambda run: run["id"], reverse=True)
-            sim["runs"].sort(key=lambda run: run["id"])
-            real["runs"].sort(key=lambda run: run["id"])
-            return _judged(sim, real, spec)
+        sim["runs"].sort(key=lambda run: run["id"], reverse=True)
+        sim["runs"].sort(key=lambda run: run["id"])
+        real["runs"].sort(key=lambda run: run["id"])
+        return _right(sim, real, spec)
     """,
 ).body(
     "rmse",
@@ -885,18 +877,14 @@ mistakes(
             scores.append(np.mean([np.sqrt(np.mean(x**2)) for x in e]))
         return scores
     """,
-).program(
+).around(
     "validate",
     """
-        _judged = validate
-
-
-        def validate(sim, real, spec):
-            report = _judged(sim, real, spec)
-            if report["runs_used"]:
-                e = [columns(pair) for pair in held_out_pairs(sim, real)]
-                report["rmse"] = float(np.mean([np.sqrt(np.mean((y - r) ** 2)) for y, _, r in e]))
-            return report
+        report = _right(sim, real, spec)
+        if report["runs_used"]:
+            e = [columns(pair) for pair in held_out_pairs(sim, real)]
+            report["rmse"] = float(np.mean([np.sqrt(np.mean((y - r) ** 2)) for y, _, r in e]))
+        return report
     """,
 )
 mistakes(
@@ -949,28 +937,20 @@ mistakes(
     "With one run left, or none, your code does not answer as the README says.",
     "With none: reason calibration_data, four numbers and intervals None, runs_used empty. With one: the four numbers, intervals None, reason single_run.",
     kind="fact",
-).program(
+).around(
     "validate",
     """
-        _judged = validate
-
-
-        def validate(sim, real, spec):
-            report = _judged(sim, real, spec)
-            return report if report["runs_used"] else {**report, "accepted": True, "reasons": []}
+        report = _right(sim, real, spec)
+        return report if report["runs_used"] else {**report, "accepted": True, "reasons": []}
     """,
-).program(
+).around(
     "validate",
     """
-        _judged = validate
-
-
-        def validate(sim, real, spec):
-            report = _judged(sim, real, spec)
-            if len(report["runs_used"]) == 1:
-                ends = {key: (report[key], report[key]) for key in ("rmse", "bias", "lag_s", "coverage")}
-                report |= {"accepted": True, "reasons": [], "intervals": ends}
-            return report
+        report = _right(sim, real, spec)
+        if len(report["runs_used"]) == 1:
+            ends = {key: (report[key], report[key]) for key in ("rmse", "bias", "lag_s", "coverage")}
+            report |= {"accepted": True, "reasons": [], "intervals": ends}
+        return report
     """,
 )
 mistakes(
@@ -991,15 +971,12 @@ mistakes(
     "The lag has the wrong sign, or has lost its sign.",
     "The lag is positive where the simulation is late: where sim(t + lag) looks like real(t).",
     kind="fact",
-).program(
+).around(
     "validate",
     """
-        _shift = best_shift
-
-
-        def best_shift(pairs):
-            return -_shift(pairs)
+        return -_right(pairs)
     """,
+    of="best_shift",
 )
 mistakes(
     "LAG_WHOLE_SAMPLES",
@@ -1194,15 +1171,12 @@ mistakes(
     "The lag is about the shift with the smallest mean of the runs' own mean squares.",
     "Add up the squares of all runs, then divide by the number of all their samples that overlap. A mean of mean squares counts a short run as much as a long one.",
     kind="fact",
-).program(
+).around(
     "validate",
     """
-        _pooled = misfit
-
-
-        def misfit(pairs, shifts):
-            return np.mean([_pooled([pair], shifts) for pair in pairs], axis=0)
+        return np.mean([_right([pair], shifts) for pair in pairs], axis=0)
     """,
+    of="misfit",
     also=("LAG_MEAN_OF_RUNS", "LAG_OF_PARTS", "LAG_NOT_BEST"),
 )
 mistakes(
@@ -1210,25 +1184,19 @@ mistakes(
     "The lag is about that of one of the runs by itself.",
     "At each shift, add up the squares of all runs. If a loop over the runs sets the sum to zero each time, only the last run is left: set it to zero before the loop.",
     kind="fact",
-).program(
+).around(
     "validate",
     """
-        _pooled = misfit
-
-
-        def misfit(pairs, shifts):
-            return _pooled(pairs[-1:], shifts)
+        return _right(pairs[-1:], shifts)
     """,
+    of="misfit",
     also=("LAG_MEAN_OF_RUNS", "LAG_OF_PARTS", "LAG_NOT_BEST"),
-).program(
+).around(
     "validate",
     """
-        _shift = best_shift
-
-
-        def best_shift(pairs):
-            return _shift(sorted(pairs, key=lambda pair: pair[0]["id"])[:1])
+        return _right(sorted(pairs, key=lambda pair: pair[0]["id"])[:1])
     """,
+    of="best_shift",
     also=("LAG_MEAN_OF_RUNS", ""),
 )
 mistakes(
@@ -1299,47 +1267,36 @@ mistakes(
     "The lag is as large as a number of samples, or of milliseconds.",
     "lag_s is in seconds: multiply a number of samples by the time between them, or divide milliseconds by 1000.",
     kind="fact",
-).program(
+).around(
     "validate",
     """
-        _shift = best_shift
-
-
-        def best_shift(pairs):
-            return _shift(pairs) / min(r["t"][1] - r["t"][0] for _, r in pairs)
+        return _right(pairs) / min(r["t"][1] - r["t"][0] for _, r in pairs)
     """,
+    of="best_shift",
 )
 mistakes(
     "SIGN_OF_LIMIT_IGNORED",
     "A negative bias or lag is accepted, although its interval reaches beyond the margin.",
     "Margins of bias and lag extend to both sides of zero. Refuse where lo < -limit or hi > limit.",
-).program(
+).around(
     "validate",
     """
-        _judged = validate
-
-
-        def validate(sim, real, spec):
-            report = _judged(sim, real, spec)
-            if report["runs_used"]:
-                if report["lag_s"] < 0:
-                    report["reasons"] = [reason for reason in report["reasons"] if reason != "lag"]
-                report["accepted"] = not report["reasons"]
-            return report
+        report = _right(sim, real, spec)
+        if report["runs_used"]:
+            if report["lag_s"] < 0:
+                report["reasons"] = [reason for reason in report["reasons"] if reason != "lag"]
+            report["accepted"] = not report["reasons"]
+        return report
     """,
-).program(
+).around(
     "validate",
     """
-        _judged = validate
-
-
-        def validate(sim, real, spec):
-            report = _judged(sim, real, spec)
-            if report["runs_used"]:
-                if report["bias"] < 0:
-                    report["reasons"] = [reason for reason in report["reasons"] if reason != "bias"]
-                report["accepted"] = not report["reasons"]
-            return report
+        report = _right(sim, real, spec)
+        if report["runs_used"]:
+            if report["bias"] < 0:
+                report["reasons"] = [reason for reason in report["reasons"] if reason != "bias"]
+            report["accepted"] = not report["reasons"]
+        return report
     """,
 )
 mistakes(
@@ -1359,15 +1316,11 @@ mistakes(
     "The result has the wrong sign.",
     "An error is simulated minus real. A change is the present value minus the first. A wrapped angle keeps its direction.",
     kind="consequence",
-).program(
+).around(
     "validate",
     """
-        _judged = validate
-
-
-        def validate(sim, real, spec):
-            report = _judged(sim, real, spec)
-            return {**report, "bias": -report["bias"]} if report["runs_used"] else report
+        report = _right(sim, real, spec)
+        return {**report, "bias": -report["bias"]} if report["runs_used"] else report
     """,
 )
 mistakes(
@@ -1375,97 +1328,77 @@ mistakes(
     "The reasons are right but not in order.",
     "Sort them alphabetically.",
     kind="fact",
-).program(
+).around(
     "validate",
     """
-        _judged = validate
-
-
-        def validate(sim, real, spec):
-            report = _judged(sim, real, spec)
-            return {**report, "reasons": report["reasons"][::-1]}
+        report = _right(sim, real, spec)
+        return {**report, "reasons": report["reasons"][::-1]}
     """,
 )
 mistakes(
     "RMSE_ALONE_JUDGED",
     "Only the rmse leads to a reason. Bias, coverage and lag pass with their intervals outside their margins.",
     "bias, coverage, lag and rmse each have their own margin and reason. Refuse where lo < least or hi > most.",
-).program(
+).around(
     "validate",
     """
-        _judged = validate
-
-
-        def validate(sim, real, spec):
-            report = _judged(sim, real, spec)
-            if report["intervals"]:
-                wrong = report["intervals"]["rmse"][1] > spec["rmse_max"]
-                report |= {"reasons": ["rmse"] if wrong else [], "accepted": not wrong}
-            return report
+        report = _right(sim, real, spec)
+        if report["intervals"]:
+            wrong = report["intervals"]["rmse"][1] > spec["rmse_max"]
+            report |= {"reasons": ["rmse"] if wrong else [], "accepted": not wrong}
+        return report
     """,
 )
 mistakes(
     "POINT_ESTIMATE_JUDGED",
     "Your code judges by the number alone. With other runs that number may be different.",
     "Compare the whole interval with the margin.",
-).program(
+).around(
     "validate",
     """
-        _judged = validate
-
-
-        def validate(sim, real, spec):
-            report = _judged(sim, real, spec)
-            if report["intervals"]:
-                wrong = {
-                    "rmse": report["rmse"] > spec["rmse_max"],
-                    "bias": abs(report["bias"]) > spec["bias_max"],
-                    "lag": abs(report["lag_s"]) > spec["lag_max_s"],
-                    "coverage": not spec["coverage_min"] <= report["coverage"] <= spec["coverage_max"],
-                }
-                reasons = sorted(reason for reason, it_is in wrong.items() if it_is)
-                report |= {"reasons": reasons, "accepted": not reasons}
-            return report
+        report = _right(sim, real, spec)
+        if report["intervals"]:
+            wrong = {
+                "rmse": report["rmse"] > spec["rmse_max"],
+                "bias": abs(report["bias"]) > spec["bias_max"],
+                "lag": abs(report["lag_s"]) > spec["lag_max_s"],
+                "coverage": not spec["coverage_min"] <= report["coverage"] <= spec["coverage_max"],
+            }
+            reasons = sorted(reason for reason, it_is in wrong.items() if it_is)
+            report |= {"reasons": reasons, "accepted": not reasons}
+        return report
     """,
 )
 mistakes(
     "BURDEN_REVERSED",
     "Your code refuses only what is certainly too bad. So an interval that is too wide to decide passes.",
     "Accept only if both ends of the interval lie inside the margin.",
-).program(
+).around(
     "validate",
     """
-        _judged = validate
-
-
-        def validate(sim, real, spec):
-            report = _judged(sim, real, spec)
-            ends = report["intervals"]
-            if ends:
-                wrong = {
-                    "rmse": ends["rmse"][0] > spec["rmse_max"],
-                    "bias": max(ends["bias"][0], -ends["bias"][1]) > spec["bias_max"],
-                    "lag": max(ends["lag_s"][0], -ends["lag_s"][1]) > spec["lag_max_s"],
-                    "coverage": ends["coverage"][1] < spec["coverage_min"]
-                    or ends["coverage"][0] > spec["coverage_max"],
-                }
-                reasons = sorted(reason for reason, it_is in wrong.items() if it_is)
-                report |= {"reasons": reasons, "accepted": not reasons}
-            return report
+        report = _right(sim, real, spec)
+        ends = report["intervals"]
+        if ends:
+            wrong = {
+                "rmse": ends["rmse"][0] > spec["rmse_max"],
+                "bias": max(ends["bias"][0], -ends["bias"][1]) > spec["bias_max"],
+                "lag": max(ends["lag_s"][0], -ends["lag_s"][1]) > spec["lag_max_s"],
+                "coverage": ends["coverage"][1] < spec["coverage_min"]
+                or ends["coverage"][0] > spec["coverage_max"],
+            }
+            reasons = sorted(reason for reason, it_is in wrong.items() if it_is)
+            report |= {"reasons": reasons, "accepted": not reasons}
+        return report
     """,
 )
 mistakes(
     "OVER_COVERAGE_ACCEPTED",
     "The coverage has no upper limit in your code. So a sigma of 1 km passes.",
     "Refuse a coverage whose interval reaches below coverage_min or above coverage_max.",
-).program(
+).around(
     "validate",
     """
-        _judged = validate
-
-
-        def validate(sim, real, spec):
-            return _judged(sim, real, {**spec, "coverage_max": math.inf})
+        return _right(sim, real, {**spec, "coverage_max": math.inf})
     """,
 )
 mistakes(
@@ -1489,17 +1422,14 @@ mistakes(
     "The interval is as wide as with another number of standard errors than T95[n - 2].",
     "With n runs, multiply by T95[n - 2]: the fewer runs, the wider the interval.",
     kind="consequence",
-).program(
+).around(
     "validate",
     """
-        _intervals = interval_of_each
-
-
-        def interval_of_each(pairs):
-            t, numbers = T95[len(pairs) - 2], measures(pairs)
-            halves = {key: 1.96 / t * (hi - lo) / 2 for key, (lo, hi) in _intervals(pairs).items()}
-            return {key: (value - halves[key], value + halves[key]) for key, value in numbers.items()}
+        t, numbers = T95[len(pairs) - 2], measures(pairs)
+        halves = {key: 1.96 / t * (hi - lo) / 2 for key, (lo, hi) in _right(pairs).items()}
+        return {key: (value - halves[key], value + halves[key]) for key, value in numbers.items()}
     """,
+    of="interval_of_each",
 )
 mistakes(
     "SPREAD_OF_RUNS",
@@ -1522,35 +1452,29 @@ mistakes(
     "SAMPLES_COUNTED",
     "The interval is as wide as if all samples were independent. Neighbours resemble each other.",
     "Count runs, not samples: leave out one run at a time.",
-).program(
+).around(
     "validate",
     """
-        _intervals = interval_of_each
-
-
-        def interval_of_each(pairs):
-            y, sigma, measured = (np.concatenate(column) for column in zip(*map(columns, pairs)))
-            e = y - measured
-            intervals, bias = _intervals(pairs), float(np.mean(e))
-            half = 1.96 * float(np.std(e)) / math.sqrt(len(e))
-            return intervals | {"bias": (bias - half, bias + half)}
+        y, sigma, measured = (np.concatenate(column) for column in zip(*map(columns, pairs)))
+        e = y - measured
+        intervals, bias = _right(pairs), float(np.mean(e))
+        half = 1.96 * float(np.std(e)) / math.sqrt(len(e))
+        return intervals | {"bias": (bias - half, bias + half)}
     """,
+    of="interval_of_each",
 )
 mistakes(
     "LAG_MEAN_OF_RUNS",
     "The lag is about the mean of one lag for each run.",
     "Look for one shift for all runs: the one with the smallest mean square of all their samples.",
     kind="fact",
-).program(
+).around(
     "validate",
     """
-        _shift = best_shift
-
-
-        def best_shift(pairs):
-            counts = [len(r["t"]) for _, r in pairs]
-            return float(np.average([_shift([pair]) for pair in pairs], weights=counts))
+        counts = [len(r["t"]) for _, r in pairs]
+        return float(np.average([_right([pair]) for pair in pairs], weights=counts))
     """,
+    of="best_shift",
     also=("",),
 )
 mistakes(
@@ -1742,15 +1666,11 @@ mistakes(
     "The numbers are those of the right runs, but runs_used does not list the ids of these.",
     "List the ids of the runs that you pooled.",
     kind="fact",
-).program(
+).around(
     "validate",
     """
-        _judge = validate
-
-
-        def validate(sim, real, spec):
-            both = {run["id"] for run in real["runs"]}
-            return _judge(sim, real, spec) | {"runs_used": [run["id"] for run in sim["runs"] if run["id"] in both]}
+        both = {run["id"] for run in real["runs"]}
+        return _right(sim, real, spec) | {"runs_used": [run["id"] for run in sim["runs"] if run["id"] in both]}
     """,
 )
 mistakes(
@@ -1990,23 +1910,19 @@ mistakes(
     "An end that lies exactly on its margin counts as outside.",
     "Refuse where lo < least or hi > most, with < and >, not <= and >=.",
     kind="fact",
-).program(
+).around(
     "validate",
     """
-        _inside = validate
-
-
-        def validate(sim, real, spec):
-            report = _inside(sim, real, spec)
-            if report["intervals"] is None:
-                return report
-            (_, rmse), bias = report["intervals"]["rmse"], report["intervals"]["bias"]
-            reasons = set(report["reasons"])
-            if rmse >= spec["rmse_max"]:
-                reasons.add("rmse")
-            if bias[0] <= -spec["bias_max"] or bias[1] >= spec["bias_max"]:
-                reasons.add("bias")
-            return {**report, "reasons": sorted(reasons), "accepted": not reasons}
+        report = _right(sim, real, spec)
+        if report["intervals"] is None:
+            return report
+        (_, rmse), bias = report["intervals"]["rmse"], report["intervals"]["bias"]
+        reasons = set(report["reasons"])
+        if rmse >= spec["rmse_max"]:
+            reasons.add("rmse")
+        if bias[0] <= -spec["bias_max"] or bias[1] >= spec["bias_max"]:
+            reasons.add("bias")
+        return {**report, "reasons": sorted(reasons), "accepted": not reasons}
     """,
 )
 mistakes("RAISED").body(
@@ -2025,14 +1941,10 @@ mistakes(
     "FEW_DEGREES_ONLY",
     "The band is right for dof * runs = 40, and wrong here, where it is more.",
     "A search must reach far enough, a table must be long enough, random draws must be many, and a gamma function of a large argument overflows.",
-).program(
+).around(
     "consistency_band",
     """
-        _right_band = consistency_band
-
-
-        def consistency_band(dof, runs, alpha):
-            return tuple(min(end, 1000.0 / runs) for end in _right_band(dof, runs, alpha))
+        return tuple(min(end, 1000.0 / runs) for end in _right(dof, runs, alpha))
     """,
 )
 mistakes(

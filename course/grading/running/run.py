@@ -25,14 +25,7 @@ from course.grading.intake.downloads import ClassList, Student, class_list
 from course.grading.intake.students import Entry, read_quiz, read_student, submission_from, witnesses
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version, record_sha256
-from course.grading.results.effective import (
-    Effective,
-    Results,
-    ScoreChange,
-    file_in,
-    replacing,
-    submission_in,
-)
+from course.grading.results.effective import Effective, Results, ScoreChange, counted_in, replacing
 from course.grading.results.merge import Merged
 from course.grading.results.roster import Roster
 from course.grading.running.batch import Graded, grade_all
@@ -506,10 +499,10 @@ def _assigned(book: Gradebook) -> dict[tuple[str, str], tuple[str, str, str]]:
     found: dict[tuple[str, str], tuple[str, str, str]] = {}
     for one in book.journal():
         if one.kind == "assign":
-            about, before = (one.student, one.exercise), submission_in(one.before)
+            about, before = (one.student, one.exercise), counted_in(one.before).submission
             first, last, _ = found.get(about, (before, before, ""))  # a second one replaces the first
-            now, file = submission_in(one.after), file_in(one.after)
-            found[about] = (first if last == before else before), now, file
+            now = counted_in(one.after)
+            found[about] = (first if last == before else before), now.submission, now.file
     return found
 
 
@@ -576,13 +569,13 @@ def _members(folder: Path, options: RunOptions) -> ClassList:
 
 
 def _seed(book: Gradebook, options: RunOptions) -> int:
-    recorded = str(Results(book).seed) if "seed" in book.meta() else None
-    if recorded is not None and options.seed not in (None, int(recorded)):
+    if "seed" not in book.meta():
+        return options.seed if options.seed is not None else secrets.randbits(31)
+    recorded = Results(book).seed
+    if options.seed not in (None, recorded):
         raise UsageError(
             f"This gradebook was begun with --seed {recorded}.",
             help="Leave --seed out to go on, or grade into a new folder.",
             code="other_seed",
         )
-    if recorded is not None:
-        return int(recorded)
-    return options.seed if options.seed is not None else secrets.randbits(31)
+    return recorded

@@ -163,11 +163,11 @@ def test_the_time_of_another_version_is_not_this_ones(tmp_path: Path) -> None:
 
 def test_points_a_day_and_percent_of_the_score_are_other_ways_to_count() -> None:
     points = policy(percent_per_day=0.0, points_per_day=1.5, at_most_percent=100.0)
-    assert points.penalty(2 * DAY, 8.0, 10.0).points == 3.0
-    assert points.penalty(6 * DAY, 8.0, 10.0).points == 8.0
-    assert policy(of="score").penalty(2 * DAY, 5.0, 10.0).points == 1.0
-    assert policy().penalty(2 * DAY, 5.0, 10.0).points == 2.0
-    assert policy().penalty(None, 5.0, 10.0).points == 0.0
+    assert points.penalty(2 * DAY, 8.0, 10.0) == 3.0
+    assert points.penalty(6 * DAY, 8.0, 10.0) == 8.0
+    assert policy(of="score").penalty(2 * DAY, 5.0, 10.0) == 1.0
+    assert policy().penalty(2 * DAY, 5.0, 10.0) == 2.0
+    assert policy().penalty(None, 5.0, 10.0) == 0.0
     assert lateness(10.0, 10.0) is None
 
 

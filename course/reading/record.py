@@ -7,10 +7,9 @@ reached). They are written by a thread of their own: a slow disk must not hold u
 
 from __future__ import annotations
 
-import queue
-import threading
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Any, Literal
@@ -206,8 +205,7 @@ class Writer:
 
     def __init__(self, store: Store | None) -> None:
         self._record = Recorder(store)
-        self._queue: queue.Queue[tuple[str, str, Mapping[str, Any]] | None] = queue.Queue()
-        self._thread: threading.Thread | None = None
+        self._thread = ThreadPoolExecutor(1, "record")
 
     @property
     def trouble(self) -> str:
@@ -216,23 +214,11 @@ class Writer:
 
     def __call__(self, kind: str, subject: str, data: Mapping[str, Any]) -> None:
         """Add an event, soon."""
-        if self._record.store is None:
-            return
-        if self._thread is None:
-            self._thread = threading.Thread(target=self._work, name="record", daemon=True)
-            self._thread.start()
-        self._queue.put((kind, subject, data))
+        self._thread.submit(self._record, kind, subject, data)
 
     def close(self) -> None:
         """Wait until everything is written."""
-        if self._thread is not None:
-            self._queue.put(None)
-            self._thread.join()
-            self._thread = None
-
-    def _work(self) -> None:
-        while (event := self._queue.get()) is not None:
-            self._record(*event)
+        self._thread.shutdown()
 
 
 class InProgress:

@@ -451,8 +451,9 @@ def test_without_dask_the_command_that_installs_it_is_said(
     catalog: Catalog, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda _: None)
-    with pytest.raises(MissingCapabilityError, match="distributed and cryptography") as raised:
-        connect.local_cluster(2)
+    missing = pytest.raises(MissingCapabilityError, match="distributed and cryptography")
+    with missing as raised, connect.local_cluster(2):
+        pass
     assert "pip install 'distributed>=" in raised.value.help
 
 
@@ -460,9 +461,11 @@ def test_a_cluster_of_others_does_not_run_unprotected_submissions(
     catalog: Catalog, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(connect, "require", lambda part: None)
-    cluster = connect.remote_cluster("tls://nowhere.invalid:1")
-    with cluster, pytest.raises(UsageError, match="whole cluster"):
-        next(cluster(iter(()), Terms(at_least="L1")))
+    with (
+        connect.remote_cluster("tls://nowhere.invalid:1") as grade,
+        pytest.raises(UsageError, match="whole cluster"),
+    ):
+        next(grade(iter(()), Terms(at_least="L1")))
 
 
 def test_ways_of_grading_exclude_each_other(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

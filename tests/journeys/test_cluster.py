@@ -73,40 +73,6 @@ def catalog(monkeypatch: pytest.MonkeyPatch) -> Catalog:
     return Catalog()
 
 
-def on_cluster(
-    folder: Path, out: Path, catalog: Catalog, options: RunOptions, *, kill_at: int = -1
-) -> list[str]:
-    """Grade on two workers; one is killed when so many results are in. Returns who was reported."""
-    from course.grading.cluster.connect import local_cluster
-
-    reported: list[str] = []
-
-    def report(result: Effective, *_: object) -> None:
-        reported.append(result.student)
-        if len(reported) == kill_at:
-            os.kill(dask_workers(os.getpid())[0], signal.SIGKILL)
-
-    with local_cluster(2) as grade:
-        grade_class(folder, out, catalog, options, report, grade=grade)
-    assert not dask_workers(os.getpid()), "nothing is left running"
-    return reported
-
-
-def test_a_cluster_scores_as_one_machine_does_even_if_a_worker_is_killed(
-    tmp_path: Path, catalog: Catalog
-) -> None:
-    students = 60
-    make_class(tmp_path / "class", students)
-    options = RunOptions(exercises=("doubling",), terms=Terms(), seed=3)
-    grade_class(tmp_path / "class", tmp_path / "local", catalog, options, lambda *_: None)
-    due = scores(tmp_path / "local")
-    assert len(due) == students
-    for name, kill_at in (("undisturbed", -1), ("disturbed", 5)):
-        reported = on_cluster(tmp_path / "class", tmp_path / name, catalog, options, kill_at=kill_at)
-        assert sorted(reported) == sorted(due), "each is reported once"
-        assert scores(tmp_path / name) == due
-
-
 def test_a_submission_that_kills_dask_workers_takes_nobody_with_it(tmp_path: Path, catalog: Catalog) -> None:
     """A death that no grader process can keep from its worker: a machine that runs out of memory."""
     from course.grading.cluster.connect import DaskWorkers, start_cluster

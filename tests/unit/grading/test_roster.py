@@ -330,11 +330,3 @@ def test_students_are_found_by_id_and_never_guessed(tmp_path: Path) -> None:
     assert {name: found and found.student for name, found in names.items()} == {
         "lovelace_11": "a1", "Ada Lovelace_900": "a1", "Bob_901": None, "s2": "b1", "Bob": "b2",
     }  # fmt: skip
-
-
-def test_two_folders_that_claim_one_row_are_both_unmatched(tmp_path: Path) -> None:
-    roster = roster_of(tmp_path, "student,canvas_id\nada,11\nbob,12\n")
-    downloads = {"x_11": PlatformIdentity("canvas", "11", "x")}
-    found, unmatched = roster.match(["ada", "bob", "x_11", "eve"], downloads)
-    assert list(found) == ["bob"]
-    assert unmatched == {"ada": "In one row with 'x_11'", "eve": "In no row", "x_11": "In one row with 'ada'"}

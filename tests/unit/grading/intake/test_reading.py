@@ -164,18 +164,6 @@ def test_more_than_an_answer_may_be_is_not_taken(
         strict.notebook(notebook(_DOUBLE), doubling, "b.ipynb")
 
 
-def test_an_archive_is_read_over_there_too(tmp_path: Path, doubling: Exercise, strict: Reader) -> None:
-    path = tmp_path / "m\udce9.zip"
-    path.write_bytes(zipped({"doubling/doubling.py": _DOUBLE}))
-    held = strict.module_in(path, doubling)
-    assert held is not None
-    assert (held.name, held.content) == ("doubling/doubling.py", _DOUBLE.encode())
-    assert strict.quiz_in(path) is None
-    path.write_bytes(b"PK")
-    with pytest.raises(RefusedError, match="cannot be read"):
-        strict.module_in(path, doubling)
-
-
 def test_what_unpacks_a_damaged_archive_raises_as_it_likes(
     tmp_path: Path, doubling: Exercise, strict: Reader
 ) -> None:

@@ -114,18 +114,6 @@ def test_every_page_table_and_command_says_so(stopped: Path) -> None:
     assert "student-003 / " not in (stopped / "junit.xml").read_text("utf-8")
 
 
-def test_resuming_grades_them_and_the_log_holds_nothing_of_it(
-    stopped: Path, tmp_path: Path, catalog: Catalog
-) -> None:
-    options = RunOptions(resume=True)
-    summary = graded_class(tmp_path, catalog, options, grade=right)
-    assert (summary.already, summary.states["graded"]) == (2, 5)
-    with open_results(stopped) as results:
-        assert results.waiting == set()
-        assert results.book.journal() == []
-        assert {item.verdict.state for item in results.all()} == {"graded", "missing"}
-
-
 ADA, CY = ("student-000",), "student-002"
 #: What was run before, of a class of three (the last came in between) -> who and what nobody looked at.
 LEFT = {

@@ -1,7 +1,5 @@
 """A run that is killed again and again, and one whose disk fills up: nothing is lost, nothing changes."""
 
-from __future__ import annotations
-
 import contextlib
 import importlib.util
 import json

@@ -1,7 +1,5 @@
 """A class on a Dask cluster: the scores of one machine, whatever happens to the workers."""
 
-from __future__ import annotations
-
 import contextlib
 import importlib.util
 import os

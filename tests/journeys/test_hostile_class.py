@@ -7,8 +7,6 @@ file of tests/attacks is handed in at least once. A smaller class gets as many o
 from all over the corpus. What was measured is printed.
 """
 
-from __future__ import annotations
-
 import contextlib
 import importlib.util
 import json

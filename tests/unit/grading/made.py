@@ -1,7 +1,5 @@
 """Gradebooks made by hand, for tests of what is made from them; PHP's CSV; graders that die young."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

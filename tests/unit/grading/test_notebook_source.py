@@ -1,7 +1,5 @@
 """Notebooks as submissions: the module they stand for, whatever was done to their cells."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The one reader of a gradebook: newest grading, override, lateness, faults of ours."""
 
-from __future__ import annotations
-
 import datetime as dt
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The roster is the spine: every enrolled student has a row, whoever's file says who is enrolled."""
 
-from __future__ import annotations
-
 import csv
 import unicodedata
 from pathlib import Path

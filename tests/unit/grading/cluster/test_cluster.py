@@ -1,7 +1,5 @@
 """The cluster's parts without a cluster: who gets what, what crosses the wire, what a worker makes of it."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 import pickle

@@ -1,7 +1,5 @@
 """A scheduler with wrong, missing and right certificates: one sentence each, at once, and nothing begun."""
 
-from __future__ import annotations
-
 import contextlib
 import datetime as dt
 import importlib.util

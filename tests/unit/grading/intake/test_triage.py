@@ -1,7 +1,5 @@
 """Whose file it is: taken without a question, proposed, or settled by an instructor; nothing in silence."""
 
-from __future__ import annotations
-
 import gzip
 import io
 import json

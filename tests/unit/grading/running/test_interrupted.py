@@ -1,7 +1,5 @@
 """A run that is interrupted: what it had not looked at is not graded yet, and nothing says anything else."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import shutil

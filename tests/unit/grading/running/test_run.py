@@ -1,7 +1,5 @@
 """A whole grading run: many submissions, several graders, and what happens when it is killed."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

@@ -1,7 +1,5 @@
 """Graders frozen per run: what judges is what was there when the run began, whatever is edited meanwhile."""
 
-from __future__ import annotations
-
 import ast
 import json
 import os

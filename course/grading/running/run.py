@@ -26,7 +26,6 @@ from course.grading.intake.students import Entry, read_quiz, read_student, submi
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version, record_sha256
 from course.grading.results.effective import Effective, Results, ScoreChange, counted_in, replacing
-from course.grading.results.merge import Merged
 from course.grading.results.roster import Roster
 from course.grading.running.batch import Graded, grade_all
 from course.grading.running.folder import (
@@ -115,11 +114,6 @@ class Summary:
         if self.states["grader_error"]:
             return 70
         return 6 if self.states["ungradable"] or self.unrecognised else 0
-
-    def enrol(self, found: Merged) -> Roster:
-        """Note what a roster changed; return what is now the roster."""
-        self.moved, self.dropped = found.moved, found.dropped
-        return found.roster
 
     def count(self, results: Results) -> None:
         """Count everything in a gradebook."""
@@ -330,7 +324,8 @@ class _Run:
         # Before a roster says who is enrolled: until their work is looked at, nobody handed in nothing.
         book.set_waiting(sorted(self.names), others=bool(options.only))
         if options.roster is not None:
-            self.roster = self.summary.enrol(remember(book, options.roster))
+            found = remember(book, options.roster)
+            self.roster, self.summary.moved, self.summary.dropped = found.roster, found.moved, found.dropped
 
     def results(self, grade: GradeAll) -> Iterator[tuple[Result, dict[str, bytes] | None]]:
         """Grade the work that is left; each verdict comes with its submission."""
@@ -364,7 +359,7 @@ class _Run:
                     continue
                 self._witnessed(entry.times)
                 self._note_found(entry)
-                if self._options.resume and self._is_done(entry):
+                if self._options.resume and (self._is_replaced(entry) or self._confirmed(self._key(entry))):
                     self.summary.already += 1
                     self._note_changed(entry)
                     if entry.submission is not None:
@@ -391,10 +386,6 @@ class _Run:
         )
         self.summary.already += 1
         return True
-
-    def _is_done(self, entry: Entry) -> bool:
-        """Whether it was graded before, or an assigned file still takes its place."""
-        return self._is_replaced(entry) or self._confirmed(self._key(entry))
 
     def _is_replaced(self, entry: Entry) -> bool:
         """Whether an instructor has assigned a file since this work, or its lack, was there."""

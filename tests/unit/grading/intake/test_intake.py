@@ -22,7 +22,7 @@ from course.grading.intake.archives import Reader, RefusedError
 from course.grading.intake.downloads import Place, Student, class_list
 from course.grading.intake.students import Entry, read_student
 from course.grading.quiz import grade_quiz
-from course.handed_in.limits import MAX_CELLS, MAX_DEEP, MAX_FILE, MAX_FILES, MAX_PATH
+from course.handed_in.limits import MAX_CELLS, MAX_DEEP, MAX_FILE, MAX_FILES, MAX_NOTEBOOK, MAX_PATH
 from course.handed_in.notebook import MAX_NOTES, notebook_source
 from course.quizzing.bank import Bank
 from course.scoring.verdict import Problem, not_graded
@@ -102,7 +102,7 @@ def test_a_notebook_larger_than_a_module_may_be_is_read_past_its_outputs(
     tmp_path: Path, doubling: Exercise
 ) -> None:
     large = json.loads(notebook(SOURCE.decode()))
-    large["cells"][0]["outputs"] = [{"output_type": "stream", "name": "stdout", "text": "x" * 2 * MAX_FILE}]
+    large["cells"][0]["outputs"] = [{"output_type": "stream", "name": "stdout", "text": "x" * (30 << 20)}]
     (tmp_path / "doubling.ipynb").write_text(json.dumps(large), "utf-8")
     assert entry(tmp_path, doubling).submission is not None
     (tmp_path / "doubling.ipynb").write_bytes(notebook(SOURCE.decode(), f"def double(): '{'x' * MAX_FILE}'"))
@@ -126,6 +126,7 @@ def test_a_module_and_a_notebook_are_never_guessed_between(tmp_path: Path, doubl
         ("doubling.py", b"#" * (MAX_FILE + 1), "too_large"),
         ("doubling.py", b" \n\t", "empty_file"),
         ("doubling.py", None, "not_a_file"),
+        ("doubling.ipynb", b"{}" + b" " * MAX_NOTEBOOK, "too_large"),
         ("doubling.ipynb", b"{}", "not_a_notebook"),
         ("doubling.ipynb", b" ", "empty_file"),
         ("doubling.ipynb", notebook("x = 1"), "no_declared_functions"),

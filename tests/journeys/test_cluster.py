@@ -1,7 +1,6 @@
 """A class on a Dask cluster: the scores of one machine, whatever happens to the workers."""
 
 import contextlib
-import importlib.util
 import os
 import re
 import shlex
@@ -20,43 +19,27 @@ import pytest
 from course.catalog.load import Catalog
 from course.grading.cluster.coordinator import grade_on
 from course.grading.cluster.worker import grade_batch
-from course.grading.gradebook.book import Gradebook
 from course.grading.results.effective import Effective
 from course.grading.running.run import RunOptions, grade_class
 from course.grading.running.snapshot import Snapshot, frozen
 from course.scoring.graders import grader_version
 from course.scoring.judging.submission import Terms
 from tests.journeys.processes import below, left_running
-from tests.journeys.test_class_resume import MINI, ROOT, make_class
-from tests.unit.grading.made import read_class
+from tests.journeys.test_class_resume import MINI, ROOT, command, make_class
+from tests.unit.grading.made import NEEDS_CLUSTER, read_class
+from tests.unit.grading.running.test_run import scores
 from tests.unit.grading.running.test_snapshot import judged_by_the_snapshot
 
 POISON = b"# whoever grades this dies\n"
 
 pytestmark = [
     pytest.mark.soak,
-    pytest.mark.skipif(
-        any(importlib.util.find_spec(name) is None for name in ("distributed", "cryptography")),
-        reason="needs the extra `cluster`: distributed and cryptography are not installed",
-    ),
+    NEEDS_CLUSTER,
     pytest.mark.skipif(sys.platform != "linux", reason="reads the process table of Linux"),
     # Dask closes some sockets and event loops of its own late.
     pytest.mark.filterwarnings("default::ResourceWarning"),
     pytest.mark.filterwarnings("default::pytest.PytestUnraisableExceptionWarning"),
 ]
-
-
-def scores(out: Path) -> dict[str, Any]:
-    """Score, and status and points of every check, by student."""
-    with Gradebook(out / "gradebook.sqlite") as book:
-        return {
-            result.key.student: (
-                result.verdict.state,
-                result.verdict.score,
-                [(check.id, check.status, check.points) for check in result.verdict.checks],
-            )
-            for result in book.results()
-        }
 
 
 def dask_workers(parent: int) -> list[int]:
@@ -102,11 +85,6 @@ def test_a_submission_that_kills_dask_workers_takes_nobody_with_it(tmp_path: Pat
     assert {verdict.state for verdict in found.values()} == {"graded"}
 
 
-def command(*words: object) -> list[str]:
-    run = [sys.executable, "-m", "course", "grade", "run", *map(str, words)]
-    return [*run, "--exercise", "doubling", "--plain", "--isolation", "process"]
-
-
 @pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGKILL], ids=["ctrl-c", "kill -9"])
 def test_an_interrupted_run_leaves_nothing_behind_and_is_resumed(
     tmp_path: Path, catalog: Catalog, sign: signal.Signals
@@ -116,7 +94,8 @@ def test_an_interrupted_run_leaves_nothing_behind_and_is_resumed(
     make_class(tmp_path / "class", students)
     environment = {**os.environ, "MARKER": str(tmp_path)}
     out = tmp_path / "out"
-    run = command(tmp_path / "class", "--out", out, "--local-cluster", 2, "--seed", 9)
+    how = ("--local-cluster", 2, "--seed", 9, "--plain", "--isolation", "process")
+    run = command(tmp_path / "class", "--out", out, *how)
     with subprocess.Popen(
         run,
         env=environment,

@@ -1,6 +1,7 @@
 """Gradebooks made by hand, for tests of what is made from them; PHP's CSV; graders that die young."""
 
 import csv
+import importlib.util
 import io
 import json
 import subprocess
@@ -8,6 +9,8 @@ import zipfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
+
+import pytest
 
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
@@ -21,6 +24,10 @@ from course.scoring.judging.submission import Submission
 from course.scoring.verdict import CheckResult, Problem, Status, Tolerance, Verdict, Visibility
 
 SECRET = 1234.5678
+HAS_CLUSTER = all(importlib.util.find_spec(name) for name in ("distributed", "cryptography"))
+NEEDS_CLUSTER = pytest.mark.skipif(
+    not HAS_CLUSTER, reason="needs the extra `cluster`: distributed and cryptography are not installed"
+)
 
 #: Names of students as nobody should have them, and some do.
 HOSTILE = [

@@ -18,6 +18,7 @@ from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import GradedExercise, Key, Result
 from course.grading.intake.downloads import class_list
 from course.grading.intake.students import Entry, read_student
+from course.grading.results.roster import Roster, read_roster
 from course.grading.running.grader import Config
 from course.grading.running.run import RunOptions, Summary, grade_class
 from course.scoring.judging.submission import Submission
@@ -55,6 +56,13 @@ def put(path: Path, content: bytes) -> None:
 
 def read_csv(path: Path) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO(path.read_text("utf-8-sig"), newline=""), strict=True))
+
+
+def roster_of(folder: Path, text: str) -> Roster:
+    """A roster, in a file of the folder."""
+    path = folder / "roster.csv"
+    path.write_bytes(text.encode("utf-8"))
+    return read_roster(path)
 
 
 def notebook(*cells: str) -> bytes:

@@ -12,11 +12,11 @@ from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.records import PlatformIdentity
 from course.grading.results.effective import lift, override
-from course.grading.results.roster import Person, Roster, read_roster
+from course.grading.results.roster import Person, read_roster
 from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions
 from course.scoring.judging.submission import Terms
-from tests.unit.grading.made import graded_class, put, read_csv
+from tests.unit.grading.made import graded_class, put, read_csv, roster_of
 from tests.unit.grading.pages import faults, read_page
 from tests.unit.grading.running.test_run import right
 
@@ -70,12 +70,6 @@ def graded(folder: Path, catalog: Catalog, platform: str):
 
 def rows(path: Path) -> dict[str, dict[str, str]]:
     return {row["student"]: row for row in read_csv(path)}
-
-
-def roster_of(tmp_path: Path, text: str) -> Roster:
-    path = tmp_path / "roster.csv"
-    path.write_bytes(text.encode("utf-8"))
-    return read_roster(path)
 
 
 def test_who_is_missing_has_a_row_and_a_page_too(tmp_path: Path, catalog: Catalog) -> None:

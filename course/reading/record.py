@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import Any, Literal
@@ -204,6 +203,8 @@ class Writer:
     """Adds events to a record, one after the other, in a thread of its own."""
 
     def __init__(self, store: Store | None) -> None:
+        from concurrent.futures import ThreadPoolExecutor  # who only counts predictions need not load it
+
         self._record = Recorder(store)
         self._thread = ThreadPoolExecutor(1, "record")
 

@@ -178,7 +178,8 @@ def test_what_a_batch_had_before_a_worker_refused_is_not_lost(doubling: Exercise
     def answer(job: Job) -> Answer:
         if job.files["doubling.py"] == b"# 0":
             return perfect(job)
-        return worker.version_mismatch("Other graders")
+        error = MissingCapabilityError("Other graders.", help="Install them.", code="version_mismatch")
+        return worker.refusal(error)
 
     grading = grade_on(FakeWorkers(1, answer=answer), iter(entries), Terms(at_least="L2"), lambda _: "v1")
     assert next(grading).entry.student == "s000"

@@ -227,7 +227,7 @@ def grade_class(
             run.one_less(result.key.student)
             report(run.view.of(graded), run.done, len(run.names))
         run.note_times()
-        run.note_unread()
+        note_unread(book, run.unread)
         summary = run.summary
         summary.unrecognised = [] if options.only else members.unrecognised
         note_without_work(book, run.names)
@@ -275,7 +275,7 @@ class _Run:
         self._students = [one for one in members.students if not only or one.name in only]
         self.names = {one.name for one in self._students}
         self._left_aside = {one.name for one in members.students} - self.names
-        self._unread: set[tuple[str, str]] = set()
+        self.unread: set[tuple[str, str]] = set()
         self._graders = graders
         self._catalog = graders.catalog
         self._exercises = _exercises(self._catalog, options.exercises)
@@ -351,7 +351,7 @@ class _Run:
             required = bool(self._options.exercises)
             for entry in read_student(student, self._exercises, required=required, others=self._others):
                 if entry.unread:
-                    self._unread.add((student.name, entry.exercise.id))
+                    self.unread.add((student.name, entry.exercise.id))
                 if entry.unread or self._stays(entry):
                     continue
                 if entry.submission is None and entry.problem is None:
@@ -452,7 +452,7 @@ class _Run:
         except UngradableError as error:
             record = error.message.rstrip(".")  # no list of attempts, which the scoring says of it
         if not self._with_quiz:
-            self._unread |= {(student.name, QUIZ)} if record else set()
+            self.unread |= {(student.name, QUIZ)} if record else set()
             return
         verdict = grade_quiz(self._bank, record)
         if verdict is None:
@@ -472,10 +472,6 @@ class _Run:
             self.view.take_in(times)
         if len(self._times) >= _TIMES_AT_ONCE:
             self.note_times()
-
-    def note_unread(self) -> None:
-        """Note the work for which this run did not look."""
-        note_unread(self._book, self._unread)
 
     def note_times(self) -> None:
         """Put all known times of submission into the gradebook."""

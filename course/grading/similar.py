@@ -11,7 +11,6 @@ import hashlib
 import math
 import os
 import sys
-import warnings
 from collections import Counter, deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
@@ -26,6 +25,7 @@ from course.errors import NotFoundError
 from course.grading.pipes import Servant, limit_cpu, limit_memory, read_frame, write_frame
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.results.effective import Results
+from course.isolation.inside import statements
 
 Passage = tuple[int, int]
 
@@ -76,11 +76,8 @@ class Prints(msgspec.Struct, frozen=True):
 
 def fingerprints(source: bytes) -> Prints | None:
     """The fingerprints of a source; None if it is not Python."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            tree = ast.parse(source)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+    tree = statements.tree(source)
+    if tree is None:
         return None
     marks: dict[int, set[tuple[int, int]]] = {}
     whole = hashlib.sha256()
@@ -154,10 +151,6 @@ def _winnowed(hashes: list[int]) -> Iterator[tuple[int, int]]:
             yield smallest, at
 
 
-class _Reply(msgspec.Struct, frozen=True):
-    prints: Prints | None
-
-
 class Parser:
     """A process that fingerprints sources; started again if one of them kills it."""
 
@@ -175,7 +168,7 @@ class Parser:
         if len(source) > LONGEST:
             return None
         frame = self._servant.ask(source)
-        return msgspec.msgpack.decode(frame, type=_Reply).prints if frame is not None else None
+        return msgspec.msgpack.decode(frame, type=Prints | None) if frame is not None else None
 
 
 def main() -> None:
@@ -189,7 +182,7 @@ def main() -> None:
             found = fingerprints(msgspec.msgpack.decode(frame, type=bytes))
         except MemoryError:
             os._exit(1)  # the parent process reports the source by name
-        write_frame(sink, _Reply(found))
+        write_frame(sink, found)
 
 
 #: A fingerprint in more submissions than this proposes no pairs; it counts in those that others propose.

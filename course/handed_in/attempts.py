@@ -106,21 +106,16 @@ def attempt_in(session: GradingSession, submission: Submission, begin: float, on
         begin: when it began, by ``time.perf_counter``.
     """
     exercise = session.exercise
-    if only:
-        _must_exist(only, [check.id for check in session.checks], exercise)
+    known = [check.id for check in session.checks]
+    if only and only not in known:
+        raise NotFoundError(
+            f"{exercise.id} has no public check called {only!r}.",
+            help=meant(only, known, f"There are: {', '.join(known)}."),
+            code="check_not_found",
+        )
     verdict = session.grade(submission, only=[only] if only else ())
     seconds, source = time.perf_counter() - begin, submission.files[exercise.module]
     return Attempt(exercise, source, verdict, seconds, only, session.printed, dict(session.curves))
-
-
-def _must_exist(wanted: str, known: list[str], exercise: Exercise) -> None:
-    if wanted in known:
-        return
-    raise NotFoundError(
-        f"{exercise.id} has no public check called {wanted!r}.",
-        help=meant(wanted, known, f"There are: {', '.join(known)}."),
-        code="check_not_found",
-    )
 
 
 def _kept(check: CheckResult) -> dict[str, object]:

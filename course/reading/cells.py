@@ -18,6 +18,7 @@ from time import perf_counter
 
 from course.catalog.pack import zip_entry
 from course.isolation.failures import IsolationError, StudentFailure
+from course.isolation.inside import statements
 from course.isolation.inside.wire import CUT
 from course.isolation.levels import Deadline, Level, Spawner
 from course.isolation.probe import open_spawner
@@ -104,11 +105,8 @@ def _files_of(name: str) -> Iterator[Path]:
 
 def _imports(source: str) -> Iterator[str]:
     """Every module that code imports when it is loaded; ``from a import b`` may mean the module a.b."""
-    try:
-        tree = ast.parse(source)
-    except (SyntaxError, ValueError):
-        return
-    pending: list[ast.AST] = [tree]
+    tree = statements.tree(source)
+    pending: list[ast.AST] = [tree] if tree else []
     while pending:
         node = pending.pop()
         if isinstance(node, ast.Import):
@@ -347,13 +345,10 @@ class CellRunner:
 
 def _names(source: str) -> tuple[set[str], set[str]]:
     """The names that code reads, and those it binds; empty for code that does not parse."""
-    try:
-        tree = ast.parse(source)
-    except (SyntaxError, ValueError):
-        return set(), set()
+    tree = statements.tree(source)
     uses: set[str] = set()
     binds: set[str] = set()
-    for node in ast.walk(tree):
+    for node in ast.walk(tree) if tree else ():
         if isinstance(node, ast.Name):
             (uses if isinstance(node.ctx, ast.Load) else binds).add(node.id)
         elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):

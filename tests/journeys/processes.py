@@ -1,7 +1,5 @@
 """Who is running: the process table of Linux, for tests of what a run starts, loses and leaves behind."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import time

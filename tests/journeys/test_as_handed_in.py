@@ -5,8 +5,6 @@ disk, functions that never end. A file is worth what its functions are worth; wh
 counts.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

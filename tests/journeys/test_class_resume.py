@@ -1,9 +1,6 @@
 """A run that is killed again and again, and one whose disk fills up: nothing is lost, nothing changes."""
 
-from __future__ import annotations
-
 import contextlib
-import importlib.util
 import json
 import os
 import random
@@ -20,6 +17,8 @@ import pytest
 
 from course.grading.gradebook.book import Gradebook
 from tests.journeys.processes import below, left_running
+from tests.unit.grading.made import HAS_CLUSTER
+from tests.unit.grading.running.test_run import scores
 
 ROOT = Path(__file__).resolve().parents[2]
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
@@ -77,8 +76,8 @@ def noted(scratch: Path) -> list[str]:
     return [f"student-{int(number):04}" for number in numbers]
 
 
-def command(*words: object) -> list[str]:
-    return [sys.executable, "-m", "course", "grade", "run", *map(str, words), "--exercise", "doubling"]
+def command(*words: object, exercise: str = "doubling") -> list[str]:
+    return [sys.executable, "-m", "course", "grade", "run", *map(str, words), "--exercise", exercise]
 
 
 def environment(scratch: Path, content: Path = MINI, gate: Path | None = None) -> dict[str, str]:
@@ -136,10 +135,6 @@ def rounds(kinds: list[str]) -> list[list[str]]:
 def way(kinds: list[str]) -> tuple[str, str]:
     """Where an attempt grades: on a cluster if a worker of one is to die."""
     return ON_A_CLUSTER if "dask worker" in kinds else ON_ONE_MACHINE
-
-
-def has_dask() -> bool:
-    return all(importlib.util.find_spec(name) for name in ("distributed", "cryptography"))
 
 
 class Gate:
@@ -215,11 +210,6 @@ def disturbed(run: list[str], out: Path, kills: list[str], between: range) -> Co
     pytest.fail("it never finished")
 
 
-def scores(out: Path) -> dict[str, float]:
-    with Gradebook(out / "gradebook.sqlite") as book:
-        return {result.key.student: result.verdict.score for result in book.results()}
-
-
 def outcomes(out: Path) -> dict[str, object]:
     """By student, what every check gave."""
     with Gradebook(out / "gradebook.sqlite") as book:
@@ -259,7 +249,7 @@ def test_a_run_that_is_killed_here_and_there_ends_as_an_undisturbed_one(tmp_path
 @pytest.mark.soak
 def test_two_thousand_submissions_survive_twenty_kills(tmp_path: Path) -> None:
     kinds = ["coordinator"] * 7 + ["grader"] * 4 + ["zygote"] * 4
-    kinds += ["dask worker" if has_dask() else "grader"] * 5
+    kinds += ["dask worker" if HAS_CLUSTER else "grader"] * 5
     random.Random(5).shuffle(kinds)
     check_undisturbed(tmp_path, 2000, kinds, range(40, 90))
     run = command(tmp_path / "class", "--out", tmp_path / "calm", "--seed", 9, *ON_ONE_MACHINE, "--quiet")

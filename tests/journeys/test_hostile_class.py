@@ -7,10 +7,7 @@ file of tests/attacks is handed in at least once. A smaller class gets as many o
 from all over the corpus. What was measured is printed.
 """
 
-from __future__ import annotations
-
 import contextlib
-import importlib.util
 import json
 import os
 import statistics
@@ -25,8 +22,9 @@ import pytest
 
 from tests.contracts.boundary.levels import require_level
 from tests.journeys.processes import below, left_running, stored
+from tests.journeys.test_class_resume import ROOT, command, environment
+from tests.unit.grading.made import NEEDS_CLUSTER
 
-ROOT = Path(__file__).resolve().parents[2]
 ATTACKS = ROOT / "tests" / "attacks"
 ARENA = ATTACKS / "arena"
 MODULE = "arena.py"
@@ -118,33 +116,11 @@ def resident(pid: int) -> int:
 def grade(folder: Path, out: Path, *options: str) -> Watched:
     """One run, looked at every half second."""
     scratch = out.parent / f"scratch-{out.name}"
-    scratch.mkdir()
-    command = [
-        sys.executable,
-        "-m",
-        "course",
-        "grade",
-        "run",
-        str(folder),
-        "--exercise",
-        "arena",
-        "--out",
-        str(out),
-    ]
-    environment = {
-        **os.environ,
-        "PYTHONPATH": str(ROOT),
-        "TMPDIR": str(scratch),
-        "COURSE_CONTENT": str(ARENA),
-    }
+    words = ("--out", out, "--timeout", 2, "--seed", 11, "--quiet", *options)
+    line, settings = command(folder, *words, exercise="arena"), environment(scratch, ARENA)
     start = time.monotonic()
     with (out.parent / f"{out.name}.txt").open("wb") as printed:
-        run = subprocess.Popen(
-            [*command, "--timeout", "2", "--seed", "11", "--quiet", *options],
-            env=environment,
-            stdout=printed,
-            stderr=printed,
-        )
+        run = subprocess.Popen(line, env=settings, stdout=printed, stderr=printed)
         memory, temporary = [], []
         while run.poll() is None:
             memory.append(resident(run.pid))
@@ -198,10 +174,7 @@ def test_the_honest_get_what_they_would_have_got_without_the_hostile(tmp_path: P
     compare(tmp_path, SIZE, "-j", "2")
 
 
-@pytest.mark.skipif(
-    any(importlib.util.find_spec(name) is None for name in ("distributed", "cryptography")),
-    reason="needs the extra `cluster`: distributed and cryptography are not installed",
-)
+@NEEDS_CLUSTER
 def test_so_they_do_on_a_cluster_of_two(tmp_path: Path) -> None:
     require_level("L3")
     compare(tmp_path, SIZE, "--local-cluster", "2")

@@ -1,7 +1,5 @@
 """An instructor's whole term, in a checkout: a class with everyone in it, graded in each way, and after."""
 
-from __future__ import annotations
-
 import contextlib
 import csv
 import io

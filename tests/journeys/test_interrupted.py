@@ -1,7 +1,5 @@
 """A run that is stopped, by hand, by the system or by force: it says nothing untrue, and nothing lives on."""
 
-from __future__ import annotations
-
 import signal
 import subprocess
 import sys

@@ -16,7 +16,7 @@ import ssl
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 from urllib.parse import urlsplit
 
 from course.errors import CourseError, InternalError, MissingCapabilityError, UsageError
@@ -25,6 +25,7 @@ from course.grading.cluster.coordinator import LostBatch, Outcome, grade_on
 from course.grading.cluster.worker import grade_batch
 from course.grading.intake.students import Entry
 from course.grading.running.batch import Graded
+from course.grading.running.run import GradeAll
 from course.grading.running.snapshot import in_use
 from course.isolation.launch import private_folder, remove_tree
 from course.scoring.judging.submission import Terms
@@ -233,66 +234,49 @@ def _problem(message: str, fix: str, code: str = "no_tls") -> MissingCapabilityE
 _ANSWER_S = 20.0
 
 
-class Cluster:
-    """Turns entries into verdicts, for ``grade_class``; a context manager that ends what it started.
-
-    Args:
-        connect: gives a client, and puts on the stack what must be closed.
-        remote: address of a scheduler that others may use too; empty for one of our own.
+@contextlib.contextmanager
+def local_cluster(workers: int) -> Iterator[GradeAll]:
+    """What grades on a cluster of ``workers`` processes on this machine, for one run.
 
     Raises:
         MissingCapabilityError: Dask is not installed.
     """
-
-    def __init__(
-        self,
-        connect: Callable[[contextlib.ExitStack], Any],
-        *,
-        remote: str = "",
-    ) -> None:
-        require("cluster")
-        self._connect = connect
-        self._remote = remote
-        self._stack = contextlib.ExitStack()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._stack.close()
-
-    def __call__(self, entries: Iterable[Entry], terms: Terms) -> Iterator[Graded]:
-        """Verdicts on all entries that have a submission or a problem.
-
-        Raises:
-            UsageError: unprotected submissions may not run on a cluster whose scheduler they could command.
-            CourseError: there is no scheduler, or its workers cannot grade.
-        """
-        if self._remote and terms.at_least == "L1":
-            raise UsageError(
-                "--isolation process leaves the network open, and a submission could give orders to the whole"
-                " cluster.",
-                help="Leave it out, or grade on one machine.",
-                code="unprotected_cluster",
-            )
-        if self._remote:
-            check_scheduler(self._remote)
-        workers = DaskWorkers(self._connect(self._stack))
-
-        graders = in_use(terms.graders)
-        if graders is None:
-            raise InternalError("The snapshot that is to judge is not unpacked here.")
-        yield from grade_on(workers, entries, terms, graders.version, graders=graders.snapshot.packed)
+    require("cluster")
+    with contextlib.ExitStack() as stack:
+        yield lambda entries, terms: _graded(start_cluster(stack, workers), entries, terms)
 
 
-def local_cluster(workers: int) -> Cluster:
-    """A cluster of ``workers`` processes on this machine, for one run."""
-    return Cluster(lambda stack: start_cluster(stack, workers))
+@contextlib.contextmanager
+def remote_cluster(address: str) -> Iterator[GradeAll]:
+    """What grades on the cluster whose scheduler is at ``address``, or is in the scheduler file of that name.
+
+    Others may use it too, so unprotected submissions, which could command it, raise a UsageError there.
+
+    Raises:
+        MissingCapabilityError: Dask is not installed.
+    """
+    require("cluster")
+    with contextlib.ExitStack() as stack:
+
+        def grade(entries: Iterable[Entry], terms: Terms) -> Iterator[Graded]:
+            if terms.at_least == "L1":
+                raise UsageError(
+                    "--isolation process leaves the network open, and a submission could give orders to the"
+                    " whole cluster.",
+                    help="Leave it out, or grade on one machine.",
+                    code="unprotected_cluster",
+                )
+            check_scheduler(address)
+            return _graded(_reach(stack, address), entries, terms)
+
+        yield grade
 
 
-def remote_cluster(address: str) -> Cluster:
-    """The cluster whose scheduler is at ``address``, or is described by the scheduler file of that name."""
-    return Cluster(lambda stack: _reach(stack, address), remote=address)
+def _graded(client: Any, entries: Iterable[Entry], terms: Terms) -> Iterator[Graded]:
+    graders = in_use(terms.graders)
+    if graders is None:
+        raise InternalError("The snapshot that is to judge is not unpacked here.")
+    return grade_on(DaskWorkers(client), entries, terms, graders.version, graders=graders.snapshot.packed)
 
 
 def start_cluster(stack: contextlib.ExitStack, workers: int) -> Any:

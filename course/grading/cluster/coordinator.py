@@ -85,7 +85,7 @@ def grade_on(
     Raises:
         CourseError: the workers cannot grade (version, protection level, content), or there are none left.
     """
-    yield from _Coordinator(workers, entries, terms, version, graders, patience_s).run()
+    yield from _Coordinator(workers, iter(entries), terms, version, graders, patience_s).run()
 
 
 @dataclass(eq=False)
@@ -96,22 +96,16 @@ class _Work:
     alone: bool = False
 
 
+@dataclass(eq=False)
 class _Coordinator:
-    def __init__(
-        self,
-        workers: Workers,
-        entries: Iterable[Entry],
-        terms: Terms,
-        version: Callable[[str], str],
-        graders: bytes,
-        patience_s: float,
-    ) -> None:
-        self._workers = workers
-        self._entries = iter(entries)
-        self._terms = terms
-        self._version = version
-        self._graders = graders
-        self._patience_s = patience_s
+    _workers: Workers
+    _entries: Iterator[Entry]
+    _terms: Terms
+    _version: Callable[[str], str]
+    _graders: bytes
+    _patience_s: float
+
+    def __post_init__(self) -> None:
         self._numbers = itertools.count()
         self._waiting: deque[_Work] = deque()
         self._again: deque[_Work] = deque()

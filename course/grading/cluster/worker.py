@@ -23,7 +23,7 @@ from typing import TypeVar
 
 import msgspec
 
-from course.errors import CourseError
+from course.errors import CourseError, MissingCapabilityError
 from course.grading.running.batch import WarmGrader, start_grader
 from course.grading.running.grader import Answer, Config, Job
 from course.grading.running.snapshot import Snapshot, frozen, in_use
@@ -102,22 +102,21 @@ _snapshots: deque[contextlib.ExitStack] = deque()
 
 def grade_batch(payload: bytes) -> bytes:
     """Grade a batch; both it and the answers are in the form that crosses the wire."""
+    started, wanting = time.monotonic(), False
     batch = decode(payload, Batch)
-    host = socket.gethostname()
-    started = time.monotonic()
-    if batch is None:
-        said = "The worker speaks another version of the protocol than the coordinator"
-        return encode(Answers(FORMAT, host, (version_mismatch(said),), 0.0))
     try:
-        here = _unpacked(batch)
+        if batch is None:
+            raise MissingCapabilityError(
+                "The worker speaks another version of the protocol than the coordinator.",
+                help="Install the same checkout of the course on every machine of the cluster, and restart"
+                " the workers.",
+                code="version_mismatch",
+            )
+        wanting = not _unpacked(batch)
+        answers = () if wanting else tuple(_answers(batch))
     except CourseError as error:
-        problem = Problem(error.code, error.message, error.help)
-        refused = Answer(error=problem, exit_code=error.exit_code)
-        return encode(Answers(FORMAT, host, (refused,), 0.0))
-    if not here:
-        return encode(Answers(FORMAT, host, (), 0.0, wanting=True))
-    answers = tuple(_answers(batch))
-    return encode(Answers(FORMAT, host, answers, time.monotonic() - started))
+        answers = (refusal(error),)
+    return encode(Answers(FORMAT, socket.gethostname(), answers, time.monotonic() - started, wanting))
 
 
 def _unpacked(batch: Batch) -> bool:
@@ -144,14 +143,9 @@ def _forget() -> None:
 atexit.register(_forget)
 
 
-def version_mismatch(what: str) -> Answer:
-    """The answer of a worker whose graders differ from those of the run."""
-    problem = Problem(
-        "version_mismatch",
-        f"{what}.",
-        "Install the same checkout of the course on every machine of the cluster, and restart the workers.",
-    )
-    return Answer(error=problem, exit_code=4)
+def refusal(error: CourseError) -> Answer:
+    """The answer of a worker that can give none."""
+    return Answer(error=Problem(error.code, error.message, error.help), exit_code=error.exit_code)
 
 
 def _answers(batch: Batch) -> Iterator[Answer]:
@@ -164,8 +158,7 @@ def _answers(batch: Batch) -> Iterator[Answer]:
                 grader.close()
                 return
     except CourseError as error:
-        problem = Problem(error.code, error.message, error.help)
-        yield Answer(error=problem, exit_code=error.exit_code)
+        yield refusal(error)
     finally:
         _give_back(grader)
 

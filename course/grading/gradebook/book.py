@@ -160,7 +160,7 @@ class Gradebook:
         with explained(self.path):
             rows = self._db.execute(
                 "SELECT id, title, max_points, pass_share, position FROM exercises ORDER BY position, id"
-            ).fetchall()
+            )
             return tuple(_as(GradedExercise, row) for row in rows)
 
     # -- students -------------------------------------------------------------------------------------
@@ -412,12 +412,8 @@ class Gradebook:
 
     def keep_snapshot(self, sha256: str, packed: bytes) -> None:
         """Store the graders of a run; equal ones are stored once."""
-        with explained(self.path):
-            query = "SELECT 1 FROM snapshots WHERE sha256 = ?"
-            known = self._db.execute(query, (sha256,)).fetchone()
-        if known is None:
-            with self._transaction():
-                self._db.execute(row_into("snapshots"), (sha256, packed))
+        with self._transaction():
+            self._db.execute(row_into("snapshots", "INSERT OR IGNORE"), (sha256, packed))
 
     def snapshot(self, sha256: str) -> bytes | None:
         """The packed graders of that digest; None if they are not here."""

@@ -22,7 +22,6 @@ import zipfile
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
-from types import SimpleNamespace
 from typing import IO, Any, TypeVar
 
 import msgspec
@@ -96,8 +95,7 @@ def _is_ours(manifest: bytes) -> bool:
     return True
 
 
-@dataclass(frozen=True)
-class ArchiveContent:
+class ArchiveContent(msgspec.Struct, frozen=True):
     """An archive's file for an exercise.
 
     Attributes:
@@ -412,10 +410,8 @@ class _Request(msgspec.Struct, frozen=True):
     name: str
     path: bytes = b""
     content: bytes = b""
-    exercise: str = ""
-    place: str = ""
-    module: str = ""
-    tasks: tuple[str, ...] = ()
+    exercise: Exercise | None = None
+    functions: tuple[str, ...] = ()
     skip: tuple[str, ...] = ()
     student: int = 0
     streamed: int = MAX_STREAMED
@@ -427,15 +423,12 @@ Outline = tuple[str, str, tuple[str, ...], int, str]
 
 
 class _Reply(msgspec.Struct, frozen=True):
-    """The result: a file with its name and content, or why there is none; both None if it is not there."""
+    """What was asked for, or why there is none."""
 
     problem: Problem | None = None
-    name: str | None = None
+    found: ArchiveContent | None = None
     content: bytes = b""
     record: bytes = b""
-    notes: tuple[str, ...] = ()
-    copies: tuple[str, ...] = ()
-    written: str = ""
     outlines: tuple[Outline, ...] = ()
     cpu_s: float = 0.0
     streamed: int = 0
@@ -468,7 +461,7 @@ class Reader:
 
     def notebook(self, content: bytes, exercise: Exercise, name: str) -> tuple[bytes, bytes]:
         """The module that a notebook makes up, and the record of its cells."""
-        told = self._ask(_Request("notebook", quoted(name), content=content, **_wanted(exercise)))
+        told = self._ask(_Request("notebook", quoted(name), content=content, exercise=exercise))
         return told.content, told.record
 
     def module_in(self, path: Path, exercise: Exercise) -> ArchiveContent | None:
@@ -477,12 +470,8 @@ class Reader:
         Raises:
             RefusedError: it must not be opened, or is damaged.
         """
-        told = self._ask(
-            _Request("archive", quoted(path.name), path=os.fsencode(path.absolute()), **_wanted(exercise))
-        )
-        if told.name is None:
-            return None
-        return ArchiveContent(told.name, told.content, told.notes, told.copies, told.written)
+        where = os.fsencode(path.absolute())
+        return self._ask(_Request("archive", quoted(path.name), path=where, exercise=exercise)).found
 
     def outlines(self, path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> tuple[Outline, ...]:
         """What a file is, and the functions that it defines, or each file in an archive.
@@ -492,7 +481,7 @@ class Reader:
             functions: the names to look for.
         """
         where = os.fsencode(path.absolute())
-        ask = _Request("outline", quoted(path.name), path=where, tasks=functions, skip=skip)
+        ask = _Request("outline", quoted(path.name), path=where, functions=functions, skip=skip)
         return self._ask(ask).outlines
 
     def member(self, path: Path, name: str) -> bytes:
@@ -517,7 +506,9 @@ class Reader:
                 f"{ask.name} was not read: what was handed in with it took all the time for reading.",
                 "Hand in the .py files alone.",
             )
-        ask = msgspec.structs.replace(ask, student=self._student, streamed=self._streamed)
+        # Where the course lies, which need not be text, is nothing to read a file by.
+        exercise = ask.exercise and msgspec.structs.replace(ask.exercise, folder="")
+        ask = msgspec.structs.replace(ask, exercise=exercise, student=self._student, streamed=self._streamed)
         frame = None if ask.path in self._fatal else self._servant.ask(ask, MAX_ANSWER)
         if frame is None:
             if self._student and ask.path not in self._fatal:
@@ -541,11 +532,6 @@ class Reader:
 #: The one of this process: a run reads one file after the other.
 reader = Reader()
 atexit.register(reader.close)
-
-
-def _wanted(exercise: Exercise) -> dict[str, Any]:
-    tasks = tuple(task.id for task in exercise.task)
-    return {"exercise": exercise.id, "place": exercise.place, "module": exercise.module, "tasks": tasks}
 
 
 # -- the process ------------------------------------------------------------------------------------------
@@ -585,29 +571,18 @@ def _serve(source: IO[bytes], sink: IO[bytes], cpu_s: int) -> None:
 
 
 def _answer(ask: _Request, meter: downloads.Meter) -> _Reply:
-    # What it is looked for by, of an exercise; the course's content is not needed to read a file.
-    exercise: Any = SimpleNamespace(
-        id=ask.exercise,
-        place=ask.place,
-        module=ask.module,
-        task=[SimpleNamespace(id=name) for name in ask.tasks],
-    )
-    if ask.kind == "notebook":
-        module = notebook_source(ask.content, exercise, ask.name)
-        return _Reply(name=ask.name, content=module.source, record=module.record())
     path = Path(os.fsdecode(ask.path))
     if ask.kind == "outline":
-        return _Reply(outlines=tuple(_outlines(path, ask.skip, ask.tasks, meter)))
+        return _Reply(outlines=tuple(_outlines(path, ask.skip, ask.functions, meter)))
     if ask.kind == "member":
         return _Reply(content=member_of(path, ask.skip[0], meter))
     if ask.kind == "quiz":
         return _Reply(content=json.dumps(quiz_of(path, ask.content)).encode())
-    found = module_in(path, exercise)
-    if found is None:
-        return _Reply()
-    return _Reply(
-        name=found.name, content=found.content, notes=found.notes, copies=found.copies, written=found.written
-    )
+    assert ask.exercise is not None
+    if ask.kind == "archive":
+        return _Reply(found=module_in(path, ask.exercise))
+    module = notebook_source(ask.content, ask.exercise, ask.name)
+    return _Reply(content=module.source, record=module.record())
 
 
 def _outlines(

@@ -23,7 +23,7 @@ import unicodedata
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
-from typing import Any, Literal
+from typing import Any
 
 from course import extras
 from course.errors import NotFoundError, UsageError
@@ -68,7 +68,6 @@ def is_folder_meant(name: str, wanted: str) -> bool:
     return name == "." or _unnumbered(name).casefold() in names or name.casefold() in names
 
 
-Layout = Literal["auto", "folders", "canvas", "moodle", "gradescope"]
 LAYOUTS = ("auto", "folders", "canvas", "moodle", "gradescope")
 
 #: Files that operating systems and tools put into folders by themselves.

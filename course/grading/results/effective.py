@@ -331,7 +331,7 @@ class Results:
             score = None
         else:
             if self.policy is not None and verdict.state == "graded":
-                penalty = self.policy.penalty(late, verdict.score, most).points
+                penalty = self.policy.penalty(late, verdict.score, most)
             score = verdict.score - penalty
         return Effective(
             result, score, most, self._passes(result, score, most), penalty, late, submitted, witness,
@@ -360,7 +360,7 @@ class Results:
 
     def _is_flagged(self, key: Key) -> bool:
         known = self._times.get((key.student, key.exercise), ())
-        return ("canvas-late") in {who for sha, who, _ in known if sha in {"", key.submission_sha256}}
+        return "canvas-late" in {who for sha, who, _ in known if sha in {"", key.submission_sha256}}
 
     def _due(self, key: Key) -> float | None:
         person = self.person(key.student)
@@ -380,7 +380,7 @@ class Results:
             return False
         score, hour = one.verdict.score, 3600.0
         hours = (self._late(key, at + shift) for shift in (-hour, 0.0, hour))
-        return len({self.policy.penalty(late, score, one.max_score).points for late in hours}) > 1
+        return len({self.policy.penalty(late, score, one.max_score) for late in hours}) > 1
 
     def _passes(self, result: Result, score: float | None, most: float) -> bool:
         if score is None:
@@ -479,25 +479,18 @@ def counted(counts: Effective | None, file: str = "") -> str:
     return msgspec.json.encode(told | ({"file": file} if file else {})).decode()
 
 
-class _Submission(msgspec.Struct, frozen=True):
+class Counted(msgspec.Struct, frozen=True):
+    """The digest of a submission, and the file that an instructor chose for it; "" where there is none."""
+
     submission: str = ""
     file: str = ""
 
 
-def submission_in(told: str) -> str:
-    """The digest of the submission in what ``counted`` told; "" where it told of none."""
-    return _counted_in(told).submission
-
-
-def file_in(told: str) -> str:
-    """The name of the file that an instructor chose, in what ``counted`` told; "" if there was none."""
-    return _counted_in(told).file
-
-
-def _counted_in(told: str) -> _Submission:
+def counted_in(told: str) -> Counted:
+    """What ``counted`` told of the submission."""
     with contextlib.suppress(msgspec.MsgspecError, RecursionError):
-        return msgspec.json.decode(told, type=_Submission)
-    return _Submission()
+        return msgspec.json.decode(told, type=Counted)
+    return Counted()
 
 
 # ---
@@ -528,7 +521,7 @@ def override(results: Results, student: str, exercise: str, score: float, reason
     reason = given_reason(reason, "An override", "it is shown wherever the score is")
     before = _told(next(results.all(student, exercise), None))
     results.book.add_override(Override(student, exercise, float(score) + 0.0, reason), before)
-    return next(type(results)(results.book).all(student, exercise))
+    return next(Results(results.book).all(student, exercise))
 
 
 def given_reason(reason: str, what: str, shown: str) -> str:
@@ -554,7 +547,7 @@ def lift(results: Results, student: str, exercise: str, reason: str) -> Effectiv
         NotFoundError: there is no override to lift.
     """
     _maximum(results, student, exercise)
-    found = next((item for item in results.all(student, exercise)), None)
+    found = next(results.all(student, exercise), None)
     if found is None or found.override is None:
         explain = command("grade", "explain", results.folder, student, exercise)
         raise NotFoundError(
@@ -563,7 +556,7 @@ def lift(results: Results, student: str, exercise: str, reason: str) -> Effectiv
             code="no_override",
         )
     results.book.add_override(Override(student, exercise, None, reason.strip()), _told(found))
-    return next(type(results)(results.book).all(student, exercise), None)
+    return next(Results(results.book).all(student, exercise), None)
 
 
 def _told(counts: Effective | None) -> str:
@@ -598,7 +591,7 @@ def must_have(results: Results, student: str) -> None:
 
 def _maximum(results: Results, student: str, exercise: str) -> float:
     """The exercise's maximum; also checks that student and exercise exist."""
-    graded = next(iter(results.book.results(student, exercise)), None)
+    graded = next(results.book.results(student, exercise), None)
     noted = next((item for item in results.exercises() if item.id == exercise), None)
     if graded is None and noted is None:
         raise no_exercise(exercise, [item.id for item in results.exercises()])

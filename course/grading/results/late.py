@@ -100,25 +100,16 @@ class Policy(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         ]
         return found[0].due.timestamp() + _DAY_S * max([granted_days, *days])
 
-    def penalty(self, late_s: float | None, score: float, maximum: float) -> Penalty:
+    def penalty(self, late_s: float | None, score: float, maximum: float) -> float:
         """The penalty for being late by so many seconds, in points."""
         if late_s is None or late_s <= 60.0 * self.grace_minutes:
-            return Penalty(0.0, 0)
-        days = math.ceil(late_s / _DAY_S)
+            return 0.0
         if self.closed_after_days is not None and late_s > self.closed_after_days * _DAY_S:
-            return Penalty(score, days, closed=True)
+            return score
+        days = math.ceil(late_s / _DAY_S)
         base = maximum if self.of == "maximum" else score
         points = days * (self.percent_per_day / 100.0 * base + self.points_per_day)
-        return Penalty(min(points, self.at_most_percent / 100.0 * base, score), days)
-
-
-@dataclass(frozen=True)
-class Penalty:
-    """Points taken off for ``days`` days begun; ``closed`` if nothing was accepted any more."""
-
-    points: float
-    days: int
-    closed: bool = False
+        return min(points, self.at_most_percent / 100.0 * base, score)
 
 
 def lateness(submitted: float, due: float) -> float | None:

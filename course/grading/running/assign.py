@@ -79,14 +79,7 @@ def unsettled(results: Results) -> list[Unsettled]:
 
 def proposals(results: Results) -> list[Assignment]:
     """The proposed matches, at most one for each case."""
-    return [
-        Assignment(
-            item.student, item.exercise, one.name, Path(os.fsdecode(one.path)), one.member, item.found.times
-        )
-        for item in unsettled(results)
-        for one in item.found.candidates
-        if one.proposed
-    ]
+    return [_of(one, item) for item in unsettled(results) for one in item.found.candidates if one.proposed]
 
 
 def named(results: Results, student: str, file: str, exercise: str | None) -> Assignment:
@@ -127,18 +120,17 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
             inside = [one for one in item.found.candidates if one.name.startswith(f"{file}/") and one.defines]
             for one in item.found.candidates:
                 if one.name == file and len(inside) != 1:
-                    return _of(one, student, exercise, times)
+                    return _of(one, item)
             if len(inside) == 1:  # of an archive, the one file with functions in it
-                return _of(inside[0], student, exercise, times)
+                return _of(inside[0], item)
     lying = None if os.path.lexists(file) else _lying(results, student, file)
     place = (lying, "") if lying else _on_disk(file, results.folder)
     return Assignment(student, exercise, file, *place, times)
 
 
-def _of(
-    one: Candidate, student: str, exercise: str, times: tuple[tuple[str, float | None], ...]
-) -> Assignment:
-    return Assignment(student, exercise, one.name, Path(os.fsdecode(one.path)), one.member, times)
+def _of(one: Candidate, item: Unsettled) -> Assignment:
+    path = Path(os.fsdecode(one.path))
+    return Assignment(item.student, item.exercise, one.name, path, one.member, item.found.times)
 
 
 def _lying(results: Results, student: str, file: str) -> Path | None:

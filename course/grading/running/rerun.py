@@ -25,7 +25,7 @@ from course.grading.running.run import QUIZ_RECORD, GradeAll, Ungraded, graded_e
 from course.grading.running.snapshot import Snapshot, Unpacked, fresh, frozen, kept
 from course.quizzing.bank import Bank
 from course.scoring.judging.submission import Submission, Terms
-from course.scoring.verdict import Verdict
+from course.scoring.verdict import CheckResult, Verdict
 
 #: Characters of a snapshot's digest that name it.
 _LEAST_DIGITS = 6
@@ -102,13 +102,6 @@ class Regraded(msgspec.Struct, frozen=True):
     troubled: tuple[Ungraded, ...] = ()
 
 
-@dataclass
-class _Counts:
-    regraded: int = 0
-    up_to_date: int = 0
-    kept: int = 0
-
-
 def rerun(
     results: Results,
     catalog: Catalog,
@@ -129,10 +122,11 @@ def rerun(
     snapshot, recorded = _graders(results, catalog, options)
     changes: list[Change] = []
     troubled: list[Ungraded] = []
+    regraded = 0
     with frozen(snapshot) as graders:
         task = _Rerun(results, graders, recorded, options)
         for before, after in task.pairs(grade):
-            task.counts.regraded += 1
+            regraded += 1
             change, error = _change(before, after), after.verdict.error
             if after.verdict.state == "grader_error" and error is not None:
                 troubled.append(
@@ -140,11 +134,8 @@ def rerun(
                 )
             elif change is not None:
                 changes.append(change)
-    counts = task.counts
-    return Regraded(
-        counts.regraded, counts.up_to_date, counts.kept, len(troubled), tuple(changes), snapshot.sha256,
-        tuple(troubled),
-    )  # fmt: skip
+    found = tuple(changes), snapshot.sha256, tuple(troubled)
+    return Regraded(regraded, task.up_to_date, task.kept, len(troubled), *found)
 
 
 def _graders(results: Results, catalog: Catalog, options: RerunOptions) -> tuple[Snapshot, dict[str, Any]]:
@@ -185,7 +176,7 @@ class _Rerun:
         self._versions[QUIZ] = quiz_version(self._bank)
         self._before: dict[tuple[str, str], Effective] = {}
         self._begun = False
-        self.counts = _Counts()
+        self.up_to_date = self.kept = 0
 
     def pairs(self, grade: GradeAll) -> Iterator[tuple[Effective, Effective]]:
         """The scores before and after, for each regraded submission."""
@@ -211,7 +202,7 @@ class _Rerun:
                 files = self._results.book.submission(key.submission_sha256)
                 exercise = self._exercises.get(key.exercise)
                 if files is None or exercise is None:
-                    self.counts.kept += 1
+                    self.kept += 1
                     continue
                 submission = Submission(files)
                 if submission.sha256 != key.submission_sha256:
@@ -225,7 +216,7 @@ class _Rerun:
     def _is_due(self, key: Key, state: str) -> bool:
         same = self._versions.get(key.exercise) == key.grader_version
         if same and state != "grader_error" and not self._options.everything:
-            self.counts.up_to_date += 1
+            self.up_to_date += 1
             return False
         return True
 
@@ -235,7 +226,7 @@ class _Rerun:
             record = msgspec.json.decode(files.get(QUIZ_RECORD, b"")) if files else None
         verdict = grade_quiz(self._bank, record) if record is not None and self._bank.ids else None
         if verdict is None:
-            self.counts.kept += 1
+            self.kept += 1
             return
         self._remember(key)
         yield self._taken(self._key(key.student, QUIZ, key.submission_sha256), verdict)
@@ -281,31 +272,19 @@ def _change(before: Effective, after: Effective) -> Change | None:
     new = {check.id: check for check in after.verdict.checks}
     checks = []
     for name in dict.fromkeys((*old, *new)):
-        was, is_ = old.get(name), new.get(name)
-        if (
-            was
-            and is_
-            and (was.status, was.points, was.max_points) == (is_.status, is_.points, is_.max_points)
-        ):
-            continue
-        checks.append(
-            CheckChange(
-                name,
-                was.status.value if was else None,
-                is_.status.value if is_ else None,
-                was.points if was else 0.0,
-                is_.points if is_ else 0.0,
-            )
-        )
-    same = (before.score, before.raw_score, before.verdict.state) == (
-        after.score,
-        after.raw_score,
-        after.verdict.state,
-    )
-    if same and not checks:
+        was, now = _outcome(old.get(name)), _outcome(new.get(name))
+        if was != now:
+            checks.append(CheckChange(name, was[0], now[0], was[1], now[1]))
+    counted_before, counts = ((one.score, one.raw_score, one.verdict.state) for one in (before, after))
+    if counted_before == counts and not checks:
         return None
     return Change(
         after.student, after.exercise, before.score, after.score, before.raw_score, after.raw_score,
         before.verdict.state, after.verdict.state, tuple(checks), after.override is not None,
         before.max_score, after.max_score,
     )  # fmt: skip
+
+
+def _outcome(check: CheckResult | None) -> tuple[str | None, float, float]:
+    """A check's status, its points, and the points there are."""
+    return (check.status.value, check.points, check.max_points) if check else (None, 0.0, 0.0)

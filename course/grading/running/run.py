@@ -25,15 +25,7 @@ from course.grading.intake.downloads import ClassList, Student, class_list
 from course.grading.intake.students import Entry, read_quiz, read_student, submission_from, witnesses
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version, record_sha256
-from course.grading.results.effective import (
-    Effective,
-    Results,
-    ScoreChange,
-    file_in,
-    replacing,
-    submission_in,
-)
-from course.grading.results.merge import Merged
+from course.grading.results.effective import Effective, Results, ScoreChange, counted_in, replacing
 from course.grading.results.roster import Roster
 from course.grading.running.batch import Graded, grade_all
 from course.grading.running.folder import (
@@ -122,11 +114,6 @@ class Summary:
         if self.states["grader_error"]:
             return 70
         return 6 if self.states["ungradable"] or self.unrecognised else 0
-
-    def enrol(self, found: Merged) -> Roster:
-        """Note what a roster changed; return what is now the roster."""
-        self.moved, self.dropped = found.moved, found.dropped
-        return found.roster
 
     def count(self, results: Results) -> None:
         """Count everything in a gradebook."""
@@ -240,7 +227,7 @@ def grade_class(
             run.one_less(result.key.student)
             report(run.view.of(graded), run.done, len(run.names))
         run.note_times()
-        run.note_unread()
+        note_unread(book, run.unread)
         summary = run.summary
         summary.unrecognised = [] if options.only else members.unrecognised
         note_without_work(book, run.names)
@@ -288,7 +275,7 @@ class _Run:
         self._students = [one for one in members.students if not only or one.name in only]
         self.names = {one.name for one in self._students}
         self._left_aside = {one.name for one in members.students} - self.names
-        self._unread: set[tuple[str, str]] = set()
+        self.unread: set[tuple[str, str]] = set()
         self._graders = graders
         self._catalog = graders.catalog
         self._exercises = _exercises(self._catalog, options.exercises)
@@ -337,7 +324,8 @@ class _Run:
         # Before a roster says who is enrolled: until their work is looked at, nobody handed in nothing.
         book.set_waiting(sorted(self.names), others=bool(options.only))
         if options.roster is not None:
-            self.roster = self.summary.enrol(remember(book, options.roster))
+            found = remember(book, options.roster)
+            self.roster, self.summary.moved, self.summary.dropped = found.roster, found.moved, found.dropped
 
     def results(self, grade: GradeAll) -> Iterator[tuple[Result, dict[str, bytes] | None]]:
         """Grade the work that is left; each verdict comes with its submission."""
@@ -363,7 +351,7 @@ class _Run:
             required = bool(self._options.exercises)
             for entry in read_student(student, self._exercises, required=required, others=self._others):
                 if entry.unread:
-                    self._unread.add((student.name, entry.exercise.id))
+                    self.unread.add((student.name, entry.exercise.id))
                 if entry.unread or self._stays(entry):
                     continue
                 if entry.submission is None and entry.problem is None:
@@ -371,7 +359,7 @@ class _Run:
                     continue
                 self._witnessed(entry.times)
                 self._note_found(entry)
-                if self._options.resume and self._is_done(entry):
+                if self._options.resume and (self._is_replaced(entry) or self._confirmed(self._key(entry))):
                     self.summary.already += 1
                     self._note_changed(entry)
                     if entry.submission is not None:
@@ -398,10 +386,6 @@ class _Run:
         )
         self.summary.already += 1
         return True
-
-    def _is_done(self, entry: Entry) -> bool:
-        """Whether it was graded before, or an assigned file still takes its place."""
-        return self._is_replaced(entry) or self._confirmed(self._key(entry))
 
     def _is_replaced(self, entry: Entry) -> bool:
         """Whether an instructor has assigned a file since this work, or its lack, was there."""
@@ -468,7 +452,7 @@ class _Run:
         except UngradableError as error:
             record = error.message.rstrip(".")  # no list of attempts, which the scoring says of it
         if not self._with_quiz:
-            self._unread |= {(student.name, QUIZ)} if record else set()
+            self.unread |= {(student.name, QUIZ)} if record else set()
             return
         verdict = grade_quiz(self._bank, record)
         if verdict is None:
@@ -489,10 +473,6 @@ class _Run:
         if len(self._times) >= _TIMES_AT_ONCE:
             self.note_times()
 
-    def note_unread(self) -> None:
-        """Note the work for which this run did not look."""
-        note_unread(self._book, self._unread)
-
     def note_times(self) -> None:
         """Put all known times of submission into the gradebook."""
         if self._times:
@@ -506,10 +486,10 @@ def _assigned(book: Gradebook) -> dict[tuple[str, str], tuple[str, str, str]]:
     found: dict[tuple[str, str], tuple[str, str, str]] = {}
     for one in book.journal():
         if one.kind == "assign":
-            about, before = (one.student, one.exercise), submission_in(one.before)
+            about, before = (one.student, one.exercise), counted_in(one.before).submission
             first, last, _ = found.get(about, (before, before, ""))  # a second one replaces the first
-            now, file = submission_in(one.after), file_in(one.after)
-            found[about] = (first if last == before else before), now, file
+            now = counted_in(one.after)
+            found[about] = (first if last == before else before), now.submission, now.file
     return found
 
 
@@ -576,13 +556,13 @@ def _members(folder: Path, options: RunOptions) -> ClassList:
 
 
 def _seed(book: Gradebook, options: RunOptions) -> int:
-    recorded = str(Results(book).seed) if "seed" in book.meta() else None
-    if recorded is not None and options.seed not in (None, int(recorded)):
+    if "seed" not in book.meta():
+        return options.seed if options.seed is not None else secrets.randbits(31)
+    recorded = Results(book).seed
+    if options.seed not in (None, recorded):
         raise UsageError(
             f"This gradebook was begun with --seed {recorded}.",
             help="Leave --seed out to go on, or grade into a new folder.",
             code="other_seed",
         )
-    if recorded is not None:
-        return int(recorded)
-    return options.seed if options.seed is not None else secrets.randbits(31)
+    return recorded

@@ -1,7 +1,5 @@
 """The miniature course, its model solution, and warm sessions over it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

@@ -1,8 +1,7 @@
 """Gradebooks made by hand, for tests of what is made from them; PHP's CSV; graders that die young."""
 
-from __future__ import annotations
-
 import csv
+import importlib.util
 import io
 import json
 import subprocess
@@ -11,18 +10,25 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import GradedExercise, Key, Result
 from course.grading.intake.downloads import class_list
 from course.grading.intake.students import Entry, read_student
+from course.grading.results.roster import Roster, read_roster
 from course.grading.running.grader import Config
 from course.grading.running.run import RunOptions, Summary, grade_class
 from course.scoring.judging.submission import Submission
 from course.scoring.verdict import CheckResult, Problem, Status, Tolerance, Verdict, Visibility
 
 SECRET = 1234.5678
+HAS_CLUSTER = all(importlib.util.find_spec(name) for name in ("distributed", "cryptography"))
+NEEDS_CLUSTER = pytest.mark.skipif(
+    not HAS_CLUSTER, reason="needs the extra `cluster`: distributed and cryptography are not installed"
+)
 
 #: Names of students as nobody should have them, and some do.
 HOSTILE = [
@@ -50,6 +56,13 @@ def put(path: Path, content: bytes) -> None:
 
 def read_csv(path: Path) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO(path.read_text("utf-8-sig"), newline=""), strict=True))
+
+
+def roster_of(folder: Path, text: str) -> Roster:
+    """A roster, in a file of the folder."""
+    path = folder / "roster.csv"
+    path.write_bytes(text.encode("utf-8"))
+    return read_roster(path)
 
 
 def notebook(*cells: str) -> bytes:

@@ -1,7 +1,5 @@
 """Reads an HTML page strictly: whatever a browser would forgive is an error here."""
 
-from __future__ import annotations
-
 import itertools
 import re
 from html.parser import HTMLParser

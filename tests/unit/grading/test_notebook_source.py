@@ -1,7 +1,5 @@
 """Notebooks as submissions: the module they stand for, whatever was done to their cells."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 
@@ -217,6 +215,9 @@ def test_a_notebook_of_format_3_is_read() -> None:
         (b'{"cells": []}', "not_a_notebook"),
         (b'{"nbformat": 4, "cells": [17]}', "not_a_notebook"),
         (b'{"nbformat": 4, "cells": ' + b"[" * 100_000, "not_a_notebook"),
+        (notebook(code(FORCE, outputs=[])).replace(b"[]", b"[" * 200_000 + b"]" * 200_000), "not_a_notebook"),
+        (notebook(code(FORCE)).replace(b"-k", b"-\xff\xfe k"), "not_a_notebook"),
+        (notebook(code(FORCE)).replace(b"-k", b"-\\ud800 k"), "not_a_notebook"),
         (notebook(), "no_declared_functions"),
         (notebook(code("x = 1")), "no_declared_functions"),
         (
@@ -241,6 +242,11 @@ def test_deep_nesting_never_breaks_the_reader() -> None:
             notebook_source(data, EXERCISE)
         except UngradableError as refused:
             assert refused.code == "too_deep"  # noqa: PT017 - either is an answer
+
+
+def test_outputs_may_be_deep_and_ids_the_same() -> None:
+    data = notebook(code("k = 1", id="same"), code(FORCE, id="same")).replace(b"[]", b"[" * 500 + b"]" * 500)
+    assert run(notebook_source(data, EXERCISE))["force"](1, 1) == -1
 
 
 def test_python_kernels_by_any_name_are_accepted() -> None:

@@ -1,7 +1,5 @@
 """The one reader of a gradebook: newest grading, override, lateness, faults of ours."""
 
-from __future__ import annotations
-
 import datetime as dt
 from pathlib import Path
 
@@ -13,8 +11,7 @@ from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import Result, SubmittedAt
 from course.grading.results.effective import Results, lift, override
 from course.grading.results.late import Policy, lateness, parse_policy, read_policy, read_times, unknown_names
-from course.grading.results.roster import read_roster
-from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, key, make_book
+from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, key, make_book, roster_of
 
 DUE = dt.datetime(2026, 12, 1, 23, 59, tzinfo=dt.UTC)
 HOUR, DAY = 3600.0, 86_400.0
@@ -126,15 +123,14 @@ def test_lateness_costs_what_the_policy_says_and_never_touches_the_checks(
 
 
 def test_extensions_of_policy_and_roster_give_more_time(tmp_path: Path) -> None:
-    roster = tmp_path / "roster.csv"
-    roster.write_text("student,extension_days\nada,\nbob,1\ncy,3.5\n", "utf-8")
+    roster = roster_of(tmp_path, "student,extension_days\nada,\nbob,1\ncy,3.5\n")
     with make_book(tmp_path / "out", {"ada": RIGHT, "bob": RIGHT, "cy": RIGHT}) as book:
         for student in ("ada", "bob", "cy"):
             hand_in(book, student, 3 * DAY)
         book.set_meta(late_policy=POLICY)
-        late = {item.student: item.late for item in Results(book, read_roster(roster)).all()}
+        late = {item.student: item.late for item in Results(book, roster).all()}
         assert late == {"ada": 3 * DAY, "bob": DAY, "cy": None}
-        book.set_meta(roster=read_roster(roster).dump())
+        book.set_meta(roster=roster.dump())
         assert {item.student: item.late for item in Results(book).all()} == late
 
 
@@ -163,11 +159,11 @@ def test_the_time_of_another_version_is_not_this_ones(tmp_path: Path) -> None:
 
 def test_points_a_day_and_percent_of_the_score_are_other_ways_to_count() -> None:
     points = policy(percent_per_day=0.0, points_per_day=1.5, at_most_percent=100.0)
-    assert points.penalty(2 * DAY, 8.0, 10.0).points == 3.0
-    assert points.penalty(6 * DAY, 8.0, 10.0).points == 8.0
-    assert policy(of="score").penalty(2 * DAY, 5.0, 10.0).points == 1.0
-    assert policy().penalty(2 * DAY, 5.0, 10.0).points == 2.0
-    assert policy().penalty(None, 5.0, 10.0).points == 0.0
+    assert points.penalty(2 * DAY, 8.0, 10.0) == 3.0
+    assert points.penalty(6 * DAY, 8.0, 10.0) == 8.0
+    assert policy(of="score").penalty(2 * DAY, 5.0, 10.0) == 1.0
+    assert policy().penalty(2 * DAY, 5.0, 10.0) == 2.0
+    assert policy().penalty(None, 5.0, 10.0) == 0.0
     assert lateness(10.0, 10.0) is None
 
 

@@ -1,7 +1,5 @@
 """The roster is the spine: every enrolled student has a row, whoever's file says who is enrolled."""
 
-from __future__ import annotations
-
 import csv
 import unicodedata
 from pathlib import Path
@@ -14,11 +12,11 @@ from course.grading.exports.formats import export
 from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.records import PlatformIdentity
 from course.grading.results.effective import lift, override
-from course.grading.results.roster import Person, Roster, read_roster
+from course.grading.results.roster import Person, read_roster
 from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions
 from course.scoring.judging.submission import Terms
-from tests.unit.grading.made import graded_class, put, read_csv
+from tests.unit.grading.made import graded_class, put, read_csv, roster_of
 from tests.unit.grading.pages import faults, read_page
 from tests.unit.grading.running.test_run import right
 
@@ -72,12 +70,6 @@ def graded(folder: Path, catalog: Catalog, platform: str):
 
 def rows(path: Path) -> dict[str, dict[str, str]]:
     return {row["student"]: row for row in read_csv(path)}
-
-
-def roster_of(tmp_path: Path, text: str) -> Roster:
-    path = tmp_path / "roster.csv"
-    path.write_bytes(text.encode("utf-8"))
-    return read_roster(path)
 
 
 def test_who_is_missing_has_a_row_and_a_page_too(tmp_path: Path, catalog: Catalog) -> None:
@@ -330,11 +322,3 @@ def test_students_are_found_by_id_and_never_guessed(tmp_path: Path) -> None:
     assert {name: found and found.student for name, found in names.items()} == {
         "lovelace_11": "a1", "Ada Lovelace_900": "a1", "Bob_901": None, "s2": "b1", "Bob": "b2",
     }  # fmt: skip
-
-
-def test_two_folders_that_claim_one_row_are_both_unmatched(tmp_path: Path) -> None:
-    roster = roster_of(tmp_path, "student,canvas_id\nada,11\nbob,12\n")
-    downloads = {"x_11": PlatformIdentity("canvas", "11", "x")}
-    found, unmatched = roster.match(["ada", "bob", "x_11", "eve"], downloads)
-    assert list(found) == ["bob"]
-    assert unmatched == {"ada": "In one row with 'x_11'", "eve": "In no row", "x_11": "In one row with 'ada'"}

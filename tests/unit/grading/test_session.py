@@ -1,7 +1,5 @@
 """Grading one submission: what each way of ending becomes in the verdict."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Callable

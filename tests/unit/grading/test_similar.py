@@ -1,7 +1,5 @@
 """Likeness: copies are found whatever their names, the stub does not count, and nothing is run."""
 
-from __future__ import annotations
-
 import dataclasses
 import itertools
 import shutil

@@ -1,7 +1,5 @@
 """Cells run in a process of their own, after what they need, and can be stopped."""
 
-from __future__ import annotations
-
 import io
 import threading
 import time

@@ -1,8 +1,7 @@
 """A lesson in progress: what is closed, where a place is, what is kept."""
 
-from __future__ import annotations
-
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 
 import msgspec
@@ -10,9 +9,9 @@ import pytest
 
 from course.catalog.models import Lesson
 from course.progress.standing import lesson_events
-from course.progress.store import Store
+from course.progress.store import Event, Store
 from course.reading.parts import read_script, words_of
-from course.reading.record import InProgress, Layout, Place, Row, Writer, find
+from course.reading.record import InProgress, Layout, Place, Row, Writer, find, predictions_of, tally
 
 TEXT = """+++
 ignored = true
@@ -272,3 +271,45 @@ def test_a_place_in_a_block_that_is_not_shown_is_the_block_before():
     layout = Layout([Row(0), Row(0), Row(3)], 2)
     assert layout.row(Place(2, 0.9)) == 0
     assert layout.row(Place(3, 0.0)) == 2
+
+
+# -- predictions of all lessons, counted from what the reader writes -----------------------------------------
+
+AT = datetime(2026, 11, 22, 10, tzinfo=UTC)
+
+
+def events(*given: tuple[str, dict[str, object]]) -> list[Event]:
+    return [Event(number, AT, "prediction", lesson, data) for number, (lesson, data) in enumerate(given, 1)]
+
+
+def test_what_was_said_first_stays_and_the_last_judgement_counts():
+    (said,) = predictions_of(
+        events(
+            ("a", {"key": "k", "number": 1, "text": "five"}),
+            ("a", {"key": "k", "number": 1, "text": "six"}),
+            ("a", {"key": "k", "number": 1, "judged": "wrong"}),
+            ("a", {"key": "k", "number": 1, "judged": "nearly"}),
+            ("a", {"key": "k", "number": 1, "judged": "perfect"}),
+        )
+    )
+    assert (said.text, said.judged) == ("five", "nearly")
+
+
+def test_the_same_key_in_two_lessons_is_two_questions():
+    both = predictions_of(events(("a", {"key": "k", "text": "x"}), ("b", {"key": "k", "text": "y"})))
+    assert [one.text for one in both] == ["x", "y"]
+
+
+def test_a_skipped_prediction_is_neither_said_nor_judged():
+    counts = tally(
+        predictions_of(
+            events(
+                ("a", {"key": "1", "text": ""}),
+                ("a", {"key": "1", "judged": "right"}),
+                ("a", {"key": "2", "text": "x"}),
+                ("a", {"key": "3", "text": "y"}),
+                ("a", {"key": "3", "judged": "right"}),
+            )
+        )
+    )
+    assert counts == {"said": 2, "skipped": 1, "right": 1, "nearly": 0, "wrong": 0, "unjudged": 1}

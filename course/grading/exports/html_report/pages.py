@@ -587,28 +587,21 @@ def write_pages(
     folder = path.parent / "students"
     tally = Tally(noted[name] for name in exercises)
     rows = {}
-    scores: dict[str, list[str]] = {}
     for student, group in _by_student(results, found):
         mine = sorted(group, key=lambda effective: order[effective.exercise])
         tally.take(mine)
         place = numbers[student]
-        write_bytes(folder / f"{place}.html", _encoded(student_page(results, student, mine)))
+        write_bytes(folder / f"{place}.html", student_page(results, student, mine).encode())
         by_exercise = {effective.exercise: effective for effective in mine}
-        scores[student] = [
-            number(by_exercise[name].score) if name in by_exercise else "" for name in exercises
-        ]
         told = tuple(_score(by_exercise.get(name)) for name in exercises)
         rows[student] = IndexRow(student, place, links[student], results.person(student), told)
-    written = sorted(rows, key=numbers.__getitem__)
+    shown = sorted(rows.values(), key=lambda row: row.place)
     listed, table = path.with_name("students.html"), path.with_name("students.csv")
     chosen = [noted[name] for name in exercises]
-    shown = [rows[student] for student in written]
-    write_bytes(listed, _encoded(index_page(results, shown, chosen, _link(path))))
-    headings = ("page", "student", "name", "email", *exercises)
-    rows_of = _table(results, written, links)
-    write_bytes(table, csv_bytes(headings, ([*row, *scores[row[1]]] for row in rows_of)))
-    write_bytes(path, _encoded(class_page(results, tally, links, _link(listed))))
-    _remove_others(folder, {f"{numbers[student]}.html" for student in written})
+    write_bytes(listed, index_page(results, shown, chosen, _link(path)).encode())
+    write_bytes(table, csv_bytes(("page", "student", "name", "email", *exercises), map(_cells, shown)))
+    write_bytes(path, class_page(results, tally, links, _link(listed)).encode())
+    _remove_others(folder, {f"{row.place}.html" for row in shown})
     return [path, listed, table, folder]
 
 
@@ -627,10 +620,9 @@ def _by_student(results: Results, found: Iterable[Effective]) -> Iterator[tuple[
     yield from ((student, group) for student, group in held.items() if group)
 
 
-def _table(results: Results, students: Iterable[str], links: dict[str, str]) -> Iterator[list[str]]:
-    for student in students:
-        person = results.person(student)
-        yield [links[student], student, *((person.name, person.email) if person else ("", ""))]
+def _cells(row: IndexRow) -> list[str]:
+    person = (row.person.name, row.person.email) if row.person else ("", "")
+    return [row.href, row.student, *person, *(number(score[0]) if score else "" for score in row.scores)]
 
 
 def _remove_others(folder: Path, written: set[str]) -> None:
@@ -641,7 +633,3 @@ def _remove_others(folder: Path, written: set[str]) -> None:
         if _PAGE.fullmatch(path.name) and path.name not in written and _is_ours(path):
             with contextlib.suppress(OSError):
                 path.unlink()
-
-
-def _encoded(page: str) -> bytes:
-    return page.encode("utf-8")

@@ -1,10 +1,7 @@
 """A scheduler with wrong, missing and right certificates: one sentence each, at once, and nothing begun."""
 
-from __future__ import annotations
-
 import contextlib
 import datetime as dt
-import importlib.util
 import json
 import socket
 import ssl
@@ -19,11 +16,9 @@ import pytest
 from course.catalog.load import Catalog
 from course.errors import CourseError, MissingCapabilityError, UsageError
 from course.grading.running.run import RunOptions, grade_class
+from tests.unit.grading.made import NEEDS_CLUSTER
 
-pytestmark = pytest.mark.skipif(
-    any(importlib.util.find_spec(name) is None for name in ("distributed", "cryptography")),
-    reason="needs the extra `cluster`: distributed and cryptography are not installed",
-)
+pytestmark = NEEDS_CLUSTER
 
 
 def certificate(folder: Path, name: str, signer: tuple[Any, Any] | None = None) -> tuple[Any, Any]:

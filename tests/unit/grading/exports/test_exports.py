@@ -1,7 +1,5 @@
 """Every export, read back by somebody else's reader, with the names nobody should have."""
 
-from __future__ import annotations
-
 import csv
 import dataclasses
 import io

@@ -1,7 +1,5 @@
 """The pages in a real browser: axe-core's rules, in light and dark, on a desk and on a phone."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 from collections.abc import Iterator

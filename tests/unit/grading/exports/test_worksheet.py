@@ -1,7 +1,5 @@
 """Moodle's grading worksheet, read, filled in, and read back by Moodle's rules."""
 
-from __future__ import annotations
-
 import csv
 import io
 import shutil

@@ -1,7 +1,5 @@
 """Class folders straight from learning platforms: whose is what, or a list of what is nobody's."""
 
-from __future__ import annotations
-
 import datetime as dt
 import importlib.util
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Whose file it is: taken without a question, proposed, or settled by an instructor; nothing in silence."""
 
-from __future__ import annotations
-
 import gzip
 import io
 import json
@@ -21,14 +19,13 @@ from course.grading.intake import students
 from course.grading.intake.downloads import DEEP
 from course.grading.intake.students import Candidate, Entry, found_for
 from course.grading.results.effective import override
-from course.grading.results.roster import read_roster
 from course.grading.running.assign import assign, named, proposals, unsettled
 from course.grading.running.folder import open_results
 from course.grading.running.run import RunOptions
 from course.handed_in.limits import MAX_FILE
 from course.printable import quoted
 from course.scoring.judging.submission import Terms
-from tests.unit.grading.made import graded_class, notebook, put, read_class, zipped
+from tests.unit.grading.made import graded_class, notebook, put, read_class, roster_of, zipped
 from tests.unit.grading.running.test_run import right
 
 pytestmark = pytest.mark.usefixtures("unpacked")
@@ -396,9 +393,7 @@ def test_a_file_of_one_exercise_is_no_zero_in_another(tmp_path: Path, catalog: C
     lay(tmp_path / "class", "zoe", **{"doubling.py": SOURCE, "halving.py": b"x"})
     (tmp_path / "class" / "ada").mkdir()
     lay(tmp_path / "class", **files)
-    (tmp_path / "roster.csv").write_text("student\nada\nzoe\n", "utf-8")
-    roster = read_roster(tmp_path / "roster.csv")
-    graded(tmp_path, catalog, roster=roster)
+    graded(tmp_path, catalog, roster=roster_of(tmp_path, "student\nada\nzoe\n"))
     graded_class(tmp_path, catalog, RunOptions(exercises=("halving",), resume=True), grade=right)
     with open_results(tmp_path / "out") as results:
         states = {

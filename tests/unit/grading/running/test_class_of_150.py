@@ -5,13 +5,10 @@ without a question), 2 typed text in place of a file, and 2 are anonymous. In th
 stood in for; the soak run grades with real ones.
 """
 
-from __future__ import annotations
-
 import csv
 from collections import Counter
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 
@@ -23,14 +20,11 @@ from course.grading.results.roster import read_roster
 from course.grading.running.assign import assign, proposals, unsettled
 from course.grading.running.batch import grade_all
 from course.grading.running.folder import open_results
-from course.grading.running.run import RunOptions, grade_class
+from course.grading.running.run import GradeAll, RunOptions, grade_class
 from course.scoring.judging.submission import Terms
 from tests.unit.grading.made import notebook, put, zipped
 from tests.unit.grading.running.test_run import right
 from tests.unit.grading.test_roster import rows
-
-if TYPE_CHECKING:
-    from course.grading.running.run import GradeAll
 
 pytestmark = pytest.mark.usefixtures("unpacked")
 

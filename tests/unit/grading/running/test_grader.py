@@ -1,15 +1,20 @@
 """One grader and many exercises: few sessions are open at a time, and verdicts are the same."""
 
-from __future__ import annotations
+import shutil
+from pathlib import Path
 
 import pytest
 
 from course.catalog.load import Catalog
+from course.grading.gradebook.book import Gradebook
 from course.grading.running import grader
 from course.grading.running.grader import Config, Job
+from course.grading.running.run import RunOptions
 from course.isolation.probe import kept_sandboxes
 from course.scoring.judging import session
 from course.scoring.judging.submission import Terms
+from tests.unit.grading.conftest import MINI
+from tests.unit.grading.made import graded_class
 
 ORDER = ("doubling", "halving", "doubling", "doubling", "halving")
 
@@ -35,3 +40,59 @@ def test_a_grader_closes_its_oldest_session_for_another(
     finally:
         one.close()
     assert len(collected) == opened
+
+
+# -- a fault in the files of one exercise --------------------------------------------------------------------
+
+_NOT = ":1: it cannot be imported ("
+#: What stands above an exercise's hidden checks, if there are any, and what is said of that file.
+FAULTS: list[tuple[str | None, str]] = [
+    ("import no_such_module", f"{_NOT}ModuleNotFoundError: No module named 'no_such_"),
+    ("1 / 0", f"{_NOT}ZeroDivisionError: division by zero)."),
+    ("def (:", f"{_NOT}SyntaxError: "),
+    ("raise SystemExit", f"{_NOT}SystemExit)."),
+    (
+        "open(__file__[:-9] + '../../solutions/halving/accepted/by_hand.py')",  # which graders do not have
+        f"{_NOT}FileNotFoundError: solutions/halving/accepted/",
+    ),
+    (
+        "from course.scoring import nothing_of_this_name",
+        f"{_NOT}ImportError: cannot import name 'nothing_of_th",
+    ),
+    (None, ": it is missing, and {name} has "),
+    ("def test_unmarked(submission):\n    'It has no points'\n", ":1: check test_unmarked: it lacks a mark"),
+]
+
+
+def test_the_fault_of_one_exercise_is_named_and_costs_no_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A course with an exercise for each fault, and a student whose work for all of them is right."""
+    content = tmp_path / "content"
+    shutil.copytree(MINI, content)
+    for number, (above, _) in enumerate(FAULTS, 3):
+        for kind in ("exercises", "graders", "solutions"):
+            shutil.copytree(content / kind / "halving", content / kind / f"fault-{number}")
+        toml = content / "exercises" / f"fault-{number}" / "exercise.toml"
+        text = toml.read_text("utf-8").replace('id = "halving"', f'id = "fault-{number}"')
+        toml.write_text(text.replace("order = 2", f"order = {number}"), "utf-8")
+        checks = content / "graders" / f"fault-{number}" / "checks.py"
+        if above is None:
+            checks.unlink()
+        else:
+            checks.write_text(f"{above}\n{checks.read_text('utf-8')}", "utf-8")
+    shutil.copytree(content / "solutions", tmp_path / "class" / "ada")
+    monkeypatch.setenv("COURSE_CONTENT", str(content))
+    options = RunOptions(terms=Terms(level="L1"), seed=1)
+    summary = graded_class(tmp_path, Catalog(), options)
+    assert summary.exit_code == 70
+    with Gradebook(tmp_path / "out" / "gradebook.sqlite") as book:
+        verdicts = {one.key.exercise: one.verdict for one in book.results()}
+    assert all(verdicts[exercise].passed for exercise in ("doubling", "halving"))
+    for number, (_, said) in enumerate(FAULTS, 3):
+        name = f"fault-{number}"
+        verdict = verdicts[name]
+        assert (verdict.state, verdict.error and verdict.error.code) == ("grader_error", "check_file")
+        assert verdict.error is not None
+        assert verdict.error.message.startswith(f"graders/{name}/checks.py{said.replace('{name}', name)}")
+        assert str(content) not in verdict.error.message

@@ -1,7 +1,5 @@
 """A run that is interrupted: what it had not looked at is not graded yet, and nothing says anything else."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import shutil
@@ -19,13 +17,12 @@ from course.grading.exports.selection import ExportOptions
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.salvage import backups, salvage
 from course.grading.intake.students import Entry
-from course.grading.results.roster import read_roster
 from course.grading.running.batch import Graded
 from course.grading.running.folder import export_all, open_results, remember
 from course.grading.running.run import RunOptions, grade_class
 from course.scoring.judging.submission import Terms
 from tests.command_line import in_process
-from tests.unit.grading.made import graded_class
+from tests.unit.grading.made import graded_class, roster_of
 from tests.unit.grading.running.test_run import make_class, right
 
 pytestmark = pytest.mark.usefixtures("unpacked")
@@ -51,8 +48,7 @@ def stopped(tmp_path: Path, catalog: Catalog, solution: bytes) -> Path:
     make_class(tmp_path / "class", solution, 5)
     names = [f"student-00{number}" for number in range(5)]
     rows = "".join(f"{name},{number},{number}\n" for number, name in enumerate([*names, "absent"]))
-    (tmp_path / "roster.csv").write_text(f"student,canvas_id,moodle_key\n{rows}", "utf-8")
-    options = RunOptions(seed=3, roster=read_roster(tmp_path / "roster.csv"))
+    options = RunOptions(seed=3, roster=roster_of(tmp_path, f"student,canvas_id,moodle_key\n{rows}"))
     with pytest.raises(KeyboardInterrupt):
         graded_class(tmp_path, catalog, options, grade=interrupted_after(2))
     return tmp_path / "out"
@@ -114,18 +110,6 @@ def test_every_page_table_and_command_says_so(stopped: Path) -> None:
     assert "student-003 / " not in (stopped / "junit.xml").read_text("utf-8")
 
 
-def test_resuming_grades_them_and_the_log_holds_nothing_of_it(
-    stopped: Path, tmp_path: Path, catalog: Catalog
-) -> None:
-    options = RunOptions(resume=True)
-    summary = graded_class(tmp_path, catalog, options, grade=right)
-    assert (summary.already, summary.states["graded"]) == (2, 5)
-    with open_results(stopped) as results:
-        assert results.waiting == set()
-        assert results.book.journal() == []
-        assert {item.verdict.state for item in results.all()} == {"graded", "missing"}
-
-
 ADA, CY = ("student-000",), "student-002"
 #: What was run before, of a class of three (the last came in between) -> who and what nobody looked at.
 LEFT = {
@@ -144,8 +128,7 @@ LEFT = {
 def test_who_was_gone_before_anybody_looked_is_missing_once_all_are_looked_at(
     tmp_path: Path, catalog: Catalog, solution: bytes
 ) -> None:
-    (tmp_path / "roster.csv").write_text(f"student\nstudent-000\nstudent-001\n{CY}\n")
-    roster = read_roster(tmp_path / "roster.csv")
+    roster = roster_of(tmp_path, f"student\nstudent-000\nstudent-001\n{CY}\n")
     make_class(tmp_path / "class", solution, 2)
     options = RunOptions(exercises=("doubling",), roster=roster)
     graded_class(tmp_path, catalog, options, grade=right)
@@ -163,9 +146,7 @@ def test_of_work_that_no_run_looked_at_nothing_says_that_it_was_not_handed_in(
 ) -> None:
     """Whom --only left out, and what --exercise passed over, was missing, and 0 with --missing zero."""
     names = ["student-000", "student-001", CY, "absent"]
-    (tmp_path / "roster.csv").write_text(
-        "\n".join(["student,canvas_id", *(f"{n},{i}" for i, n in enumerate(names))])
-    )
+    rows = "\n".join(["student,canvas_id", *(f"{name},{number}" for number, name in enumerate(names))])
     runs, unread = LEFT[how]
     for number, options in enumerate(runs):
         if number == len(runs) - 1:
@@ -173,20 +154,15 @@ def test_of_work_that_no_run_looked_at_nothing_says_that_it_was_not_handed_in(
             (tmp_path / "class" / ADA[0] / "halving.py").write_bytes(b"x")
         else:
             make_class(tmp_path / "class", solution, 2)
-        mine = replace(options, resume=bool(number), seed=3, roster=read_roster(tmp_path / "roster.csv"))
+        mine = replace(options, resume=bool(number), seed=3, roster=roster_of(tmp_path, rows))
         summary = graded_class(tmp_path, catalog, mine, grade=right)
     found = states(tmp_path / "out")
     waiting = {about for about, state in found.items() if state == "not_graded_yet"}
     assert {about for about in waiting if about[1] == "doubling" or "part of" in how} == unread
     assert not {student for student, _ in unread} & set(summary.missing)
+    asked = ExportOptions(("doubling", "halving"), {"doubling": "1", "halving": "2"}, missing="zero")
     with open_results(tmp_path / "out") as results, pytest.raises(MissingCapabilityError) as refused:
-        export(
-            results,
-            "canvas",
-            tmp_path,
-            None,
-            ExportOptions(("doubling", "halving"), {"doubling": "1", "halving": "2"}, missing="zero"),
-        )
+        export(results, "canvas", tmp_path, None, asked)
     assert refused.value.code == "not_graded_yet"
     everything = RunOptions(exercises=("doubling", "halving"), resume=True)
     graded_class(tmp_path, catalog, everything, grade=right)
@@ -199,8 +175,8 @@ def test_after_a_loss_nothing_is_missing_until_a_run_has_looked(
     tmp_path: Path, catalog: Catalog, solution: bytes
 ) -> None:
     make_class(tmp_path / "class", solution, 2)
-    (tmp_path / "roster.csv").write_text("student\nstudent-000\nstudent-001\nabsent\n")
-    options = RunOptions(seed=3, roster=read_roster(tmp_path / "roster.csv"))
+    roster = roster_of(tmp_path, "student\nstudent-000\nstudent-001\nabsent\n")
+    options = RunOptions(seed=3, roster=roster)
     graded_class(tmp_path, catalog, options, grade=right)
     path, new = tmp_path / "out" / "gradebook.sqlite", tmp_path / "new" / "gradebook.sqlite"
     for backup in backups(path):

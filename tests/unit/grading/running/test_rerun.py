@@ -1,7 +1,5 @@
 """Regrading: who changes, by how much, by which check; and nothing is lost."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """A whole grading run: many submissions, several graders, and what happens when it is killed."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os
@@ -23,7 +21,6 @@ from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import Result
 from course.grading.intake.students import Entry
 from course.grading.results.effective import Effective
-from course.grading.results.roster import read_roster
 from course.grading.running import batch
 from course.grading.running.batch import MAX_TRIES, Graded, grade_all
 from course.grading.running.folder import open_results
@@ -35,7 +32,7 @@ from course.scoring.judging.submission import Terms
 from course.scoring.verdict import Verdict
 from tests.command_line import in_process
 from tests.unit.grading.conftest import MINI
-from tests.unit.grading.made import graded_class, put, read_class, stillborn, zipped
+from tests.unit.grading.made import graded_class, put, read_class, roster_of, stillborn, zipped
 
 pytestmark = pytest.mark.usefixtures("unpacked")
 
@@ -337,10 +334,8 @@ def test_a_quiz_counts_wherever_its_record_lies_and_is_no_exercise_of_anybodys(
         inside = {member: filled(text) for member, text in held.items()} if isinstance(held, dict) else {}
         put(tmp_path / "class" / "bob" / name, zipped(inside) if inside else filled(held))
     put(tmp_path / "class" / "cy" / "halving.py", b"y")
-    (tmp_path / "roster.csv").write_text("student\nbob\ncy\n", "utf-8")
-    summary = graded_class(
-        tmp_path, catalog, RunOptions(roster=read_roster(tmp_path / "roster.csv")), grade=right
-    )
+    options = RunOptions(roster=roster_of(tmp_path, "student\nbob\ncy\n"))
+    summary = graded_class(tmp_path, catalog, options, grade=right)
     with open_results(tmp_path / "out") as results:
         found = {(item.student, item.exercise): item.verdict for item in results.all()}
     assert set(found) == {(name, about) for name in ("bob", "cy") for about in ("halving", "quiz")}

@@ -1,13 +1,10 @@
 """Graders frozen per run: what judges is what was there when the run began, whatever is edited meanwhile."""
 
-from __future__ import annotations
-
 import ast
 import json
 import os
 import shutil
 import signal
-from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -78,35 +75,6 @@ def outcomes(out: Path) -> dict[str, Any]:
         }
 
 
-def judged_while_edited(
-    tmp_path: Path,
-    course: Catalog,
-    solution: bytes,
-    disturb: Callable[[], None],
-    students: int,
-    level: str | None = "L1",
-) -> None:
-    """Edit a check when the first result is in: all are judged as before, by what their graders say.
-
-    There are two of them, and one makes everything again.
-    """
-    make_class(tmp_path / "class", solution, students)
-    version = grader_version(course.exercise("doubling"), course)
-    seen: list[str] = []
-
-    def report(item: Any, *_: object) -> None:
-        seen.append(item.student)
-        if len(seen) == 1:
-            edit(course)
-            disturb()
-
-    out = tmp_path / "out"
-    two = partial(grade_all, graders=2)
-    summary = grade_class(tmp_path / "class", out, course, options(level), report, grade=two)
-    assert scores(out) == {f"student-{number:03}": 10.0 if number % 3 else 6.0 for number in range(students)}
-    judged_by_the_snapshot(out, course, version, summary.graders, level)
-
-
 def judged_by_the_snapshot(
     out: Path, course: Catalog, version: str, snapshot: str, level: str | None = None
 ) -> None:
@@ -141,23 +109,28 @@ LEVELS = [pytest.param(None, id="best"), pytest.param("L1", marks=pytest.mark.so
 def test_an_edit_and_a_killed_grader_change_nothing_in_a_run(
     tmp_path: Path, course: Catalog, solution: bytes, level: str | None
 ) -> None:
+    """When the first result is in: all are judged as before, by what their graders say.
+
+    There are two of them, and one makes everything again.
+    """
+    students = 40 if level else 6
+    make_class(tmp_path / "class", solution, students)
+    version = grader_version(course.exercise("doubling"), course)
     killed: list[int] = []
 
-    def disturb() -> None:
-        for pid in graders():
-            os.kill(pid, signal.SIGKILL)
-            killed.append(pid)
+    def report(*_: object) -> None:
+        if not killed:
+            edit(course)
+            killed.extend(graders())
+            for pid in killed:
+                os.kill(pid, signal.SIGKILL)
 
-    judged_while_edited(tmp_path, course, solution, disturb, 40 if level else 6, level)
+    out = tmp_path / "out"
+    two = partial(grade_all, graders=2)
+    summary = grade_class(tmp_path / "class", out, course, options(level), report, grade=two)
+    assert scores(out) == {f"student-{number:03}": 10.0 if number % 3 else 6.0 for number in range(students)}
     assert killed
-
-
-@pytest.mark.soak
-@pytest.mark.parametrize("level", LEVELS)
-def test_an_edit_alone_changes_nothing_in_a_run(
-    tmp_path: Path, course: Catalog, solution: bytes, level: str | None
-) -> None:
-    judged_while_edited(tmp_path, course, solution, lambda: None, 40, level)
+    judged_by_the_snapshot(out, course, version, summary.graders, level)
 
 
 def test_resuming_after_an_edit_grades_the_rest_as_the_run_began_and_says_what_was_edited(

@@ -238,6 +238,7 @@ def _source(name: str, attack: Attack, arena: Arena) -> str:
         "SITE": Path(np.__file__).parents[1],
     }
     text = (CORPUS / f"{name}.py").read_text("utf-8")
+    text = text.replace("from frames import *\n", (ARENA / "frames.py").read_text("utf-8"))
     text = re.sub(r"@([A-Z]+)@", lambda match: str(known[match[1]]), text)
     padding = ("#" * 99 + "\n") * 5000 if attack.padded else ""
     return f"{arena.wrong}\n\n{text}\n{padding}"

@@ -21,8 +21,7 @@ from course.authoring.exercises.grading import (
     grade_sources,
     solutions_folder,
 )
-from course.authoring.exercises.mutants import caught_by
-from course.authoring.exercises.proofs import Proof, Prover, plan
+from course.authoring.exercises.proofs import Proof, Prover, caught_by, plan
 from course.authoring.exercises.source import CheckSource, audit_style
 from course.authoring.lessons.lint import (
     LinkChecker,

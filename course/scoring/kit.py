@@ -541,7 +541,10 @@ Array = NDArray[np.float64]
 
 
 class Counted:
-    """A callback that remembers how it was called.
+    """A callback that counts its calls; hand it to the student's code and read ``.count`` after.
+
+    The function runs on this side: the student's code sees neither it nor the count. ``fn`` must accept any
+    plain arguments; for an acceleration, use ``acceleration`` instead.
 
     Attributes:
         calls: positional arguments of each call, arrays copied.
@@ -583,13 +586,7 @@ class Counted:
         return value
 
 
-def counted(fn: Callable[..., Any]) -> Counted:
-    """``fn`` as a callback that counts; hand it to the student's code and read ``.count`` after.
-
-    The function runs on this side: the student's code sees neither it nor the count. ``fn`` must accept any
-    plain arguments; for an acceleration, use ``acceleration`` instead.
-    """
-    return Counted(fn)
+counted = Counted
 
 
 def acceleration(fn: Callable[[float, Array, Array], ArrayLike], d: int) -> Counted:

@@ -32,7 +32,7 @@ from course.authoring.exercises.grading import (
     solution_path,
     solutions_folder,
 )
-from course.authoring.exercises.mutants import (
+from course.authoring.exercises.proofs import (
     Record,
     Reported,
     read_record,

@@ -14,8 +14,7 @@ from course.isolation.session import LOOP, LoadFault, LoadRefusedError
 from course.printable import ended
 from course.scoring.checks.collected import Check
 from course.scoring.elsewhere import absent, lacking, newer
-from course.scoring.explain.likeness import likeness
-from course.scoring.explain.reading_code import names_of, return_in_a_loop, why_none
+from course.scoring.explain.likeness import likeness, names_of, return_in_a_loop, why_none
 from course.scoring.explain.story import NOT_FINITE, said_once
 from course.scoring.judging.submission import Submission
 from course.scoring.remote import RemoteSubmission

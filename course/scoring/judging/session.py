@@ -495,13 +495,8 @@ def has_report(exercise: Exercise) -> bool:
     return (Path(exercise.folder) / FILE).is_file()
 
 
-def report_of(
-    exercise: Exercise, catalog: Catalog, submission: Submission, *, timeout: float = 60.0
-) -> Report:
+def report_of(exercise: Exercise, catalog: Catalog, submission: Submission) -> Report:
     """The report on a submission.
-
-    Args:
-        timeout: wall seconds for all of it.
 
     Raises:
         NotFoundError: the exercise has no report.
@@ -516,7 +511,7 @@ def report_of(
         )
     module = companion(exercise.id, FILE.removesuffix(".py"))
     try:
-        with GradingSession(exercise, catalog, terms=Terms(timeout=timeout)) as session:
+        with GradingSession(exercise, catalog, terms=Terms(timeout=60.0)) as session:
             report: Report = session.using(submission, module.report)
     except (StudentFailure, CheckFailed) as failure:
         finding = finding_for(failure)

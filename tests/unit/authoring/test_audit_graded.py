@@ -6,7 +6,7 @@ from pathlib import Path
 
 from course.authoring.audit import audit
 from course.authoring.exercises.grading import grade_sources
-from course.authoring.exercises.mutants import run_mutants
+from course.authoring.exercises.proofs import run_mutants
 from course.catalog.load import Catalog
 from tests.unit.authoring.conftest import edit
 

@@ -22,6 +22,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from course.authoring.exercises.files import digest_of
 from course.authoring.exercises.grading import (
     LocalSubmission,
     accepted_files,
@@ -88,7 +89,10 @@ def build(catalog: Catalog, exercise: Exercise) -> Path | None:
     if not mistakes_of(catalog, exercise).words:
         return None
     folder = exercise.readme_path.parent
-    made = table_of(catalog, exercise)
+    path = questions_path(exercise.id)
+    with blamed(path):
+        questions = questions_of(exercise.id) if path.is_file() else None
+        made = _table_of(catalog, exercise, questions)
     with contextlib.suppress(ContentError):
         if _alike(msgspec.to_builtins(read_table(folder)), msgspec.to_builtins(made)):
             return None
@@ -141,18 +145,7 @@ def _digest(catalog: Catalog, exercise: Exercise, mistakes: bytes) -> str:
         solution_path(catalog, exercise),
         *accepted_files(catalog, exercise),
     ]
-    made_from = hashlib.sha256(mistakes)
-    for path in files:
-        if path.is_file():
-            made_from.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
-    return made_from.hexdigest()[:16]
-
-
-def table_of(catalog: Catalog, exercise: Exercise) -> Table:
-    path = questions_path(exercise.id)
-    with blamed(path):
-        questions = questions_of(exercise.id) if path.is_file() else None
-        return _table_of(catalog, exercise, questions)
+    return digest_of(files, mistakes)
 
 
 def _table_of(catalog: Catalog, exercise: Exercise, questions: ModuleType | None) -> Table:
@@ -637,13 +630,7 @@ def _audit_codes(
 
 def _literals(catalog: Catalog, exercise: Exercise) -> Iterator[str]:
     """Codes that stand as text in the checks of an exercise and their helpers."""
-    folders: list[Path] = [exercise.readme_path.parent, exercise_graders(catalog, exercise)]
-    for folder in folders:
+    for folder in (exercise.readme_path.parent, exercise_graders(catalog, exercise)):
         for path in sorted(folder.rglob("*.py")):
-            for node in ast.walk(parse(path)):
-                if (
-                    isinstance(node, ast.Constant)
-                    and isinstance(node.value, str)
-                    and CODE.fullmatch(node.value)
-                ):
-                    yield node.value
+            texts = (node.value for node in ast.walk(parse(path)) if isinstance(node, ast.Constant))
+            yield from (text for text in texts if isinstance(text, str) and CODE.fullmatch(text))

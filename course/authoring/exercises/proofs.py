@@ -12,11 +12,10 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import msgspec
 
-from course.authoring.exercises.files import public_numbers
+from course.authoring.exercises.files import IN_WORDS, public_numbers
 from course.authoring.exercises.grading import (
     accepted_files,
     compose,
@@ -38,6 +37,7 @@ from course.progress.workspace import write_atomically
 from course.scoring.failures import ON_THE_MODEL
 from course.scoring.graders import LEFT_OUT
 from course.scoring.judging.outcomes import NOT_JUDGED
+from course.scoring.values import leaves
 from course.scoring.verdict import OURS, CheckResult, Problem, Status, Verdict, Visibility
 
 _INTEGER = re.compile(r"(?<![\w.])-?\d+(?![\w.]*\w)")
@@ -199,13 +199,10 @@ class Prover:
             for number, sentences in task.yours.items():
                 named = frozenset().union(*map(fields_of, sentences))
                 for field in sorted(named - self._fields.get(task.id, set())):
-                    self._findings.add(
-                        document.path,
-                        document.lines.line(("task", index, "yours", number)),
-                        "hints",
-                        f"no check of {task.id} that a mutant fails has the field {{{field}}}.",
-                        "A field is an input that a public check names, expected, got, off, ratio or at.",
-                    )
+                    line = document.lines.line(("task", index, "yours", number))
+                    problem = f"no check of {task.id} that a mutant fails has the field {{{field}}}."
+                    fix = "A field is an input that a public check names, expected, got, off, ratio or at."
+                    self._findings.add(document.path, line, "hints", problem, fix)
 
     def _is_our_fault(self, proof: Proof, verdict: Verdict) -> bool:
         """Report checks that broke instead of checking, each once, with the line that raised."""
@@ -249,22 +246,14 @@ class Prover:
     def _judge_stub(self, proof: Proof, verdict: Verdict) -> None:
         for check in verdict.checks:
             if check.status is Status.PASS:
-                self._findings.add(
-                    *self._place(check.id, proof.path),
-                    "stub",
-                    f"the untouched stub passes check {check.id} of task {check.task}.",
-                    "Let the check fail on code that does nothing.",
-                )
+                problem = f"the untouched stub passes check {check.id} of task {check.task}."
+                fix = "Let the check fail on code that does nothing."
+                self._findings.add(*self._place(check.id, proof.path), "stub", problem, fix)
         self._judge_handout(proof, verdict)
         for task in self.exercise.task:
             if not any(c.task == task.id and c.status is not Status.PASS for c in verdict.checks):
-                self._findings.add(
-                    proof.path,
-                    None,
-                    "stub",
-                    f"no check of task {task.id} fails on the stub.",
-                    "Give the task a check that does.",
-                )
+                problem = f"no check of task {task.id} fails on the stub."
+                self._findings.add(proof.path, None, "stub", problem, "Give the task a check that does.")
 
     def _judge_handout(self, proof: Proof, verdict: Verdict) -> None:
         """What public checks find in the stub is unwritten, or declared as its fault."""
@@ -275,13 +264,11 @@ class Prover:
                 if check.task == task.id and check.visibility is Visibility.PUBLIC and check.diagnosis
             }
             for code in sorted(told - {task.fault, *NO_MISTAKE}):
-                self._findings.add(
-                    proof.path,
-                    self._line_of(proof.path, task.id),
-                    "stub",
-                    f"the untouched stub is told {code}, and `course progress` counts that as the student's.",
-                    f'Raise NotImplementedError in {task.id}, or give its task `fault = "{code}"`.',
+                told_as = (
+                    f"the untouched stub is told {code}, and `course progress` counts that as the student's."
                 )
+                fix = f'Raise NotImplementedError in {task.id}, or give its task `fault = "{code}"`.'
+                self._findings.add(proof.path, self._line_of(proof.path, task.id), "stub", told_as, fix)
             if task.fault and task.fault not in told:
                 path = proof.path.with_name("exercise.toml")
                 line = read_document(path, Exercise).lines.line(("task", index, "fault"))
@@ -292,24 +279,21 @@ class Prover:
         """Full marks, and the checks that ran are the ones the files declare."""
         for check in verdict.checks:
             if check.status is not Status.PASS:
-                self._findings.add(
-                    proof.path,
-                    proof.line or self._line_of(proof.path, check.task),
-                    proof.role,
-                    f"check {check.id} ends with {check.status}: {check.message or check.blocked_by}"
-                    f" (expected {check.expected}, got {check.actual}).",
-                    "Correct the code, or the check if the code is right.",
-                )
+                line = proof.line or self._line_of(proof.path, check.task)
+                problem = f"check {check.id} ends with {check.status}: {check.message or check.blocked_by}"
+                problem += f" (expected {check.expected}, got {check.actual})."
+                fix = "Correct the code, or the check if the code is right."
+                self._findings.add(proof.path, line, proof.role, problem, fix)
         ran = {check.id for check in verdict.checks}
         for check_id in sorted(ran ^ set(self._checks)):
-            self._findings.add(
-                *self._place(check_id, self.exercise.checks_path),
-                "check",
-                f"check {check_id} ran, but no plain function declares it."
+            odd = (
+                "ran, but no plain function declares it"
                 if check_id in ran
-                else f"check {check_id} is declared, but did not run.",
-                "Write each check as one top-level function whose name starts with test_.",
+                else "is declared, but did not run"
             )
+            place = self._place(check_id, self.exercise.checks_path)
+            fix = "Write each check as one top-level function whose name starts with test_."
+            self._findings.add(*place, "check", f"check {check_id} {odd}.", fix)
         if not verdict.checks or verdict.score < verdict.max_score or verdict.max_score <= 0:
             message = f"scores {verdict.score:g} of {verdict.max_score:g} points."
             self._findings.add(proof.path, None, proof.role, message, "It must score full marks.")
@@ -319,12 +303,9 @@ class Prover:
         for check in verdict.checks:
             if check.visibility is Visibility.HIDDEN and check.status is Status.FAIL:
                 for number in _leaks(check, self._public):
-                    self._findings.add(
-                        *self._place(check.id, self.exercise.checks_path),
-                        "leak",
-                        f"hidden check {check.id} shows the number {number} in its words.",
-                        "Say it in words; put values into input, expected and actual, which are not shown.",
-                    )
+                    place = self._place(check.id, self.exercise.checks_path)
+                    problem = f"hidden check {check.id} shows the number {number} in its words."
+                    self._findings.add(*place, "leak", problem, IN_WORDS)
 
     def _place(self, check_id: str, otherwise: Path) -> tuple[Path, int | None]:
         check = self._checks.get(check_id)
@@ -367,21 +348,13 @@ def _leaks(check: CheckResult, public: frozenset[str]) -> Iterator[str]:
     for match in DECIMAL.finditer(words):
         if match[0] not in public:
             yield match[0]
-    values = set(_numbers([check.input, check.expected, check.actual]))
+    numbers = (
+        one for one in leaves([check.input, check.expected, check.actual]) if type(one) in {int, float}
+    )
+    values = set(map(float, numbers))
     for match in _INTEGER.finditer(words):
         if abs(int(match[0])) >= _TELLING and float(match[0]) in values:
             yield match[0]
-
-
-def _numbers(value: Any) -> Iterator[float]:
-    if isinstance(value, int | float) and not isinstance(value, bool):
-        yield float(value)
-    elif isinstance(value, dict):
-        for item in value.values():
-            yield from _numbers(item)
-    elif isinstance(value, list | tuple):
-        for item in value:
-            yield from _numbers(item)
 
 
 # ---

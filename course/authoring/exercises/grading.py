@@ -279,11 +279,8 @@ def _changed(source: str, model: str) -> frozenset[str]:
 
 def declared_checks(exercise: Exercise, catalog: Catalog) -> dict[str, Check]:
     """The checks as pytest collects them, by id: markers whose values are computed have them here."""
-    collected = CollectedChecks(check_files(exercise, catalog, "full"))
-    try:
+    with contextlib.closing(CollectedChecks(check_files(exercise, catalog, "full"))) as collected:
         return {check.id: check for check in collected.checks}
-    finally:
-        collected.close()
 
 
 # ---

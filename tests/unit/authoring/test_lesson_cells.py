@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from course.authoring.lessons.cells import as_written, run_cells, run_lesson, update_outputs
+from course.authoring.lessons.cells import as_written, run_lesson, update_outputs
 from course.errors import ContentError
 
 HEAD = "+++\nid = 'a'\n+++\n\n"
@@ -21,7 +21,7 @@ def lesson(folder: Path, body: str) -> Path:
 
 def test_cells_share_one_namespace_and_run_in_order(tmp_path: Path) -> None:
     body = "```python\nx = 2\n```\n\ntext\n\n```python\nprint(x + 2)\n```\n\n```output\n4\n```\n"
-    first, second = run_cells(lesson(tmp_path, body))
+    first, second = run_lesson(lesson(tmp_path, body)).cells
     assert (first.printed, first.agrees) == (None, True)
     assert (second.printed, second.agrees) == ("4", True)
 
@@ -35,7 +35,7 @@ def test_cells_share_one_namespace_and_run_in_order(tmp_path: Path) -> None:
     ],
 )
 def test_a_cell_that_prints_something_else_does_not_agree(tmp_path: Path, body: str) -> None:
-    (run,) = run_cells(lesson(tmp_path, body))
+    (run,) = run_lesson(lesson(tmp_path, body)).cells
     assert not run.agrees
 
 
@@ -49,7 +49,7 @@ def test_outputs_are_rewritten_added_and_removed_and_nothing_else_changes(tmp_pa
     assert path.read_text(encoding="utf-8").startswith(
         HEAD + "One.\n\n```python\nprint(1)\n```\n\n```output\n1\n```"
     )
-    assert all(run.agrees for run in run_cells(path))
+    assert all(run.agrees for run in run_lesson(path).cells)
     before = path.read_text(encoding="utf-8")
     assert update_outputs(path) == 0
     assert path.read_text(encoding="utf-8") == before

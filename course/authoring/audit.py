@@ -227,11 +227,9 @@ def _check_scenes(only: str | None, findings: Findings) -> tuple[str, ...]:
             findings.add(last, None, "content", problem, "Rename the file, and its id.")
     for name in names:
         path = scene_path(name)
-        try:
+        with findings.refusals():
             if not blanks_in(path, findings):
                 _check_scene(path, read_scene(path), findings)
-        except ContentError as error:
-            findings.add_error(error)
     return names
 
 
@@ -270,7 +268,7 @@ def _read(catalog: Catalog, exercise_id: str, findings: Findings, whole: list[Ex
     """
     own = Findings(findings.root)
     candidate = None
-    try:
+    with own.refusals():
         if not find_blanks(catalog, exercise_id, own):
             exercise = catalog.read_exercise(exercise_id)
             _check_readmes(catalog, exercise, own)
@@ -285,8 +283,6 @@ def _read(catalog: Catalog, exercise_id: str, findings: Findings, whole: list[Ex
             if not own.of("check", "words"):
                 declared_checks(exercise, catalog)
                 candidate = _Candidate(exercise, checks, proofs)
-    except ContentError as error:
-        own.add_error(error)
     findings.problems += own.problems
     return candidate
 

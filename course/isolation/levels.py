@@ -63,7 +63,6 @@ class Exit:
 
     code: int
     signal: int
-    cpu_s: float = 0.0
 
 
 class Channel(Protocol):

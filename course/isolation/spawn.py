@@ -189,11 +189,10 @@ class ZygoteSpawner:
         """Collect a worker that has ended."""
         try:
             self._send({"reap": pid})
-            status, *times = ENDED.unpack(self._control.recv(4096))
+            (status,) = ENDED.unpack(self._control.recv(4096))
         except (OSError, struct.error) as error:
             raise IsolationError(f"the zygote does not answer: {self._stderr() or error}") from None
-        cpu_s = times[0] + times[2] + (times[1] + times[3]) / 1e6
-        return Exit(os.WEXITSTATUS(status) if os.WIFEXITED(status) else 0, status & 0x7F, cpu_s)
+        return Exit(os.WEXITSTATUS(status) if os.WIFEXITED(status) else 0, status & 0x7F)
 
     def leave(self, workdir: Path) -> None:
         """Remember the folder of a worker that ended, for ``tidy``."""

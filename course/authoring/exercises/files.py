@@ -91,10 +91,8 @@ def _with_computed_marks(
         return checks
     known = declared_checks(exercise, catalog)
     return tuple(
-        replace(
-            check, task=known[check.id].task, points=known[check.id].points, requires=known[check.id].requires
-        )
-        if check.id in known
+        replace(check, task=found.task, points=found.points, requires=found.requires)
+        if (found := known.get(check.id))
         else check
         for check in checks
     )

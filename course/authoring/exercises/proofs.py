@@ -8,9 +8,8 @@ check, under its own name, and only there.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import msgspec
@@ -84,15 +83,18 @@ def plan(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[Proo
         fix = "Add correct but unusual code: checks that refuse it are too narrow."
         findings.add(solution.parent / "accepted", None, "accepted", message, fix)
     for path in accepted:
-        _add(proofs, findings, partial(_accepted, solution, path))
+        with findings.refusals():
+            proofs.append(Proof("accepted", path, compose(solution, path), path.name))
     for variant in mistakes.right:
-        _add(proofs, findings, partial(_proof, "accepted", file, model, variant))
+        with findings.refusals():
+            proofs.append(_proof("accepted", file, model, variant))
     if not mistakes.wrong:
         message = "it has no wrong program, so nothing shows that the checks catch anything."
         findings.add(file, None, "mutants", message, "Add the mistakes that students make.")
         return tuple(proofs)
     for variant in mistakes.wrong:
-        _add(proofs, findings, partial(_proof, "mutant", file, model, variant))
+        with findings.refusals():
+            proofs.append(_proof("mutant", file, model, variant))
     _audit_mutants(exercise, mistakes, file, findings)
     if len(mistakes.wrong) < least_mutants:
         count = len(mistakes.wrong)
@@ -127,20 +129,9 @@ def _audit_mutants(exercise: Exercise, mistakes: Mistakes, file: Path, findings:
         findings.add(file, None, "mutants", message, "Add one for each mistake that students make.")
 
 
-def _accepted(solution: Path, path: Path) -> Proof:
-    return Proof("accepted", path, compose(solution, path), path.name)
-
-
 def _proof(role: str, file: Path, model: str, variant: Variant) -> Proof:
     source = variant.composed(model, file).encode()
     return Proof(role, file, source, variant.name, variant if role == "mutant" else None, variant.line)
-
-
-def _add(proofs: list[Proof], findings: Findings, made: Callable[[], Proof]) -> None:
-    try:
-        proofs.append(made())
-    except ContentError as error:
-        findings.add_error(error)
 
 
 class Prover:

@@ -114,30 +114,23 @@ def _missing_parts(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
 def _unpredicted(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
     """A figure or a run with no prediction before it in its section, and predictions left unanswered."""
     asked: b.Prediction | None = None
-    open_question = False
-    for block in blocks:
+    is_open = False
+    for block in (*blocks, None):
         match block:
-            case b.Heading(level=2) | b.Prediction() if open_question and asked:
-                yield Finding(
-                    asked.line, "a prediction that is not answered", "Add > **Answer.** … after it."
-                )
-            case _:
-                pass
-        match block:
-            case b.Heading(level=2):
-                asked, open_question = None, False
-            case b.Prediction():
-                asked, open_question = block, True
+            case None | b.Heading(level=2) | b.Prediction():
+                if asked and is_open:
+                    problem = "a prediction that is not answered"
+                    yield Finding(asked.line, problem, "Add > **Answer.** … after it.")
+                asked = block if isinstance(block, b.Prediction) else None
+                is_open = asked is not None
             case b.Callout(kind="answer"):
-                open_question = False
+                is_open = False
             case b.Figure(line=line) if asked is None:
                 yield Finding(line, "a figure without a prediction", "Put > **Predict.** … before it.")
             case b.CodeCell(line=line, output=str()) if asked is None:
                 yield Finding(line, "a run without a prediction", "Put > **Predict.** … before it.")
             case _:
                 pass
-    if open_question and asked:
-        yield Finding(asked.line, "a prediction that is not answered", "Add > **Answer.** … after it.")
 
 
 def _given_away(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
@@ -347,16 +340,12 @@ class LinkChecker:
 
     def _problem_with_file(self, path: Path, place: str, anchor: str) -> tuple[str, str] | None:
         if ":" in place.split("/", maxsplit=1)[0]:
-            return (
-                "is of an unknown kind.",
-                "Use https://, lesson:ID, exercise:ID, or a file beside this one.",
-            )
+            fix = "Use https://, lesson:ID, exercise:ID, or a file beside this one."
+            return "is of an unknown kind.", fix
         destination = (path.parent / place).resolve()
         if not destination.is_relative_to(path.parent.resolve()):
-            return (
-                "leaves its folder, which breaks where the course is installed.",
-                "Link with lesson:ID or exercise:ID.",
-            )
+            problem = "leaves its folder, which breaks where the course is installed."
+            return problem, "Link with lesson:ID or exercise:ID."
         if not destination.exists():
             return "leads to no file.", "Correct the name, or add the file."
         if anchor and destination.suffix == ".md":

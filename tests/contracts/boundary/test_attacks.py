@@ -208,7 +208,9 @@ def test_an_attack_gains_nothing_and_leaves_nothing(name: str, level: str, arena
 
     _expect_outcome(attack, verdict)
     assert verdict.score <= arena.wrong_score, "the attack scored"
-    _expect_deadlines(verdict, ENDLESS_S if attack.endless else TIMEOUT_S, used)
+    # By the CPU time of all that was started. That the wall ends a check too shows in that it ends.
+    limit = ENDLESS_S if attack.endless else TIMEOUT_S
+    assert used <= (len(verdict.checks) + 1) * limit + GRACE_S, "it used more than its checks may"
     _expect_silence(verdict, [FILE_CANARY, INPUT_CANARY, LEFTOVER, *attack.never])
     assert not arena.listener.heard(), "it reached a socket"
     assert not arena.signals, "it signalled the grader"
@@ -258,11 +260,6 @@ def _expect_outcome(attack: Attack, verdict: Verdict) -> None:
 
 def _listed(value: str | list[str]) -> list[str]:
     return [value] if isinstance(value, str) else value
-
-
-def _expect_deadlines(verdict: Verdict, timeout: float, used: float) -> None:
-    """By the CPU time of all that was started. That the wall ends a check too shows in that it ends."""
-    assert used <= (len(verdict.checks) + 1) * timeout + GRACE_S, "it used more than its checks may"
 
 
 def _cpu_s() -> float:

@@ -77,7 +77,10 @@ def plan(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[Proo
         Proof("solution", solution, model.encode(), solution.name),
     ]
     mistakes, accepted = mistakes_of(catalog, exercise), accepted_files(catalog, exercise)
-    least, least_mutants = least_proofs(exercise)
+    functions = len(exercise.task)
+    least, least_mutants = functions + 1, functions * MUTANTS_EACH
+    if exercise.is_warm_up:
+        least, least_mutants = LEAST_OF_WARM_UP
     if (right := len(accepted) + len(mistakes.right)) < least:
         message = f"accepted variants: {right}, and an exercise of this size has at least {least}."
         fix = "Add correct but unusual code: checks that refuse it are too narrow."
@@ -104,14 +107,6 @@ def plan(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[Proo
         message = "most tasks share their diagnoses, which tell no mistakes apart then."
         findings.add(file, None, "mutants", message, "Give each kind of mistake a code of its own.")
     return tuple(proofs)
-
-
-def least_proofs(exercise: Exercise) -> tuple[int, int]:
-    """How many accepted variants and how many mutants an exercise of this size has at least."""
-    functions = len(exercise.task)
-    if exercise.is_warm_up:
-        return LEAST_OF_WARM_UP
-    return functions + 1, functions * MUTANTS_EACH
 
 
 def _audit_mutants(exercise: Exercise, mistakes: Mistakes, file: Path, findings: Findings) -> None:

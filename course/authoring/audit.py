@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,8 +20,7 @@ from course.authoring.exercises.grading import (
     grade_sources,
     solutions_folder,
 )
-from course.authoring.exercises.mutants import caught_by
-from course.authoring.exercises.proofs import Proof, Prover, plan
+from course.authoring.exercises.proofs import Proof, Prover, caught_by, plan
 from course.authoring.exercises.source import CheckSource, audit_style
 from course.authoring.lessons.lint import (
     LinkChecker,
@@ -75,13 +73,8 @@ def audit_quiz(catalog: Catalog, findings: Findings, only: str | None = None) ->
     folder = catalog.content.quiz
     blank = [path for path in sorted(folder.glob("*.toml")) if blanks_in(path, findings)]
     if (catalog.content.exercises / _TAKEN).is_dir():
-        findings.add(
-            catalog.content.exercises / _TAKEN,
-            None,
-            "quiz",
-            "an exercise is called quiz, and that is what gradebooks call the quiz.",
-            "Rename the exercise.",
-        )
+        problem = "an exercise is called quiz, and that is what gradebooks call the quiz."
+        findings.add(catalog.content.exercises / _TAKEN, None, "quiz", problem, "Rename the exercise.")
     if blank:
         return tuple(path.stem for path in blank)
     try:
@@ -98,29 +91,20 @@ def audit_quiz(catalog: Catalog, findings: Findings, only: str | None = None) ->
 def _audit_question(catalog: Catalog, document: Document[Question], findings: Findings) -> None:
     question, wrong = document.value, findings.about(document.path, document.lines, "quiz")
     if len(question.variant) < LEAST_VARIANTS:
-        wrong(
-            (),
-            f"question {question.id} has {counted(len(question.variant), 'variant')}, "
-            f"and needs {LEAST_VARIANTS}.",
-            "Add variants: new numbers or a new situation for the same idea.",
-        )
+        number = counted(len(question.variant), "variant")
+        problem = f"question {question.id} has {number}, and needs {LEAST_VARIANTS}."
+        wrong((), problem, "Add variants: new numbers or a new situation for the same idea.")
     if question.lesson:
         LinkChecker(catalog, findings).check_question(document)
     used = {option.misconception for variant in question.variant for option in variant.option}
     for name in question.misconceptions:
         if name not in used:
-            wrong(
-                ("misconceptions", name),
-                f"no option is tied to the misconception {name}.",
-                "Tie a wrong option to it, or remove it.",
-            )
+            problem = f"no option is tied to the misconception {name}."
+            wrong(("misconceptions", name), problem, "Tie a wrong option to it, or remove it.")
     for index, variant in enumerate(question.variant):
         if not YEAR.search(variant.source) and not any(number.formula for number in variant.number):
-            wrong(
-                ("variant", index, "source"),
-                f"the source of variant {variant.id} has no date.",
-                "Name who says so and in which year.",
-            )
+            problem = f"the source of variant {variant.id} has no date."
+            wrong(("variant", index, "source"), problem, "Name who says so and in which year.")
     for fault in faults_in(document):
         findings.add(document.path, fault.line, "quiz", fault.message, fault.fix)
 
@@ -138,7 +122,6 @@ def audit(
     catalog: Catalog,
     only: str | None = None,
     *,
-    without: Collection[str] = (),
     on_progress: Progress | None = None,
     grade: GradeSources = grade_sources,
     refused: Refused | None = None,
@@ -149,7 +132,6 @@ def audit(
     Args:
         catalog: the course; it needs its solutions and hidden graders.
         only: id of a lesson, an exercise, a question or a scene; None for everything.
-        without: ids of lessons and exercises to leave out, where each is checked by itself.
         on_progress: called at the start and after each submission with the number graded and the total.
         grade: gives the verdicts on submissions. It may leave some out: they are not counted, and fields
             that hints name are not looked for.
@@ -165,9 +147,6 @@ def audit(
     findings = Findings(catalog.content.root)
     try:
         lessons, exercises = _chosen(catalog, only)
-        lessons, exercises = (
-            tuple(each for each in ids if each not in without) for ids in (lessons, exercises)
-        )
         if only is None:
             audit_syllabus(catalog, findings)
             if is_command is not None:
@@ -248,11 +227,9 @@ def _check_scenes(only: str | None, findings: Findings) -> tuple[str, ...]:
             findings.add(last, None, "content", problem, "Rename the file, and its id.")
     for name in names:
         path = scene_path(name)
-        try:
+        with findings.refusals():
             if not blanks_in(path, findings):
                 _check_scene(path, read_scene(path), findings)
-        except ContentError as error:
-            findings.add_error(error)
     return names
 
 
@@ -291,7 +268,7 @@ def _read(catalog: Catalog, exercise_id: str, findings: Findings, whole: list[Ex
     """
     own = Findings(findings.root)
     candidate = None
-    try:
+    with own.refusals():
         if not find_blanks(catalog, exercise_id, own):
             exercise = catalog.read_exercise(exercise_id)
             _check_readmes(catalog, exercise, own)
@@ -306,8 +283,6 @@ def _read(catalog: Catalog, exercise_id: str, findings: Findings, whole: list[Ex
             if not own.of("check", "words"):
                 declared_checks(exercise, catalog)
                 candidate = _Candidate(exercise, checks, proofs)
-    except ContentError as error:
-        own.add_error(error)
     findings.problems += own.problems
     return candidate
 

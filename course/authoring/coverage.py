@@ -124,13 +124,9 @@ def check_coverage(
             seen.update(dict.fromkeys(part.span, part.what))
     left = sorted(set(range(1, coverage.source_lines + 1)) - set(seen))
     if left:
-        lines = ", ".join(map(str, left[:10]))
-        wrong(
-            ("source_lines",),
-            f"{counted(len(left), 'line')} of the chapter belong{'s' * (len(left) == 1)} to no part: "
-            f"{lines}{', …' if len(left) > 10 else ''}.",
-            "Add the parts they hold.",
-        )
+        problem = f"{counted(len(left), 'line')} of the chapter belong{'s' * (len(left) == 1)} to no part: "
+        problem += f"{', '.join(map(str, left[:10]))}{', …' if len(left) > 10 else ''}."
+        wrong(("source_lines",), problem, "Add the parts they hold.")
     return findings.sorted()
 
 

@@ -1,6 +1,7 @@
 """The result of an audit: problems with file, line and fix, and the numbers of checked parts."""
 
-from collections.abc import Callable
+import contextlib
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeAlias
@@ -93,6 +94,14 @@ class Findings:
     def add_error(self, error: ContentError) -> None:
         """Note what the loader refused."""
         self.add(error.file, error.line, "content", error.problem, error.help)
+
+    @contextlib.contextmanager
+    def refusals(self) -> Iterator[None]:
+        """Note what the loader refuses, and go on after it."""
+        try:
+            yield
+        except ContentError as error:
+            self.add_error(error)
 
     def of(self, *codes: str) -> bool:
         """True if a problem with one of these codes was noted."""

@@ -63,7 +63,6 @@ class Exit:
 
     code: int
     signal: int
-    cpu_s: float = 0.0
 
 
 class Channel(Protocol):
@@ -83,7 +82,17 @@ class Channel(Protocol):
         """Send some bytes from the beginning; returns how many were sent."""
 
 
-class Handle(Protocol):
+class Clock(Protocol):
+    """The interface that reports how much time a process has used."""
+
+    def cpu_s(self) -> float:
+        """Seconds of CPU time so far, from any zero; by the wall clock where the system does not tell."""
+
+    def asleep(self) -> bool:
+        """Whether it waits for something other than a processor or a disk, or was stopped."""
+
+
+class Handle(Clock, Protocol):
     """A running worker.
 
     At the other end of its channel is ``course.isolation.inside.worker.Worker``, or what speaks as it does:
@@ -98,12 +107,6 @@ class Handle(Protocol):
 
     def output(self) -> str:
         """Its output so far, at most ``MAX_OUTPUT``; "" after ``finish``, unless it is still there."""
-
-    def cpu_s(self) -> float:
-        """Seconds of CPU time it has used so far; by the wall clock where the system does not tell."""
-
-    def asleep(self) -> bool:
-        """Whether it waits for something other than a processor or a disk, or was stopped."""
 
     def look(self) -> None:
         """Ask it where its code is, if it can be asked; the answer comes after ``LOOKS`` of these."""
@@ -163,16 +166,6 @@ BUDGET_S = 60.0
 #: What searches for the causes of mistakes may ask of a submission beside that.
 SEARCH_S = 20.0
 _TICK_S = 0.1  # how often a worker that does not answer is looked at
-
-
-class Clock(Protocol):
-    """The interface that reports how much time a process has used."""
-
-    def cpu_s(self) -> float:
-        """Seconds so far, from any zero."""
-
-    def asleep(self) -> bool:
-        """Whether it waits for something other than a processor or a disk, or was stopped."""
 
 
 class ProcessClock:

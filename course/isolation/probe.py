@@ -132,19 +132,19 @@ def _advice(level: Level) -> tuple[str, ...]:
     if not sys.platform.startswith("linux"):
         return ("Grade a class on Linux: there L3 is available. Your own checks are fine as they are.",)
     if shutil.which("bwrap") is None:
-        return (f"Install bubblewrap for L3: {_install('bubblewrap')}",)
+        return (f"Install bubblewrap for L3: {_install_bubblewrap()}",)
     if Path("/proc/sys/kernel/apparmor_restrict_unprivileged_userns").exists():
         return ("This system lets only chosen programs use user namespaces; L2 is the level meant for it.",)
     return ("A container often forbids namespaces; L3 needs the host, or a container that allows them.",)
 
 
-def _install(package: str) -> str:
+def _install_bubblewrap() -> str:
     managers = {"apt-get": "sudo apt-get install", "dnf": "sudo dnf install", "pacman": "sudo pacman -S"}
     for manager, command in {**managers, "zypper": "sudo zypper install", "apk": "doas apk add"}.items():
         if shutil.which(manager):
             root = hasattr(os, "getuid") and os.getuid() == 0
-            return f"{command} {package}".replace("sudo ", "" if root else "sudo ")
-    return f"the package {package}"
+            return f"{command} bubblewrap".replace("sudo ", "" if root else "sudo ")
+    return "the package bubblewrap"
 
 
 # ---

@@ -227,7 +227,6 @@ class Connection:
         self._printed = ""
         self._deadline = deadline
         self.alive = True
-        self.cpu_s = 0.0
         self._handle: Handle = spawner.spawn()
         self._channel = self._handle.channel
         try:
@@ -340,9 +339,7 @@ class Connection:
         self.alive = False
         self._printed = printable(self._handle.output())
         self._deadline.watch(None)
-        end = self._handle.finish()
-        self.cpu_s = end.cpu_s
-        return end
+        return self._handle.finish()
 
     # -- the conversation -----------------------------------------------------------------------------
 

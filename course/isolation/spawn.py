@@ -38,7 +38,6 @@ from course.isolation.levels import (
     Exit,
     Handle,
     Level,
-    Limits,
     ProcessClock,
     Spawner,
     ticking,
@@ -55,11 +54,10 @@ _PACKAGES = "/packages"
 class ZygoteSpawner:
     """Linux: forks workers from a warm zygote and holds a pidfd of each."""
 
-    def __init__(self, level: Level, view: View, imports: tuple[str, ...], limits: Limits) -> None:
+    def __init__(self, level: Level, view: View, imports: tuple[str, ...]) -> None:
         self.level = level
         self._view = view
         self._imports = imports
-        self._limits = limits
         self._process: subprocess.Popen[bytes] | None = None
         self._left: list[Iterator[None]] = []  # removals of folders of workers that ended
         self._start()
@@ -83,7 +81,7 @@ class ZygoteSpawner:
             "control": control,
             "level": self.level.value,
             "imports": list(self._imports),
-            "limits": vars(self._limits),
+            "limits": vars(LIMITS),
             "become_nobody": root and (self.level is Level.L3 or _open_to_others(self._view)),
         }
         if self.level is Level.L3:
@@ -189,11 +187,10 @@ class ZygoteSpawner:
         """Collect a worker that has ended."""
         try:
             self._send({"reap": pid})
-            status, *times = ENDED.unpack(self._control.recv(4096))
+            (status,) = ENDED.unpack(self._control.recv(4096))
         except (OSError, struct.error) as error:
             raise IsolationError(f"the zygote does not answer: {self._stderr() or error}") from None
-        cpu_s = times[0] + times[2] + (times[1] + times[3]) / 1e6
-        return Exit(os.WEXITSTATUS(status) if os.WIFEXITED(status) else 0, status & 0x7F, cpu_s)
+        return Exit(os.WEXITSTATUS(status) if os.WIFEXITED(status) else 0, status & 0x7F)
 
     def leave(self, workdir: Path) -> None:
         """Remember the folder of a worker that ended, for ``tidy``."""
@@ -324,13 +321,12 @@ class _ForkedHandle:
 class ProcessSpawner:
     """Any system: a plain process per worker, the next one started ahead so that a restart costs no wait."""
 
-    def __init__(self, view: View, imports: tuple[str, ...], limits: Limits) -> None:
+    def __init__(self, view: View, imports: tuple[str, ...]) -> None:
         self.level = Level.L1
         self._folder = launch.private_folder()
         launch.copy_worker_files(self._folder)
         self._view = view
         self._imports = imports
-        self._limits = limits
         self._standby: _ProcessHandle | None = None
         self._left: list[Iterator[None]] = []  # removals of folders of workers that ended
 
@@ -340,7 +336,7 @@ class ProcessSpawner:
         config: dict[str, Any] = {
             "level": "L1",
             "imports": list(self._imports),
-            "limits": vars(self._limits),
+            "limits": vars(LIMITS),
             "path": [str(self._folder), *packages],
             "workdir": str(workdir),
         }
@@ -446,9 +442,9 @@ class _ProcessHandle:
         return Exit(max(code, 0), max(-code, 0))
 
 
-def spawner(level: Level, imports: tuple[str, ...], *, limits: Limits = LIMITS) -> Spawner:
+def spawner(level: Level, imports: tuple[str, ...]) -> Spawner:
     """A spawner for submissions that may import ``imports``."""
     view = view_for(imports)
     if level is Level.L1:
-        return ProcessSpawner(view, imports, limits)
-    return ZygoteSpawner(level, view, imports, limits)
+        return ProcessSpawner(view, imports)
+    return ZygoteSpawner(level, view, imports)

@@ -24,7 +24,7 @@ from course.isolation.session import LOOP
 from course.printable import ended, one_line
 from course.scoring.elsewhere import absent, cure, lacking, newer, numpys
 from course.scoring.explain.story import Diagnosis
-from course.scoring.verdict import Finding, Places
+from course.scoring.verdict import NO_VALUE, Finding, Places, Status
 
 #: A comparison along time: the times, the student's values, the right ones, quantity and units.
 Comparison = tuple[Any, Any, Any, str, str]
@@ -123,7 +123,10 @@ def finding_of(failure: StudentFailure, *, shown: bool = False) -> Finding:
             help="Keep the names the stub gave: define it at the top level of the file, spelled exactly so.",
             diagnosis="MISSING_FUNCTION",
         )
-    message, advice, code = _OTHER[failure.kind]
+    if failure.kind == "protocol":
+        return Finding(_NOT_PLAIN, _AS_ASKED, "NOT_PLAIN_DATA", actual=failure.message or None)
+    code, _, advice = NO_VALUE[Status(failure.kind)]
+    message = _ENDED[failure.kind]
     if failure.kind == "timeout" and failure.line:
         message += f" It was still {_at(failure)}."
     return Finding(message=message, help=advice, diagnosis=code, actual=failure.message or None)
@@ -221,29 +224,16 @@ def _at_a_terminal(failure: StudentFailure) -> str:
     return ""
 
 
-_OTHER: dict[str, tuple[str, str, str]] = {
-    "timeout": (
-        "Your code had not answered when the time was up.",
-        "Look for a loop whose condition never becomes false, or one that takes far more steps than asked.",
-        "TIMEOUT",
-    ),
-    "memory": (
-        "Your code asked for more memory than a check may use.",
-        "Look for a list or array that grows in a loop without end.",
-        "OUT_OF_MEMORY",
-    ),
-    "crash": (
-        "The Python process that ran your code ended.",
-        "Look for exit(), os._exit(), or a recursion without an end.",
-        "CRASHED",
-    ),
-    "protocol": (
-        "Your function returned, or passed on, something that is not plain data, or far too much of it.",
-        "Return what the README asks for as plain data: real numbers, texts, None, or lists, tuples, dicts "
-        "and arrays of them, and no generator.",
-        "NOT_PLAIN_DATA",
-    ),
+_ENDED = {
+    "timeout": "Your code had not answered when the time was up.",
+    "memory": "Your code asked for more memory than a check may use.",
+    "crash": "The Python process that ran your code ended.",
 }
+_NOT_PLAIN = "Your function returned, or passed on, something that is not plain data, or far too much of it."
+_AS_ASKED = (
+    "Return what the README asks for as plain data: real numbers, texts, None, or lists, tuples, dicts "
+    "and arrays of them, and no generator."
+)
 
 
 # ---

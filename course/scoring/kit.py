@@ -19,7 +19,7 @@ import functools
 import math
 from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, NoReturn, Protocol, TypeVar, cast
+from typing import Any, NoReturn, TypeVar, cast
 
 import msgspec
 import numpy as np
@@ -518,7 +518,7 @@ def expect_untouched(
         names: their names; arguments without a name (None) are not compared.
     """
     for name, given, after in zip(names, before, inspected.args_after, strict=True):
-        if name and not _same(given, after):
+        if name and not np.array_equal(given, after):
             fail(
                 f"The call changed its argument `{name}` in place.",
                 expected={name: given},
@@ -530,10 +530,6 @@ def expect_untouched(
         fail("What the call returned is the caller's own array, not a new one.", diagnose=shared, **finding)
 
 
-def _same(given: Any, after: Any) -> bool:
-    return bool(np.array_equal(np.asarray(given), np.asarray(after)))
-
-
 # ---
 # Callbacks that count, black boxes to experiment with, and a step function run along a known problem.
 
@@ -541,7 +537,10 @@ Array = NDArray[np.float64]
 
 
 class Counted:
-    """A callback that remembers how it was called.
+    """A callback that counts its calls; hand it to the student's code and read ``.count`` after.
+
+    The function runs on this side: the student's code sees neither it nor the count. ``fn`` must accept any
+    plain arguments; for an acceleration, use ``acceleration`` instead.
 
     Attributes:
         calls: positional arguments of each call, arrays copied.
@@ -583,13 +582,7 @@ class Counted:
         return value
 
 
-def counted(fn: Callable[..., Any]) -> Counted:
-    """``fn`` as a callback that counts; hand it to the student's code and read ``.count`` after.
-
-    The function runs on this side: the student's code sees neither it nor the count. ``fn`` must accept any
-    plain arguments; for an acceleration, use ``acceleration`` instead.
-    """
-    return Counted(fn)
+counted = Counted
 
 
 def acceleration(fn: Callable[[float, Array, Array], ArrayLike], d: int) -> Counted:
@@ -654,16 +647,6 @@ def first_divergence(
 CHECKPOINTS = 4
 
 
-class Marches(Protocol):
-    """The part of a submission that is needed here."""
-
-    def march_each(
-        self, step_name: str, marches: Sequence[tuple[Any, Any, Any, float, int, float]]
-    ) -> list[tuple[Array, Array, Array]]:
-        """Times (n + 1,), positions and velocities (n + 1, d) of n steps of the student's, for each march."""
-        ...
-
-
 @dataclass(frozen=True, slots=True)
 class Problem:
     """A system, where it starts, and for how long.
@@ -697,7 +680,7 @@ class Problem:
 
 
 def march_errors(
-    submission: Marches, step: str, problem: Problem, counts: Sequence[int]
+    submission: Any, step: str, problem: Problem, counts: Sequence[int]
 ) -> tuple[list[float], Array]:
     """How far a student's step strays from the true motion, for several step sizes.
 
@@ -712,7 +695,7 @@ def march_errors(
 
 
 def march_all_errors(
-    submission: Marches, step: str, problems: Sequence[Problem], counts: Sequence[int]
+    submission: Any, step: str, problems: Sequence[Problem], counts: Sequence[int]
 ) -> list[tuple[list[float], Array]]:
     """``march_errors`` on each of several problems, in one round trip."""
     marches = iter(submission.march_each(step, [problem.run(n) for problem in problems for n in counts]))

@@ -246,20 +246,20 @@ def plain(value: Any, depth: int = 3) -> Any:  # noqa: PLR0911 - one return per 
 
 def kind_of(value: Any) -> str:
     """The kind of a value and anything unusual in it, in words that reveal nothing of its content."""
-    odd = sorted({name for item in _leaves(value) if (name := _oddity(item))})
+    odd = sorted({name for item in leaves(value) if (name := _oddity(item))})
     within = f" with {' and '.join(odd)} in it" if odd else ""
     if isinstance(value, int | float | np.generic) and not isinstance(value, bool) and odd:
         return odd[0]
     return _kind(value) + ("" if value is None else within)
 
 
-def _leaves(value: Any, depth: int = 6) -> Iterator[Any]:
+def leaves(value: Any, depth: int = 6) -> Iterator[Any]:
     """Up to a few thousand of the plain values in it."""
     if isinstance(value, np.ndarray):
         value = value.ravel()[:4096].tolist()
     if isinstance(value, list | tuple | dict) and depth:
         for item in list(value.values() if isinstance(value, dict) else value)[:4096]:
-            yield from _leaves(item, depth - 1)
+            yield from leaves(item, depth - 1)
     else:
         yield value
 
@@ -319,7 +319,7 @@ def _refuse(value: Any, name: str, wanted: str, expected: str = "") -> NoReturn:
 
 def _advice(value: Any, wanted: str) -> str:
     """The advice for a value of the wrong kind."""
-    if any(isinstance(item, complex) for item in _leaves(value)):
+    if any(isinstance(item, complex) for item in leaves(value)):
         return "A fractional power of a negative number is complex in Python: test its sign before."
     if wanted == "a number" and isinstance(value, list | tuple | np.ndarray):
         return "Return one plain number: no brackets around it, and no array, not even of one element."

@@ -176,7 +176,7 @@ def for_student(result: CheckResult) -> CheckResult:
 
 
 #: What a student reads about a hidden check without a value, by its status: (diagnosis, message, advice).
-_NO_VALUE = {
+NO_VALUE = {
     Status.ERROR: (
         "RAISED",
         "`{}` raises an exception in a check whose details are not shown.",
@@ -217,9 +217,9 @@ def _unspoken(result: CheckResult) -> CheckResult:
             message=f"What `{result.task}` returns has not the form that was asked for.",
             help="Compare it with the README, for everything that it may be called with.",
         )
-    if result.status not in _NO_VALUE:
+    if result.status not in NO_VALUE:
         return result
-    diagnosis, message, advice = _NO_VALUE[result.status]
+    diagnosis, message, advice = NO_VALUE[result.status]
     return msgspec.structs.replace(
         result, diagnosis=diagnosis, message=message.format(result.task), help=advice
     )

@@ -29,7 +29,7 @@ from course.authoring.exercises.grading import (  # noqa: E402
     mistakes_of,
     solution_path,
 )
-from course.authoring.exercises.mutants import caught_by  # noqa: E402
+from course.authoring.exercises.proofs import caught_by  # noqa: E402
 from course.authoring.mistakes import Variant  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.scoring import kit  # noqa: E402

@@ -30,6 +30,7 @@ ARENA = ATTACKS / "arena"
 MODULE = "arena.py"
 MODEL = (ARENA / "solutions" / "arena" / MODULE).read_bytes()
 WRONG = (ATTACKS / "wrong_arena.py").read_bytes()
+FRAMES = (ARENA / "frames.py").read_bytes()
 #: Honest mistakes, so that the honest scores are not all alike.
 MISTAKES = (
     b"",
@@ -97,7 +98,8 @@ def make_class(folder: Path, size: int, *, hostile: bool) -> None:
             name, source = f"{number:04}-honest", MODEL + MISTAKES[number % len(MISTAKES)]
         else:
             path = attacks[number // 5 * most // (size // 5) % len(attacks)]
-            name, source = f"{number:04}-{path.stem}", WRONG + b"\n\n" + path.read_bytes()
+            attack = path.read_bytes().replace(b"from frames import *\n", FRAMES)
+            name, source = f"{number:04}-{path.stem}", WRONG + b"\n\n" + attack
         if hostile or number % 5 < 4:
             place = folder / name
             place.mkdir(parents=True)

@@ -22,6 +22,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from course.authoring.exercises.files import digest_of
 from course.authoring.exercises.grading import (
     LocalSubmission,
     accepted_files,
@@ -32,7 +33,7 @@ from course.authoring.exercises.grading import (
     solution_path,
     solutions_folder,
 )
-from course.authoring.exercises.mutants import (
+from course.authoring.exercises.proofs import (
     Record,
     Reported,
     read_record,
@@ -88,7 +89,10 @@ def build(catalog: Catalog, exercise: Exercise) -> Path | None:
     if not mistakes_of(catalog, exercise).words:
         return None
     folder = exercise.readme_path.parent
-    made = table_of(catalog, exercise)
+    path = questions_path(exercise.id)
+    with blamed(path):
+        questions = questions_of(exercise.id) if path.is_file() else None
+        made = _table_of(catalog, exercise, questions)
     with contextlib.suppress(ContentError):
         if _alike(msgspec.to_builtins(read_table(folder)), msgspec.to_builtins(made)):
             return None
@@ -141,18 +145,7 @@ def _digest(catalog: Catalog, exercise: Exercise, mistakes: bytes) -> str:
         solution_path(catalog, exercise),
         *accepted_files(catalog, exercise),
     ]
-    made_from = hashlib.sha256(mistakes)
-    for path in files:
-        if path.is_file():
-            made_from.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
-    return made_from.hexdigest()[:16]
-
-
-def table_of(catalog: Catalog, exercise: Exercise) -> Table:
-    path = questions_path(exercise.id)
-    with blamed(path):
-        questions = questions_of(exercise.id) if path.is_file() else None
-        return _table_of(catalog, exercise, questions)
+    return digest_of(files, mistakes)
 
 
 def _table_of(catalog: Catalog, exercise: Exercise, questions: ModuleType | None) -> Table:
@@ -436,13 +429,12 @@ def _tried(
         session.source = source
         if scope == "alone" and table is not None and (questions := questions_of(exercise.id)):
             session._explainer = Explainer(msgspec.structs.replace(table, rows={}), questions)
-        every = session._checks.in_order()
         for task, codes, function in chosen:
             session.program = task, function
-            session._checks.in_order = lambda task=task: [c for c in every if c.task == task]  # type: ignore[method-assign, misc]
+            own_checks = [check.id for check in session.checks if check.task == task]
             with warnings.catch_warnings():  # a program only warns, whatever this process makes of warnings
                 warnings.simplefilter("ignore")
-                verdict = session.grade(Submission({exercise.module: source.encode()}))
+                verdict = session.grade(Submission({exercise.module: source.encode()}), only=own_checks)
             said = [check.diagnosis or "" for check in verdict.checks if check.status is not Status.PASS]
             yield task, codes, _main(said, codes, own.kind) if said else "survives"
 
@@ -637,13 +629,7 @@ def _audit_codes(
 
 def _literals(catalog: Catalog, exercise: Exercise) -> Iterator[str]:
     """Codes that stand as text in the checks of an exercise and their helpers."""
-    folders: list[Path] = [exercise.readme_path.parent, exercise_graders(catalog, exercise)]
-    for folder in folders:
+    for folder in (exercise.readme_path.parent, exercise_graders(catalog, exercise)):
         for path in sorted(folder.rglob("*.py")):
-            for node in ast.walk(parse(path)):
-                if (
-                    isinstance(node, ast.Constant)
-                    and isinstance(node.value, str)
-                    and CODE.fullmatch(node.value)
-                ):
-                    yield node.value
+            texts = (node.value for node in ast.walk(parse(path)) if isinstance(node, ast.Constant))
+            yield from (text for text in texts if isinstance(text, str) and CODE.fullmatch(text))

@@ -23,7 +23,6 @@ from course.authoring.exercises.grading import (
     exercise_graders,
     mistakes_of,
     solution_path,
-    solutions_folder,
 )
 from course.authoring.exercises.source import (
     DECIMAL,
@@ -92,10 +91,8 @@ def _with_computed_marks(
         return checks
     known = declared_checks(exercise, catalog)
     return tuple(
-        replace(
-            check, task=known[check.id].task, points=known[check.id].points, requires=known[check.id].requires
-        )
-        if check.id in known
+        replace(check, task=found.task, points=found.points, requires=found.requires)
+        if (found := known.get(check.id))
         else check
         for check in checks
     )
@@ -142,19 +139,18 @@ def _needed_for(ids: Iterable[str], known: dict[str, CheckSource]) -> set[str]:
     return needed
 
 
+#: What to do about a value that a hidden check shows.
+IN_WORDS = "Say it in words; put values into input, expected and actual, which are not shown."
+
+
 def _audit_words(exercise: Exercise, graders: Path, findings: Findings) -> None:
     """The words of hidden checks contain no decimal number, unless the student already has it in a file."""
     public = public_numbers(exercise)
     for path in sorted(graders.glob("*.py")):
         for line, number in quoted_numbers(parse(path)):
             if number not in public:
-                findings.add(
-                    path,
-                    line,
-                    "leak",
-                    f"a text that a hidden check shows contains the number {number}.",
-                    "Say it in words; put values into input, expected and actual, which are not shown.",
-                )
+                problem = f"a text that a hidden check shows contains the number {number}."
+                findings.add(path, line, "leak", problem, IN_WORDS)
 
 
 def public_numbers(exercise: Exercise) -> frozenset[str]:
@@ -293,9 +289,15 @@ def _decides(catalog: Catalog, exercise: Exercise) -> str:
     files = {*exercise.readme_path.parent.rglob("*.py"), *solution.parent.glob("*.py")}
     files -= {mistakes_path(solution.parent)}
     files |= {*accepted_files(catalog, exercise)}
-    made_from = hashlib.sha256()
-    for path in sorted(files - {exercise.stub_path}):
-        made_from.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest_of(sorted(files - {exercise.stub_path}))
+
+
+def digest_of(paths: Iterable[Path], begin: bytes = b"") -> str:
+    """A digest of files, of those that are there."""
+    made_from = hashlib.sha256(begin)
+    for path in paths:
+        if path.is_file():
+            made_from.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
     return made_from.hexdigest()[:16]
 
 
@@ -342,18 +344,11 @@ LEAST_HINTS_OF_WARM_UP = 2
 _TEXT_SUFFIXES = {".py", ".toml", ".md"}
 
 
-def exercise_folders(catalog: Catalog, exercise_id: str) -> tuple[Path, Path, Path]:
-    """The folders an exercise is spread over: the student's part, solutions, hidden graders."""
-    solutions, graders = catalog.content.instructors()
-    place = catalog.content.place_of(exercise_id)
-    return catalog.content.exercises / place, solutions / place, graders / place
-
-
 def find_blanks(catalog: Catalog, exercise_id: str, findings: Findings) -> bool:
-    """Report each blank that is left; True if there is one."""
-    found = False
-    for folder in exercise_folders(catalog, exercise_id):
-        for path in sorted(folder.rglob("*")):
+    """Report each blank that is left in the folders of an exercise; True if there is one."""
+    found, place = False, catalog.content.place_of(exercise_id)
+    for folder in (catalog.content.exercises, *catalog.content.instructors()):
+        for path in sorted((folder / place).rglob("*")):
             if path.suffix in _TEXT_SUFFIXES and path.is_file():
                 found = blanks_in(path, findings) or found
     return found
@@ -476,71 +471,44 @@ def _audit_hints(catalog: Catalog, exercise: Exercise, findings: Findings) -> No
 
 def _audit_code(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
     """Stub, solution and README have the same functions."""
-    stub = parse(exercise.stub_path)
-    model = parse(solution_path(catalog, exercise))
+    solution = solution_path(catalog, exercise)
+    stub, model = parse(exercise.stub_path), parse(solution)
     theirs, ours = signatures(stub), signatures(model)
     readme = " ".join(read_text(exercise.readme_path).split())
     for task in exercise.task:
         if task.id not in theirs:
-            findings.add(
-                exercise.stub_path,
-                None,
-                "stub",
-                f"the stub has no function {task.id}, and a task is called so.",
-                "Add the function, or correct the id of the task.",
-            )
+            problem = f"the stub has no function {task.id}, and a task is called so."
+            fix = "Add the function, or correct the id of the task."
+            findings.add(exercise.stub_path, None, "stub", problem, fix)
     for node in stub.body:
         if isinstance(node, ast.FunctionDef) and not ast.get_docstring(node):
-            findings.add(
-                exercise.stub_path,
-                node.lineno,
-                "stub",
-                f"{node.name} has no docstring.",
-                "Say there what it gives, with shapes and units of arguments and result.",
-            )
+            fix = "Say there what it gives, with shapes and units of arguments and result."
+            findings.add(exercise.stub_path, node.lineno, "stub", f"{node.name} has no docstring.", fix)
     for name, signature in theirs.items():
         if name not in ours:
-            findings.add(
-                solution_path(catalog, exercise),
-                None,
-                "signature",
-                f"the model solution has no function {name}.",
-                f"Define {signature.text}.",
-            )
+            problem = f"the model solution has no function {name}."
+            findings.add(solution, None, "signature", problem, f"Define {signature.text}.")
         elif ours[name].text != signature.text:
-            findings.add(
-                solution_path(catalog, exercise),
-                ours[name].line,
-                "signature",
-                f"the stub has {signature.text}, the solution {ours[name].text}.",
-                "Make the two the same.",
-            )
+            problem = f"the stub has {signature.text}, the solution {ours[name].text}."
+            findings.add(solution, ours[name].line, "signature", problem, "Make the two the same.")
         if signature.text not in readme and signature.annotated not in readme:
-            findings.add(
-                exercise.readme_path,
-                None,
-                "readme",
-                f"the README does not show the signature {signature.text}.",
-                "Write it there as it stands in the stub, with shapes and units.",
-            )
+            problem = f"the README does not show the signature {signature.text}."
+            fix = "Write it there as it stands in the stub, with shapes and units."
+            findings.add(exercise.readme_path, None, "readme", problem, fix)
     _audit_imports(exercise, exercise.stub_path, stub, findings)
-    _audit_imports(exercise, solution_path(catalog, exercise), model, findings)
+    _audit_imports(exercise, solution, model, findings)
     for path in accepted_files(catalog, exercise):
         _audit_imports(exercise, path, parse(path), findings)
-    mistakes, file = mistakes_of(catalog, exercise), mistakes_path(solutions_folder(catalog, exercise))
-    source = read_text(solution_path(catalog, exercise))
+    mistakes, file = mistakes_of(catalog, exercise), mistakes_path(solution.parent)
     for variant in (*mistakes.wrong, *mistakes.right):
         with contextlib.suppress(ContentError):  # told where it is planned
-            tree = ast.parse(variant.composed(source, file))
-            for _, name in foreign_imports(tree, exercise.imports):
-                _foreign(file, variant.line, name, findings)
+            tree = ast.parse(variant.composed(read_text(solution), file))
+            _audit_imports(exercise, file, tree, findings, variant.line)
 
 
-def _audit_imports(exercise: Exercise, path: Path, tree: ast.Module, findings: Findings) -> None:
-    for line, name in foreign_imports(tree, exercise.imports):
-        _foreign(path, line, name, findings)
-
-
-def _foreign(path: Path, line: int, name: str, findings: Findings) -> None:
+def _audit_imports(
+    exercise: Exercise, path: Path, tree: ast.Module, findings: Findings, at: int | None = None
+) -> None:
     fix = "Use the standard library and what `imports` in exercise.toml lists."
-    findings.add(path, line, "imports", f"{name} may not be imported here.", fix)
+    for line, name in foreign_imports(tree, exercise.imports):
+        findings.add(path, at or line, "imports", f"{name} may not be imported here.", fix)

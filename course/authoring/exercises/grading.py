@@ -28,6 +28,7 @@ from course.grading.running.batch import Graders
 from course.grading.running.snapshot import Snapshot, frozen
 from course.isolation.failures import StudentFailure
 from course.isolation.inside import loops
+from course.isolation.inside.worker import shares_memory
 from course.physics.systems import SYSTEMS
 from course.scoring import kit
 from course.scoring.checks.collected import Check, CollectedChecks
@@ -278,11 +279,8 @@ def _changed(source: str, model: str) -> frozenset[str]:
 
 def declared_checks(exercise: Exercise, catalog: Catalog) -> dict[str, Check]:
     """The checks as pytest collects them, by id: markers whose values are computed have them here."""
-    collected = CollectedChecks(check_files(exercise, catalog, "full"))
-    try:
+    with contextlib.closing(CollectedChecks(check_files(exercise, catalog, "full"))) as collected:
         return {check.id: check for check in collected.checks}
-    finally:
-        collected.close()
 
 
 # ---
@@ -392,7 +390,7 @@ class LocalSubmission:
             None if callable(arg) or isinstance(arg, np.random.Generator | loops.Methods) else _plain(arg)
             for arg in given
         ]
-        return Inspected(_plain(value), after, _shares(value, given))
+        return Inspected(_plain(value), after, shares_memory(value, given))
 
     def _loop(self, loop: Any, escaped: list[BaseException]) -> Any:
         """The value of student code; a callback that refused its arguments is the finding."""
@@ -474,18 +472,6 @@ def _plain(value: Any) -> Any:
     if callable(value):
         return value
     raise StudentFailure("protocol", message=f"a value of type {type(value).__name__}")
-
-
-def _arrays(value: Any) -> list[Any]:
-    if isinstance(value, np.ndarray):
-        return [value]
-    if isinstance(value, list | tuple):
-        return [array for item in value for array in _arrays(item)]
-    return []
-
-
-def _shares(value: Any, args: Any) -> bool:
-    return any(np.may_share_memory(a, b) for a in _arrays(value) for b in _arrays(args))
 
 
 def write_pack(catalog: Catalog, exercise_ids: Sequence[str], output: Path) -> dict[str, tuple[str, ...]]:

@@ -1,31 +1,42 @@
 """The proofs that need grading: the stub fails, the solution and its variants pass, each mutant is caught.
 
 Every submission is graded with all checks, as in a grading run. A wrong verdict becomes a problem at the
-file, and where possible the line, that an author would open first.
+file, and where possible the line, that an author would open first. A mutant is caught as on record: by that
+check, under its own name, and only there.
 """
 
-import re
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
-from functools import partial
-from pathlib import Path
-from typing import Any
+from __future__ import annotations
 
-from course.authoring.exercises.files import public_numbers
-from course.authoring.exercises.grading import accepted_files, compose, mistakes_of, solution_path
-from course.authoring.exercises.mutants import judge
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+
+from course.authoring.exercises.files import IN_WORDS, public_numbers
+from course.authoring.exercises.grading import (
+    accepted_files,
+    compose,
+    grade_sources,
+    mistakes_of,
+    solution_path,
+    solutions_folder,
+)
 from course.authoring.exercises.source import DECIMAL, CheckSource, parse, signatures
 from course.authoring.mistakes import Mistakes, Variant, mistakes_path
-from course.authoring.report import AuditProblem, Findings
+from course.authoring.report import AuditProblem, Findings, Progress
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise, fields_of
 from course.catalog.reading import read_document, read_text
 from course.errors import ContentError
 from course.handed_in.attempts import numbers_of
 from course.progress.history import NO_MISTAKE
+from course.progress.workspace import write_atomically
 from course.scoring.failures import ON_THE_MODEL
 from course.scoring.graders import LEFT_OUT
 from course.scoring.judging.outcomes import NOT_JUDGED
+from course.scoring.values import leaves
 from course.scoring.verdict import OURS, CheckResult, Problem, Status, Verdict, Visibility
 
 _INTEGER = re.compile(r"(?<![\w.])-?\d+(?![\w.]*\w)")
@@ -66,21 +77,27 @@ def plan(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[Proo
         Proof("solution", solution, model.encode(), solution.name),
     ]
     mistakes, accepted = mistakes_of(catalog, exercise), accepted_files(catalog, exercise)
-    least, least_mutants = least_proofs(exercise)
+    functions = len(exercise.task)
+    least, least_mutants = functions + 1, functions * MUTANTS_EACH
+    if exercise.is_warm_up:
+        least, least_mutants = LEAST_OF_WARM_UP
     if (right := len(accepted) + len(mistakes.right)) < least:
         message = f"accepted variants: {right}, and an exercise of this size has at least {least}."
         fix = "Add correct but unusual code: checks that refuse it are too narrow."
         findings.add(solution.parent / "accepted", None, "accepted", message, fix)
     for path in accepted:
-        _add(proofs, findings, partial(_accepted, solution, path))
+        with findings.refusals():
+            proofs.append(Proof("accepted", path, compose(solution, path), path.name))
     for variant in mistakes.right:
-        _add(proofs, findings, partial(_proof, "accepted", file, model, variant))
+        with findings.refusals():
+            proofs.append(_proof("accepted", file, model, variant))
     if not mistakes.wrong:
         message = "it has no wrong program, so nothing shows that the checks catch anything."
         findings.add(file, None, "mutants", message, "Add the mistakes that students make.")
         return tuple(proofs)
     for variant in mistakes.wrong:
-        _add(proofs, findings, partial(_proof, "mutant", file, model, variant))
+        with findings.refusals():
+            proofs.append(_proof("mutant", file, model, variant))
     _audit_mutants(exercise, mistakes, file, findings)
     if len(mistakes.wrong) < least_mutants:
         count = len(mistakes.wrong)
@@ -90,14 +107,6 @@ def plan(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[Proo
         message = "most tasks share their diagnoses, which tell no mistakes apart then."
         findings.add(file, None, "mutants", message, "Give each kind of mistake a code of its own.")
     return tuple(proofs)
-
-
-def least_proofs(exercise: Exercise) -> tuple[int, int]:
-    """How many accepted variants and how many mutants an exercise of this size has at least."""
-    functions = len(exercise.task)
-    if exercise.is_warm_up:
-        return LEAST_OF_WARM_UP
-    return functions + 1, functions * MUTANTS_EACH
 
 
 def _audit_mutants(exercise: Exercise, mistakes: Mistakes, file: Path, findings: Findings) -> None:
@@ -115,20 +124,9 @@ def _audit_mutants(exercise: Exercise, mistakes: Mistakes, file: Path, findings:
         findings.add(file, None, "mutants", message, "Add one for each mistake that students make.")
 
 
-def _accepted(solution: Path, path: Path) -> Proof:
-    return Proof("accepted", path, compose(solution, path), path.name)
-
-
 def _proof(role: str, file: Path, model: str, variant: Variant) -> Proof:
     source = variant.composed(model, file).encode()
     return Proof(role, file, source, variant.name, variant if role == "mutant" else None, variant.line)
-
-
-def _add(proofs: list[Proof], findings: Findings, made: Callable[[], Proof]) -> None:
-    try:
-        proofs.append(made())
-    except ContentError as error:
-        findings.add_error(error)
 
 
 class Prover:
@@ -187,13 +185,10 @@ class Prover:
             for number, sentences in task.yours.items():
                 named = frozenset().union(*map(fields_of, sentences))
                 for field in sorted(named - self._fields.get(task.id, set())):
-                    self._findings.add(
-                        document.path,
-                        document.lines.line(("task", index, "yours", number)),
-                        "hints",
-                        f"no check of {task.id} that a mutant fails has the field {{{field}}}.",
-                        "A field is an input that a public check names, expected, got, off, ratio or at.",
-                    )
+                    line = document.lines.line(("task", index, "yours", number))
+                    problem = f"no check of {task.id} that a mutant fails has the field {{{field}}}."
+                    fix = "A field is an input that a public check names, expected, got, off, ratio or at."
+                    self._findings.add(document.path, line, "hints", problem, fix)
 
     def _is_our_fault(self, proof: Proof, verdict: Verdict) -> bool:
         """Report checks that broke instead of checking, each once, with the line that raised."""
@@ -237,22 +232,14 @@ class Prover:
     def _judge_stub(self, proof: Proof, verdict: Verdict) -> None:
         for check in verdict.checks:
             if check.status is Status.PASS:
-                self._findings.add(
-                    *self._place(check.id, proof.path),
-                    "stub",
-                    f"the untouched stub passes check {check.id} of task {check.task}.",
-                    "Let the check fail on code that does nothing.",
-                )
+                problem = f"the untouched stub passes check {check.id} of task {check.task}."
+                fix = "Let the check fail on code that does nothing."
+                self._findings.add(*self._place(check.id, proof.path), "stub", problem, fix)
         self._judge_handout(proof, verdict)
         for task in self.exercise.task:
             if not any(c.task == task.id and c.status is not Status.PASS for c in verdict.checks):
-                self._findings.add(
-                    proof.path,
-                    None,
-                    "stub",
-                    f"no check of task {task.id} fails on the stub.",
-                    "Give the task a check that does.",
-                )
+                problem = f"no check of task {task.id} fails on the stub."
+                self._findings.add(proof.path, None, "stub", problem, "Give the task a check that does.")
 
     def _judge_handout(self, proof: Proof, verdict: Verdict) -> None:
         """What public checks find in the stub is unwritten, or declared as its fault."""
@@ -263,13 +250,11 @@ class Prover:
                 if check.task == task.id and check.visibility is Visibility.PUBLIC and check.diagnosis
             }
             for code in sorted(told - {task.fault, *NO_MISTAKE}):
-                self._findings.add(
-                    proof.path,
-                    self._line_of(proof.path, task.id),
-                    "stub",
-                    f"the untouched stub is told {code}, and `course progress` counts that as the student's.",
-                    f'Raise NotImplementedError in {task.id}, or give its task `fault = "{code}"`.',
+                told_as = (
+                    f"the untouched stub is told {code}, and `course progress` counts that as the student's."
                 )
+                fix = f'Raise NotImplementedError in {task.id}, or give its task `fault = "{code}"`.'
+                self._findings.add(proof.path, self._line_of(proof.path, task.id), "stub", told_as, fix)
             if task.fault and task.fault not in told:
                 path = proof.path.with_name("exercise.toml")
                 line = read_document(path, Exercise).lines.line(("task", index, "fault"))
@@ -280,24 +265,21 @@ class Prover:
         """Full marks, and the checks that ran are the ones the files declare."""
         for check in verdict.checks:
             if check.status is not Status.PASS:
-                self._findings.add(
-                    proof.path,
-                    proof.line or self._line_of(proof.path, check.task),
-                    proof.role,
-                    f"check {check.id} ends with {check.status}: {check.message or check.blocked_by}"
-                    f" (expected {check.expected}, got {check.actual}).",
-                    "Correct the code, or the check if the code is right.",
-                )
+                line = proof.line or self._line_of(proof.path, check.task)
+                problem = f"check {check.id} ends with {check.status}: {check.message or check.blocked_by}"
+                problem += f" (expected {check.expected}, got {check.actual})."
+                fix = "Correct the code, or the check if the code is right."
+                self._findings.add(proof.path, line, proof.role, problem, fix)
         ran = {check.id for check in verdict.checks}
         for check_id in sorted(ran ^ set(self._checks)):
-            self._findings.add(
-                *self._place(check_id, self.exercise.checks_path),
-                "check",
-                f"check {check_id} ran, but no plain function declares it."
+            odd = (
+                "ran, but no plain function declares it"
                 if check_id in ran
-                else f"check {check_id} is declared, but did not run.",
-                "Write each check as one top-level function whose name starts with test_.",
+                else "is declared, but did not run"
             )
+            place = self._place(check_id, self.exercise.checks_path)
+            fix = "Write each check as one top-level function whose name starts with test_."
+            self._findings.add(*place, "check", f"check {check_id} {odd}.", fix)
         if not verdict.checks or verdict.score < verdict.max_score or verdict.max_score <= 0:
             message = f"scores {verdict.score:g} of {verdict.max_score:g} points."
             self._findings.add(proof.path, None, proof.role, message, "It must score full marks.")
@@ -307,12 +289,9 @@ class Prover:
         for check in verdict.checks:
             if check.visibility is Visibility.HIDDEN and check.status is Status.FAIL:
                 for number in _leaks(check, self._public):
-                    self._findings.add(
-                        *self._place(check.id, self.exercise.checks_path),
-                        "leak",
-                        f"hidden check {check.id} shows the number {number} in its words.",
-                        "Say it in words; put values into input, expected and actual, which are not shown.",
-                    )
+                    place = self._place(check.id, self.exercise.checks_path)
+                    problem = f"hidden check {check.id} shows the number {number} in its words."
+                    self._findings.add(*place, "leak", problem, IN_WORDS)
 
     def _place(self, check_id: str, otherwise: Path) -> tuple[Path, int | None]:
         check = self._checks.get(check_id)
@@ -355,18 +334,222 @@ def _leaks(check: CheckResult, public: frozenset[str]) -> Iterator[str]:
     for match in DECIMAL.finditer(words):
         if match[0] not in public:
             yield match[0]
-    values = set(_numbers([check.input, check.expected, check.actual]))
+    numbers = (
+        one for one in leaves([check.input, check.expected, check.actual]) if type(one) in {int, float}
+    )
+    values = set(map(float, numbers))
     for match in _INTEGER.finditer(words):
         if abs(int(match[0])) >= _TELLING and float(match[0]) in values:
             yield match[0]
 
 
-def _numbers(value: Any) -> Iterator[float]:
-    if isinstance(value, int | float) and not isinstance(value, bool):
-        yield float(value)
-    elif isinstance(value, dict):
-        for item in value.values():
-            yield from _numbers(item)
-    elif isinstance(value, list | tuple):
-        for item in value:
-            yield from _numbers(item)
+# ---
+# Whether each mutant is caught as on record.
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One unexpected result of a grading."""
+
+    message: str
+    fix: str
+
+
+@dataclass(frozen=True, slots=True)
+class MutantOutcome:
+    """The outcome for a mutant.
+
+    Attributes:
+        check: id of the one that is on record for catching it; "" where none is.
+        looks_like: the words of its mistake.
+        caught_by: ids of the checks that did not pass, in order.
+        by: id of the check that caught it, best under its own name; "" for none.
+        diagnosis: the diagnosis of that check, or of the first that caught it; None if it passed.
+        message, help: what the student would read there.
+        faults: empty if everything is as declared.
+    """
+
+    mutant: Variant
+    check: str
+    looks_like: str
+    caught_by: tuple[str, ...]
+    by: str
+    diagnosis: str | None
+    message: str
+    help: str
+    lost: float
+    faults: tuple[Fault, ...]
+
+
+def run_mutants(
+    catalog: Catalog,
+    exercise: Exercise,
+    *,
+    on_progress: Progress | None = None,
+) -> tuple[MutantOutcome, ...]:
+    """Grade every wrong program of an exercise and compare with what is on record."""
+    mistakes, solution = mistakes_of(catalog, exercise), solution_path(catalog, exercise)
+    model, file, caught = read_text(solution), mistakes_path(solution.parent), caught_by(catalog, exercise)
+    sources = [variant.composed(model, file).encode() for variant in mistakes.wrong]
+    verdicts: dict[int, Verdict] = {}
+    if on_progress:
+        on_progress(0, len(sources), "")
+    for index, verdict in grade_sources([(exercise, source) for source in sources]):
+        verdicts[index] = verdict
+        if on_progress:
+            on_progress(len(verdicts), len(sources), f"{exercise.id}: {mistakes.wrong[index].name}")
+    return tuple(
+        outcome_of(variant, caught.get(variant.name, ""), verdicts[index], mistakes)
+        for index, variant in enumerate(mistakes.wrong)
+    )
+
+
+def outcome_of(mutant: Variant, check: str, verdict: Verdict, mistakes: Mistakes) -> MutantOutcome:
+    """A wrong program and its verdict, compared."""
+    named = _result(verdict, check) if check else None
+    if named is None or named.status is Status.PASS:
+        named = _first(mutant, verdict)
+    caught = named is not None and named.status is not Status.PASS
+    words = mistakes.words.get(mutant.code)
+    return MutantOutcome(
+        mutant=mutant,
+        check=check,
+        looks_like=words.looks_like if words else "",
+        caught_by=tuple(check.id for check in verdict.checks if check.status is not Status.PASS),
+        by=named.id if named and caught else "",
+        diagnosis=named.diagnosis if named and caught else None,
+        message=named.message if named and caught else "",
+        help=named.help if named and caught else "",
+        lost=verdict.max_score - verdict.score,
+        faults=judge(mutant, check, verdict),
+    )
+
+
+def judge(mutant: Variant, check: str, verdict: Verdict) -> tuple[Fault, ...]:
+    """Everything that differs from the program's entry; empty if nothing does.
+
+    Args:
+        check: id of the one that is on record for catching it; "" for any, as in a warm-up, which has few.
+    """
+    if verdict.state != "graded":
+        why = verdict.error.message if verdict.error else verdict.state
+        return (Fault(f"could not be graded: {why}", "A mutant is wrong code that runs; correct it."),)
+    failed = [check for check in verdict.checks if check.status is not Status.PASS]
+    if not failed:
+        return (Fault("survives: every check passes.", "Sharpen a check, or take it out."),)
+    faults = [*_judge_named(mutant, check, _result(verdict, check) if check else _first(mutant, verdict))]
+    faults += [
+        Fault(
+            f"fails check {check.id} of task {check.task}, and should break {mutant.task} only"
+            f" ({check.status}: {check.message or check.blocked_by}).",
+            "Let each check call only its own task's function, or narrow the mutant.",
+        )
+        for check in failed
+        if check.task != mutant.task
+    ]
+    faults += [
+        Fault(
+            f"breaks the diagnosis of check {check.id}: {check.traceback.removeprefix(OURS)}.",
+            "A probe gets whatever a wrong program returns; let it look before it computes.",
+        )
+        for check in failed
+        if check.traceback and check.traceback.startswith(OURS)
+    ]
+    if all(check.points == check.max_points for check in failed):
+        faults.append(Fault("loses no points.", "Give points to the checks that catch it."))
+    return tuple(faults)
+
+
+def _judge_named(mutant: Variant, check: str, named: CheckResult | None) -> tuple[Fault, ...]:
+    again = "Sharpen that check, or accept the new record with `course author build --accept`."
+    if named is None:
+        return (Fault(f"is caught by {check} on record, and there is no such check.", again),)
+    if named.task != mutant.task:
+        return (Fault(f"is caught by {named.id} on record, which belongs to task {named.task}.", again),)
+    if named.status is Status.PASS:
+        return (Fault(f"is not caught by {named.id}, as it is on record.", again),)
+    if (named.diagnosis or "") not in (mutant.code, *mutant.also):
+        said = f"is diagnosed as {named.diagnosis} by {named.id} ({named.status}), not as {mutant.code}."
+        return (Fault(said, "Teach the check's diagnosis to recognise it, or correct the entry."),)
+    return ()
+
+
+def _result(verdict: Verdict, check_id: str) -> CheckResult | None:
+    return next((check for check in verdict.checks if check.id == check_id), None)
+
+
+def _first(mutant: Variant, verdict: Verdict) -> CheckResult | None:
+    """The first check that caught it under its own name, else the first of its task that caught it."""
+    failed = [one for one in verdict.checks if one.status is not Status.PASS and one.task == mutant.task]
+    codes = (mutant.code, *mutant.also)
+    named = (one for one in failed if (one.diagnosis or "") in codes)
+    return next(named, failed[0] if failed else None)
+
+
+# ---
+# ``record.json`` beside the solution of an exercise: which check catches each wrong program, and what known
+# wrong programs are told. A warm-up has few checks, and no record.
+
+
+RECORD = "record.json"
+
+
+class Reported(msgspec.Struct, frozen=True, array_like=True):
+    """How often programs with these mistakes get this diagnosis.
+
+    Attributes:
+        codes: of the mistakes in them.
+        said: diagnosis, "" for none, "survives" where no check fails.
+    """
+
+    task: str
+    codes: tuple[str, ...]
+    said: str
+    count: int
+
+
+class Record(msgspec.Struct, frozen=True, kw_only=True):
+    """What came of the wrong programs of an exercise when it was last accepted.
+
+    Attributes:
+        made_from: digest of all that the rows follow from.
+        caught: the id of the check that catches each program, by its name.
+        rows: of all programs, at home ("public"), in a grading run ("full"), and in a run that knows
+            no wrong program, where only the checks' probes can name a mistake ("alone").
+    """
+
+    made_from: str = ""
+    caught: dict[str, str] = {}
+    rows: dict[str, tuple[Reported, ...]] = {}
+
+
+def record_path(catalog: Catalog, exercise: Exercise) -> Path:
+    return solutions_folder(catalog, exercise) / RECORD
+
+
+def read_record(catalog: Catalog, exercise: Exercise) -> Record | None:
+    """The record of an exercise; None if it has none.
+
+    Raises:
+        ContentError: it is damaged.
+    """
+    path = record_path(catalog, exercise)
+    try:
+        return msgspec.json.decode(path.read_bytes(), type=Record) if path.is_file() else None
+    except (OSError, msgspec.DecodeError) as error:
+        fix = "Delete the file, then run `course author build --accept`."
+        raise ContentError(path, None, f"it cannot be read: {error}.", help=fix) from None
+
+
+def write_record(catalog: Catalog, exercise: Exercise, record: Record) -> Path:
+    """Write the record beside the solution, one program or row a line."""
+    path = record_path(catalog, exercise)
+    text = msgspec.json.encode(record).decode().replace("],[", "],\n[").replace('","', '",\n"')
+    write_atomically(path, f"{text}\n".encode())
+    return path
+
+
+def caught_by(catalog: Catalog, exercise: Exercise) -> dict[str, str]:
+    """The id of the check that catches each wrong program, by its name; empty for a warm-up."""
+    record = read_record(catalog, exercise)
+    return record.caught if record else {}

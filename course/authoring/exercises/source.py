@@ -12,7 +12,6 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from course.authoring.exercises.grading import exercise_graders, solutions_folder
 from course.authoring.report import Findings
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
@@ -186,15 +185,8 @@ def audit_style(catalog: Catalog, exercises: Sequence[Exercise], findings: Findi
     root = catalog.content.root
     if not exercises or not (root / "pyproject.toml").is_file() or find_spec("ruff") is None:
         return
-    folders = [
-        folder
-        for exercise in exercises
-        for folder in (
-            exercise.readme_path.parent,
-            solutions_folder(catalog, exercise),
-            exercise_graders(catalog, exercise),
-        )
-    ]
+    above = (catalog.content.exercises, *catalog.content.instructors())
+    folders = [folder / exercise.place for exercise in exercises for folder in above]
 
     def said(*arguments: str) -> str:
         there = (str(folder) for folder in folders if folder.is_dir())  # a warm-up has no hidden checks

@@ -59,11 +59,6 @@ class LessonRun:
     values: tuple[ValueRun, ...]
 
 
-def run_cells(path: Path) -> list[CellRun]:
-    """Run the code cells of the lesson in a file, in order."""
-    return list(run_lesson(path).cells)
-
-
 def run_lesson(path: Path) -> LessonRun:
     """Run the code cells of the lesson in a file, then evaluate every number it quotes."""
     blocks = read_blocks(path)
@@ -89,7 +84,7 @@ def update_outputs(path: Path) -> int:
     """
     lines = path.read_text(encoding="utf-8").splitlines()
     changed = 0
-    for run in reversed(run_cells(path)):
+    for run in reversed(run_lesson(path).cells):
         if run.agrees or run.cell.hidden:
             continue
         changed += 1

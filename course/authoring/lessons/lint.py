@@ -114,30 +114,23 @@ def _missing_parts(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
 def _unpredicted(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
     """A figure or a run with no prediction before it in its section, and predictions left unanswered."""
     asked: b.Prediction | None = None
-    open_question = False
-    for block in blocks:
+    is_open = False
+    for block in (*blocks, None):
         match block:
-            case b.Heading(level=2) | b.Prediction() if open_question and asked:
-                yield Finding(
-                    asked.line, "a prediction that is not answered", "Add > **Answer.** … after it."
-                )
-            case _:
-                pass
-        match block:
-            case b.Heading(level=2):
-                asked, open_question = None, False
-            case b.Prediction():
-                asked, open_question = block, True
+            case None | b.Heading(level=2) | b.Prediction():
+                if asked and is_open:
+                    problem = "a prediction that is not answered"
+                    yield Finding(asked.line, problem, "Add > **Answer.** … after it.")
+                asked = block if isinstance(block, b.Prediction) else None
+                is_open = asked is not None
             case b.Callout(kind="answer"):
-                open_question = False
+                is_open = False
             case b.Figure(line=line) if asked is None:
                 yield Finding(line, "a figure without a prediction", "Put > **Predict.** … before it.")
             case b.CodeCell(line=line, output=str()) if asked is None:
                 yield Finding(line, "a run without a prediction", "Put > **Predict.** … before it.")
             case _:
                 pass
-    if open_question and asked:
-        yield Finding(asked.line, "a prediction that is not answered", "Add > **Answer.** … after it.")
 
 
 def _given_away(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
@@ -334,11 +327,8 @@ class LinkChecker:
             name, known = place.removeprefix("lesson:"), self._catalog.lesson_ids()
             destination = self._catalog.content.lessons / f"{name}.md"
         elif place.startswith("exercise:"):
-            catalog = self._catalog
-            name, known = (
-                place.removeprefix("exercise:"),
-                (*catalog.exercise_ids(), *catalog.warm_up_ids()),
-            )
+            catalog, name = self._catalog, place.removeprefix("exercise:")
+            known = (*catalog.exercise_ids(), *catalog.warm_up_ids())
             destination = catalog.content.exercise_folder(name) / "README.md"
         elif place:
             return self._problem_with_file(path, unquote(place), anchor)
@@ -350,16 +340,12 @@ class LinkChecker:
 
     def _problem_with_file(self, path: Path, place: str, anchor: str) -> tuple[str, str] | None:
         if ":" in place.split("/", maxsplit=1)[0]:
-            return (
-                "is of an unknown kind.",
-                "Use https://, lesson:ID, exercise:ID, or a file beside this one.",
-            )
+            fix = "Use https://, lesson:ID, exercise:ID, or a file beside this one."
+            return "is of an unknown kind.", fix
         destination = (path.parent / place).resolve()
         if not destination.is_relative_to(path.parent.resolve()):
-            return (
-                "leaves its folder, which breaks where the course is installed.",
-                "Link with lesson:ID or exercise:ID.",
-            )
+            problem = "leaves its folder, which breaks where the course is installed."
+            return problem, "Link with lesson:ID or exercise:ID."
         if not destination.exists():
             return "leads to no file.", "Correct the name, or add the file."
         if anchor and destination.suffix == ".md":
@@ -461,13 +447,9 @@ def audit_objective(catalog: Catalog, kind: str, name: str, findings: Findings) 
     if objectives and not any(name in getattr(objective, kind) for objective in objectives):
         syllabus = catalog.content.syllabus
         what = {"lessons": "lesson", "exercises": "exercise", "quiz": "question"}[kind]
-        findings.add(
-            syllabus,
-            LineMap(read_text(syllabus)).line(("objective",)),
-            "syllabus",
-            f"{what} {name} belongs to no objective, so `course` does not show it.",
-            f'Add "{name}" to `{kind}` of an [[objective]].',
-        )
+        problem = f"{what} {name} belongs to no objective, so `course` does not show it."
+        wrong = findings.about(syllabus, LineMap(read_text(syllabus)), "syllabus")
+        wrong(("objective",), problem, f'Add "{name}" to `{kind}` of an [[objective]].')
 
 
 def audit_listed(catalog: Catalog, lesson_id: str, findings: Findings) -> None:
@@ -541,11 +523,10 @@ def _audit_head(
     wrong = findings.about(path, LineMap(head.toml, first_line=2), "lesson")
     took = reading_minutes(blocks)
     if abs(lesson.minutes - took) > OFF_BY and catalog.syllabus.objective:
-        wrong(
-            ("minutes",),
-            f"`minutes` is {lesson.minutes}; by its words, predictions and code it takes about {took:.0f}.",
-            f"Write: minutes = {5 * max(round(took / 5), 1)}",
+        problem = (
+            f"`minutes` is {lesson.minutes}; by its words, predictions and code it takes about {took:.0f}."
         )
+        wrong(("minutes",), problem, f"Write: minutes = {5 * max(round(took / 5), 1)}")
     order = catalog.lesson_ids()
     place = order.index(lesson.id) if lesson.id in order else len(order)
     for index, earlier in enumerate(lesson.before):
@@ -563,22 +544,15 @@ def _audit_numbers(path: Path, findings: Findings) -> None:
     run = run_lesson(path)
     for cell in run.cells:
         if not cell.agrees:
-            findings.add(
-                path,
-                cell.cell.output_line or cell.cell.line,
-                "lesson",
-                f"the code cell prints {cell.printed!r}, and the lesson records {cell.cell.output!r}.",
-                "Put what it prints into the output block below the cell.",
-            )
+            line = cell.cell.output_line or cell.cell.line
+            problem = f"the code cell prints {cell.printed!r}, and the lesson records {cell.cell.output!r}."
+            fix = "Put what it prints into the output block below the cell."
+            findings.add(path, line, "lesson", problem, fix)
     for quoted in run.values:
         if not quoted.agrees:
-            findings.add(
-                path,
-                quoted.value.line,
-                "lesson",
-                f"the text says {quoted.value.text}, and {quoted.value.expression} gives {quoted.computed}.",
-                "Correct the text, or the code if the text is right.",
-            )
+            value, fix = quoted.value, "Correct the text, or the code if the text is right."
+            problem = f"the text says {value.text}, and {value.expression} gives {quoted.computed}."
+            findings.add(path, value.line, "lesson", problem, fix)
 
 
 def audit_figures(catalog: Catalog, lessons: Collection[str] | None, findings: Findings) -> None:
@@ -607,13 +581,9 @@ def audit_figures(catalog: Catalog, lessons: Collection[str] | None, findings: F
                 findings.add(fault.file, fault.line, "figure", fault.problem, fault.fix)
         # `course sim run --plot` shows those of the simulations.
         if lessons is None and figure_id not in shown and not figure_id.startswith("sim-"):
-            findings.add(
-                Path(registry.__file__),
-                None,
-                "figure",
-                f"no lesson shows figure {figure_id}.",
-                f"Show it, ![...](figure:{figure_id}), or take it out.",
-            )
+            problem = f"no lesson shows figure {figure_id}."
+            fix = f"Show it, ![...](figure:{figure_id}), or take it out."
+            findings.add(Path(registry.__file__), None, "figure", problem, fix)
 
 
 def _audit_registry(findings: Findings) -> None:

@@ -17,7 +17,7 @@ from course.authoring.coverage import Coverage, as_markdown, check_coverage, rea
 from course.authoring.exercises import diagnosis
 from course.authoring.exercises.files import find_blanks, write_points, write_times
 from course.authoring.exercises.grading import write_pack
-from course.authoring.exercises.mutants import MutantOutcome, run_mutants
+from course.authoring.exercises.proofs import MutantOutcome, run_mutants
 from course.authoring.report import AuditProblem, AuditReport, Findings
 from course.catalog.load import Catalog
 from course.catalog.locate import ENVIRONMENT_VARIABLE

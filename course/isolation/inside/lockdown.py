@@ -31,13 +31,8 @@ _CLONE_NEWIPC = 0x08000000
 _CLONE_NEWPID = 0x20000000
 _MS_RDONLY, _MS_NOSUID, _MS_NODEV, _MS_NOEXEC = 1, 2, 4, 8
 _MS_REC, _MS_PRIVATE = 0x4000, 0x40000
-_PR_SET_PDEATHSIG, _PR_SET_DUMPABLE, _PR_SET_SECCOMP, _PR_CAPBSET_DROP, _PR_SET_NO_NEW_PRIVS = (
-    1,
-    4,
-    22,
-    24,
-    38,
-)
+_PR_SET_PDEATHSIG, _PR_SET_DUMPABLE, _PR_SET_SECCOMP = 1, 4, 22
+_PR_CAPBSET_DROP, _PR_SET_NO_NEW_PRIVS = 24, 38
 _PR_CAP_AMBIENT, _PR_CAP_AMBIENT_CLEAR_ALL = 47, 4
 _SECCOMP_MODE_FILTER = 2
 _LAST_CAP = 63  # beyond the newest there is: the kernel answers EINVAL past its own last
@@ -234,9 +229,8 @@ def apply_limits(*, cpu_s: int, memory: int, file_size: int, descriptors: int) -
         (resource.RLIMIT_CORE, 0),
     ):
         resource.setrlimit(kind, (value, value))
-    signal.signal(
-        signal.SIGXFSZ, signal.SIG_IGN
-    )  # a file that is too large raises OSError instead of killing the process
+    # A file that is too large raises OSError instead of killing the process.
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 
 
 # -- seccomp ------------------------------------------------------------------------------------------

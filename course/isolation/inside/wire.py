@@ -60,9 +60,8 @@ F64 = struct.Struct("<d")
 SHAPE = struct.Struct("<II")
 TABLE = b"\x00\x02"  # dtype and dimensions of a table of float64
 FLOAT64 = np.dtype(np.float64)
-#: How a worker ended, as its parent reports it: the status as wait(2) has it, then seconds and microseconds
-#: of user and of system time.
-ENDED = struct.Struct("@l4l")
+#: How a worker ended, as its parent reports it: the status as wait(2) has it.
+ENDED = struct.Struct("@i")
 #: By which a worker is asked where its code is; None where there are no such signals (Windows). It answers
 #: once it was asked ``LOOKS`` times: what is there each time is what does not end.
 LOOK: signal.Signals | None = getattr(signal, "SIGUSR1", None)

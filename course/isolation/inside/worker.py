@@ -244,7 +244,7 @@ class Worker:
             return value
         # Generators and objects of methods have no value to look at.
         after = [None if isinstance(arg, np.random.Generator | loops.Methods) else arg for arg in args]
-        return [value, after, _shares_memory(value, args)]
+        return [value, after, shares_memory(value, args)]
 
     def _owned(self, args: list[Any]) -> list[Any]:
         return [self._own(argument) for argument in args]
@@ -303,7 +303,7 @@ def _arrays(value: Any, depth: int = 4) -> list[np.ndarray[Any, Any]]:
     return []
 
 
-def _shares_memory(value: Any, args: list[Any]) -> bool:
+def shares_memory(value: Any, args: list[Any]) -> bool:
     """Whether a returned array is, or is a view of, one of the arguments' arrays."""
     given = _arrays(args)
     return any(np.may_share_memory(a, b) for a in _arrays(value) for b in given)

@@ -37,7 +37,7 @@ _NUMPY = (
 
 _SOCKET, _RULES = 3, 4  # descriptors of a forked worker
 _LOOK_S = 0.5
-_ended = (ctypes.c_long * 24)()  # wire.ENDED, and room for the rest of what wait4(2) writes
+_ended = ctypes.c_int()  # wire.ENDED
 # Windows opens no library without a name, and nothing forks there: at L1 this process is the worker.
 _libc: Any = None if sys.platform == "win32" else ctypes.CDLL(None, use_errno=True)
 
@@ -164,19 +164,16 @@ def _answer(control: socket.socket, own_namespace: int) -> tuple[list[int], str]
 
 
 def _reap(control: socket.socket, pid: int) -> None:
-    """Collect a worker, and tell how it ended and its user and system time, as ``wire.ENDED`` has it.
+    """Collect a worker, and tell how it ended, as ``wire.ENDED`` has it.
 
     This uses the C library and one buffer that is wiped. Otherwise information about a student's process
     would stay in this one's memory, where the next student's code could find it.
     """
-    from course_worker.isolation.inside import wire
-
-    status, usage = ctypes.addressof(_ended), ctypes.addressof(_ended) + ctypes.sizeof(ctypes.c_long)
-    while _libc.wait4(ctypes.c_int(pid), ctypes.c_void_p(status), 0, ctypes.c_void_p(usage)) < 0:
+    while _libc.waitpid(ctypes.c_int(pid), ctypes.byref(_ended), 0) < 0:
         if ctypes.get_errno() != errno.EINTR:
-            raise OSError(ctypes.get_errno(), "wait4")
-    control.send(memoryview(_ended).cast("B")[: wire.ENDED.size])
-    ctypes.memset(_ended, 0, ctypes.sizeof(_ended))
+            raise OSError(ctypes.get_errno(), "waitpid")
+    control.send(_ended)
+    ctypes.memset(ctypes.byref(_ended), 0, ctypes.sizeof(_ended))
 
 
 def _become_worker(config: dict[str, Any], newborn: _ForkSetup) -> socket.socket:

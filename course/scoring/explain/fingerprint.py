@@ -154,56 +154,38 @@ def _text(value: str) -> float:
 #: second and 90 MB at most. The longest file of the course has 27,000.
 _LONGEST = 100_000
 #: Built-in functions and methods that change nothing of what they are given.
-_READERS = {
-    "abs",
-    "all",
-    "any",
-    "dict",
-    "enumerate",
-    "float",
-    "int",
-    "isinstance",
-    "len",
-    "list",
-    "max",
-    "min",
-}
-_READERS |= {"range", "reversed", "round", "set", "sorted", "str", "sum", "tuple", "zip"}
+_READERS = {"abs", "all", "any", "dict", "enumerate", "float", "int", "isinstance", "len", "list", "max"}
+_READERS |= {"min", "range", "reversed", "round", "set", "sorted", "str", "sum", "tuple", "zip"}
 _VIEWS = {"copy", "get", "items", "keys", "values"}
 _LIBRARIES = {"math", "np", "numpy"}
 
 
 def calls_between(source: bytes, tasks: frozenset[str]) -> dict[str, tuple[str, ...]]:
-    """For each task's function, the other tasks' functions that it calls, directly or through helpers.
-
-    Args:
-        source: of the submission; a source that cannot be parsed, or is longer than any honest file, calls
-            nothing.
-        tasks: names of the functions to look at.
-    """
-    if len(source) > _LONGEST:
-        return {}
+    """For each task's function, the other tasks' functions that it calls, directly or through helpers."""
     reach = reached_from(source, tasks)
     return {task: tuple(sorted(reach[task] & tasks - {task})) for task in reach}
 
 
-def reached_from(source: bytes, names: frozenset[str] | None = None) -> dict[str, frozenset[str]]:
-    """For each function, class and constant of a module, the others it uses, directly or through others.
+def reached_from(source: bytes, names: frozenset[str]) -> dict[str, frozenset[str]]:
+    """For some functions, classes and constants of a module, the others they use, directly or through others.
 
     Args:
-        source: a source that cannot be parsed has none.
-        names: which ones to examine; None for all, which takes time proportional to the square of their
-            number.
+        source: one that cannot be parsed, or is longer than any honest file, has none.
+        names: which ones to examine; all would take time proportional to the square of their number.
     """
-    return _reach(*_read(source), names)
+    defined, parts = _read(source)
+    # By statement: one may bind thousands of names.
+    uses = {
+        node: {child.id for child in inside if isinstance(child, ast.Name)} & defined.keys()
+        for node, inside in parts.items()
+    }
+    return {name: frozenset(_reached(name, defined, uses)) for name in names & defined.keys()}
 
 
 def functions_of(source: bytes, task: str) -> list[ast.FunctionDef]:
     """The function of a task, then the functions of the file that it uses, directly or through others."""
-    if len(source) > _LONGEST:
-        return []
-    defined, parts = _read(source)
-    reached = sorted(_reach(defined, parts, frozenset({task})).get(task, frozenset()) - {task})
+    defined, _ = _read(source)
+    reached = sorted(reached_from(source, frozenset({task})).get(task, frozenset()) - {task})
     found = (defined[name] for name in (task, *reached) if name in defined)
     return [node for node in found if isinstance(node, ast.FunctionDef)]
 
@@ -214,12 +196,10 @@ def may_remember(source: bytes, tasks: frozenset[str]) -> frozenset[str]:
     The others have nowhere to keep it: no variable of the module but numbers, texts and tables that are only
     read, no default argument that can change, no decorator, no attribute that is set, no class.
     """
-    if len(source) > _LONGEST:
-        return frozenset()
     defined, parts = _read(source)
     handed_on = set().union(*map(_handed_on, parts.values()))
     keeps = {node: _keeps(node, inside, handed_on) for node, inside in parts.items()}
-    reach = _reach(defined, parts, tasks)
+    reach = reached_from(source, tasks)
     return frozenset(task for task in reach if any(keeps[defined[name]] for name in {task} | reach[task]))
 
 
@@ -271,32 +251,19 @@ def _merely_read(node: ast.AST) -> list[ast.expr]:
 
 def _is_fixed(value: ast.expr) -> bool:
     """Whether an expression is a number, a text, or a tuple of these: made of nothing that can change."""
-    fixed = (
-        ast.Constant,
-        ast.UnaryOp,
-        ast.BinOp,
-        ast.Tuple,
-        ast.Name,
-        ast.Attribute,
-        ast.operator,
-        ast.unaryop,
+    fixed = ast.Constant | ast.UnaryOp | ast.BinOp | ast.Tuple | ast.Name | ast.Attribute
+    return all(
+        isinstance(child, fixed | ast.operator | ast.unaryop | ast.expr_context) for child in ast.walk(value)
     )
-    return all(isinstance(child, (*fixed, ast.expr_context)) for child in ast.walk(value))
 
 
 @functools.lru_cache(maxsize=1)  # of the submission at hand: it is read when loaded, and where a check fails
 def _read(source: bytes) -> tuple[dict[str, ast.stmt], dict[ast.stmt, list[ast.AST]]]:
-    """What each name of a module is bound by, and all nodes of each of these statements."""
-    defined = _defined(source)
-    return defined, {node: list(ast.walk(node)) for node in dict.fromkeys(defined.values())}
-
-
-def _defined(source: bytes) -> dict[str, ast.stmt]:
-    """The statement that binds each name of a module: a later one replaces an earlier one."""
+    """The statement that binds each name of a module, a later one in place of an earlier; their nodes."""
     try:
-        tree = ast.parse(source)
+        tree = ast.parse(source if len(source) <= _LONGEST else b"")
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return {}
+        return {}, {}
     defined: dict[str, ast.stmt] = {}
     for node in tree.body:
         if isinstance(node, ast.FunctionDef | ast.ClassDef):
@@ -307,19 +274,7 @@ def _defined(source: bytes) -> dict[str, ast.stmt]:
             defined |= {part.id: node for part in parts if isinstance(part, ast.Name)}
         elif isinstance(node, ast.Import | ast.ImportFrom):
             defined |= {(alias.asname or alias.name).partition(".")[0]: node for alias in node.names}
-    return defined
-
-
-def _reach(
-    defined: dict[str, ast.stmt], parts: dict[ast.stmt, list[ast.AST]], names: frozenset[str] | None
-) -> dict[str, frozenset[str]]:
-    # By statement: one may bind thousands of names.
-    uses = {
-        node: {child.id for child in inside if isinstance(child, ast.Name)} & defined.keys()
-        for node, inside in parts.items()
-    }
-    wanted = defined if names is None else names & defined.keys()
-    return {name: frozenset(_reached(name, defined, uses)) for name in wanted}
+    return defined, {node: list(ast.walk(node)) for node in dict.fromkeys(defined.values())}
 
 
 def _reached(name: str, defined: dict[str, ast.stmt], uses: dict[ast.stmt, set[str]]) -> set[str]:

@@ -1,17 +1,23 @@
-"""What a wrong answer has in common with the right one, as a sentence that is true of the printed numbers.
+"""What a wrong answer has in common with the right one, and what the text of a function shows of itself.
 
 It is said where no mistake is named. Nothing here guesses: each sentence is computed from the numbers that
-the student reads below it.
+the student reads below it, or true of the code whatever it is called with.
 """
 
 from __future__ import annotations
 
+import ast
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from course.printable import counted
+from course.scoring.explain.fingerprint import functions_of
+from course.scoring.explain.story import Diagnosis
+from course.scoring.verdict import Places
 
 Array = NDArray[np.float64]
 
@@ -159,7 +165,7 @@ def _of_ratio(a: float, e: float, inputs: Sequence[tuple[str, float]]) -> str:
             if n[0] == "`" and not _is_small(v) and (_same(v, abs(ratio)) or _same(v * abs(ratio), 1.0))
         ]
         turned = ", with the other sign" if ratio < 0 else ""
-        return known + turned + (f" ({also[0]} is {_value(also[0], inputs)})" if len(also) == 1 else "")
+        return known + turned + (f" ({also[0]} is {dict(inputs)[also[0]]:g})" if len(also) == 1 else "")
     for power, words in ((1, "times {}"), (-1, "over {}"), (2, "times {} squared"), (-2, "over {} squared")):
         # A factor in [] would be one value of several, which no formula multiplies with.
         names = [n for n, v in inputs if n[0] == "`" and v > 0 and v != 1.0 and _same(abs(ratio), v**power)]
@@ -171,10 +177,6 @@ def _of_ratio(a: float, e: float, inputs: Sequence[tuple[str, float]]) -> str:
 def _is_small(value: float) -> bool:
     """Whether it is a whole number that others are by chance."""
     return value.is_integer() and abs(value) < _BY_CHANCE
-
-
-def _value(name: str, inputs: Sequence[tuple[str, float]]) -> str:
-    return f"{dict(inputs)[name]:g}"
 
 
 def _of_difference(a: float, e: float, inputs: Sequence[tuple[str, float]]) -> str:
@@ -200,11 +202,7 @@ def _of_digits(a: float, e: float) -> str:
     if a == math.trunc(e):
         return "the right one without its decimals"
     places = next((n for n in range(7) if a == round(e, n)), None)
-    return f"the right one rounded to {_counted(places, 'decimal')}" if places is not None else ""
-
-
-def _counted(n: int, noun: str) -> str:
-    return f"{n} {noun}" + "s" * (n != 1)
+    return f"the right one rounded to {counted(places, 'decimal')}" if places is not None else ""
 
 
 # -- several --------------------------------------------------------------------------------------------
@@ -296,16 +294,95 @@ def _of_lengths(a: Array, e: Array) -> str:
     """What is missing, or too much, where one value is."""
     if a.ndim != e.ndim or not a.ndim or a.shape[1:] != e.shape[1:]:
         return ""
-    if len(a) == len(e) - 1:
-        places = (
-            (e[1:], "The first is missing, the others are right."),
-            (e[:-1], "The last is missing, the others are right."),
-        )
-        return next((words for part, words in places if _same(a, part)), "")
-    if len(a) == len(e) + 1:
-        more = (
-            (a[1:], "There is one too many, at the beginning."),
-            (a[:-1], "There is one too many, at the end."),
-        )
-        return next((words for part, words in more if _same(part, e)), "")
+    pairs = (
+        (a, e[1:], "The first is missing, the others are right."),
+        (a, e[:-1], "The last is missing, the others are right."),
+        (a[1:], e, "There is one too many, at the beginning."),
+        (a[:-1], e, "There is one too many, at the end."),
+    )
+    return next((words for yours, right, words in pairs if _same(yours, right)), "")
+
+
+# -- a function's own text -------------------------------------------------------------------------------
+
+#: A loop that its own ``return`` ends in the first pass.
+RETURN_IN_LOOP = "RETURN_IN_LOOP"
+
+
+def return_in_a_loop(source: bytes, task: str, places: Places) -> Diagnosis | None:
+    """A ``for`` loop of the task's function, or of a helper of it, that cannot have a second pass."""
+    for function in functions_of(source, task):
+        for loop in ast.walk(function):
+            if isinstance(loop, ast.For) and isinstance(loop.body[-1], ast.Return) and not _goes_on(loop):
+                line = places.phrase(loop.body[-1].lineno)
+                return Diagnosis(
+                    RETURN_IN_LOOP,
+                    f"The `return` {line} stands inside the loop, so the loop ends in its first pass.",
+                    "Move that `return` out of the loop: indent it as far as the `for`.",
+                )
+    return None
+
+
+def _goes_on(loop: ast.For) -> bool:
+    """Whether a ``continue`` of its own takes the loop past its last line."""
+    return any(isinstance(part, ast.Continue) for part in ast.walk(loop))
+
+
+def why_none(source: bytes, task: str, places: Places, name: str = "") -> str:
+    """The advice where a function gives None instead of a value; "" if its text does not tell more.
+
+    Args:
+        name: what is None, as the finding calls it: the result, or an entry of the dict that is returned.
+    """
+    function = next(iter(functions_of(source, task)), None)
+    if function is None:
+        return ""
+    own = list(_own(function))
+    given = [part for part in own if isinstance(part, ast.Return) and _is_value(part.value)]
+    if several := _several([part.value for part in given], name):
+        return f"{several}, and `{name}` is None. Which line should have set it?"
+    if given:
+        tests = [
+            part for part in own if isinstance(part, ast.If) and any(one in ast.walk(part) for one in given)
+        ]
+        if not tests or function.body[-1] in given:  # it does not end without a `return`
+            what = f"`{name}`" if name.isidentifier() else "what it gives"
+            return f"There is a `return`, and {what} is None here. Which line should have set it?"
+        where = places.phrase(tests[-1].lineno)
+        return f"There is a `return`. Was the condition {where} never met for this input?"
+    if any(isinstance(part, ast.Call) and getattr(part.func, "id", "") == "print" for part in own):
+        return "It prints its result. Give it back: write `return` where `print` stands."
     return ""
+
+
+def _several(returned: list[ast.expr | None], name: str) -> str:
+    """That there are other values beside the one called ``name``; "" if a ``return`` shows none."""
+    if any(
+        isinstance(key, ast.Constant) and key.value == name
+        for value in returned
+        if isinstance(value, ast.Dict)
+        for key in value.keys
+    ):
+        return "A dict is returned"
+    beside = name.isidentifier() and any(isinstance(value, ast.Tuple) for value in returned)
+    return "Several values are returned" if beside else ""
+
+
+def _own(function: ast.FunctionDef) -> Iterator[ast.AST]:
+    """The parts of a function that belong to no function inside it."""
+    left: list[ast.AST] = list(function.body)
+    while left:
+        part = left.pop(0)
+        yield part
+        if not isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda | ast.ClassDef):
+            left += ast.iter_child_nodes(part)
+
+
+def _is_value(value: ast.expr | None) -> bool:
+    return value is not None and not (isinstance(value, ast.Constant) and value.value is None)
+
+
+def names_of(source: bytes, task: str) -> tuple[str, ...]:
+    """The names of a function's arguments, in order."""
+    function = next(iter(functions_of(source, task)), None)
+    return tuple(arg.arg for arg in function.args.args) if function else ()

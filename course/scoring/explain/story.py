@@ -119,13 +119,11 @@ class Story:
 
     Attributes:
         diagnosis: the mistake; None if none is recognised.
-        certain: True if a known wrong program answers every question like the student's.
         own: ids of checks that keep their own diagnosis: facts that they saw directly.
         bare: ids of checks that it is not said of: they saw another mistake, or not this consequence.
     """
 
     diagnosis: Diagnosis | None
-    certain: bool
     own: frozenset[str]
     bare: frozenset[str] = frozenset()
 
@@ -155,21 +153,21 @@ def story_of(failures: Sequence[Failure], fits: Sequence[Row], words: Words, *, 
     if kept and state is None:
         state = merged(shared, words, fits) if shared and shared[0] in OWN_WORDS else KEPT
     if state:
-        return Story(state, True, own)
+        return Story(state, own)
     if shared:
-        return Story(merged(shared, words, fits), True, own)
+        return Story(merged(shared, words, fits), own)
     # Beside a nan, or where no consequence prevails, what a check saw of its own stays with it.
     saw = {f.check for f in left if f.finite and f.guess and words.kind(f.guess.code) == "consequence"}
     seen = own | saw
     if not all(failure.finite for failure in left):
-        return Story(_origin(left, words), False, seen, frozenset(f.check for f in left if f.finite))
+        return Story(_origin(left, words), seen, frozenset(f.check for f in left if f.finite))
     for kind in ("cause", "nan", "consequence"):
         said = [guess for guess in guesses if words.kind(guess.code) == kind]
         if said:
             named = _most_named(said)
             keeps = kind == "nan" or (kind == "consequence" and named is None)
-            return Story(named, False, seen if keeps else own, _contradicted(left, named, words))
-    return Story(None, False, own)
+            return Story(named, seen if keeps else own, _contradicted(left, named, words))
+    return Story(None, own)
 
 
 def common(fits: Sequence[Row], guesses: Sequence[str] = ()) -> tuple[str, ...]:

@@ -36,6 +36,7 @@ from course.scoring.explain.story import (
 )
 from course.scoring.failures import CheckFailed
 from course.scoring.remote import Heard, RemoteSubmission
+from course.scoring.values import leaves
 from course.scoring.verdict import CheckResult, Finding, Status
 
 #: Diagnosis of a function that calls another function of the exercise, which is wrong itself.
@@ -242,11 +243,7 @@ def _finite(finding: Finding) -> bool:
 
 
 def _odd(value: Any) -> bool:
-    if isinstance(value, float):
-        return not math.isfinite(value)
-    if isinstance(value, dict):
-        return any(map(_odd, value.values()))
-    return isinstance(value, list | tuple) and any(map(_odd, value))
+    return any(isinstance(item, float) and not math.isfinite(item) for item in leaves(value))
 
 
 # ---

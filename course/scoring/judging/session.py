@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextlib
 import os
 import random
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
 from time import perf_counter
 from typing import Any, Literal, Self, TypeVar
@@ -67,14 +67,8 @@ T = TypeVar("T")
 
 _LESS_TIME = 4
 _PRINTED = 4000  # characters of what a submission prints in one check, or while it is loaded
-_STATUS = {
-    "error": Status.ERROR,
-    "missing": Status.ERROR,
-    "protocol": Status.CRASH,
-    "timeout": Status.TIMEOUT,
-    "memory": Status.MEMORY,
-    "crash": Status.CRASH,
-}
+#: Of failures that end otherwise than they are called.
+_STATUS = {"missing": Status.ERROR, "protocol": Status.CRASH}
 
 
 class GradingSession:
@@ -175,12 +169,12 @@ class GradingSession:
             remote = self._load(submission)
         except LoadRefusedError as refused:
             self.printed = beginning(refused.printed, _PRINTED)
-            return self._ungradable(load_problem(refused, self._places(submission)))
+            return self._verdict("ungradable", error=load_problem(refused, self._places(submission)))
         except IsolationError as error:
             return self._grader_error(str(error))
         try:
             if not any(task.id in remote.functions for task in self.exercise.task):
-                return self._ungradable(self._nothing_loaded(remote, submission))
+                return self._verdict("ungradable", error=self._nothing_loaded(remote, submission))
             self._remote = remote
             left_out = left_out_notes(remote, self._places(submission))
             self.printed = beginning(remote.printed(), _PRINTED)
@@ -304,7 +298,9 @@ class GradingSession:
                 ours = OURS + outcome.broke if outcome.broke else None
                 return found(check, Status.FAIL, outcome.finding, duration_ms, traceback=ours, stdout=printed)
             case StudentFailure():
-                status = Status.ERROR if outcome.type == "UnsupportedValue" else _STATUS[outcome.kind]
+                status = _STATUS.get(outcome.kind) or Status(outcome.kind)
+                if outcome.type == "UnsupportedValue":
+                    status = Status.ERROR
                 if status is Status.TIMEOUT:
                     self._hung.add(check.task)
                 traceback = places.trace(outcome.traceback) or None
@@ -359,47 +355,34 @@ class GradingSession:
     # -- verdicts -------------------------------------------------------------------------------------
 
     def _graded(self, results: list[CheckResult]) -> Verdict:
-        score = sum(result.points for result in results)
-        most = sum(result.max_points for result in results)
         broken = next((result for result in results if result.status is Status.GRADER_ERROR), None)
-        if broken is not None:
-            problem = Problem(
-                "check_failed", f"{broken.id}: {broken.message}", "Regrade once it is repaired."
-            )
-            return bounded(self._verdict("grader_error", score, tuple(results), error=problem))
-        return bounded(self._verdict("graded", score, tuple(results), most=most))
-
-    def _ungradable(self, problem: Problem) -> Verdict:
-        return self._verdict("ungradable", 0.0, (), error=problem)
+        if broken is None:
+            return self._verdict("graded", results)
+        problem = Problem("check_failed", f"{broken.id}: {broken.message}", "Regrade once it is repaired.")
+        return self._verdict("grader_error", results, problem)
 
     def _grader_error(self, message: str) -> Verdict:
-        problem = Problem(
-            "isolation_failed", message, "Run `course doctor`, then grade this submission again."
-        )
-        return self._verdict("grader_error", 0.0, (), error=problem)
+        help_ = "Run `course doctor`, then grade this submission again."
+        return self._verdict("grader_error", error=Problem("isolation_failed", message, help_))
 
     def _verdict(
-        self,
-        state: str,
-        score: float,
-        checks: tuple[CheckResult, ...],
-        *,
-        most: float | None = None,
-        error: Problem | None = None,
+        self, state: str, results: Sequence[CheckResult] = (), error: Problem | None = None
     ) -> Verdict:
-        most = sum(check.points for check in self.checks) if most is None else most
-        return Verdict(
+        score, graded = sum((result.points for result in results), 0.0), state == "graded"
+        most = sum(result.max_points for result in results) if graded else sum(c.points for c in self.checks)
+        verdict = Verdict(
             exercise=self.exercise.id,
             scope=self.scope,
             state=state,
             score=score,
             max_score=most,
             # The tolerance only covers rounding in sums of points.
-            passed=state == "graded" and score >= self.exercise.pass_mark * most - 1e-9,
-            checks=checks,
+            passed=graded and score >= self.exercise.pass_mark * most - 1e-9,
+            checks=tuple(results),
             isolation=self.level,
             error=error,
         )
+        return bounded(verdict)
 
 
 def check_files(exercise: Exercise, catalog: Catalog, scope: Scope) -> list[tuple[Path, Visibility]]:
@@ -495,13 +478,8 @@ def has_report(exercise: Exercise) -> bool:
     return (Path(exercise.folder) / FILE).is_file()
 
 
-def report_of(
-    exercise: Exercise, catalog: Catalog, submission: Submission, *, timeout: float = 60.0
-) -> Report:
+def report_of(exercise: Exercise, catalog: Catalog, submission: Submission) -> Report:
     """The report on a submission.
-
-    Args:
-        timeout: wall seconds for all of it.
 
     Raises:
         NotFoundError: the exercise has no report.
@@ -516,7 +494,7 @@ def report_of(
         )
     module = companion(exercise.id, FILE.removesuffix(".py"))
     try:
-        with GradingSession(exercise, catalog, terms=Terms(timeout=timeout)) as session:
+        with GradingSession(exercise, catalog, terms=Terms(timeout=60.0)) as session:
             report: Report = session.using(submission, module.report)
     except (StudentFailure, CheckFailed) as failure:
         finding = finding_for(failure)

@@ -43,7 +43,7 @@ from course.authoring.exercises.grading import (  # noqa: E402
     mistakes_of,
     solution_path,
 )
-from course.authoring.exercises.mutants import caught_by, judge  # noqa: E402
+from course.authoring.exercises.proofs import caught_by, judge  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.scoring.explain.story import OWN_WORDS  # noqa: E402
 from course.scoring.judging.session import GradingSession  # noqa: E402

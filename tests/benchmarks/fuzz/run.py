@@ -63,7 +63,7 @@ from course.sandbox.scene.loading import choose  # noqa: E402
 from course.sandbox.world.world import World  # noqa: E402
 from course.scoring.judging.session import GradingSession  # noqa: E402
 from course.scoring.judging.submission import Submission, Terms  # noqa: E402
-from tests.contracts.boundary import test_spoilt_functions as spoiling  # noqa: E402
+from tests.contracts.boundary import test_broken_functions as spoiling  # noqa: E402
 from tests.unit.isolation.test_connection import LOADED, READY, Liar  # noqa: E402
 
 if TYPE_CHECKING:
@@ -190,7 +190,7 @@ def returns(chance: inputs.Chance, folder: Path) -> str:
     tasks = chance.sample([task.id for task in exercise.task], chance.choice((1, min(2, len(exercise.task)))))
     for task in tasks:
         way, part, when = (
-            chance.choice(list(kind)) for kind in (spoiling.WAYS, spoiling.PARTS, spoiling.TIMES)
+            chance.choice(list(kind)) for kind in (spoiling.SPOILT, spoiling.PARTS, spoiling.TIMES)
         )
         source = spoiling.spoilt(source, task, way, part, when)
     check = chance.choice([check.id for check in session.checks if check.task in tasks])

@@ -13,8 +13,6 @@ from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
 
-__all__ = ["SPECIAL", "SYNTAXES", "Made"]
-
 #: Puts a document at a path; is given the right one, which lies there already.
 Made = Callable[[Path], None]
 
@@ -294,10 +292,10 @@ ZIP: dict[str, Made] = {
 }
 
 _VALUES = {"null": "null", "number": "-1", "text": '"x"', "list": "[1]", "object": '{"a":{}}'}
-_ENDLESS = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n)"
+ENDLESS = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n)"
 
 
-def _sql(*statements: str) -> Made:
+def sql(*statements: str) -> Made:
     def make(path: Path) -> None:
         with closing(sqlite3.connect(path)) as database:
             for name in ("event_is_never_changed", "event_is_never_removed"):
@@ -309,13 +307,13 @@ def _sql(*statements: str) -> Made:
     return make
 
 
-def _as_view(table: str, columns: str) -> Made:
+def as_view(table: str, columns: str) -> Made:
     """A table that is an endless view."""
-    return _sql(f"DROP TABLE {table}", f"CREATE VIEW {table} AS {_ENDLESS} SELECT {columns} FROM n")
+    return sql(f"DROP TABLE {table}", f"CREATE VIEW {table} AS {ENDLESS} SELECT {columns} FROM n")
 
 
 def _schema(change: str) -> Made:
-    return _sql("PRAGMA writable_schema = ON", change)
+    return sql("PRAGMA writable_schema = ON", change)
 
 
 SQLITE: dict[str, Made] = {
@@ -328,42 +326,42 @@ SQLITE: dict[str, Made] = {
         "UPDATE sqlite_schema SET sql = replace(sql, 'NOT NULL', 'AS (zeroblob(900000000)) ')"
         " WHERE type = 'table'"
     ),
-    "virtual": _sql("CREATE VIRTUAL TABLE v USING fts5(x)"),
+    "virtual": sql("CREATE VIRTUAL TABLE v USING fts5(x)"),
     "broken-schema": _schema("UPDATE sqlite_schema SET sql = 'CREATE nonsense'"),
     "circular-schema": _schema("UPDATE sqlite_schema SET rootpage = 1"),
 }
 EVENTS: dict[str, Made] = {
     **SQLITE,
-    "endless-view": _as_view(
+    "endless-view": as_view(
         "event",
         "i AS id, '2026-01-01T00:00:00+00:00' AS at, 'check' AS kind, '' AS subject, '{}' AS data",
     ),
-    "endless-trigger": _sql(
+    "endless-trigger": sql(
         "CREATE TRIGGER t BEFORE INSERT ON event BEGIN"
-        f" SELECT count(*) FROM ({_ENDLESS} SELECT i FROM n); END"
+        f" SELECT count(*) FROM ({ENDLESS} SELECT i FROM n); END"
     ),
-    "computed-index": _sql("CREATE INDEX i ON event (hex(zeroblob(1000000)))"),
-    "huge-event": _sql("UPDATE event SET data = hex(zeroblob(30000000))"),
-    "blobs": _sql("UPDATE event SET data = x'00', at = x'00', kind = x'00', subject = x'00'"),
-    "numbers": _sql("UPDATE event SET data = 1e999, at = 1, kind = 2, subject = 3"),
-    "odd-time": _sql("UPDATE event SET at = '9999-99-99T99:99'"),
-    "no-zone": _sql("UPDATE event SET at = '2026-01-01T00:00:00'"),
-    "edge-of-time": _sql("UPDATE event SET at = '0001-01-01T00:00:00+23:59'"),
-    "newer": _sql("PRAGMA user_version = 2147483647"),
-    "negative": _sql("PRAGMA user_version = -1"),
+    "computed-index": sql("CREATE INDEX i ON event (hex(zeroblob(1000000)))"),
+    "huge-event": sql("UPDATE event SET data = hex(zeroblob(30000000))"),
+    "blobs": sql("UPDATE event SET data = x'00', at = x'00', kind = x'00', subject = x'00'"),
+    "numbers": sql("UPDATE event SET data = 1e999, at = 1, kind = 2, subject = 3"),
+    "odd-time": sql("UPDATE event SET at = '9999-99-99T99:99'"),
+    "no-zone": sql("UPDATE event SET at = '2026-01-01T00:00:00'"),
+    "edge-of-time": sql("UPDATE event SET at = '0001-01-01T00:00:00+23:59'"),
+    "newer": sql("PRAGMA user_version = 2147483647"),
+    "negative": sql("PRAGMA user_version = -1"),
     **{
-        f"data-{name}": _sql("UPDATE event SET data = '" + text.replace("'", "''") + "'")
+        f"data-{name}": sql("UPDATE event SET data = '" + text.replace("'", "''") + "'")
         for name, text in _JSON.items()
         if name != "many"
     },
     **{
-        f"values-{name}": _sql(
+        f"values-{name}": sql(
             f"UPDATE event SET data = (SELECT json_group_object(key, json('{text}')) FROM json_each(data))"
         )
         for name, text in _VALUES.items()
     },
     **{
-        f"kind-{name}": _sql(f"UPDATE event SET kind = '{name}'")
+        f"kind-{name}": sql(f"UPDATE event SET kind = '{name}'")
         for name in ("check", "hint", "lesson", "place", "solution", "quiz", "prediction", "cell", "bookmark",
                      "submit", "update", "reset", "start")
     },

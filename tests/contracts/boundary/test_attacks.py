@@ -30,8 +30,8 @@ from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import Verdict, for_student
 from tests.benchmarks.protection import descendants_cpu
 from tests.contracts.boundary.levels import require_level
+from tests.contracts.boundary.users import ROOT, marked
 
-ROOT = Path(__file__).resolve().parents[3]
 CORPUS = ROOT / "tests" / "attacks"
 EXERCISES = Catalog().exercise_ids()
 ARENA = CORPUS / "arena"
@@ -153,7 +153,7 @@ def _arena(level: str, exercise: str, folder: Path, patch: pytest.MonkeyPatch) -
             arena = Arena(session, wrong, solution.read_bytes(), 0.0, marker, listener, secret, signals)
             arena.wrong_score = arena.grade(wrong).score
             yield arena
-        assert not _processes(marker, workers_only=False), "the session left processes"
+        assert not marked(marker), "the session left processes"
     finally:
         listener.close()
         for number, handler in handlers.items():
@@ -194,7 +194,7 @@ def test_an_attack_gains_nothing_and_leaves_nothing(name: str, level: str, arena
         pytest.skip(f"written for {attack.machine}")
     arena: Arena = arenas(level, attack.exercise)
     source = _source(name, attack, arena)
-    before = _processes(arena.marker)
+    before = marked(arena.marker)
     one = attack.slow or level == "L1"  # a new process for each check would take a third of a second
     verdicts = []
     for _ in range(2 if attack.twice else 1):
@@ -208,13 +208,15 @@ def test_an_attack_gains_nothing_and_leaves_nothing(name: str, level: str, arena
 
     _expect_outcome(attack, verdict)
     assert verdict.score <= arena.wrong_score, "the attack scored"
-    _expect_deadlines(verdict, ENDLESS_S if attack.endless else TIMEOUT_S, used)
+    # By the CPU time of all that was started. That the wall ends a check too shows in that it ends.
+    limit = ENDLESS_S if attack.endless else TIMEOUT_S
+    assert used <= (len(verdict.checks) + 1) * limit + GRACE_S, "it used more than its checks may"
     _expect_silence(verdict, [FILE_CANARY, INPUT_CANARY, LEFTOVER, *attack.never])
     assert not arena.listener.heard(), "it reached a socket"
     assert not arena.signals, "it signalled the grader"
     assert arena.secret.read_text("utf-8") == f"{FILE_CANARY}\n", "it changed a file of the grader's"
     if level != "L1":
-        assert _processes(arena.marker) <= before, "a process of it is left"
+        assert marked(arena.marker) <= before, "a process of it is left"
         assert not _files_left(arena), "a file of it is left"
     _expect_model_unharmed(arena)
 
@@ -238,6 +240,7 @@ def _source(name: str, attack: Attack, arena: Arena) -> str:
         "SITE": Path(np.__file__).parents[1],
     }
     text = (CORPUS / f"{name}.py").read_text("utf-8")
+    text = text.replace("from frames import *\n", (ARENA / "frames.py").read_text("utf-8"))
     text = re.sub(r"@([A-Z]+)@", lambda match: str(known[match[1]]), text)
     padding = ("#" * 99 + "\n") * 5000 if attack.padded else ""
     return f"{arena.wrong}\n\n{text}\n{padding}"
@@ -257,11 +260,6 @@ def _expect_outcome(attack: Attack, verdict: Verdict) -> None:
 
 def _listed(value: str | list[str]) -> list[str]:
     return [value] if isinstance(value, str) else value
-
-
-def _expect_deadlines(verdict: Verdict, timeout: float, used: float) -> None:
-    """By the CPU time of all that was started. That the wall ends a check too shows in that it ends."""
-    assert used <= (len(verdict.checks) + 1) * timeout + GRACE_S, "it used more than its checks may"
 
 
 def _cpu_s() -> float:
@@ -287,24 +285,6 @@ def _texts(value: Any) -> list[str]:
     if isinstance(value, list | tuple):
         return [text for item in value for text in _texts(item)]
     return [str(value)]
-
-
-def _processes(marker: str, *, workers_only: bool = True) -> set[int]:
-    """Processes that descend from the session, by a variable in their environment.
-
-    Of a process that belongs to another user or may not be looked at nothing can be said here; those of a
-    session are the tester's own.
-    """
-    found = set()
-    for entry in Path("/proc").glob("[0-9]*"):
-        with contextlib.suppress(OSError):
-            if marker.encode() in (entry / "environ").read_bytes() and _state(entry) != "Z":
-                found.add(int(entry.name))
-    return found if workers_only else found - {os.getpid()}
-
-
-def _state(entry: Path) -> str:
-    return (entry / "stat").read_text("utf-8", "replace").rpartition(")")[2].split()[0]
 
 
 def _files_left(arena: Arena) -> list[str]:

@@ -13,6 +13,7 @@ import shutil
 import sqlite3
 import subprocess
 import sys
+from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +23,7 @@ import pytest
 
 from course.grading.gradebook.file import SEAL, TABLES, open_file, release, row_into, seal
 from tests.command_line import in_process
-from tests.contracts.boundary.documents import SPECIAL, SYNTAXES, Made
+from tests.contracts.boundary.documents import ENDLESS, SPECIAL, SYNTAXES, Made, as_view, sql
 
 ROOT = Path(__file__).resolve().parents[3]
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
@@ -107,26 +108,27 @@ class Door:
 def _forged(table: str, column: str, text: str) -> Made:
     """A gradebook in which every row has another content there, and every digest is right again."""
 
-    def make(path: Path) -> None:
-        with closing(open_file(path, writing=True)) as book:
-            names = TABLES[table]
-            rows = [list(row) for row in book.execute(f"SELECT {', '.join(names)} FROM {table}")]
-            if not rows and table in _ROWS:
-                rows = [list(_ROWS[table])]
-            for row in rows:
-                if row[0] != SEAL:
-                    row[names.index(column)] = text
-                    book.execute(row_into(table, "INSERT OR REPLACE"), row)
-            seal(book)
-            release(book)
+    def change(book: sqlite3.Connection) -> None:
+        names = TABLES[table]
+        rows = [list(row) for row in book.execute(f"SELECT {', '.join(names)} FROM {table}")]
+        if not rows and table in _ROWS:
+            rows = [list(_ROWS[table])]
+        for row in rows:
+            if row[0] != SEAL:
+                row[names.index(column)] = text
+                book.execute(row_into(table, "INSERT OR REPLACE"), row)
 
-    return make
+    return _sealed_again(change)
 
 
 def _fact(name: str, text: str) -> Made:
+    return _sealed_again(lambda book: book.execute(row_into("meta", "INSERT OR REPLACE"), (name, text)))
+
+
+def _sealed_again(change: Callable[[sqlite3.Connection], Any]) -> Made:
     def make(path: Path) -> None:
         with closing(open_file(path, writing=True)) as book:
-            book.execute(row_into("meta", "INSERT OR REPLACE"), (name, text))
+            change(book)
             seal(book)
             release(book)
 
@@ -141,31 +143,16 @@ _ROWS: dict[str, tuple[Any, ...]] = {
 }
 _DEEP = "[" * 5000 + "]" * 5000
 _ODD = {"none": "", "deep": _DEEP, "list": "[1]", "number": "9" * 5000, "object": '{"a": 1}', "nan": "NaN"}
-_VIEW = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT {} FROM n"
+_COUNT = f"SELECT count(*) FROM ({ENDLESS} SELECT i FROM n)"
 
 
 def _view(table: str) -> Made:
-    def make(path: Path) -> None:
-        columns = ", ".join(f"i AS {name}" for name in (*TABLES[table], "row_sha256"))
-        with closing(sqlite3.connect(path)) as book:
-            book.execute(f"DROP TABLE {table}")
-            book.execute(f"CREATE VIEW {table} AS {_VIEW.format(columns)}")
-            book.commit()
-
-    return make
-
-
-def _trigger(path: Path) -> None:
-    with closing(sqlite3.connect(path)) as book:
-        for table in TABLES:
-            endless = f"SELECT count(*) FROM ({_VIEW.format('i')})"
-            book.execute(f"CREATE TRIGGER t_{table} BEFORE INSERT ON {table} BEGIN {endless}; END")
-        book.commit()
+    return as_view(table, ", ".join(f"i AS {name}" for name in (*TABLES[table], "row_sha256")))
 
 
 _BOOKS: tuple[tuple[str, Made], ...] = (
     *((f"view-{table}", _view(table)) for table in TABLES),
-    ("triggers", _trigger),
+    ("triggers", sql(*(f"CREATE TRIGGER t_{of} BEFORE INSERT ON {of} BEGIN {_COUNT}; END" for of in TABLES))),
     *(
         (f"{table}-{column}-{name}", _forged(table, column, text))
         for table, column in (

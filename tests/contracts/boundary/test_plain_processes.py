@@ -6,7 +6,6 @@ test_attacks.py says so; here is what only a level without walls makes worth try
 
 from __future__ import annotations
 
-import contextlib
 import os
 import signal
 import subprocess
@@ -18,24 +17,27 @@ from time import monotonic, sleep
 import pytest
 
 from tests.contracts.boundary.levels import require_level
-from tests.contracts.boundary.users import LEVELS_AND_USERS, ROOT, USERS, command_as, run_as
+from tests.contracts.boundary.users import (
+    IN_WORKERS,
+    LEVELS_AND_USERS,
+    ROOT,
+    USERS,
+    command_as,
+    marked,
+    run_as,
+)
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
 
-_TRIAL = """
-import sys
-from course.isolation.levels import Deadline
-from course.isolation.launch import keep_private
-from course.isolation.session import Connection
-from course.isolation.spawn import Level, spawner
-keep_private()
-level, source = sys.argv[1:]
-found = spawner(Level(level), ("numpy",))
-connection = Connection(found, {"a.py": source.encode()}, "a.py", Deadline(60))
+_TRIAL = (
+    IN_WORKERS
+    + """
+connection = connect(60)
 print(connection.call("f"), flush=True)
 connection.close()
 found.close()
 """
+)
 
 _REACH = """
 import os
@@ -107,12 +109,12 @@ def test_workers_end_with_a_grader_that_was_killed(level: str, user: str) -> Non
         )
         grader = subprocess.Popen(command_as(user, sys.executable, "-c", program, level, source), cwd=ROOT)
         try:
-            _wait_until(lambda: len(_marked(marker)) >= 2, f"{name}: no worker came")  # noqa: B023
+            _wait_until(lambda: len(marked(marker)) >= 2, f"{name}: no worker came")  # noqa: B023
             sleep(0.5)
         finally:
             grader.send_signal(signal.SIGKILL)
             grader.wait()
-        _wait_until(lambda: not _marked(marker), f"{name}: a worker outlived its grader")  # noqa: B023
+        _wait_until(lambda: not marked(marker), f"{name}: a worker outlived its grader")  # noqa: B023
 
 
 def _wait_until(true: object, otherwise: str) -> None:
@@ -122,13 +124,3 @@ def _wait_until(true: object, otherwise: str) -> None:
             return
         sleep(0.05)
     pytest.fail(otherwise)
-
-
-def _marked(marker: str) -> set[int]:
-    found = set()
-    for entry in Path("/proc").glob("[0-9]*"):
-        with contextlib.suppress(OSError):
-            ended = (entry / "stat").read_text("utf-8").rpartition(")")[2].split()[0] == "Z"
-            if not ended and marker.encode() in (entry / "environ").read_bytes():
-                found.add(int(entry.name))
-    return found

@@ -113,14 +113,6 @@ def test_names_titles_and_marks_are_read(collect: Any) -> None:
     ]
 
 
-def test_a_check_that_passes_has_really_run_with_its_fixtures(collect: Any) -> None:
-    submission = Fake()
-    assert _run(collect(), "passes", submission) is None
-    assert submission.log[0] == "set up"
-    assert isinstance(submission.log[1], int)
-    assert submission.log[2] == "torn down"
-
-
 def test_fixtures_are_made_anew_for_every_run(collect: Any) -> None:
     checks, first, second = collect(), Fake("first"), Fake("second")
     for submission in (first, second, second):

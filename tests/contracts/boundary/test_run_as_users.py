@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.contracts.boundary.levels import require_level
-from tests.contracts.boundary.users import LEVELS_AND_USERS, ROOT, run_as
+from tests.contracts.boundary.users import IN_WORKERS, LEVELS_AND_USERS, ROOT, run_as
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="users and levels of Linux")
 
@@ -117,14 +117,8 @@ def test_a_class_of_what_once_broke_is_graded_to_the_end(level: str, user: str, 
 
 
 _TWICE = """
-import sys
-from course.isolation.levels import Deadline
-from course.isolation.failures import StudentFailure
-from course.isolation.session import Connection
-from course.isolation.spawn import Level, spawner
-found = spawner(Level(sys.argv[1]), ("numpy",))
 for _ in range(2):
-    connection = Connection(found, {"a.py": sys.argv[2].encode()}, "a.py", Deadline(5))
+    connection = connect(5)
     try:
         print(connection.call("scale", [1.0], 2.0))
     except StudentFailure as failure:
@@ -144,4 +138,4 @@ def test_nothing_tells_of_a_neighbour(attack: str, ends: str, level: str, user: 
     if attack == "neighbour_calls" and platform.machine() != "x86_64":
         pytest.skip("its numbers of system calls are those of x86-64")
     source = (ROOT / "tests" / "attacks" / f"{attack}.py").read_text("utf-8")
-    assert run_as(user, _TWICE, level, source).split("\n") == [ends, "", ends, "", ""]
+    assert run_as(user, IN_WORKERS + _TWICE, level, source).split("\n") == [ends, "", ends, "", ""]

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from course.authoring.exercises.grading import mistakes_of
-from course.authoring.exercises.mutants import caught_by
+from course.authoring.exercises.proofs import caught_by
 from course.authoring.mistakes import Variant
 from course.catalog.load import Catalog
 from course.scoring.judging.submission import Submission, Terms

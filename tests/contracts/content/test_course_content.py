@@ -7,7 +7,7 @@ import pytest
 from course.authoring.exercises import diagnosis
 from course.authoring.exercises.diagnosis import as_one, code_of, fate_of, hypotheses_of, made_from
 from course.authoring.exercises.grading import solution_path
-from course.authoring.exercises.mutants import Record, Reported, caught_by, read_record
+from course.authoring.exercises.proofs import Record, Reported, caught_by, read_record
 from course.authoring.report import Findings
 from course.catalog.load import Catalog
 from course.handed_in import limits

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from course.authoring.exercises.diagnosis import rows_of
-from course.authoring.exercises.mutants import read_record
+from course.authoring.exercises.proofs import read_record
 from course.scoring.explain.story import read_table
 from tests.contracts.content.audited import (
     CATALOG,

@@ -11,7 +11,7 @@ import pytest
 
 from course.authoring.audit import audit
 from course.authoring.exercises.grading import mistakes_of
-from course.authoring.exercises.mutants import caught_by
+from course.authoring.exercises.proofs import caught_by
 from course.authoring.exercises.source import CheckSource, checks_in, parse
 from course.authoring.report import AuditProblem, AuditReport
 from course.catalog.load import Catalog

@@ -6,18 +6,9 @@ from pathlib import Path
 
 from course.authoring.audit import audit
 from course.authoring.exercises.grading import grade_sources
-from course.authoring.exercises.mutants import run_mutants
+from course.authoring.exercises.proofs import run_mutants
 from course.catalog.load import Catalog
 from tests.unit.authoring.conftest import edit
-
-
-def test_a_wrong_solution_is_found_at_its_function(mini: Path) -> None:
-    edit(mini / "solutions/halving/halving.py", "x / 2", "x // 2")
-    problems = audit(Catalog(), "halving").problems
-    assert [p.where for p in problems if p.code == "solution"] == [
-        "solutions/halving/halving.py",
-        "solutions/halving/halving.py:4",
-    ]
 
 
 def test_a_stub_that_already_works_is_found(mini: Path) -> None:
@@ -89,16 +80,6 @@ def test_checks_that_cannot_be_collected_are_a_problem_like_any_other(mini: Path
     problems = audit(Catalog(), "halving").problems
     assert [p.file for p in problems] == ["exercises/halving/checks.py"]
     assert "nothing_of_that_name" in problems[0].message
-
-
-def test_a_misspelt_mark_is_a_problem(mini: Path) -> None:
-    edit(
-        mini / "graders/halving/checks.py",
-        "@pytest.mark.points(1)",
-        "@pytest.mark.points(1)\n@pytest.mark.slow",
-    )
-    (problem,) = audit(Catalog(), "halving").problems
-    assert "'slow' not found" in problem.message
 
 
 def test_a_marker_may_be_computed(mini: Path) -> None:

@@ -39,6 +39,20 @@ passing = {"status": Status.PASS, "diagnosis": None}
 failing = {"status": Status.FAIL, "points": 0.0}
 
 
+def squares(change: Change, says: str) -> tuple[str, Change, str, str, str]:
+    """What is said of a mutant at its line."""
+    return "double.SQUARES_INSTEAD", change, f"{MISTAKES}:7", "mutant", says
+
+
+def without_the_first(verdict: Verdict) -> Verdict:
+    return msgspec.structs.replace(verdict, checks=verdict.checks[1:])
+
+
+def with_one_more(verdict: Verdict) -> Verdict:
+    more = msgspec.structs.replace(verdict.checks[0], id="made_by_a_loop")
+    return msgspec.structs.replace(verdict, checks=(*verdict.checks, more))
+
+
 @pytest.mark.parametrize(
     ("name", "change", "where", "code", "says"),
     [
@@ -52,9 +66,7 @@ failing = {"status": Status.FAIL, "points": 0.0}
         ("stub", ending("ungradable", "It raises."), "exercises/doubling/doubling.py", "stub", "It raises."),
         (
             "solution",
-            with_check(
-                "double_of_three", status=Status.FAIL, points=0.0, message="No.", expected=6.0, actual=5.0
-            ),
+            with_check("double_of_three", **failing, message="No.", expected=6.0, actual=5.0),
             "solutions/doubling/doubling.py:6",
             "solution",
             "check double_of_three ends with fail: No. (expected 6.0, got 5.0)",
@@ -65,6 +77,20 @@ failing = {"status": Status.FAIL, "points": 0.0}
             "solutions/doubling/doubling.py",
             "solution",
             "scores 9 of 10",
+        ),
+        (
+            "solution",
+            without_the_first,
+            "exercises/doubling/checks.py:12",
+            "check",
+            "check double_of_three is declared, but did not run",
+        ),
+        (
+            "solution",
+            with_one_more,
+            "exercises/doubling/checks.py",
+            "check",
+            "check made_by_a_loop ran, but no plain",
         ),
         (
             "adds.py",
@@ -80,40 +106,25 @@ failing = {"status": Status.FAIL, "points": 0.0}
             "accepted",
             "No such module.",
         ),
-        (
-            "double.SQUARES_INSTEAD",
-            with_check("double_of_three", **passing, points=2.0),
-            f"{MISTAKES}:7",
-            "mutant",
-            "mutant double.SQUARES_INSTEAD survives",
+        squares(
+            with_check("double_of_three", **passing, points=2.0), "mutant double.SQUARES_INSTEAD survives"
         ),
-        (
-            "double.SQUARES_INSTEAD",
+        squares(
             with_check("double_of_three", diagnosis="SIGN_LOST"),
-            f"{MISTAKES}:7",
-            "mutant",
             "is diagnosed as SIGN_LOST by double_of_three (fail), not as SQUARES_INSTEAD",
         ),
-        (
-            "double.SQUARES_INSTEAD",
-            with_check("doublings_length", status=Status.FAIL, points=0.0, message="No."),
-            f"{MISTAKES}:7",
-            "mutant",
+        squares(
+            with_check("doublings_length", **failing, message="No."),
             "fails check doublings_length of task doublings, and should break double only",
         ),
-        (
-            "double.SQUARES_INSTEAD",
+        squares(
             with_check("doublings_values", status=Status.SKIP, points=0.0, blocked_by="x"),
-            f"{MISTAKES}:7",
-            "mutant",
             "fails check doublings_values of task doublings",
         ),
-        (
-            "double.SQUARES_INSTEAD",
-            with_check("double_of_three", points=2.0),
-            f"{MISTAKES}:7",
-            "mutant",
-            "loses no points",
+        squares(with_check("double_of_three", points=2.0), "loses no points"),
+        squares(
+            ending("ungradable", "Syntax."),
+            "mutant double.SQUARES_INSTEAD could not be graded: Syntax.",
         ),
         (
             "double.SQUARES_INSTEAD",
@@ -126,17 +137,17 @@ failing = {"status": Status.FAIL, "points": 0.0}
         ),
         (
             "double.SQUARES_INSTEAD",
-            ending("ungradable", "Syntax."),
-            f"{MISTAKES}:7",
-            "mutant",
-            "mutant double.SQUARES_INSTEAD could not be graded: Syntax.",
-        ),
-        (
-            "double.SQUARES_INSTEAD",
             ending("grader_error", "KeyError in a check."),
             "exercises/doubling/checks.py",
             "grader",
             "the checks break on double.SQUARES_INSTEAD: KeyError in a check.",
+        ),
+        (
+            "doublings.STARTS_LATE",
+            with_check("doublings_values", status=Status.GRADER_ERROR, message="ZeroDivisionError"),
+            "graders/doubling/checks.py:30",
+            "grader",
+            "breaks: ZeroDivisionError",
         ),
     ],
 )
@@ -145,7 +156,7 @@ def test_a_verdict_that_should_be_another_is_reported(
 ) -> None:
     oracle.changes[name] = change
     problems = run().problems
-    found = [p for p in problems if p.where == where and p.code == code]
+    found = [p for p in problems if (p.where, p.code) == (where, code)]
     assert found, [f"{p.where} {p.code} {p.message}" for p in problems]
     assert says in found[0].message
     assert found[0].fix
@@ -184,27 +195,6 @@ def test_a_mutant_is_on_record_with_a_check_of_its_task(
     oracle.changes["double.SQUARES_INSTEAD"] = with_check("double_of_three", status=Status.FAIL, points=0.0)
     found = [p for p in run().problems if says in p.message and "double.SQUARES_INSTEAD " in p.message]
     assert [p.where for p in found] == [f"{MISTAKES}:7"]
-
-
-def test_a_check_that_breaks_is_reported_at_its_line(oracle: Any, run: Callable[..., AuditReport]) -> None:
-    oracle.changes["doublings.STARTS_LATE"] = with_check(
-        "doublings_values", status=Status.GRADER_ERROR, message="ZeroDivisionError"
-    )
-    found = [p for p in run().problems if p.code == "grader"]
-    assert [p.where for p in found] == ["graders/doubling/checks.py:30"]
-    assert "breaks: ZeroDivisionError" in found[0].message
-
-
-def test_a_check_that_does_not_run_is_reported(oracle: Any, run: Callable[..., AuditReport]) -> None:
-    oracle.changes["solution"] = lambda v: msgspec.structs.replace(v, checks=v.checks[1:])
-    assert any("check double_of_three is declared, but did not run" in p.message for p in run().problems)
-
-
-def test_a_check_that_nothing_declares_is_reported(oracle: Any, run: Callable[..., AuditReport]) -> None:
-    oracle.changes["solution"] = lambda v: msgspec.structs.replace(
-        v, checks=(*v.checks, msgspec.structs.replace(v.checks[0], id="made_by_a_loop"))
-    )
-    assert any("check made_by_a_loop ran, but no plain" in p.message for p in run().problems)
 
 
 @pytest.mark.parametrize(

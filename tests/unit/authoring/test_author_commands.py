@@ -257,13 +257,28 @@ def test_a_pack_holds_the_solutions_and_their_prose(
         (["author", "mutants", "thirds"], 5, "exercise_not_found"),
         (["author", "new", "exercise", "No!"], 2, "invalid_id"),
         (["author", "pack", "-o", "x"], 2, "usage"),
+        (["author", "pack", "--solutions", "thirds", "-o", "x"], 5, "exercise_not_found"),
+        (["author", "pack", "--solutions", "doubling", "-o", "none/x"], 2, "usage"),
+        (["author", "pack", "--solutions", "doubling", "-o", "mine"], 2, "exists"),
+        (["author", "pack", "--solutions", "halving", "-o", "x"], 70, "content"),
     ],
 )
 def test_a_wrong_line_has_its_exit_code(
-    mini: Path, capsys: pytest.CaptureFixture[str], line: list[str], code: int, name: str
+    mini: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    line: list[str],
+    code: int,
+    name: str,
 ) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine").write_bytes(b"mine")
+    (mini / "solutions/halving/halving.py").unlink()
     got, body = answer(capsys, *line)
     assert (got, body["exit_code"], body["error"]["code"]) == (code, code, name)
+    assert (tmp_path / "mine").read_bytes() == b"mine"
+    assert not (tmp_path / "x").exists()
 
 
 @pytest.mark.parametrize("folder", ["solutions", "graders"])

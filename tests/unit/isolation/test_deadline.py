@@ -17,7 +17,7 @@ from course.isolation.levels import Deadline, Level, ProcessClock
 from course.isolation.session import Connection
 from course.isolation.spawn import spawner
 from tests.contracts.boundary.levels import require_level
-from tests.contracts.boundary.users import LEVELS_AND_USERS, run_as
+from tests.contracts.boundary.users import IN_WORKERS, LEVELS_AND_USERS, run_as
 from tests.turns import soak_unless
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="asks Linux for CPU times")
@@ -166,16 +166,8 @@ def test_honest_work_is_not_cut_off_on_a_machine_with_too_much_to_do(level: str)
 
 
 _AS_USER = """
-import sys
-from course.isolation.levels import Deadline
-from course.isolation.failures import StudentFailure
-from course.isolation.launch import keep_private
-from course.isolation.session import Connection
-from course.isolation.spawn import Level, spawner
-keep_private()
-found = spawner(Level(sys.argv[1]), ("numpy",))
 for name in ("spins", "sleeps"):
-    connection = Connection(found, {"a.py": sys.argv[2].encode()}, "a.py", Deadline(10))
+    connection = connect(10)
     connection.deadline = Deadline(0.3, wall=100)
     try:
         connection.call(name)
@@ -191,4 +183,4 @@ found.close()
 @pytest.mark.parametrize(("level", "user"), LEVELS_AND_USERS)
 def test_time_is_told_whoever_the_grader_is(level: str, user: str) -> None:
     require_level(level)
-    assert run_as(user, _AS_USER, level, _WORK).split() == ["spins", "sleeps"]
+    assert run_as(user, IN_WORKERS + _AS_USER, level, _WORK).split() == ["spins", "sleeps"]

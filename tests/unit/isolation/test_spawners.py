@@ -7,6 +7,7 @@ import os
 import select
 import shutil
 import signal
+import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
@@ -126,6 +127,21 @@ def test_closed_folders_and_links_are_removed_but_not_followed(tmp_path: Path) -
     assert not top.exists()
     assert (kept / "file").exists()
     assert kept.stat().st_mode & 0o777 == 0o755
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a process cannot be asked if it lives")
+def test_folders_of_dead_processes_go_and_those_of_living_ones_stay(temporary: Path) -> None:
+    ended = subprocess.Popen([sys.executable, "-c", ""])
+    ended.wait()
+    dead = temporary / f"course-worker-{ended.pid}-x"
+    living = temporary / f"course-worker-{os.getppid()}-x"
+    strange = temporary / "course-worker-notes"
+    for folder in (dead, living, strange):
+        folder.mkdir()
+        (folder / "file").write_text("x", "utf-8")
+    own = launch.private_folder()
+    assert own.stat().st_mode & 0o077 == 0
+    assert sorted(temporary.iterdir()) == sorted([living, own, strange])
 
 
 @pytest.mark.parametrize("level", ["L1", "L2", "L3"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator
 from typing import Any
 
@@ -440,18 +441,16 @@ def test_one_worker_sees_nothing_of_another(load: Any) -> None:
     assert load(source).call("look") == [False] * 4
 
 
-def test_limits_are_those_that_were_asked_for(workers: Spawner) -> None:
+def test_limits_are_those_that_are_set(workers: Spawner, monkeypatch: pytest.MonkeyPatch) -> None:
     if workers.level == Level.L1:
         pytest.skip("L1 has no limits")
-    small = spawner(Level(workers.level), ("numpy",), limits=Limits(memory=1 << 29, descriptors=16))
-    try:
-        source = (
-            b"import numpy as np\ndef f():\n    return np.zeros(1 << 26).size\n"
-            b"def g():\n    return [open('/dev/zero') for _ in range(20)]\n"
-        )
+    monkeypatch.setattr("course.isolation.spawn.LIMITS", Limits(memory=1 << 29, descriptors=16))
+    source = (
+        b"import numpy as np\ndef f():\n    return np.zeros(1 << 26).size\n"
+        b"def g():\n    return [open('/dev/zero') for _ in range(20)]\n"
+    )
+    with contextlib.closing(spawner(Level(workers.level), ("numpy",))) as small:
         connection = Connection(small, {"main.py": source}, "main.py", Deadline(20))
         assert _failure(connection, "f").kind == "memory"
         assert _failure(connection, "g").type == "OSError"
         connection.close()
-    finally:
-        small.close()

@@ -256,7 +256,7 @@ def test_where_a_path_first_differs_is_said_only_by_the_check_that_saw_it() -> N
     failure = CheckFailed(
         Finding("The order is 1.", "Smaller steps."), None, ("The order is 1.", "Smaller steps.")
     )
-    told = _retold(check, failure, Story(seen, certain=True, own=frozenset()), "rk4_step", [])
+    told = _retold(check, failure, Story(seen, own=frozenset()), "rk4_step", [])
     assert (told.diagnosis, told.first_divergence) == ("SIGN_FLIPPED", None)
 
 

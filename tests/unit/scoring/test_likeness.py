@@ -11,8 +11,7 @@ import pytest
 from course.isolation.failures import StudentFailure
 from course.scoring import kit
 from course.scoring.elsewhere import cure
-from course.scoring.explain.likeness import likeness
-from course.scoring.explain.reading_code import names_of, return_in_a_loop, why_none
+from course.scoring.explain.likeness import likeness, names_of, return_in_a_loop, why_none
 from course.scoring.failures import CheckFailed, finding_of
 from course.scoring.judging.outcomes import told_more
 from course.scoring.verdict import CheckResult, Places, Status, Visibility

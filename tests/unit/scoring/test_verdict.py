@@ -1,13 +1,32 @@
-"""What is kept of a verdict, and what of it a student may read."""
+"""What is kept of a verdict, what of it a student may read, and its values as a person reads them."""
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import msgspec
 import pytest
 
-from course.scoring.verdict import MAX_VERDICT, CheckResult, Status, Verdict, Visibility, bounded, for_student
+from course.scoring import kit
+from course.scoring.failures import CheckFailed
+from course.scoring.verdict import (
+    MAX_VERDICT,
+    CheckResult,
+    Status,
+    Tolerance,
+    Verdict,
+    Visibility,
+    bounded,
+    for_student,
+    format_input,
+    format_pair,
+    format_points,
+    format_tolerance,
+    format_value,
+    in_points,
+    numbers_of,
+)
 
 
 def _check(**fields: Any) -> CheckResult:
@@ -89,3 +108,123 @@ def test_a_verdict_has_its_bound_whatever_is_in_it() -> None:
     assert len(msgspec.json.encode(kept)) <= MAX_VERDICT
     assert [(check.status, check.message) for check in kept.checks] == [("fail", "It is not.")] * 40
     assert kept.checks[0].actual == large.checks[0].actual, "what is needed most goes last"
+
+
+# -- values -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("points", "text"), [(31.0, "31"), (2.5, "2.5"), (0.0, "0"), (1 / 3, "0.33"), (100, "100")]
+)
+def test_points_have_no_decimals_that_say_nothing(points, text):
+    assert format_points(points) == text
+
+
+def test_values_that_differ_late_are_told_apart():
+    actual, expected = format_pair(1.00000001, 1.0)
+    assert (actual, expected) == ("1.00000001", "1")
+    assert format_pair(1.0, 1.0) == ("1", "1")
+    assert format_pair([0.1 + 0.2], [0.3]) == ("[0.30000000000000004]", "[0.29999999999999999]")
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (math.nan, "nan"),
+        (-math.inf, "-inf"),
+        (True, "True"),
+        (None, "None"),
+        ([1.5, [2, "x"]], "[1.5, [2, x]]"),
+        ({"q": 1e-9}, "{q: 1e-09}"),
+        (3, "3"),
+    ],
+)
+def test_plain_values_are_readable(value, text):
+    assert format_value(value) == text
+
+
+def test_an_input_reads_like_a_sentence():
+    assert format_input({"omega": 2.0, "h": 0.05}) == "omega = 2, h = 0.05"
+
+
+def test_an_input_of_different_numbers_does_not_read_as_if_they_were_equal():
+    assert format_input({"e": [1e7 + 0.3, 1e7 + 1.1, "… 3 more"]}) == "e = [10000000.3, 10000001.1, … 3 more]"
+    assert format_input({"e": [1e7, 1e7]}) == "e = [1e+07, 1e+07]"
+    assert format_input({"e": [math.nan, math.nan]}) == "e = [nan, nan]", (
+        "different, and no digits tell them apart"
+    )
+
+
+@pytest.mark.parametrize(
+    ("tolerance", "units", "text"),
+    [
+        (Tolerance(rel=0.02, source="closed form"), "1", "within 2 %"),
+        (Tolerance(rel=5e-5), "1", "within 5e-05 of it"),
+        (Tolerance(rel=1e-9, abs=0.01, source="of 200 programs"), "m", "within 0.01 m"),
+        (Tolerance(abs=1e-9, source="rounding"), "m", ""),
+        (Tolerance(rel=1e-12), "s", ""),
+        (Tolerance(rel=0.5, abs=0.1), "", "within 50 % or 0.1"),
+        (Tolerance(source="theory"), "", ""),
+    ],
+)
+def test_a_tolerance_says_how_much_unless_it_is_only_for_rounding(tolerance, units, text):
+    assert format_tolerance(tolerance, units) == text
+
+
+def test_one_point_is_singular() -> None:
+    assert [in_points(value) for value in (1.0, 2, 0, 0.5, 1.004)] == [
+        "1 point", "2 points", "0 points", "0.5 points", "1 point",
+    ]  # fmt: skip
+
+
+def compared(
+    actual: Any, expected: Any, tolerance: Tolerance | None = None, units: str = "", quantity: str = ""
+) -> dict[str, str]:
+    """The numbers of a failed check by their labels."""
+    check = _check(actual=actual, expected=expected, tolerance=tolerance, units=units, quantity=quantity)
+    return dict(numbers_of(check))
+
+
+@pytest.mark.parametrize(
+    ("actual", "shown"),
+    [(0.5, "0.5 m"), (3, "3 m"), ([1.0, 2.0], "[1, 2] m"), (None, "None"), (False, "False"), ("no", "no")],
+)
+def test_only_numbers_have_a_unit(actual, shown):
+    assert compared(actual, 2.0, units="m") == {"measured": shown, "expected": "2 m"}
+
+
+def test_limits_are_said_in_words_and_where_none_can_be_met_the_one_that_is_broken():
+    limits = Tolerance(source="theory")
+    assert compared(3.0, [0.9, 1.1], limits, "m")["expected"] == "from 0.9 to 1.1 m"
+    assert compared(3.0, [2.18494, 0.03], limits)["expected"] == "at most 0.03"
+    assert compared(0.0, [2.18494, 0.03], limits)["expected"] == "at least 2.18494"
+    assert compared(3.0, {"at most": 0.5}, limits, "s")["expected"] == "at most 0.5 s"
+    assert compared([1.0, 2.0], [0.9, 1.1], Tolerance(abs=0.01))["expected"] == "[0.9, 1.1], within 0.01"
+    assert compared(3, [1, 2], Tolerance(abs=0.0), "evaluations")["expected"] == "[1, 2] evaluations"
+
+
+def test_a_measured_number_is_named_unless_the_message_names_it():
+    def said(message):
+        with pytest.raises(CheckFailed) as failed:
+            kit.expect_bounded(2.0, high=1.0, source="x", quantity="slip", units="m", message=message)
+        return failed.value.finding
+
+    finding = said("It slides too far.")
+    numbers = compared(finding.actual, finding.expected, quantity=finding.quantity, units="m")
+    assert list(numbers.items()) == [("measured", "2 m (slip)"), ("expected", "at most 1 m")]
+    assert said("The `slip` is too large.").quantity == ""
+
+
+def test_a_number_that_only_looks_round_has_more_digits():
+    assert format_value(2.9999995764) == "2.999999576"
+    assert [format_value(value) for value in (3.0, 0.1 + 0.2, 1e300, math.inf)] == [
+        "3",
+        "0.3",
+        "1e+300",
+        "inf",
+    ]
+
+
+def test_a_number_of_the_wrong_type_does_not_look_like_the_right_one():
+    assert compared(3.0, 3) == {"measured": "3.0", "expected": "3"}
+    assert compared("None", None) == {"measured": "None"}

@@ -1,4 +1,4 @@
-"""Answers with messages that only a grader sends."""
+"""Sends frames of its own making; put where an attack says ``from frames import *``."""
 
 import gc
 import struct
@@ -10,9 +10,3 @@ sock = worker._sock
 
 def raw(kind, body, length=None):
     sock.sendall(struct.pack("<IB", len(body) + 1 if length is None else length, kind) + body)
-
-
-def scale(values, factor):
-    for kind in (wire.Kind.CALL, wire.Kind.LOAD, wire.Kind.REPLY, 0, 255):
-        raw(kind, b"N")
-    return values

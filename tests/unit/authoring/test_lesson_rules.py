@@ -1,13 +1,109 @@
-"""What a lesson must have, and what it must not."""
+"""Running a lesson's code and holding its text to it; what a lesson must have, and what it must not."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
+from course.authoring.lessons.cells import as_written, run_lesson, update_outputs
 from course.authoring.lessons.lint import Finding, rules_broken
 from course.catalog.markdown import parse_lesson
+from course.errors import ContentError
+
+HEAD = "+++\nid = 'a'\n+++\n\n"
+
+
+def lesson(folder: Path, body: str) -> Path:
+    path = folder / "a.md"
+    path.write_text(HEAD + body, encoding="utf-8")
+    return path
+
+
+def test_cells_share_one_namespace_and_run_in_order(tmp_path: Path) -> None:
+    body = "```python\nx = 2\n```\n\ntext\n\n```python\nprint(x + 2)\n```\n\n```output\n4\n```\n"
+    first, second = run_lesson(lesson(tmp_path, body)).cells
+    assert (first.printed, first.agrees) == (None, True)
+    assert (second.printed, second.agrees) == ("4", True)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "```python\nprint(4)\n```\n\n```output\n5\n```\n",
+        "```python\nprint(4)\n```\n",
+        "```python hidden\nprint(4)\n```\n",
+    ],
+)
+def test_a_cell_that_prints_something_else_does_not_agree(tmp_path: Path, body: str) -> None:
+    (run,) = run_lesson(lesson(tmp_path, body)).cells
+    assert not run.agrees
+
+
+def test_outputs_are_rewritten_added_and_removed_and_nothing_else_changes(tmp_path: Path) -> None:
+    body = (
+        "One.\n\n```python\nprint(1)\n```\n\n```output\nold\nlines\n```\n\n"
+        "Two.\n\n```python\nprint('a\\nb')\n```\n\nThree.\n\n```python\nx = 1\n```\n\n```output\ngone\n```\n"
+    )
+    path = lesson(tmp_path, body)
+    assert update_outputs(path) == 3
+    assert path.read_text(encoding="utf-8").startswith(
+        HEAD + "One.\n\n```python\nprint(1)\n```\n\n```output\n1\n```"
+    )
+    assert all(run.agrees for run in run_lesson(path).cells)
+    before = path.read_text(encoding="utf-8")
+    assert update_outputs(path) == 0
+    assert path.read_text(encoding="utf-8") == before
+
+
+@pytest.mark.parametrize(
+    ("body", "said"),
+    [
+        ("```python\nx = 1\nx / 0\n```\n", "a.md:7: the code cell raises ZeroDivisionError"),
+        ("```python\nx = = 1\n```\n", "a.md:6: the code cell raises SyntaxError"),
+        ("It is [1](=nothing).\n", "a.md:5: [1](=nothing) raises NameError"),
+    ],
+)
+def test_what_raises_is_named_by_its_line(tmp_path: Path, body: str, said: str) -> None:
+    with pytest.raises(ContentError, match=re.escape(said)):
+        run_lesson(lesson(tmp_path, body))
+
+
+@pytest.mark.parametrize(
+    ("text", "agrees"),
+    [("0.333", True), ("0.3333", True), ("0.334", False), ("0.3 m", True), ("0.33333 %", True), ("3", False)],
+)
+def test_a_quoted_number_agrees_to_the_digits_it_is_written_with(
+    tmp_path: Path, text: str, agrees: bool
+) -> None:
+    run = run_lesson(lesson(tmp_path, f"It is [{text}](=x).\n\n```python\nx = 1 / 3\n```\n"))
+    assert [value.agrees for value in run.values] == [agrees]
+
+
+def test_a_longer_number_does_not_agree_with_a_shorter_one_it_begins_with(tmp_path: Path) -> None:
+    (value,) = run_lesson(lesson(tmp_path, "It is [10](=1).\n")).values
+    assert not value.agrees
+
+
+@pytest.mark.parametrize(
+    ("value", "text", "written"),
+    [
+        (0.08903, "0.0890", "0.0890"),
+        (4.39e8, "4.4e8", "4.4e8"),
+        (1.0e-14, "1e-14", "1e-14"),
+        (180000.0, "180,000", "180,000"),
+        (-0.0981, "-0.0981 m", "-0.0981"),
+        (-0.0981, "−0.0981", "−0.0981"),
+        (0.5, "+0.5", "+0.5"),
+        ("left", "left", "left"),
+    ],
+)
+def test_a_value_is_written_in_the_form_its_author_chose(value: object, text: str, written: str) -> None:
+    assert as_written(value, text) == written
+
+
+# -- rules ------------------------------------------------------------------------------------------------
 
 GOOD = """
 > **Myth.** A.

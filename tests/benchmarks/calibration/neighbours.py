@@ -28,22 +28,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 ROOT = Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT)]
 
-from course.authoring.exercises.grading import (  # noqa: E402
-    LocalSubmission,
-    accepted_files,
-    compose,
-    solution_path,
-)
+from course.authoring.exercises.grading import accepted_files, compose, solution_path  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.scoring.checks.collected import words  # noqa: E402
-from course.scoring.judging.session import GradingSession  # noqa: E402
 from course.scoring.judging.submission import Submission, Terms  # noqa: E402
 from course.scoring.verdict import Status  # noqa: E402
+from tests.benchmarks.calibration.seeds import Seeded  # noqa: E402
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from course.catalog.models import Exercise
+    from course.scoring.judging.session import GradingSession
     from course.scoring.verdict import CheckResult
 
 #: CPU seconds and bytes after which an edited program is given up: a loop may have lost its end.
@@ -95,13 +91,6 @@ class Neighbour(NamedTuple):
 
 class _GivenUpError(BaseException):
     """An edited program takes too long."""
-
-
-class _Local(GradingSession):
-    """A session whose submissions run in this process."""
-
-    def _load(self, submission: Submission) -> Any:
-        return LocalSubmission(submission.files[self.exercise.module].decode(), self._terms.seed)
 
 
 def neighbours(exercise: Exercise, catalog: Catalog, task: str, each: int, seed: int) -> Iterator[Neighbour]:
@@ -293,7 +282,8 @@ def main() -> int:
     catalog = Catalog()
     for name in options.exercise:
         exercise, pages = catalog.exercise(name), []
-        with _Local(exercise, catalog, scope="full", terms=Terms(timeout=60.0)) as session:
+        with Seeded(exercise, catalog, scope="full", terms=Terms(timeout=60.0)) as session:
+            session.here = True
             for task in [task.id for task in exercise.task if task.id in options.task or not options.task]:
                 counts: Counter[str] = Counter()
                 for number, program in enumerate(

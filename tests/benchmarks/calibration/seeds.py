@@ -154,7 +154,7 @@ def grade_all(exercise: Exercise, catalog: Catalog, options: argparse.Namespace)
                 counts[kind, short is not None] += 1
             elif short is None:
                 start = time.perf_counter()
-                short, graded = _grade(session, program, options.first)
+                short, graded = grade_one(session, program, options.first)
                 log.note(*key, wrong=short)
                 what = "caught as declared" if program.name.startswith("mutants/") else "full marks"
                 took = (time.perf_counter() - start) / graded
@@ -201,7 +201,7 @@ def programs(exercise: Exercise, catalog: Catalog, options: argparse.Namespace) 
             yield Program(name, source, frozenset({mutant.task}), options.mutants, told, declared)
 
 
-def _grade(session: Seeded, program: Program, first: int) -> tuple[int, int]:
+def grade_one(session: Seeded, program: Program, first: int) -> tuple[int, int]:
     """How many gradings were not as they should be, and how many there were."""
     submission = Submission({session.exercise.module: program.source})
     session.here = False

@@ -24,6 +24,16 @@ intervals = kit.companion("validation", "intervals")
 bundles = kit.companion("validation", "bundles")
 
 
+@pytest.mark.parametrize(
+    ("dof", "alpha", "printed"),
+    [(1, 0.1, (0.00393, 3.841)), (2, 0.05, (0.0506, 7.378)), (40, 0.05, (24.433, 59.342))],
+)
+def test_bands_are_those_of_printed_tables(dof, alpha, printed):
+    assert kit.reference("validation", "formulas").exactly()(dof, 1, alpha) == pytest.approx(
+        printed, abs=5.1e-4
+    )
+
+
 def test_the_speed_of_the_cart_obeys_its_equation_of_motion():
     drive, t = twins.record(np.random.default_rng(3), "a", 8.0, 0.01, 0.0).drive, np.linspace(1.0, 2.0, 50)
     force = np.sum(drive.amplitude * np.sin(np.multiply.outer(t, drive.omega) + drive.phase), axis=-1)

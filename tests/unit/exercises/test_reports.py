@@ -33,7 +33,6 @@ def sections(exercise_id, program=""):
 def test_every_part_of_a_right_program_s_report_has_rows_or_a_figure(exercise_id):
     for section in sections(exercise_id):
         assert section.rows or section.plot or section.title == "The plan", section.text
-        assert section.plot is None or render(section.plot).startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize("exercise_id", EXERCISES)

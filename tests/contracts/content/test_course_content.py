@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import pytest
 
+from course.authoring.coverage import read_coverage
 from course.authoring.exercises import diagnosis
 from course.authoring.exercises.diagnosis import as_one, code_of, fate_of, hypotheses_of, made_from
 from course.authoring.exercises.grading import solution_path
 from course.authoring.exercises.mutants import Record, Reported, caught_by, read_record
 from course.authoring.report import Findings
 from course.catalog.load import Catalog
+from course.cli.author.commands import is_command
 from course.handed_in import limits
 from course.ids import WARM_UPS
 from course.scoring import kit
@@ -24,7 +26,7 @@ def catalog() -> Catalog:
 
 def test_the_audit_finds_nothing_wrong_and_looks_at_everything(catalog: Catalog) -> None:
     """At a lesson called as an exercise is, where that one is audited."""
-    report = IN_PART(without=EXERCISES)
+    report = IN_PART(without=EXERCISES, is_command=is_command)
     assert [f"{p.where}: {p.message} {p.fix}" for p in report.problems] == []
     assert {*report.lessons, *EXERCISES} >= {path.stem for path in catalog.content.lessons.glob("*.md")}
     folders = [path for path in catalog.content.exercises.iterdir() if path.is_dir()]
@@ -32,6 +34,14 @@ def test_the_audit_finds_nothing_wrong_and_looks_at_everything(catalog: Catalog)
     assert {*report.exercises, *EXERCISES} == {path.name for path in folders} - {WARM_UPS}
     assert set(report.exercises).isdisjoint(EXERCISES)
     assert report.graded == sum(map(programs, report.exercises))
+
+
+def test_the_table_of_the_chapter_is_as_long_as_the_chapter(catalog: Catalog) -> None:
+    coverage = read_coverage(catalog).value
+    assert coverage.source_lines == 394
+    # Counted in the chapter.
+    counts = {section.kind: len(section.parts) for section in coverage.section}
+    assert [counts[kind] for kind in ("objective", "exercise", "question")] == [5, 5, 5]
 
 
 def test_the_first_warm_up_of_all_is_the_program_with_faults(catalog: Catalog) -> None:

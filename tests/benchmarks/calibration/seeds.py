@@ -26,8 +26,9 @@ import re
 import sys
 import time
 from collections import Counter
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import msgspec
 
@@ -45,16 +46,11 @@ from course.authoring.exercises.grading import (  # noqa: E402
 )
 from course.authoring.exercises.mutants import caught_by, judge  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
+from course.catalog.models import Exercise  # noqa: E402
 from course.scoring.explain.story import OWN_WORDS  # noqa: E402
 from course.scoring.judging.session import GradingSession  # noqa: E402
 from course.scoring.judging.submission import Submission, Terms  # noqa: E402
-from course.scoring.verdict import Status  # noqa: E402
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from course.catalog.models import Exercise
-    from course.scoring.verdict import Verdict
+from course.scoring.verdict import Status, Verdict  # noqa: E402
 
 LOG = Path(__file__).with_suffix(".jsonl")
 #: Seeds without a fault that make an ordinary run take a program's word; `.ci/release` asks for 200 and more.

@@ -22,8 +22,9 @@ import os
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
@@ -33,9 +34,6 @@ import here  # noqa: E402
 
 from course.authoring.exercises.grading import accepted_sources, mistakes_of, solution_path  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 #: What the checks need beside the peer itself.
 NEEDED = ["numpy", "msgspec", "pymunk", "pytest", "ipykernel"]

@@ -29,9 +29,10 @@ import sys
 import tempfile
 import time
 import uuid
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
@@ -50,9 +51,6 @@ from compare import (  # noqa: E402
 )
 
 from tests.journeys.processes import below, stored  # noqa: E402
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 #: What is installed for each peer; the rest of what it needs is its own to name. Otter runs notebooks with
 #: whatever kernel there is, and names none.

@@ -145,13 +145,6 @@ def test_colour_is_where_it_was_asked_for(process, workspace, extra):
         assert max(len(re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", row)) for row in words.splitlines()) <= 60
 
 
-def test_a_console_of_an_old_code_page_is_no_obstacle(process, workspace):
-    ran = process(
-        "-C", str(workspace), "check", PYTHONUTF8="0", PYTHONIOENCODING="cp437", PYTHONLEGACYWINDOWSSTDIO="1"
-    )
-    assert ran.returncode == 1
-
-
 def test_a_check_while_a_watch_runs_loses_nothing(course, workspace):
     module = workspace / "doubling" / "doubling.py"
     with _watch(course, workspace) as watch:

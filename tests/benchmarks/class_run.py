@@ -20,10 +20,10 @@ import statistics
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
@@ -34,12 +34,7 @@ from course.grading.cluster.connect import local_cluster  # noqa: E402
 from course.grading.running.batch import grade_all  # noqa: E402
 from course.grading.running.folder import open_results  # noqa: E402
 from course.grading.running.rerun import RerunOptions, rerun  # noqa: E402
-from course.grading.running.run import RunOptions, grade_class  # noqa: E402
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from course.grading.running.run import GradeAll, Summary
+from course.grading.running.run import GradeAll, RunOptions, Summary, grade_class  # noqa: E402
 
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
 PAGE = os.sysconf("SC_PAGE_SIZE")

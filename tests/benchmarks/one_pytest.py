@@ -5,7 +5,6 @@ What ``protection.py`` runs as "a pytest process per submission"; COURSE_BENCH_S
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import sys
 import zlib
@@ -14,23 +13,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
+sys.path[:0] = [str(Path(__file__).with_name("peers"))]
 
+import here  # noqa: E402
 
 from course.authoring.exercises.grading import LocalSubmission  # noqa: E402
-from course.catalog.load import Catalog  # noqa: E402
-from course.scoring.judging.session import check_files  # noqa: E402
 
-CATALOG = Catalog()
 SOURCE = Path(os.environ["COURSE_BENCH_SOURCE"])
-EXERCISE = CATALOG.exercise(SOURCE.stem)
-for number, (path, _) in enumerate(check_files(EXERCISE, CATALOG, "full")):
-    spec = importlib.util.spec_from_file_location(f"checks_{number}", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    globals().update({name: value for name, value in vars(module).items() if name.startswith("test_")})
+globals().update({f"test_{name}": check for name, check in here.checks(SOURCE.stem).items()})
 
 
 @pytest.fixture(scope="session")

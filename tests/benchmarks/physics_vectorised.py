@@ -7,7 +7,7 @@ The promise is a ratio of at most 20.
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
 
@@ -18,9 +18,6 @@ from course.physics.integrators import RK4, State, trajectory
 from course.physics.rotation import Spin, SplitRotation
 from course.physics.simulator import Simulator
 from course.physics.state import RigidBodyState
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 MANY, REPEATS = 1000, 5
 RNG = np.random.default_rng(0)

@@ -25,27 +25,16 @@ from typing import Any
 sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
 
 
-from course.authoring.exercises.grading import (  # noqa: E402
-    LocalSubmission,
-    accepted_sources,
-    mistakes_of,
-    solution_path,
-)
+from course.authoring.exercises.grading import accepted_sources, mistakes_of, solution_path  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.isolation.levels import Deadline  # noqa: E402
 from course.isolation.session import Connection  # noqa: E402
 from course.scoring import kit  # noqa: E402
 from course.scoring.judging.session import GradingSession, pinned_to  # noqa: E402
 from course.scoring.judging.submission import Submission, Terms  # noqa: E402
+from tests.benchmarks.calibration.seeds import Seeded  # noqa: E402
 
 TICK = os.sysconf("SC_CLK_TCK")
-
-
-class Unprotected(GradingSession):
-    """The same checks by the same pytest calls, the student's module loaded right here."""
-
-    def _load(self, submission: Submission) -> Any:
-        return LocalSubmission(submission.files[self.exercise.module].decode(), self._terms.seed)
 
 
 def submissions(exercise: Any, catalog: Catalog) -> dict[str, bytes]:
@@ -82,7 +71,8 @@ def protection(exercise_id: str, rounds: int) -> None:
     exercise = catalog.exercise(exercise_id)
     work = submissions(exercise, catalog)
     guarded = GradingSession(exercise, catalog, scope="full", processor=0)
-    bare = Unprotected(exercise, catalog, scope="full", terms=Terms(level="L1"), processor=0)
+    bare = Seeded(exercise, catalog, scope="full", terms=Terms(level="L1"), processor=0)
+    bare.here = True  # the same checks by the same pytest calls, the student's module loaded right here
     count = counted()
     for session in (guarded, bare):  # warm both
         session.grade(Submission({exercise.module: work["solution"]}))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import io
 import json
 import os
@@ -10,8 +11,12 @@ import sys
 import pytest
 
 from course.catalog import models
+from course.catalog.load import Catalog
+from course.cli.frame import console
 from course.cli.frame.console import Console, Settings, install
-from course.cli.setup.demo import TRIES
+from course.cli.setup.demo import TRIES, demo, worked_example
+from course.scoring.judging.session import GradingSession
+from course.scoring.judging.submission import Submission
 from tests.command_line import as_process, in_process
 from tests.terminals import Terminal, needs_tmux
 
@@ -28,12 +33,10 @@ class _Screen(io.StringIO):
 @pytest.fixture
 def typing(monkeypatch):
     """Run the demonstration on a terminal where these lines are typed, and no more; what it said."""
-    from course.cli.frame import console as module
-    from course.cli.setup.demo import demo
 
     def run(*lines, out=None, environ=None, **settings):
         out = out or _Screen()
-        monkeypatch.setattr(module, "_installed", None)
+        monkeypatch.setattr(console, "_installed", None)
         monkeypatch.setattr(sys, "stdin", _Screen("".join(f"{line}\n" for line in lines)))
         install(Console(Settings(**settings), stdout=out, environ={"TERM": "dumb", **(environ or {})}))
         assert demo() == 0
@@ -124,11 +127,6 @@ def test_on_a_terminal_a_person_fixes_it_and_sees_both_motions(tmp_path):
 @pytest.fixture(scope="module")
 def worked():
     """A warm session over the worked example, as a function of the module's text; and the right text."""
-    from course.catalog.load import Catalog
-    from course.cli.setup.demo import worked_example
-    from course.scoring.judging.session import GradingSession
-    from course.scoring.judging.submission import Submission
-
     catalog = Catalog()
     example = worked_example(catalog)
     with GradingSession(example, catalog) as session:
@@ -169,10 +167,6 @@ def test_the_demonstration_measures_what_theory_says_of_both_methods(tmp_path):
 
 def test_no_task_has_the_signature_of_the_worked_example():
     """What `course demo` ships would answer it."""
-    import ast
-
-    from course.catalog.load import Catalog
-    from course.cli.setup.demo import worked_example
 
     def signatures(exercise):
         tree = ast.parse(exercise.stub_path.read_text(encoding="utf-8"))
@@ -184,8 +178,7 @@ def test_no_task_has_the_signature_of_the_worked_example():
 
     catalog = Catalog()
     ((name, parameters),) = signatures(worked_example(catalog))
-    exercises = [*catalog.exercises(), *getattr(catalog, "warm_ups", tuple)()]
-    taken = set().union(*(signatures(exercise) for exercise in exercises))
+    taken = set().union(*map(signatures, (*catalog.exercises(), *catalog.warm_ups())))
     assert name not in {known for known, _ in taken}
     assert parameters not in {known for _, known in taken}
 

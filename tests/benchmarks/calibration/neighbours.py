@@ -22,29 +22,20 @@ import resource
 import signal
 import sys
 from collections import Counter
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 ROOT = Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT)]
 
-from course.authoring.exercises.grading import (  # noqa: E402
-    LocalSubmission,
-    accepted_files,
-    compose,
-    solution_path,
-)
+from course.authoring.exercises.grading import accepted_files, compose, solution_path  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
+from course.catalog.models import Exercise  # noqa: E402
 from course.scoring.checks.collected import words  # noqa: E402
-from course.scoring.judging.session import GradingSession  # noqa: E402
 from course.scoring.judging.submission import Submission, Terms  # noqa: E402
-from course.scoring.verdict import Status  # noqa: E402
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from course.catalog.models import Exercise
-    from course.scoring.verdict import CheckResult
+from course.scoring.verdict import CheckResult, Status  # noqa: E402
+from tests.benchmarks.calibration.seeds import Seeded  # noqa: E402
 
 #: CPU seconds and bytes after which an edited program is given up: a loop may have lost its end.
 _PATIENCE, _MEMORY = 10, 6 * 2**30
@@ -95,13 +86,6 @@ class Neighbour(NamedTuple):
 
 class _GivenUpError(BaseException):
     """An edited program takes too long."""
-
-
-class _Local(GradingSession):
-    """A session whose submissions run in this process."""
-
-    def _load(self, submission: Submission) -> Any:
-        return LocalSubmission(submission.files[self.exercise.module].decode(), self._terms.seed)
 
 
 def neighbours(exercise: Exercise, catalog: Catalog, task: str, each: int, seed: int) -> Iterator[Neighbour]:
@@ -230,7 +214,7 @@ def _become(node: ast.AST, other: ast.AST) -> None:
     node.__dict__.update(fields)
 
 
-def tried(exercise: Exercise, session: GradingSession, program: Neighbour) -> list[CheckResult] | None:
+def tried(exercise: Exercise, session: Seeded, program: Neighbour) -> list[CheckResult] | None:
     """The checks that a program fails; None if it had to be given up."""
 
     late = []
@@ -293,7 +277,8 @@ def main() -> int:
     catalog = Catalog()
     for name in options.exercise:
         exercise, pages = catalog.exercise(name), []
-        with _Local(exercise, catalog, scope="full", terms=Terms(timeout=60.0)) as session:
+        with Seeded(exercise, catalog, scope="full", terms=Terms(timeout=60.0)) as session:
+            session.here = True
             for task in [task.id for task in exercise.task if task.id in options.task or not options.task]:
                 counts: Counter[str] = Counter()
                 for number, program in enumerate(

@@ -26,8 +26,9 @@ import re
 import sys
 import time
 from collections import Counter
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import msgspec
 
@@ -45,16 +46,11 @@ from course.authoring.exercises.grading import (  # noqa: E402
 )
 from course.authoring.exercises.proofs import caught_by, judge  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
+from course.catalog.models import Exercise  # noqa: E402
 from course.scoring.explain.story import OWN_WORDS  # noqa: E402
 from course.scoring.judging.session import GradingSession  # noqa: E402
 from course.scoring.judging.submission import Submission, Terms  # noqa: E402
-from course.scoring.verdict import Status  # noqa: E402
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from course.catalog.models import Exercise
-    from course.scoring.verdict import Verdict
+from course.scoring.verdict import Status, Verdict  # noqa: E402
 
 LOG = Path(__file__).with_suffix(".jsonl")
 #: Seeds without a fault that make an ordinary run take a program's word; `.ci/release` asks for 200 and more.
@@ -154,7 +150,7 @@ def grade_all(exercise: Exercise, catalog: Catalog, options: argparse.Namespace)
                 counts[kind, short is not None] += 1
             elif short is None:
                 start = time.perf_counter()
-                short, graded = _grade(session, program, options.first)
+                short, graded = grade_one(session, program, options.first)
                 log.note(*key, wrong=short)
                 what = "caught as declared" if program.name.startswith("mutants/") else "full marks"
                 took = (time.perf_counter() - start) / graded
@@ -201,7 +197,7 @@ def programs(exercise: Exercise, catalog: Catalog, options: argparse.Namespace) 
             yield Program(name, source, frozenset({mutant.task}), options.mutants, told, declared)
 
 
-def _grade(session: Seeded, program: Program, first: int) -> tuple[int, int]:
+def grade_one(session: Seeded, program: Program, first: int) -> tuple[int, int]:
     """How many gradings were not as they should be, and how many there were."""
     submission = Submission({session.exercise.module: program.source})
     session.here = False

@@ -7,7 +7,7 @@ A group is the three carts of one grading run. Part ``policies``: every policy t
 the grader scores, by the mean over three fleets of best over own settling. ``boxes``: the same for the other
 boxes that ``tune`` is asked about. ``bench``: the model solution's identification of full and of weak
 recordings. ``excitations``: what each kind shows at best, and how far off the README's fit is on it. A file
-of results can be made in parts and merged. ``local_run.py`` proves the checks' verdicts; this shows how much
+of results can be made in parts and merged. ``seeds.py`` proves the checks' verdicts; this shows how much
 room there is between them.
 """
 

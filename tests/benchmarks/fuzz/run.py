@@ -28,9 +28,10 @@ import tempfile
 import time
 import traceback
 from collections import Counter
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[3]), str(Path(__file__).resolve().parent)]
 
@@ -43,10 +44,7 @@ from course.catalog.pack import pack_bytes, read_pack  # noqa: E402
 from course.errors import CourseError  # noqa: E402
 from course.grading.gradebook.book import Gradebook  # noqa: E402
 from course.grading.gradebook.records import Decision, SubmittedAt  # noqa: E402
-from course.grading.intake.archives import (  # noqa: E402
-    Reader,
-    RefusedError,
-)
+from course.grading.intake.archives import Reader, RefusedError  # noqa: E402
 from course.grading.intake.downloads import class_list  # noqa: E402
 from course.grading.intake.students import submission_from  # noqa: E402
 from course.grading.results.late import read_policy, read_times  # noqa: E402
@@ -65,9 +63,6 @@ from course.scoring.judging.session import GradingSession  # noqa: E402
 from course.scoring.judging.submission import Submission, Terms  # noqa: E402
 from tests.contracts.boundary import test_broken_functions as spoiling  # noqa: E402
 from tests.unit.isolation.test_connection import LOADED, READY, Liar  # noqa: E402
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 #: CPU seconds of this process for one input: a thousand times what an ordinary one takes.
 SLOW_S = 5.0

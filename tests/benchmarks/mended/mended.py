@@ -23,7 +23,7 @@ import sys
 import tempfile
 import tomllib
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 ROOT = Path(__file__).resolve().parents[3]
 MISTAKES = Path(__file__).with_name("mistakes")
@@ -36,9 +36,7 @@ sys.path.insert(0, str(ROOT))
 from course.authoring.exercises.grading import compose, grade_sources, mistakes_of, solution_path  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.grading.exports.selection import checks_for_student  # noqa: E402
-
-if TYPE_CHECKING:
-    from course.scoring.verdict import Verdict
+from course.scoring.verdict import Verdict  # noqa: E402
 
 FATES = ("mended", "more", "not mended")
 

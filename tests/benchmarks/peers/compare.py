@@ -22,8 +22,9 @@ import os
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
@@ -34,14 +35,12 @@ import here  # noqa: E402
 from course.authoring.exercises.grading import accepted_sources, mistakes_of, solution_path  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
 #: What the checks need beside the peer itself.
 NEEDED = ["numpy", "msgspec", "pymunk", "pytest", "ipykernel"]
 PACKAGES = {"nbgrader": ["nbgrader", *NEEDED], "otter": ["otter-grader", *NEEDED]}
 #: Wall seconds after which a command is given up; none has taken a tenth of it.
 PATIENCE_S = 1800
+INSTALL_S = 600
 #: What each is to cost, in units of ours.
 TARGETS = {"nbgrader one by one": 90, "nbgrader whole class": 20, "otter run": 60}
 Scores = dict[str, float]
@@ -97,18 +96,21 @@ def ours(exercise: Any, sources: dict[str, str], scratch: Path) -> tuple[float, 
     return spent / len(sources), scores
 
 
-def environment_of(peer: str, folder: Path) -> Path:
+def install(peer: str, packages: list[str], folder: Path) -> Path:
     """The folder of a peer's programs, installed now if they are not there."""
     programs = folder / peer / ("Scripts" if os.name == "nt" else "bin")
     if not (programs / peer).exists():
-        for command in (
-            [sys.executable, "-m", "venv", str(folder / peer)],
-            [str(programs / "python"), "-m", "pip", "install", "-q", *PACKAGES[peer]],
-        ):
-            done = subprocess.run(command, capture_output=True, text=True, check=False)
-            if done.returncode:
-                last = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
-                raise NotMeasuredError(f"{peer} cannot be installed here: {last}")
+        try:
+            for command in (
+                [sys.executable, "-m", "venv", str(folder / peer)],
+                [str(programs / "python"), "-m", "pip", "install", "-q", *packages],
+            ):
+                done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=INSTALL_S)
+                if done.returncode:
+                    last = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
+                    raise NotMeasuredError(f"{peer} cannot be installed here: {last}")
+        except subprocess.TimeoutExpired:
+            raise NotMeasuredError(f"{peer} is not installed after {INSTALL_S} s") from None
     return programs
 
 
@@ -130,6 +132,9 @@ def notebook(cells: list[dict[str, Any]]) -> str:
         for number, cell in enumerate(cells)
     ]
     return json.dumps({"cells": made, "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 5})
+
+
+NBGRADER_CONFIG = "c = get_config()\nc.CourseDirectory.course_id = 'c'\n"
 
 
 def nbgrader_cell(name: str, source: str, points: float | None) -> dict[str, Any]:
@@ -156,9 +161,7 @@ def nbgrader(
     for way in ("one by one", "whole class"):
         course = scratch / way.replace(" ", "-")
         written(course / "source" / "ps1" / "work.ipynb", "### BEGIN SOLUTION\npass\n### END SOLUTION")
-        (course / "nbgrader_config.py").write_text(
-            "c = get_config()\nc.CourseDirectory.course_id = 'c'\n", "utf-8"
-        )
+        (course / "nbgrader_config.py").write_text(NBGRADER_CONFIG, "utf-8")
         program = str(venv / "nbgrader")
         path = f"{venv}{os.pathsep}{os.environ['PATH']}"
         cpu([program, "generate_assignment", "ps1"], course, PATH=path)
@@ -179,32 +182,39 @@ def nbgrader(
 # -- otter --------------------------------------------------------------------------------------------------
 
 
+#: Makes autograder.zip of the tests in a folder.
+OTTER_GENERATE = (
+    "generate",
+    "-t",
+    "tests",
+    "-c",
+    "otter_config.json",
+    "--no-environment",
+    "-o",
+    "autograder.zip",
+)
+
+
+def otter_test(folder: Path, name: str, code: str, points: float, *, hidden: bool = False) -> None:
+    """Write a test, and how otter is to run those of the folder."""
+    case = {"code": code, "hidden": hidden, "locked": False}
+    suite = {"cases": [case], "scored": True, "setup": "", "teardown": "", "type": "doctest"}
+    test = {"name": name, "points": points, "suites": [suite]}
+    (folder / "tests").mkdir(parents=True, exist_ok=True)
+    (folder / "tests" / f"{name}.py").write_text(f"OK_FORMAT = True\n\ntest = {test!r}\n", "utf-8")
+    (folder / "otter_config.json").write_text('{"pdf": false, "points_possible": null}', "utf-8")
+
+
 def otter(
     exercise: Any, sources: dict[str, str], venv: Path, scratch: Path
 ) -> dict[str, tuple[float, Scores]]:
     """`otter run`, for each student."""
-    (scratch / "tests").mkdir()
     for name, most in here.points(exercise.id).items():
         code = f">>> import here\n>>> here.run({exercise.id!r}, {name!r}, dict(globals()))"
-        case = {"code": code, "hidden": False, "locked": False}
-        suite = {"cases": [case], "scored": True, "setup": "", "teardown": "", "type": "doctest"}
-        test = {"name": name, "points": most, "suites": [suite]}
-        (scratch / "tests" / f"{name}.py").write_text(f"OK_FORMAT = True\n\ntest = {test!r}\n", "utf-8")
+        otter_test(scratch, name, code, most)
     path = f"{venv}{os.pathsep}{os.environ['PATH']}"
     program = str(venv / "otter")
-    (scratch / "otter_config.json").write_text('{"pdf": false, "points_possible": null}', "utf-8")
-    made = [
-        program,
-        "generate",
-        "-t",
-        "tests",
-        "-c",
-        "otter_config.json",
-        "--no-environment",
-        "-o",
-        "autograder.zip",
-    ]
-    cpu(made, scratch, PATH=path)
+    cpu([program, *OTTER_GENERATE], scratch, PATH=path)
     spent, scores = 0.0, {}
     for student, source in sources.items():
         place = scratch / student
@@ -262,7 +272,7 @@ def main() -> None:
         print(f"  ours, a class of {options.students:<5} {mine:7.3f} s of CPU each")
         for peer in options.only or PEERS:
             try:
-                venv = environment_of(peer, venvs)
+                venv = install(peer, PACKAGES[peer], venvs)
                 measured = PEERS[peer](exercise, sources, venv, scratch / peer)
             except NotMeasuredError as reason:
                 print(f"  {peer}: not measured. {' '.join(str(reason).split())}")

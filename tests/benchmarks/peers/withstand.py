@@ -29,9 +29,10 @@ import sys
 import tempfile
 import time
 import uuid
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
@@ -39,12 +40,17 @@ MINI = ROOT / "tests" / "fixtures" / "mini_course"
 sys.path[:0] = [str(ROOT), str(HERE)]
 
 from attacks import ATTACKS, HONEST, WRONG  # noqa: E402
-from compare import nbgrader_cell, notebook  # noqa: E402
+from compare import (  # noqa: E402
+    NBGRADER_CONFIG,
+    OTTER_GENERATE,
+    NotMeasuredError,
+    install,
+    nbgrader_cell,
+    notebook,
+    otter_test,
+)
 
 from tests.journeys.processes import below, stored  # noqa: E402
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 #: What is installed for each peer; the rest of what it needs is its own to name. Otter runs notebooks with
 #: whatever kernel there is, and names none.
@@ -56,16 +62,11 @@ PACKAGES = {
 }
 OURS = {"course at L3": ("--isolation", "strict"), "course at L1": ("--isolation", "process")}
 DISTRIBUTION = {"otter": "otter-grader"}
-INSTALL_S = 600
 HELD = 2_500_000_000  # bytes in the memory of one process; a worker of ours may have 2 GB
 FILLED = 150_000_000  # bytes on disk that were not there before
 WAIT_S = {"leave a daemon": 5.0, "rewrite the result": 10.0}  # before it is looked at what came of it
 MARKER = "COURSE_PEERS_RUN"
 PUBLIC = "3.0"
-
-
-class NotMeasuredError(Exception):
-    """Why a grader cannot be measured here, as a sentence."""
 
 
 @dataclass(frozen=True)
@@ -103,6 +104,17 @@ class Grader:
     def environment(self, place: Place) -> dict[str, str]:
         path = f"{self.programs}{os.pathsep}{os.environ['PATH']}" if self.programs else os.environ["PATH"]
         return {"PATH": path, "HOME": str(place.folder / "home")}
+
+    def _run(self, place: Place, folder: Path, *words: str) -> None:
+        """One of the instructor's own commands."""
+        environment = {**os.environ, **self.environment(place)}
+        command = [self.program(words[0]), *words[1:]]
+        done = subprocess.run(
+            command, cwd=folder, env=environment, capture_output=True, text=True, check=False
+        )
+        if done.returncode:
+            said = f"{words[0]} {words[1]} ended with {done.returncode}: {done.stderr[-500:]}"
+            raise NotMeasuredError(said)
 
     def results(self, place: Place) -> list[Path]:
         """Where it leaves what it found, for an attack that rewrites it."""
@@ -242,21 +254,8 @@ class Nbgrader(Grader):
         source = place.folder / "source" / "ps1"
         source.mkdir(parents=True)
         (source / "work.ipynb").write_text(notebook(cells), "utf-8")
-        config = "c = get_config()\nc.CourseDirectory.course_id = 'c'\n"
-        (place.folder / "nbgrader_config.py").write_text(config, "utf-8")
-        self._run(place, "generate_assignment", "ps1")
-
-    def _run(self, place: Place, *words: str) -> None:
-        done = subprocess.run(
-            [self.program("nbgrader"), *words],
-            cwd=place.folder,
-            env={**os.environ, **self.environment(place)},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        if done.returncode:
-            raise NotMeasuredError(f"nbgrader {words[0]} ended with {done.returncode}: {done.stderr[-500:]}")
+        (place.folder / "nbgrader_config.py").write_text(NBGRADER_CONFIG, "utf-8")
+        self._run(place, place.folder, "nbgrader", "generate_assignment", "ps1")
 
     def command(self, place: Place) -> tuple[list[str], Path]:
         return [self.program("nbgrader"), "autograde", "ps1", "--student", "hostile"], place.folder
@@ -281,34 +280,10 @@ class Otter(Grader):
         super().hand_in(path, notebook([{"source": source}]))
 
     def prepare(self, place: Place) -> None:
-        tests = place.graders / "tests"
-        tests.mkdir(parents=True)
         for name, value, hidden in (("public", PUBLIC, False), (place.word, "-" + place.number, True)):
             code = f">>> double({value}) == 2 * {value}\nTrue"
-            case = {"code": code, "hidden": hidden, "locked": False}
-            suite = {"cases": [case], "scored": True, "setup": "", "teardown": "", "type": "doctest"}
-            test = {"name": name, "points": 2, "suites": [suite]}
-            (tests / f"{name}.py").write_text(f"OK_FORMAT = True\n\ntest = {test!r}\n", "utf-8")
-        (place.graders / "otter_config.json").write_text('{"pdf": false, "points_possible": null}', "utf-8")
-        made = [
-            self.program("otter"),
-            "generate",
-            "-t",
-            "tests",
-            "-c",
-            "otter_config.json",
-            "--no-environment",
-        ]
-        done = subprocess.run(
-            [*made, "-o", "autograder.zip"],
-            cwd=place.graders,
-            env={**os.environ, **self.environment(place)},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        if done.returncode:
-            raise NotMeasuredError(f"otter generate ended with {done.returncode}: {done.stderr[-500:]}")
+            otter_test(place.graders, name, code, 2, hidden=hidden)
+        self._run(place, place.graders, "otter", *OTTER_GENERATE)
 
     def command(self, place: Place) -> tuple[list[str], Path]:
         work = self.submission(place, "hostile")
@@ -474,24 +449,6 @@ def attack(grader: Grader, made: Place, name: str, source: str, patience_s: floa
         }  # fmt: skip
 
 
-def install(peer: str, folder: Path) -> Path:
-    """The folder of a peer's programs, installed now if they are not there."""
-    programs = folder / peer / "bin"
-    if not (programs / peer).exists():
-        try:
-            for command in (
-                [sys.executable, "-m", "venv", str(folder / peer)],
-                [str(programs / "python"), "-m", "pip", "install", "-q", *PACKAGES[peer]],
-            ):
-                done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=INSTALL_S)
-                if done.returncode:
-                    last = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
-                    raise NotMeasuredError(f"cannot be installed here: {last}")
-        except subprocess.TimeoutExpired:
-            raise NotMeasuredError(f"not installed after {INSTALL_S} s") from None
-    return programs
-
-
 def version(peer: str, programs: Path) -> str:
     asked = f"import importlib.metadata as m; print(m.version({DISTRIBUTION.get(peer, peer)!r}))"
     return subprocess.run(
@@ -568,7 +525,7 @@ def main() -> None:
             print(name, flush=True)
             try:
                 if name in kinds:
-                    programs = install(name, venvs.absolute())
+                    programs = install(name, PACKAGES[name], venvs.absolute())
                     one["version"] = version(name, programs)
                     grader: Grader = kinds[name](programs)
                 else:

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import pytest
 
+from course.authoring.coverage import read_coverage
 from course.authoring.exercises import diagnosis
-from course.authoring.exercises.diagnosis import as_one, code_of, fate_of, hypotheses_of, made_from
+from course.authoring.exercises.diagnosis import as_one, code_of, hypotheses_of, made_from
 from course.authoring.exercises.grading import solution_path
-from course.authoring.exercises.proofs import Record, Reported, caught_by, read_record
+from course.authoring.exercises.proofs import Record, Reported, caught_by
 from course.authoring.report import Findings
 from course.catalog.load import Catalog
+from course.cli.author.commands import is_command
 from course.handed_in import limits
 from course.ids import WARM_UPS
 from course.scoring import kit
-from course.scoring.checks.collected import words
 from tests.contracts.content.audited import CATALOG, EXERCISES, IN_PART, programs
 
 
@@ -24,7 +25,7 @@ def catalog() -> Catalog:
 
 def test_the_audit_finds_nothing_wrong_and_looks_at_everything(catalog: Catalog) -> None:
     """At a lesson called as an exercise is, where that one is audited."""
-    report = IN_PART(without=EXERCISES)
+    report = IN_PART(without=EXERCISES, is_command=is_command)
     assert [f"{p.where}: {p.message} {p.fix}" for p in report.problems] == []
     assert {*report.lessons, *EXERCISES} >= {path.stem for path in catalog.content.lessons.glob("*.md")}
     folders = [path for path in catalog.content.exercises.iterdir() if path.is_dir()]
@@ -32,6 +33,14 @@ def test_the_audit_finds_nothing_wrong_and_looks_at_everything(catalog: Catalog)
     assert {*report.exercises, *EXERCISES} == {path.name for path in folders} - {WARM_UPS}
     assert set(report.exercises).isdisjoint(EXERCISES)
     assert report.graded == sum(map(programs, report.exercises))
+
+
+def test_the_table_of_the_chapter_is_as_long_as_the_chapter(catalog: Catalog) -> None:
+    coverage = read_coverage(catalog).value
+    assert coverage.source_lines == 394
+    # Counted in the chapter.
+    counts = {section.kind: len(section.parts) for section in coverage.section}
+    assert [counts[kind] for kind in ("objective", "exercise", "question")] == [5, 5, 5]
 
 
 def test_the_first_warm_up_of_all_is_the_program_with_faults(catalog: Catalog) -> None:
@@ -80,18 +89,6 @@ def _summary(source: str) -> list[tuple[str, str]]:
     return module["summary"]()  # type: ignore[operator, no-any-return]
 
 
-def test_no_known_wrong_program_is_told_a_mistake_that_it_does_not_have(catalog: Catalog) -> None:
-    """As the audit keeps the tables: made from the checks, probes and known mistakes that there are."""
-    tables = {exercise: read_record(catalog, exercise) for exercise in catalog.exercises()}
-    found = {exercise: table for exercise, table in tables.items() if table}
-    assert len(found) >= 6  # the course's own; another author's exercise may have its words in code
-    for exercise, table in found.items():
-        fate = fate_of(catalog, exercise)
-        assert set(table.rows) == {"public", "full", "alone"}
-        rows = [*table.rows["public"], *table.rows["full"]]
-        assert [row for row in rows if fate(row) == "otherwise"] == []
-
-
 def test_the_audit_refuses_a_table_with_an_untrue_row_or_one_that_survives(
     catalog: Catalog, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -137,18 +134,6 @@ def test_the_hint_at_a_loop_that_hands_an_argument_back_is_about_new_rows(
     given = task.following({code}, ())
     assert given is not None
     assert "are new" in task.hints[given]
-
-
-def test_what_one_run_shows_is_told_by_the_checks_that_saw_it(catalog: Catalog) -> None:
-    """What begins with "Here" is true of one run; a cause is told by every check of its task."""
-    kinds = {
-        (exercise.id, code): entry.kind
-        for exercise in catalog.exercises()
-        for code, entry in words(exercise.id).entries.items()
-        if entry.looks_like.startswith("Here ")
-    }
-    assert kinds
-    assert [code for code, kind in kinds.items() if kind == "cause"] == []
 
 
 def test_two_changed_terms_that_make_one_known_mistake_are_that_mistake(catalog: Catalog) -> None:

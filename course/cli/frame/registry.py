@@ -82,7 +82,7 @@ COMMANDS: dict[str, Entry] = {
     "open": Entry("notebook", "open_notebook", PRACTISE, "Open one notebook in JupyterLab.", "integrators"),
     "sandbox": Entry("sandbox.commands", "app", PLAY, "Play with collisions, and see where the energy goes."),
     "sim": Entry("sim", "app", PLAY, "Run a simulation and compare with theory."),
-    "engines": Entry("engines.commands", "app", PLAY, "Compare real physics engines on this machine."),
+    "engines": Entry("engines", "app", PLAY, "Compare real physics engines on this machine."),
     "submit": Entry("work.submitting", "submit", HAND_IN, "Write the file to hand in.", "-o mine.zip"),
     "update": Entry("work.changing", "update", MACHINE, "Bring newer course content in.", "--dry-run"),
     "doctor": Entry("setup.doctor", "doctor", MACHINE, "Say what works on this machine."),

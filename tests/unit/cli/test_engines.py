@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from course.cli.engines.screen import best_rows
+from course.cli.engines import best_rows
 from course.engines import compare as comparing
 from course.engines import reference
 from course.engines.registry import ENGINES, Availability

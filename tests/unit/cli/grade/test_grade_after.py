@@ -271,7 +271,7 @@ def test_a_share_is_a_part_of_one_or_a_percentage_and_else_refused_with_both_for
         asked.append(at_least)
         return Similar()
 
-    monkeypatch.setattr("course.cli.grade.changing.compare", compare)
+    monkeypatch.setattr("course.cli.grade.commands.compare", compare)
     for text in ("0.25", "25%", " 25 % "):
         assert course("grade", "similar", "out", "--share", text).code == 0
     assert course("grade", "similar", "out").code == 0

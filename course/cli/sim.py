@@ -139,6 +139,15 @@ def list_simulations(
     return 0
 
 
+def _entry(simulation: Simulation) -> SimEntry:
+    parameters = tuple(
+        # Words have no ends.
+        filled(SimParameter, one, **({"low": None, "high": None} if one.choices else {}))
+        for one in simulation.parameters
+    )
+    return filled(SimEntry, simulation, parameters=parameters)
+
+
 def _describe(console: Console, simulation: Simulation, *, whole: bool) -> None:
     console.heading(simulation.id, simulation.title)
     console.item("shows", simulation.teaches, width=5)
@@ -218,7 +227,16 @@ def _run_one(console: Console, name: str, pairs: Sequence[str], plot: Path | Non
         names = (f"{column.name} [{column.unit}]" for column in result.columns)
         samples = zip(*(column.values.tolist() for column in result.columns), strict=True)
         written = here.write_told(csv, here.as_csv(names, samples), why="sim")
-    return _reply(simulation, result, plotted, written)
+    return filled(
+        Sim,
+        simulation,
+        result,
+        simulation=simulation.id,
+        settings={p.name: SimSetting(result.settings[p.name], p.unit) for p in simulation.parameters},
+        results=tuple(filled(SimRow, row, simulated=float(row.simulated)) for row in result.rows),
+        plot=plotted,
+        csv=written,
+    )
 
 
 # -- on the screen ---------------------------------------------------------------------------------------
@@ -232,7 +250,8 @@ def _show(console: Console, simulation: Simulation, result: Result) -> None:
         if changed:
             console.line(f"Changed: {', '.join(changed)}.")
         console.figure(lambda: _drawn(result))
-        console.table_or_facts(_HEADS, [_cells(row) for row in result.rows])
+        heads = ("Measured", "Simulated", "Theory", "Error")
+        console.table_or_facts(heads, [_cells(row) for row in result.rows])
     console.line((result.finding, "bold"))
 
 
@@ -240,9 +259,6 @@ def _drawn(result: Result) -> Any:
     from course.figures.experiments import draw
 
     return draw(result)
-
-
-_HEADS = ("Measured", "Simulated", "Theory", "Error")
 
 
 def _settings(simulation: Simulation, result: Result) -> str:
@@ -289,28 +305,3 @@ def _number(value: float, unit: str, places: str) -> str:
 
 def _with_unit(text: str, unit: str) -> str:
     return f"{text} {unit}" if unit not in ("", "1") else text
-
-
-# -- for scripts -----------------------------------------------------------------------------------------
-
-
-def _entry(simulation: Simulation) -> SimEntry:
-    parameters = tuple(
-        # Words have no ends.
-        filled(SimParameter, one, **({"low": None, "high": None} if one.choices else {}))
-        for one in simulation.parameters
-    )
-    return filled(SimEntry, simulation, parameters=parameters)
-
-
-def _reply(simulation: Simulation, result: Result, plot: WrittenFile | None, csv: WrittenFile | None) -> Sim:
-    return filled(
-        Sim,
-        simulation,
-        result,
-        simulation=simulation.id,
-        settings={p.name: SimSetting(result.settings[p.name], p.unit) for p in simulation.parameters},
-        results=tuple(filled(SimRow, row, simulated=float(row.simulated)) for row in result.rows),
-        plot=plot,
-        csv=csv,
-    )

@@ -1,7 +1,5 @@
 """The command line, run in this process on the miniature course, with a stand-in for the sandbox."""
 
-from __future__ import annotations
-
 import functools
 import json
 import os
@@ -14,7 +12,7 @@ import jsonschema
 import pytest
 
 from course.cli.frame import registry
-from course.cli.frame.schemas import schema_of
+from course.cli.frame.replies import schema_of
 from course.progress.store import Store
 from tests.command_line import in_process
 
@@ -132,12 +130,14 @@ def validator(tag):
     return jsonschema.Draft202012Validator(schema_of(tag))
 
 
-def keeps_its_schema(out):
-    """Every reply of every command that these tests run is as ``course schema`` says."""
+def keeps_its_schema(out, code):
+    """Every reply of every command that these tests run is as its schema says, the last has the exit code."""
     for line in filter(None, out.split("\n")):
         reply = json.loads(line)
         problems = [f"{e.json_path}: {e.message}" for e in validator(reply["schema"]).iter_errors(reply)]
         assert not problems, problems[0][:1000]
+    if reply["schema"] != "course.grade/1":  # whose code is that of the work
+        assert (reply["exit_code"], reply["ok"]) == (code, code == 0)
 
 
 @functools.cache
@@ -174,7 +174,7 @@ def course(monkeypatch, tmp_path, capsys):
         captured = capsys.readouterr()
         assert run.faulty or "A fault in the course" not in captured.err, captured.err
         if "--json" in words:
-            keeps_its_schema(captured.out)
+            keeps_its_schema(captured.out, code)
         return Ran(code, captured.out, captured.err)
 
     run.faulty = False

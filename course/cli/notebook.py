@@ -1,7 +1,5 @@
 """``course notebook``: the course in Jupyter, and notebooks checked like files."""
 
-from __future__ import annotations
-
 import contextlib
 import shlex
 from collections.abc import Iterable

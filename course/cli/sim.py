@@ -1,7 +1,5 @@
 """``course sim``: runs simulations, and shows their numbers beside those of theory."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Ids for the shell to complete; folder and file names, so that nothing is parsed to list them."""
 
-from __future__ import annotations
-
 import ast
 import importlib
 from collections.abc import Callable, Iterable

@@ -4,8 +4,6 @@ Parsers of sub-commands know only their own options, so these are taken out of t
 ends the search: what follows it is data.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path

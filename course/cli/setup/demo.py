@@ -4,8 +4,6 @@ A worked example is checked with its mistake and without it, through the session
 both motions are drawn. On a terminal the user types the line that is right. Nothing is written anywhere.
 """
 
-from __future__ import annotations
-
 import difflib
 import os
 import shutil

@@ -1,7 +1,5 @@
 """``course bug``: versions, levels and the last traceback, and nothing that says whose they are."""
 
-from __future__ import annotations
-
 import os
 import platform
 import tempfile

@@ -1,7 +1,5 @@
 """``course engines``: what is here, what is missing, and a comparison that says where each number is from."""
 
-from __future__ import annotations
-
 import csv
 import re
 

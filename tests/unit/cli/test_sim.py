@@ -1,7 +1,5 @@
 """``course sim``: numbers beside theory, files that are kept, refusals with their place and their fix."""
 
-from __future__ import annotations
-
 import csv
 import re
 

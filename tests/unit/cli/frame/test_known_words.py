@@ -1,12 +1,11 @@
-"""Words that people bring from other tools, choices where one is missing, and help by use."""
-
-from __future__ import annotations
+"""Words of a line: global options, those of other tools, choices where one is missing, help by use."""
 
 import json
 
 import pytest
 
 from course.cli.frame.console import filled
+from course.cli.frame.options import global_options
 from course.cli.frame.registry import ALSO, COMMANDS
 from course.errors import CourseError
 
@@ -29,6 +28,20 @@ def test_a_word_of_another_tool_does_what_it_means(course, workspace, write, wor
     assert said.code == meant.code
     assert said.json["schema"] == meant.json["schema"]
     assert not {*ALSO} & {*COMMANDS}
+
+
+def test_a_double_dash_ends_the_search_for_global_options():
+    line = global_options(["check", "--", "--json", "-C"])
+    assert not line.settings.json
+    assert line.rest == ("check", "--", "--json", "-C")
+    assert not line.problem
+
+
+@pytest.mark.parametrize("words", [["-C", "a/b", "check"], ["check", "-Ca/b"], ["-Ca", "check", "-C", "b"]])
+def test_the_folder_may_be_attached_and_two_add_up(words):
+    line = global_options(words)
+    assert line.settings.directory in {"a/b", "a\\b"}
+    assert line.rest == ("check",)
 
 
 def test_help_before_a_command_is_its_help(course):

@@ -1,7 +1,5 @@
 """`course grade` as an instructor types it."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

@@ -1,7 +1,5 @@
 """`course grade export|override|late|rerun|similar|explain`: what an instructor types after a run."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

@@ -1,7 +1,5 @@
 """`course grade assign|log|salvage`, and what `--dry-run` and `--resume` say before a score changes."""
 
-from __future__ import annotations
-
 import csv
 import dataclasses
 import io

@@ -1,7 +1,5 @@
 """A gradebook that is newer, damaged, changed by hand or in use: every command says so and loses nothing."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import shutil

@@ -1,7 +1,5 @@
 """``course notebook``, and notebooks that are handed in."""
 
-from __future__ import annotations
-
 import contextlib
 import importlib.util
 import json

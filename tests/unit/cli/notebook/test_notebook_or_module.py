@@ -1,7 +1,5 @@
 """The file of an exercise that counts: the module, or the notebook that was worked in instead."""
 
-from __future__ import annotations
-
 import io
 import json
 from pathlib import Path

@@ -186,7 +186,7 @@ def test_a_report_is_drawn_on_a_terminal_and_described_besides(course, workspace
     ("source", "width", "rows"),
     [
         ("total = first_of_all + second_of_all", 24, ["total = first_of_all +", "  ↳ second_of_all"]),
-        ("x" * 30, 24, ["x" * 24, "  ↳ " + "x" * 6]),
+        ("    " + "x" * 30, 24, ["    " + "x" * 20, "      ↳ " + "x" * 10]),
         ("'" + "積" * 12 + "'", 20, ["'" + "積" * 9, "  ↳ " + "積" * 3 + "'"]),
         ("if x:\n\n    return 1\n", 12, ["if x:", "", "    return 1"]),
         ("    a = one + two + three + four", 18, ["    a = one + two", "      ↳ + three +", "      ↳ four"]),

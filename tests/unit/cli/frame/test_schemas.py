@@ -14,12 +14,15 @@ import pytest
 
 import course as package
 from course.cli.frame.replies import (
+    Backup,
     Bare,
     Envelope,
     ErrorBody,
     ErrorReply,
+    FileReply,
     NextStep,
     encode,
+    filled,
     reply_types,
     schema_of,
 )
@@ -234,3 +237,8 @@ def test_the_command_lists_and_prints(course):
     assert course("schema", "course.hint/1", "--json").json["document"] == schema_of("course.hint/1")
     missing = course("schema", "hin", "--json")
     assert (missing.code, missing.json["error"]["code"]) == (5, "schema_not_found")
+
+
+def test_a_reply_takes_a_field_from_the_first_object_that_has_it():
+    first, second = FileReply("first", "kept"), Backup("second", "copy")
+    assert filled(Backup, first, second) == Backup("first", "copy")

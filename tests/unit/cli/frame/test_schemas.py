@@ -82,13 +82,13 @@ def test_a_schema_accepts_its_reply_an_error_and_nothing_else():
 def test_numbers_that_json_has_not_are_words_and_in_the_schema():
     class Measured(Envelope, tag="course.measured/1", frozen=True, kw_only=True):
         value: float
-        more: list = []
+        more: tuple = ()
 
     document = schema_of("course.measured/1")
     for value in (1.5, math.nan, -math.inf):
         assert not broken(document, msgspec.json.decode(encode(Measured(value=value))))
     assert broken(document, {"schema": "course.measured/1", "value": "many"})
-    many = Measured(value=1, more=[math.nan, {"a": math.inf}, (-math.inf, 1.5, True, None)])
+    many = Measured(value=1, more=(math.nan, {"a": math.inf}, (-math.inf, 1.5, True, None)))
     assert b'"more":["nan",{"a":"inf"},["-inf",1.5,true,null]]' in encode(many)
 
 

@@ -4,6 +4,8 @@ import functools
 import json
 import os
 import shutil
+import subprocess
+import sys
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -14,7 +16,7 @@ import pytest
 from course.cli.frame import registry
 from course.cli.frame.replies import schema_of
 from course.progress.store import Store
-from tests.command_line import in_process
+from tests.command_line import ROOT, in_process
 
 MINI_COURSE = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
 make_command = registry._load
@@ -118,6 +120,19 @@ class FakeSession:
 def record(workspace):
     """What a workspace keeps of what was done."""
     return Store(workspace / ".course" / "progress.sqlite")
+
+
+needs_setpriv = pytest.mark.skipif(shutil.which("setpriv") is None, reason="has no setpriv")
+
+
+def as_anybody(*words, cwd):
+    """Run a line as a process for which permissions count; root reads everything, unless it gives that up."""
+    nobody = ["setpriv", "--bounding-set=-dac_override,-dac_read_search", "--inh-caps=-all", "--"]
+    return subprocess.run(
+        [*(nobody if os.geteuid() == 0 else ()), sys.executable, "-m", "course", *words],
+        cwd=cwd, env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True, text=True, timeout=120, check=False,
+    )  # fmt: skip
 
 
 def files_in(root):

@@ -4,7 +4,6 @@ import errno
 import io
 import os
 import re
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -23,7 +22,7 @@ from course.errors import (
     UsageError,
 )
 from tests.command_line import ROOT, as_process
-from tests.unit.cli.conftest import MINI_COURSE
+from tests.unit.cli.conftest import MINI_COURSE, as_anybody, needs_setpriv
 
 HEAVY = {"numpy", "matplotlib", "pymunk", "pytest", "msgspec", "sqlite3", "textual", "nbformat"}
 
@@ -92,6 +91,7 @@ def test_version_wins_wherever_it_stands(course, words):
 NOT_FOUND = {
     "lesson twice": ("lesson_not_found", "twice-as-much"),
     "start doublin": ("exercise_not_found", "doubling"),
+    "sim run fre-fall": ("simulation_not_found", "free-fall"),
     "chekc": ("usage", "'check'"),
 }
 
@@ -116,6 +116,7 @@ NOT_FOUND = {
         ("quiz history --nonsense", "course.quiz-history/1", 2),
         ("sandbox list nothing-like-it", "course.sandbox-list/1", 5),
         ("sim run --all --nonsense", "course.sim-all/1", 2),
+        ("sim run fre-fall", "course.sim/1", 5),
         ("author new lesson", "course.author-new/1", 2),
         ("author", "course.error/1", 2),
         ("-C nowhere check", "course.check/1", 5),
@@ -301,11 +302,7 @@ def test_a_name_that_no_file_can_have_is_named(course, workspace, write, line, n
     assert _NAMES[name] in ran.err
 
 
-#: Root reads everything, unless it gives that up.
-_AS_ANYBODY = ["setpriv", "--bounding-set=-dac_override,-dac_read_search", "--inh-caps=-all", "--"]
-
-
-@pytest.mark.skipif(shutil.which("setpriv") is None, reason="has no setpriv")
+@needs_setpriv
 @pytest.mark.parametrize(
     ("folder", "line", "code", "said"),
     [
@@ -321,11 +318,7 @@ _AS_ANYBODY = ["setpriv", "--bounding-set=-dac_override,-dac_read_search", "--in
 def test_a_folder_that_cannot_be_read_is_named(workspace, folder, line, code, said):
     (workspace / folder).chmod(0)
     try:
-        ran = subprocess.run(
-            [*(_AS_ANYBODY if os.geteuid() == 0 else ()), sys.executable, "-m", "course", *line.split()],
-            cwd=workspace, env={**os.environ, "PYTHONPATH": str(ROOT)},
-            capture_output=True, text=True, timeout=120, check=False,
-        )  # fmt: skip
+        ran = as_anybody(*line.split(), cwd=workspace)
     finally:
         (workspace / folder).chmod(0o755)
     assert said in ran.stdout + ran.stderr

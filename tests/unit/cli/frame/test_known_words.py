@@ -64,15 +64,6 @@ def test_a_choice_that_is_missing_is_shown(course, workspace):
     assert "There are doubling" in ran.err
 
 
-def test_one_exercise_is_handed_in_by_itself(course, workspace, write):
-    write("RIGHT", "RIGHT")
-    ran = course("submit", "doubling", "--json")
-    assert ran.code == 0, ran.err
-    assert [one["path"] for one in ran.json["files"]] == ["doubling/doubling.py"]
-    assert ran.json["output"].endswith("doubling-submission.zip")
-    assert course("submit", "tripling").code == 5
-
-
 def test_help_is_grouped_by_use_and_offers_what_works_here(course, monkeypatch):
     said = course("--help", "--plain").out
     headings = [

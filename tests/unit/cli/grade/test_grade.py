@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.command_line import in_process
-from tests.unit.cli.conftest import MINI_COURSE, files_in
+from tests.unit.cli.conftest import MINI_COURSE
 from tests.unit.grading.made import read_csv, zipped
 
 WRONG = b"\ndef double(x):\n    print('I saw', x)\n    return x\n"
@@ -76,33 +76,6 @@ def test_a_warm_up_is_graded_where_its_message_says_to_put_it_and_is_explained(t
     said = in_process(*explain, env=dict(os.environ)).stdout
     assert "without the minus one" in said
     assert "diagnosis: MINUS_ONE_FORGOTTEN" in said
-
-
-@pytest.mark.parametrize(
-    ("arguments", "code", "error"),
-    [
-        (("explain", "OUT", "nobody", "doubling"), 5, "result_not_found"),
-        (("explain", "NOWHERE", "ada", "doubling"), 5, "gradebook_not_found"),
-        (("run", "CLASS", "--out", "OUT"), 2, "out_exists"),
-        (("run", "CLASS", "--out", "NEW", "--exercise", "no-such"), 5, "exercise_not_found"),
-        (("run", "CLASS", "--out", "NEW", "--only", "nobody"), 2, "student_not_found"),
-        (("run", "CLASS", "--out", "NEW", "--isolation", "none"), 2, "usage"),
-        (("run", "NOWHERE", "--out", "NEW"), 5, "submissions_not_found"),
-        (("run", "CLASS", "--out", "OUT", "--resume", "--seed", "5"), 2, "other_seed"),
-    ],
-)
-def test_wrong_calls_are_named_and_touch_nothing(
-    graded: Path, arguments: tuple[str, ...], code: int, error: str
-) -> None:
-    home = graded.parent
-    places = {"OUT": graded, "CLASS": home / "class", "NOWHERE": graded / "no", "NEW": home / "new"}
-    before = files_in(graded)
-    done = course("grade", *[places.get(word, word) for word in arguments], "--json")
-    assert done.returncode == code, done.stdout + done.stderr
-    body = json.loads(done.stdout)
-    assert (body["ok"], body["exit_code"], body["error"]["code"]) == (False, code, error)
-    assert body["error"]["help"]
-    assert before == files_in(graded)
 
 
 def test_nobody_adds_lines_of_their_own_to_what_the_instructor_reads(tmp_path: Path) -> None:

@@ -31,6 +31,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for student in ("ada", "bob"):
             at = DUE.timestamp() + 2 * DAY
             book.add_times([SubmittedAt(student, "doubling", digest(student), "gradescope", at)])
+    (folder / "class" / "ada").mkdir(parents=True)
     (folder / "roster.csv").write_text(ROSTER, "utf-8")
     (folder / "late.toml").write_text(POLICY.replace("bob", "nobody"), "utf-8")
     return folder
@@ -117,6 +118,14 @@ def test_what_is_missing_is_said_in_full_and_nothing_is_said_where_there_is_noth
         (("late", "out", "--policy", "roster.csv"), 2, "invalid_policy"),
         (("late", "out", "--policy", "late.toml", "--clear"), 2, "usage"),
         (("late", "out", "--times", "roster.csv"), 2, "invalid_times"),
+        (("explain", "out", "nobody", "doubling"), 5, "result_not_found"),
+        (("explain", "nowhere", "ada", "doubling"), 5, "gradebook_not_found"),
+        (("run", "class", "--out", "out"), 2, "out_exists"),
+        (("run", "class", "--out", "new", "--exercise", "no-such"), 5, "exercise_not_found"),
+        (("run", "class", "--out", "new", "--only", "nobody"), 2, "student_not_found"),
+        (("run", "class", "--out", "new", "--isolation", "none"), 2, "usage"),
+        (("run", "nowhere", "--out", "new"), 5, "submissions_not_found"),
+        (("run", "class", "--out", "out", "--resume", "--seed", "5"), 2, "other_seed"),
         (("rerun", "nowhere"), 5, "gradebook_not_found"),
         (("similar", "nowhere"), 5, "gradebook_not_found"),
     ],

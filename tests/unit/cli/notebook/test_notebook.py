@@ -170,22 +170,6 @@ def test_submit_says_why_a_notebook_cannot_go_in(course, workspace, write, monke
     assert "is not a notebook" in ran.json["left_out"][0]["action"]
 
 
-def test_a_zip_with_a_notebook_is_graded_like_the_module(course, workspace):
-    from course.catalog.load import Catalog
-    from course.grading.intake.downloads import Place, Student
-    from course.grading.intake.students import read_student
-
-    course("notebook", "build", "doubling")
-    write_into(workspace / "doubling" / "doubling.ipynb", GOOD, OTHER)
-    course("submit", "-o", "sent.zip")
-    folder = workspace / "class"
-    folder.mkdir()
-    (workspace / "sent.zip").rename(folder / "sent.zip")
-    (entry,) = read_student(Student("ada", Place(folder)), [Catalog().exercise("doubling")], required=True)
-    assert entry.submission is not None
-    assert GOOD.encode() in entry.submission.files["doubling.py"]
-
-
 def test_nbgrader_notebooks_carry_its_marks(course, tmp_path):
     ran = course("notebook", "build", "doubling", "--format", "nbgrader", "--out", "site")
     assert ran.code == 0

@@ -8,9 +8,8 @@ from typing import Annotated, Any
 import msgspec
 
 from course.cli.frame import here
-from course.cli.frame.completion import engine_ids, scenario_ids
 from course.cli.frame.console import Console, current, meter
-from course.cli.frame.options import option
+from course.cli.frame.options import engine_ids, option, scenario_ids
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Envelope, WrittenFile, filled
 from course.engines import compare as comparing

@@ -8,9 +8,8 @@ from typing import Annotated, Any
 import msgspec
 
 from course.cli.frame import here
-from course.cli.frame.completion import simulation_ids, simulation_settings
 from course.cli.frame.console import Console, current
-from course.cli.frame.options import argument, option
+from course.cli.frame.options import argument, option, simulation_ids, simulation_settings
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Envelope, WrittenFile, filled
 from course.errors import UsageError

@@ -8,10 +8,9 @@ from typing import Annotated
 
 import msgspec
 
-from course.cli.frame.completion import exercise_ids, graded_ids, student_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
-from course.cli.frame.options import argument, option
+from course.cli.frame.options import argument, exercise_ids, graded_ids, option, student_ids
 from course.cli.frame.replies import Envelope, filled
 from course.cli.grade.options import (
     Isolation,

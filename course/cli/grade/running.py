@@ -12,10 +12,9 @@ from typing import Annotated, Any
 from course import extras
 from course.catalog.load import Catalog
 from course.catalog.models import CourseRef
-from course.cli.frame.completion import exercise_ids, graded_ids, student_ids, submitted_ids
 from course.cli.frame.console import Console, current, meter
 from course.cli.frame.here import load_catalog
-from course.cli.frame.options import argument, option
+from course.cli.frame.options import argument, exercise_ids, graded_ids, option, student_ids, submitted_ids
 from course.cli.frame.replies import Envelope, filled
 from course.cli.grade.options import (
     Against,

@@ -11,11 +11,14 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import jsonschema
+import msgspec
 import pytest
 
-from course.cli.frame import registry
+from course.cli.frame import app, registry
 from course.cli.frame.replies import schema_of
+from course.handed_in import attempts
 from course.progress.store import Store
+from course.scoring.verdict import CheckResult, Problem, Status, Tolerance, Verdict
 from tests.command_line import ROOT, in_process
 
 MINI_COURSE = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
@@ -49,8 +52,6 @@ class FakeSession:
     printed = ""
 
     def __init__(self, exercise):
-        from course.scoring.verdict import CheckResult
-
         self.exercise = exercise
         self.curves = {}
         self.checks = [
@@ -73,17 +74,14 @@ class FakeSession:
         return None
 
     def grade(self, submission, only=()):
-        from course.scoring.verdict import Problem, Verdict
-
         source = submission.files[self.exercise.module].decode()
         self.printed = "".join(f"row {n}\n" for n in range(9)) if "PRINTS" in source else ""
         common = {"exercise": self.exercise.id, "scope": "public", "isolation": "L1"}
         if "UNREADABLE" in source or "FAULT" in source:
             state = "ungradable" if "UNREADABLE" in source else "grader_error"
             problem = Problem("syntax_error", "Line 1 cannot be read.", "Look at line 1.")
-            return Verdict(
-                state=state, score=0, max_score=4.0, passed=False, checks=(), error=problem, **common
-            )
+            common |= {"state": state, "error": problem, "checks": ()}
+            return Verdict(score=0, max_score=4.0, passed=False, **common)
         results = [self._result(check, source) for check in self.checks]
         results = [result for result in results if not only or result.id in only]
         score, most = sum(r.points for r in results), sum(r.max_points for r in results)
@@ -94,10 +92,6 @@ class FakeSession:
         )  # fmt: skip
 
     def _result(self, check, source):
-        import msgspec
-
-        from course.scoring.verdict import Status, Tolerance
-
         body = source.partition(f"def {check.task}(")[2].partition("\ndef ")[0]
         if "RIGHT" in body:
             said = "a row\n" if "SAYS" in body else None
@@ -171,9 +165,6 @@ def course(monkeypatch, tmp_path, capsys):
 
     A fault of the course ends a test that has not said with ``course.faulty`` that it makes one.
     """
-    from course.cli.frame import app
-    from course.handed_in import attempts
-
     monkeypatch.setenv("COURSE_CONTENT", str(MINI_COURSE))
     monkeypatch.setenv("COURSE_CACHE", str(tmp_path / ".cache"))
     monkeypatch.setenv("COLUMNS", "80")

@@ -4,12 +4,14 @@ import os
 import platform
 import tempfile
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from course import __file__ as package
 from course import __version__
 from course.cli.frame.app import INSTALLATION
+from course.cli.setup import doctor
 
 USER, HOST = "planted.person", "planted-laptop"
 
@@ -35,7 +37,6 @@ HERE = f"{INSTALLATION}{Path(package).resolve().parent}\n"
 
 def crash_in(course, monkeypatch, message):
     """Have a command of the course fail by a fault of its own."""
-    from course.cli.setup import doctor
 
     def break_(*_, **__):
         raise RuntimeError(message)
@@ -76,8 +77,6 @@ def test_a_report_names_nobody(course, somebody, monkeypatch, tmp_path):
 )  # fmt: skip
 def test_a_name_is_known_however_it_is_spelt(monkeypatch, written):
     """In a folder's name, with its accents apart, and as a string or an address has it."""
-    from course.cli.setup import doctor
-
     monkeypatch.setattr(doctor, "_places", lambda: [("/home/Jürgen", "~")])
     names = [("Jürgen Planted", "<user>"), ("Jürgen", "<user>"), (HOST, "<machine>")]
     monkeypatch.setattr(doctor, "_names", lambda: names)
@@ -87,12 +86,8 @@ def test_a_name_is_known_however_it_is_spelt(monkeypatch, written):
 
 def test_the_name_in_full_is_one_of_them(somebody, monkeypatch):
     pwd = pytest.importorskip("pwd")
-    from types import SimpleNamespace
-
-    from course.cli.setup.doctor import redacted
-
     monkeypatch.setattr(pwd, "getpwuid", lambda _: SimpleNamespace(pw_gecos="Ada Planted,,,", pw_name=USER))
-    assert redacted("/media/Ada Planted/disk and adaptive") == "/media/<user>/disk and adaptive"
+    assert doctor.redacted("/media/Ada Planted/disk and adaptive") == "/media/<user>/disk and adaptive"
 
 
 def test_a_report_has_versions_and_the_level_and_keeps_the_one_before(course, somebody, tmp_path):

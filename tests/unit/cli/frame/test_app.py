@@ -12,6 +12,7 @@ import pytest
 
 from course.cli.frame import registry
 from course.cli.frame.console import Stream
+from course.cli.setup import doctor
 from course.errors import (
     ContentError,
     CourseError,
@@ -144,7 +145,6 @@ def test_every_command_prints_exactly_one_object(course, workspace, line, schema
 @pytest.fixture
 def failing(course, monkeypatch):
     """Make ``course doctor`` end by raising something."""
-    from course.cli.setup import doctor
 
     def arrange(error):
         def doctor_that_fails() -> int:
@@ -206,8 +206,6 @@ def test_ctrl_c_exits_130_and_is_told_in_one_word(failing):
 
 
 def test_what_a_library_prints_does_not_join_the_object(course, monkeypatch):
-    from course.cli.setup import doctor
-
     def noisy() -> int:
         """Say what works on this machine."""
         print("noise")

@@ -7,7 +7,7 @@ import pytest
 from course.cli.frame.console import filled
 from course.cli.frame.options import global_options
 from course.cli.frame.registry import ALSO, COMMANDS
-from course.errors import CourseError
+from tests.unit.cli.conftest import MINI_COURSE
 
 
 @pytest.mark.parametrize(
@@ -64,7 +64,11 @@ def test_a_choice_that_is_missing_is_shown(course, workspace):
     assert "There are doubling" in ran.err
 
 
-def test_help_is_grouped_by_use_and_offers_what_works_here(course, monkeypatch):
+def test_help_is_grouped_by_use_and_offers_what_works_here(course, students_content, monkeypatch):
+    assert "For instructors:" not in (said := course("--help", "--plain").out)
+    assert "For authors:" not in said
+    assert "submit" in said
+    monkeypatch.setenv("COURSE_CONTENT", str(MINI_COURSE))
     said = course("--help", "--plain").out
     headings = [
         "Learn:",
@@ -77,19 +81,7 @@ def test_help_is_grouped_by_use_and_offers_what_works_here(course, monkeypatch):
     ]
     assert [line for line in said.splitlines() if line in headings] == headings
 
-    class Wheel:
-        is_checkout = False
-
-    monkeypatch.setattr("course.cli.frame.registry.content", Wheel)
-    said = course("--help", "--plain").out
-    assert "For instructors:" not in said
-    assert "For authors:" not in said
-    assert "submit" in said
-
-    def nowhere():
-        raise CourseError("There is no course here.")
-
-    monkeypatch.setattr("course.cli.frame.registry.content", nowhere)
+    monkeypatch.setenv("COURSE_CONTENT", "nowhere")
     assert course("--help", "--plain").code == 0
 
 

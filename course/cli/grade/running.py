@@ -1,10 +1,8 @@
 """``course grade run``, ``rerun`` and ``explain``: a class graded, and graded again; one result explained."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
@@ -118,25 +116,26 @@ def run(
             f"Each folder in {submissions} is taken for a student, and all are called as exercises. If they"
             " are one student's, name the folder above them."
         )
-    progress = _Progress(console, catalog.ref)
+    reached = [0, 0]
 
     def grading(accepted: str) -> tuple[Summary, Regraded | None]:
         mine = replace(options, accepted=accepted)
-        with _graders(jobs, local_cluster, scheduler) as grade, progress.shown() as report:
+        graders = _graders(jobs, local_cluster, scheduler)
+        with graders as grade, _progress(console, catalog.ref, reached) as report:
             summary = grade_class(submissions, out, catalog, mine, report, grade=grade)
             return summary, _would_change(console, summary, out, catalog, terms, grade)
 
     try:
         summary, tried = agreed(console, grading, yes=yes)
     except KeyboardInterrupt:
-        raise _interrupted(progress, out) from None
+        raise _interrupted(reached, out) from None
     _show_summary(console, summary, out, options, tried)
     return summary.exit_code
 
 
-def _interrupted(progress: _Progress, out: Path) -> CourseError:
+def _interrupted(reached: list[int], out: Path) -> CourseError:
     """What is there after Ctrl-C, and how it goes on."""
-    done, total = progress.reached
+    done, total = reached
     if not out.exists():
         told = CourseError("Interrupted before anything was graded; nothing was written.", code="interrupted")
     else:
@@ -322,34 +321,26 @@ def explain(
     return 0
 
 
-@dataclass
-class _Progress:
-    """Shows results as they arrive: a bar on a terminal, lines elsewhere, JSON Lines with ``--json``.
+@contextmanager
+def _progress(
+    console: Console, course: CourseRef, reached: list[int]
+) -> Iterator[Callable[[Effective, int, int], None]]:
+    """Show results as they arrive: a bar on a terminal, lines elsewhere, JSON Lines with ``--json``.
 
-    Attributes:
-        reached: students done, and all.
+    Gives a function to call with each result, students done, and all of them; ``reached`` keeps the latter.
     """
+    with meter(console) if console.fancy else nullcontext() as advance:
 
-    console: Console
-    course: CourseRef
-    reached: tuple[int, int] = 0, 0
+        def report(result: Effective, done: int, total: int) -> None:
+            reached[:] = done, total
+            if console.json:
+                console.emit_line(grade_line(result, course))
+            elif advance is not None:
+                advance(done, total, "graded")
+            elif not console.quiet:
+                console.line(_graded(result, done, total))
 
-    @contextmanager
-    def shown(self) -> Iterator[Callable[[Effective, int, int], None]]:
-        """A function to call with each result, students done, and all of them."""
-        console = self.console
-        with meter(console) if console.fancy else nullcontext() as advance:
-
-            def report(result: Effective, done: int, total: int) -> None:
-                self.reached = done, total
-                if console.json:
-                    console.emit_line(grade_line(result, self.course))
-                elif advance is not None:
-                    advance(done, total, "graded")
-                elif not console.quiet:
-                    console.line(_graded(result, done, total))
-
-            yield report
+        yield report
 
 
 def _graded(result: Effective, done: int, total: int) -> str:

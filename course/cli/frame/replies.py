@@ -5,8 +5,6 @@ version; renaming, removing or changing the meaning of one makes a new version.
 """
 
 import importlib
-import json
-import re
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, TypeVar
 
@@ -16,7 +14,6 @@ from course.cli.frame.console import current
 from course.cli.frame.options import Line, argument
 from course.cli.frame.registry import COMMANDS
 from course.errors import NotFoundError
-from course.scoring.verdict import finite
 
 _Kind = TypeVar("_Kind", bound=msgspec.Struct)
 
@@ -126,19 +123,6 @@ def filled(kind: type[_Kind], /, *sources: object, **given: Any) -> _Kind:
                 found[name] = getattr(source, name)
                 break
     return kind(**found)
-
-
-def encode(body: msgspec.Struct) -> bytes:
-    """``body`` as one line of JSON in UTF-8; numbers that JSON has not are "nan", "inf" and "-inf".
-
-    The bytes of a name that are no text are spelled out.
-    """
-    plain = finite(msgspec.to_builtins(body))
-    try:
-        return msgspec.json.encode(plain)
-    except UnicodeEncodeError:
-        text = json.dumps(plain, ensure_ascii=False)
-        return re.sub("[\ud800-\udfff]", lambda half: rf"\\u{ord(half[0]):x}", text).encode("utf-8")
 
 
 # ---

@@ -13,6 +13,7 @@ import msgspec
 import pytest
 
 import course as package
+from course.cli.frame.console import encode
 from course.cli.frame.replies import (
     Backup,
     Bare,
@@ -21,7 +22,6 @@ from course.cli.frame.replies import (
     ErrorReply,
     FileReply,
     NextStep,
-    encode,
     filled,
     reply_types,
     schema_of,

@@ -4,15 +4,13 @@ Each answer is one struct whose tag is its schema, ``course.<command>/1``. A fie
 version; renaming, removing or changing the meaning of one makes a new version.
 """
 
-import importlib
-from pathlib import Path
 from typing import Annotated, Any, ClassVar, TypeVar
 
 import msgspec
 
 from course.cli.frame.console import current
 from course.cli.frame.options import Line, argument
-from course.cli.frame.registry import COMMANDS
+from course.cli.frame.registry import COMMANDS, find
 from course.errors import NotFoundError
 
 _Kind = TypeVar("_Kind", bound=msgspec.Struct)
@@ -174,11 +172,8 @@ def reply_types() -> dict[str, type[msgspec.Struct]]:
     """Every kind of reply by its schema's name, sorted."""
     from course.grading.exports.grades import GradeLine
 
-    below = Path(__file__).parents[1]
-    modules = {entry.module for entry in COMMANDS.values()}
-    modules |= {f"{file.parent.name}.replies" for file in below.glob("*/replies.py")}
-    for module in modules:
-        importlib.import_module(f"course.cli.{module}")
+    for entry in COMMANDS.values():
+        find(entry.module, entry.name)
     kinds: list[type[msgspec.Struct]] = [*Envelope.__subclasses__(), GradeLine]
     found = {str(kind.__struct_config__.tag): kind for kind in kinds} | {NO_COMMAND: ErrorReply}
     return dict(sorted(found.items()))

@@ -35,25 +35,19 @@ def somebody(monkeypatch, tmp_path):
 HERE = f"{INSTALLATION}{Path(package).resolve().parent}\n"
 
 
-def crash_in(course, monkeypatch, message):
-    """Have a command of the course fail by a fault of its own."""
-
-    def break_(*_, **__):
-        raise RuntimeError(message)
-
-    monkeypatch.setattr(doctor, "load_catalog", break_)
-    course.faulty = True
-    ran = course("doctor", "-C", ".")
-    assert ran.code == 70
-
-
 def test_a_report_names_nobody(course, somebody, monkeypatch, tmp_path):
     home, temporary = somebody
     windows = f"C:\\Users\\{USER}\\x.py"
     machines = f"{HOST} or {HOST.upper()}.EXAMPLE.ORG"
     said = f"no {home / 'stuff' / 'x.py'} nor {windows!r} on {machines} of {USER.title()}"
+
+    def break_():
+        raise RuntimeError(said)
+
+    course.faulty = True
     with monkeypatch.context() as broken:
-        crash_in(course, broken, said)
+        broken.setattr(doctor, "load_catalog", break_)
+        assert course("doctor", "-C", ".").code == 70
     assert list(temporary.glob("course-crash-*.txt"))
     ran = course("bug", "--json")
     assert ran.code == 0

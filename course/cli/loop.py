@@ -23,10 +23,9 @@ from typing import TYPE_CHECKING, Annotated
 
 from course.catalog.models import Exercise
 from course.cli.frame.app import again
-from course.cli.frame.completion import Verbose, exercise_ids
 from course.cli.frame.console import PATIENCE, Console, current
 from course.cli.frame.here import Here
-from course.cli.frame.options import argument
+from course.cli.frame.options import Verbose, argument, exercise_ids
 from course.cli.frame.replies import ErrorBody, ErrorReply, NextStep
 from course.cli.home.advice import hint_is_due, is_done, next_in_course, next_step, next_task, why
 from course.cli.home.replies import Go

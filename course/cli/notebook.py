@@ -1,7 +1,5 @@
 """``course notebook``: the course in Jupyter, and notebooks checked like files."""
 
-from __future__ import annotations
-
 import contextlib
 import shlex
 from collections.abc import Iterable
@@ -16,10 +14,9 @@ import msgspec
 from course.browser import invite
 from course.catalog.load import Catalog
 from course.catalog.models import CourseRef, Exercise
-from course.cli.frame.completion import Verbose, choice_of, exercise_ids, notebook_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, find_workspace, here_or_outside, load_catalog, named, write
-from course.cli.frame.options import argument, option
+from course.cli.frame.options import Verbose, argument, choice_of, exercise_ids, notebook_ids, option
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Backup, Envelope
 from course.cli.work.checking import reply_to

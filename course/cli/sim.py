@@ -1,7 +1,5 @@
 """``course sim``: runs simulations, and shows their numbers beside those of theory."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,9 +8,8 @@ from typing import Annotated, Any
 import msgspec
 
 from course.cli.frame import here
-from course.cli.frame.completion import simulation_ids, simulation_settings
 from course.cli.frame.console import Console, current
-from course.cli.frame.options import argument, option
+from course.cli.frame.options import argument, option, simulation_ids, simulation_settings
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Envelope, WrittenFile, filled
 from course.errors import UsageError
@@ -139,6 +136,15 @@ def list_simulations(
     return 0
 
 
+def _entry(simulation: Simulation) -> SimEntry:
+    parameters = tuple(
+        # Words have no ends.
+        filled(SimParameter, one, **({"low": None, "high": None} if one.choices else {}))
+        for one in simulation.parameters
+    )
+    return filled(SimEntry, simulation, parameters=parameters)
+
+
 def _describe(console: Console, simulation: Simulation, *, whole: bool) -> None:
     console.heading(simulation.id, simulation.title)
     console.item("shows", simulation.teaches, width=5)
@@ -218,7 +224,16 @@ def _run_one(console: Console, name: str, pairs: Sequence[str], plot: Path | Non
         names = (f"{column.name} [{column.unit}]" for column in result.columns)
         samples = zip(*(column.values.tolist() for column in result.columns), strict=True)
         written = here.write_told(csv, here.as_csv(names, samples), why="sim")
-    return _reply(simulation, result, plotted, written)
+    return filled(
+        Sim,
+        simulation,
+        result,
+        simulation=simulation.id,
+        settings={p.name: SimSetting(result.settings[p.name], p.unit) for p in simulation.parameters},
+        results=tuple(filled(SimRow, row, simulated=float(row.simulated)) for row in result.rows),
+        plot=plotted,
+        csv=written,
+    )
 
 
 # -- on the screen ---------------------------------------------------------------------------------------
@@ -232,7 +247,8 @@ def _show(console: Console, simulation: Simulation, result: Result) -> None:
         if changed:
             console.line(f"Changed: {', '.join(changed)}.")
         console.figure(lambda: _drawn(result))
-        console.table_or_facts(_HEADS, [_cells(row) for row in result.rows])
+        heads = ("Measured", "Simulated", "Theory", "Error")
+        console.table_or_facts(heads, [_cells(row) for row in result.rows])
     console.line((result.finding, "bold"))
 
 
@@ -240,9 +256,6 @@ def _drawn(result: Result) -> Any:
     from course.figures.experiments import draw
 
     return draw(result)
-
-
-_HEADS = ("Measured", "Simulated", "Theory", "Error")
 
 
 def _settings(simulation: Simulation, result: Result) -> str:
@@ -289,28 +302,3 @@ def _number(value: float, unit: str, places: str) -> str:
 
 def _with_unit(text: str, unit: str) -> str:
     return f"{text} {unit}" if unit not in ("", "1") else text
-
-
-# -- for scripts -----------------------------------------------------------------------------------------
-
-
-def _entry(simulation: Simulation) -> SimEntry:
-    parameters = tuple(
-        # Words have no ends.
-        filled(SimParameter, one, **({"low": None, "high": None} if one.choices else {}))
-        for one in simulation.parameters
-    )
-    return filled(SimEntry, simulation, parameters=parameters)
-
-
-def _reply(simulation: Simulation, result: Result, plot: WrittenFile | None, csv: WrittenFile | None) -> Sim:
-    return filled(
-        Sim,
-        simulation,
-        result,
-        simulation=simulation.id,
-        settings={p.name: SimSetting(result.settings[p.name], p.unit) for p in simulation.parameters},
-        results=tuple(filled(SimRow, row, simulated=float(row.simulated)) for row in result.rows),
-        plot=plot,
-        csv=csv,
-    )

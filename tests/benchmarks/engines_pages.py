@@ -17,7 +17,7 @@ import re
 import sys
 from pathlib import Path
 
-from course.cli.engines.screen import number
+from course.cli.engines import number
 from course.engines import base, reference
 from course.engines.registry import ENGINES
 from course.engines.results import DEFAULT, TUNED

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from course import errors
-from course.cli.frame.schemas import reply_types
+from course.cli.frame.replies import reply_types
 from course.cli.setup.making import KINDS
 from course.cli.work.verdict import FORMATS
 from course.grading.running.run import Summary

@@ -25,9 +25,8 @@ from course.catalog.models import CourseRef, Exercise
 from course.cli.author.pictures import pictures
 from course.cli.author.trying import refused
 from course.cli.frame import here
-from course.cli.frame.completion import exercise_ids, lesson_ids
 from course.cli.frame.console import Console, current, meter
-from course.cli.frame.options import argument, option
+from course.cli.frame.options import argument, exercise_ids, lesson_ids, option
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import Envelope, filled
 from course.errors import ContentError, UsageError
@@ -384,8 +383,17 @@ def check(
     with meter(console) as on_progress:
         report = audit(catalog, name, on_progress=on_progress, refused=refused, is_command=is_command)
     _show_report(console, catalog, report)
-    _emit_report(console, catalog, report)
-    return 0 if report.ok else 1
+    try:
+        course = catalog.ref
+    except ContentError:
+        course = CourseRef(id="", version="")  # the syllabus itself is what is wrong, and is reported
+    problems = _replies(report.problems)
+    code = 0 if report.ok else 1
+    seconds = round(report.seconds, 3)
+    console.emit(
+        filled(AuthorCheck, report, exit_code=code, course=course, seconds=seconds, problems=problems)
+    )
+    return code
 
 
 def _show_report(console: Console, catalog: Catalog, report: AuditReport) -> None:
@@ -411,25 +419,6 @@ def _show_report(console: Console, catalog: Catalog, report: AuditReport) -> Non
     else:
         found = counted(len(report.problems), "problem")
         console.line((found, "red"), f" in {looked}{level} in {report.seconds:.1f} s.")
-
-
-def _emit_report(console: Console, catalog: Catalog, report: AuditReport) -> None:
-    if not console.json:
-        return
-    try:
-        course = catalog.ref
-    except ContentError:
-        course = CourseRef(id="", version="")  # the syllabus itself is what is wrong, and is reported below
-    console.emit(
-        filled(
-            AuthorCheck,
-            report,
-            exit_code=0 if report.ok else 1,
-            course=course,
-            seconds=round(report.seconds, 3),
-            problems=_replies(report.problems),
-        )
-    )
 
 
 @app.command(epilog="Example: course author build collisions")
@@ -509,7 +498,20 @@ def mutants(name: _EachExercise = None) -> int:
         with meter(console) as on_progress:
             outcomes = run_mutants(catalog, exercise, on_progress=on_progress)
         _show_mutants(console, exercise, outcomes)
-        rows += [_mutant_row(exercise, outcome) for outcome in outcomes]
+        for outcome in outcomes:
+            mutant = outcome.mutant
+            rows.append(
+                filled(
+                    MutantRow,
+                    outcome,
+                    mutant,
+                    exercise=exercise.id,
+                    file=mutant.name,
+                    misconception=outcome.looks_like,
+                    check=outcome.check or outcome.by,
+                    faults=tuple(fault.message for fault in outcome.faults),
+                )
+            )
     wrong = sum(bool(row.faults) for row in rows)
     said = f"{wrong} not caught as they should be." if wrong else "each is caught as it says."
     console.line(f"{counted(len(rows), 'mutant')}: {said}")
@@ -534,21 +536,6 @@ def _show_mutants(console: Console, exercise: Exercise, outcomes: tuple[MutantOu
         for fault in outcome.faults:
             console.item("wrong", f"{fault.message} {fault.fix}", style="red")
         console.blank()
-
-
-def _mutant_row(exercise: Exercise, outcome: MutantOutcome) -> MutantRow:
-    faults = tuple(fault.message for fault in outcome.faults)
-    mutant, check = outcome.mutant, outcome.check or outcome.by
-    return filled(
-        MutantRow,
-        outcome,
-        exercise=exercise.id,
-        file=mutant.name,
-        task=mutant.task,
-        misconception=outcome.looks_like,
-        check=check,
-        faults=faults,
-    )
 
 
 @app.command(epilog="Example: course author pack --solutions integrators -o solutions.coursepack")

@@ -15,10 +15,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
-from course.cli.frame.completion import figure_ids
 from course.cli.frame.console import current
 from course.cli.frame.here import load_catalog
-from course.cli.frame.options import argument, option
+from course.cli.frame.options import argument, figure_ids, option
 from course.cli.frame.replies import Envelope
 from course.errors import InternalError, UsageError
 from course.progress.workspace import write_atomically

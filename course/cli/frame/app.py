@@ -3,8 +3,6 @@
 This is the only place where an error becomes words and an exit code.
 """
 
-from __future__ import annotations
-
 import contextlib
 import errno
 import gc
@@ -225,8 +223,7 @@ def _say(
     """Report an error in place of a result."""
     console.error(message, help)
     if console.json and (console.streams or not console.emitted):
-        from course.cli.frame.replies import ErrorBody, ErrorReply
-        from course.cli.frame.schemas import schema_of_line
+        from course.cli.frame.replies import ErrorBody, ErrorReply, schema_of_line
 
         body = ErrorBody(code=code, message=message, help=help)
         try:
@@ -248,8 +245,7 @@ def _refused(console: Console, line: Line, error: OSError) -> int:
 
 def _emit(console: Console, line: Line, code: int) -> None:
     """Keep the promise of one object for a command that has nothing to add to its exit code."""
-    from course.cli.frame.replies import Bare
-    from course.cli.frame.schemas import schema_of_line
+    from course.cli.frame.replies import Bare, schema_of_line
 
     console.emit(Bare(schema=schema_of_line(line), ok=code == 0, exit_code=code))
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import io
+import json
 import os
 import re
 import shutil
@@ -453,15 +454,11 @@ class Console:
             return
         if self.emitted:
             raise InternalError("A command tried to print a second JSON object.")
-        from course.cli.frame.replies import encode
-
         self.emitted = True
         self._out.write_bytes(encode(body) + b"\n")
 
     def emit_line(self, body: msgspec.Struct) -> None:
         """Write one line of JSON Lines, for the two commands that answer with several."""
-        from course.cli.frame.replies import encode
-
         self.emitted = self.streams = True
         self._out.write_bytes(encode(body) + b"\n")
 
@@ -558,6 +555,23 @@ class Console:
     def flush(self) -> None:
         self._out.flush()
         self._err.flush()
+
+
+def encode(body: msgspec.Struct) -> bytes:
+    """``body`` as one line of JSON in UTF-8; numbers that JSON has not are "nan", "inf" and "-inf".
+
+    The bytes of a name that are no text are spelled out.
+    """
+    import msgspec
+
+    from course.scoring.verdict import finite
+
+    plain = finite(msgspec.to_builtins(body))
+    try:
+        return msgspec.json.encode(plain)
+    except UnicodeEncodeError:
+        text = json.dumps(plain, ensure_ascii=False)
+        return re.sub("[\ud800-\udfff]", lambda half: rf"\\u{ord(half[0]):x}", text).encode("utf-8")
 
 
 _installed: Console | None = None

@@ -301,21 +301,15 @@ def target(path: Path, option: str, endings: tuple[str, ...]) -> Path:
     """
     full = named(path)
     if full.suffix.lower().removeprefix(".") not in endings:
-        known = " or ".join(f".{ending}" for ending in endings)
-        raise UsageError(
-            f"{option} {path}: the name must end in {known}.",
-            help=f"For example {option} {path.stem or 'run'}.{endings[0]}.",
-            code="bad_file_name",
-        )
-    if full.is_dir():
-        raise UsageError(f"{option} {path}: this is a folder.", help="Name a file.", code="bad_file_name")
-    if not full.parent.is_dir():
-        raise UsageError(
-            f"{option} {path}: there is no folder {full.parent}.",
-            help="Make it, or name another file.",
-            code="bad_file_name",
-        )
-    return full
+        wrong = f"the name must end in {' or '.join(f'.{ending}' for ending in endings)}"
+        advice = f"For example {option} {path.stem or 'run'}.{endings[0]}."
+    elif full.is_dir():
+        wrong, advice = "this is a folder", "Name a file."
+    elif not full.parent.is_dir():
+        wrong, advice = f"there is no folder {full.parent}", "Make it, or name another file."
+    else:
+        return full
+    raise UsageError(f"{option} {path}: {wrong}.", help=advice, code="bad_file_name")
 
 
 def inserted(path: Path, name: str) -> Path:

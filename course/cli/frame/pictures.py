@@ -13,13 +13,12 @@ from __future__ import annotations
 import base64
 import struct
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from rich.cells import cell_len
 from rich.color import Color
 from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
-from rich.segment import ControlType, Segment
+from rich.segment import ControlType, Segment, Segments
 from rich.style import Style
 from rich.syntax import Syntax
 from rich.text import Text
@@ -103,43 +102,24 @@ def protocol_of(console: Console, environ: Mapping[str, str]) -> Protocol | None
     return None
 
 
-@dataclass(frozen=True)
-class InlinePicture:
-    """A PNG that Rich can print.
+def _escape_codes(png: bytes, protocol: Protocol, columns: int, console: Console) -> str:
+    """The characters that have a terminal show a picture so many columns wide; the height follows."""
+    if protocol == "sixel":
+        from course.figures.terminal import sixels
 
-    Attributes:
-        columns: width on the screen; the height follows.
-        letter: pixels in a column's width, which only sixels need.
-    """
-
-    png: bytes
-    protocol: Protocol
-    columns: int
-    letter: int = _LETTER
-
-    def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[Segment]:
-        # A control segment has no width and is dropped where there is no terminal.
-        yield Segment(self.escape_codes(), None, [(ControlType.HOME,)])
-        yield Segment.line()
-
-    def escape_codes(self) -> str:
-        """The characters to send to the terminal."""
-        if self.protocol == "sixel":
-            from course.figures.terminal import sixels
-
-            return sixels(self.png, self.columns * self.letter)
-        data = base64.b64encode(self.png).decode("ascii")
-        if self.protocol == "iterm2":
-            size = f"size={len(self.png)};width={self.columns};preserveAspectRatio=1"
-            return f"\x1b]1337;File=inline=1;{size}:{data}\x07"
-        chunks = [data[start : start + _CHUNK] for start in range(0, len(data), _CHUNK)]
-        codes = []
-        for index, chunk in enumerate(chunks):
-            # q=2: no reply, which would arrive as if it had been typed.
-            head = f"a=T,f=100,q=2,c={self.columns}," if index == 0 else ""
-            more = int(index < len(chunks) - 1)
-            codes.append(f"\x1b_G{head}m={more};{chunk}\x1b\\")
-        return "".join(codes)
+        return sixels(png, columns * _letter_of(console))
+    data = base64.b64encode(png).decode("ascii")
+    if protocol == "iterm2":
+        size = f"size={len(png)};width={columns};preserveAspectRatio=1"
+        return f"\x1b]1337;File=inline=1;{size}:{data}\x07"
+    chunks = [data[start : start + _CHUNK] for start in range(0, len(data), _CHUNK)]
+    codes = []
+    for index, chunk in enumerate(chunks):
+        # q=2: no reply, which would arrive as if it had been typed.
+        head = f"a=T,f=100,q=2,c={columns}," if index == 0 else ""
+        more = int(index < len(chunks) - 1)
+        codes.append(f"\x1b_G{head}m={more};{chunk}\x1b\\")
+    return "".join(codes)
 
 
 def picture(
@@ -153,7 +133,9 @@ def picture(
     from course.figures.terminal import in_cells
 
     if protocol is not None:
-        return InlinePicture(file_of(make, "png"), protocol, columns, _letter_of(console))
+        codes = _escape_codes(file_of(make, "png"), protocol, columns, console)
+        # A control segment has no width and is dropped where there is no terminal.
+        return Segments([Segment(codes, None, [(ControlType.HOME,)]), Segment.line()])
     drawn = in_cells(make, columns)
     labels = [[one.column, one.row, one.text, one.ink, one.bold] for one in drawn.labels]
     return Group(*half_blocks(drawn.pixels.tobytes(), drawn.columns, drawn.rows, labels))

@@ -4,8 +4,6 @@ Declared as data so that ``course --help`` lists them without importing any: a m
 command is run. The first line of a command's docstring is its summary here; a test compares them.
 """
 
-from __future__ import annotations
-
 import importlib
 import os
 import re
@@ -82,12 +80,12 @@ COMMANDS: dict[str, Entry] = {
     "open": Entry("notebook", "open_notebook", PRACTISE, "Open one notebook in JupyterLab.", "integrators"),
     "sandbox": Entry("sandbox.commands", "app", PLAY, "Play with collisions, and see where the energy goes."),
     "sim": Entry("sim", "app", PLAY, "Run a simulation and compare with theory."),
-    "engines": Entry("engines.commands", "app", PLAY, "Compare real physics engines on this machine."),
+    "engines": Entry("engines", "app", PLAY, "Compare real physics engines on this machine."),
     "submit": Entry("work.submitting", "submit", HAND_IN, "Write the file to hand in.", "-o mine.zip"),
     "update": Entry("work.changing", "update", MACHINE, "Bring newer course content in.", "--dry-run"),
     "doctor": Entry("setup.doctor", "doctor", MACHINE, "Say what works on this machine."),
     "bug": Entry("setup.doctor", "bug", MACHINE, "Write what a fault report needs into a file."),
-    "schema": Entry("frame.schemas", "schema", MACHINE, "Print the JSON Schema of a reply.", "check"),
+    "schema": Entry("frame.replies", "schema", MACHINE, "Print the JSON Schema of a reply.", "check"),
     "grade": Entry("grade.commands", "app", TEACH, "Grade a class."),
     "author": Entry("author.commands", "app", WRITE, "Write and check the course itself."),
 }

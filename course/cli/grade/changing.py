@@ -1,55 +1,34 @@
-"""After a run: ``rerun``, ``override``, ``late``, ``similar``, ``assign``, ``log`` and ``salvage``."""
+"""What an instructor decides after a run: ``override``, ``late``, ``assign`` and ``log``."""
 
 import shlex
 from contextlib import nullcontext
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated
 
-from course.cli.frame.completion import exercise_ids, graded_ids, student_ids
+import msgspec
+
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
-from course.cli.frame.options import argument, option
-from course.cli.frame.replies import filled
+from course.cli.frame.options import argument, exercise_ids, graded_ids, option, student_ids
+from course.cli.frame.replies import Envelope, filled
 from course.cli.grade.options import (
-    Against,
-    Exercises,
     Isolation,
     Jobs,
     Out,
     Reason,
-    Share,
     Yes,
     agreed,
     in_words,
     levels,
     moved_scores,
-    show_change,
+    points,
     show_roster,
 )
-from course.cli.grade.options import points as _points
-from course.cli.grade.replies import (
-    AssignedOne,
-    FoundFile,
-    GradeAssign,
-    GradeLate,
-    GradeLog,
-    GradeRerun,
-    GradeSalvage,
-    GradeSimilar,
-    LateOne,
-    SimilarGroup,
-    SimilarPair,
-    UnsettledOne,
-)
-from course.cli.grade.running import checks_gave, show_faults
-from course.errors import InternalError, UsageError
-from course.grading.exports.grades import grade_line, utc, write_bytes
-from course.grading.gradebook.book import Gradebook
-from course.grading.gradebook.records import Decision, SubmittedAt
-from course.grading.gradebook.salvage import Salvaged, back_up
-from course.grading.gradebook.salvage import salvage as rescue
+from course.cli.grade.running import checks_gave
+from course.errors import UsageError
+from course.grading.exports.grades import grade_line, utc
+from course.grading.gradebook.records import Decision, Run, SubmittedAt
 from course.grading.results import effective as overriding
 from course.grading.results.effective import Results, ScoreChange, recorded
 from course.grading.results.late import (
@@ -61,73 +40,15 @@ from course.grading.results.late import (
     worksheet_times,
 )
 from course.grading.results.merge import merged
-from course.grading.results.roster import Roster, read_roster
+from course.grading.results.roster import read_roster
 from course.grading.running import assign as assigning
 from course.grading.running import batch
 from course.grading.running.assign import Assigned, Unsettled
-from course.grading.running.folder import export_all, make_folder, open_results, previewed
-from course.grading.running.rerun import Regraded, RerunOptions
-from course.grading.running.rerun import rerun as regrade
-from course.grading.similar import Similar, compare, page
-from course.isolation.launch import private_folder, remove_tree
+from course.grading.running.folder import open_results, previewed
 from course.printable import command, counted, one_line, quoted, some
 from course.scoring.verdict import format_points, in_points
 
 _SHOWN = 20
-
-
-def rerun(
-    out: Out,
-    dry_run: Annotated[bool, option("--dry-run", "Show what would change; change nothing.")] = False,
-    everything: Annotated[bool, option("--all", "Also regrade results that the same graders gave.")] = False,
-    jobs: Jobs = 1,
-    timeout: Annotated[
-        float | None, option("--timeout S", "As in the run if left out.", min=0.1, max=60.0)
-    ] = None,
-    isolation: Isolation = "auto",
-    against: Against = "",
-    reason: Annotated[str, option("--reason TEXT", "Kept with the regrading.")] = "",
-    yes: Yes = False,
-) -> int:
-    """Grade again, with the present graders or earlier ones.
-
-    Regrades the results of other graders, and results that a fault of the grader left without a score. Shows
-    whose score changes, by how much and because of which check. The submissions are in the gradebook; old
-    results stay beside the new ones, and overrides still count.
-    """
-    console = current()
-    level, at_least = levels(isolation)
-    options = RerunOptions(dry_run, everything, level, at_least, timeout, against, reason)
-    catalog = load_catalog()
-
-    def grading(accepted: str) -> Regraded:
-        mine = replace(options, accepted=accepted)
-        with open_results(out, writing=not dry_run) as results, console.working("Grading again"):
-            return regrade(results, catalog, mine, grade=partial(batch.grade_all, graders=jobs))
-
-    done = agreed(console, grading, yes=yes)
-    code = InternalError.exit_code if done.faults else 0
-    if console.json:
-        console.emit(filled(GradeRerun, done, exit_code=code, dry_run=dry_run, grader_error=done.faults))
-    else:
-        _show_rerun(console, done, out, dry_run=dry_run)
-    return code
-
-
-def _show_rerun(console: Console, done: Regraded, out: Path, *, dry_run: bool) -> None:
-    for change in done.changes:
-        show_change(console, change)
-    would = "would change" if dry_run else "changed"
-    console.line((f"{done.regraded - done.faults} graded again; {len(done.changes)} {would}.", "bold"))
-    if done.up_to_date:
-        console.note(f"Graded by the same graders already: {done.up_to_date}; --all grades them again.")
-    if done.kept:
-        console.note(f"Without a submission in the gradebook, and unchanged: {done.kept}.")
-    show_faults(console, done, out)
-    if dry_run and done.changes:
-        console.note(
-            "Nothing was changed. Without --dry-run the scores change, and the old results are kept."
-        )
 
 
 def override(
@@ -162,7 +83,7 @@ def override(
         console.line(f"{one_line(student)} {exercise}: nothing was handed in, and no score counts.")
     else:
         counts = (
-            f"{_points(now.score)} of {format_points(now.max_score)} {'would count' if dry_run else 'counts'}"
+            f"{points(now.score)} of {format_points(now.max_score)} {'would count' if dry_run else 'counts'}"
         )
         console.line((f"{one_line(student)} {exercise}: {counts}; {checks_gave(now)}.", "bold"))
         if score is not None:
@@ -170,6 +91,30 @@ def override(
     if dry_run:
         console.note("Nothing was changed; leave out --dry-run to change it.")
     return 0
+
+
+class LateOne(msgspec.Struct, frozen=True, kw_only=True):
+    """One result that is late, or flagged so. Seconds and points."""
+
+    student: str
+    exercise: str
+    late: float | None
+    penalty: float
+    submitted_at: str | None
+    witness: str
+    flagged_late: bool
+
+
+class GradeLate(Envelope, tag="course.grade-late/1", frozen=True, kw_only=True):
+    """The late results under the present policy; ``time_unknown`` counts results without a trusted date."""
+
+    policy: bool
+    late: tuple[LateOne, ...]
+    time_unknown: int
+    unknown_names: tuple[str, ...]
+    dry_run: bool = False
+    moved: tuple[ScoreChange, ...] = ()
+    dropped: tuple[str, ...] = ()
 
 
 def late(
@@ -206,7 +151,11 @@ def late(
         with recorded(book, "late", why) if changes else nullcontext(list[ScoreChange]()) as moved:
             if text is not None or clear:
                 book.set_meta(late_policy=text)
-            dropped = _take_in(book, people)
+            dropped = []
+            if people is not None:
+                joined = merged(Results(book), people)
+                book.set_meta(roster=joined.roster.dump())
+                dropped = joined.dropped
             known = _times(Results(book), listed, exercise)
             if known:
                 book.add_times(known, replace=True)
@@ -266,15 +215,8 @@ def _times(
             help=f"Add --exercise, one of {', '.join(ids)}.",
             code="needs_exercise",
         )
-    due = next(
-        (
-            one.due
-            for wanted in (name, "*")
-            for one in (results.policy.deadline if results.policy else ())
-            if one.exercise == wanted
-        ),
-        None,
-    )
+    deadlines = {one.exercise: one.due for one in (results.policy.deadline if results.policy else ())}
+    due = deadlines.get(name, deadlines.get("*"))
     if due is None or due.tzinfo is None:
         raise UsageError(
             f"{listed.path} says no time zone, and there is no deadline for {name} to take it from.",
@@ -297,32 +239,17 @@ def _unsure(results: Results, known: list[SubmittedAt]) -> list[str]:
     ]
 
 
-def _take_in(book: Gradebook, people: Roster | None) -> list[str]:
-    """Keep a roster; the students who leave it."""
-    dropped = []
-    if people is not None:
-        found = merged(Results(book), people)
-        book.set_meta(roster=found.roster.dump())
-        dropped = found.dropped
-    return dropped
-
-
 def _unknown(results: Results, times: list[SubmittedAt]) -> list[str]:
     """Names in a file of times or in the policy that the gradebook does not have."""
-    students = _everybody(results)
+    students = set(results.students())
+    people = (results.person(name) for name in results.students())
+    students |= {person.student for person in people if person is not None}
     exercises = {item.id: item for item in results.exercises()}
     unknown = sorted({f"student {item.student}" for item in times if item.student not in students})
     unknown += sorted({f"exercise {item.exercise}" for item in times if item.exercise not in exercises})
     if results.policy is not None:
         unknown += unknown_names(results.policy, exercises, students)
     return unknown
-
-
-def _everybody(results: Results) -> set[str]:
-    """All names of the students in this gradebook."""
-    names = set(results.students())
-    people = (results.person(name) for name in results.students())
-    return names | {person.student for person in people if person is not None}
 
 
 def _show_late(
@@ -350,66 +277,51 @@ def _show_late(
         console.warn(f"The gradebook has no {one_line(name)}.")
 
 
-def similar(
-    out: Out,
-    exercise: Exercises = None,
-    # The right solutions in solutions/*/accepted share 0.39 at most with the model solution, by weight; a
-    # copy whose names were changed shares 1.
-    share: Share = 0.6,
-    output: Annotated[Path | None, option("-o --output FILE", "Page; OUT/similar.html if left out.")] = None,
-) -> int:
-    """Find submissions that are alike.
-
-    Writes a page that shows them side by side. Everything happens on this machine. Names, comments and
-    layout do not count, and neither does the stub. Similarity is a reason to talk with students, not a proof.
-    """
-    console = current()
-    catalog = load_catalog()
-    with open_results(out) as results, console.working("Comparing"):
-        found = compare(results, catalog, tuple(exercise or ()), at_least=share)
-    target = output or out / "similar.html"
-    write_bytes(target, page(found).encode("utf-8"))
-    if console.json:
-        pairs = tuple(
-            filled(
-                SimilarPair, one, first=one.first.label, second=one.second.label, share=round(one.share, 4)
-            )
-            for one in found.pairs
-        )
-        groups = tuple(filled(SimilarGroup, one, share=round(one.share, 4)) for one in found.groups)
-        console.emit(filled(GradeSimilar, found, pairs=pairs, groups=groups, page=str(target)))
-        return 0
-    _show_similar(console, found)
-    console.note(f"Side by side: {target}")
-    return 0
-
-
-def _show_similar(console: Console, found: Similar) -> None:
-    for group in found.groups[:_SHOWN]:
-        names = some([one_line(name) for name in group.members], 8)
-        words = f"{group.exercise}, weakest pair {group.share:.0%}: {names}"
-        console.item(f"group of {len(group.members)}", words)
-    if found.groups[_SHOWN:]:
-        console.line(f"and {counted(len(found.groups) - _SHOWN, 'more group')}", indent=2)
-    for pair in found.pairs[:_SHOWN]:
-        both = f"{one_line(pair.first.label)} and {one_line(pair.second.label)}"
-        console.item(
-            f"{pair.share:.0%}", f"{both}, {pair.exercise}, {counted(pair.lines, 'line')} alike", width=5
-        )
-    if len(found.pairs) > _SHOWN:
-        console.line(f"and {counted(len(found.pairs) - _SHOWN, 'more pair')}", indent=2)
-    console.line(
-        (f"{counted(len(found.pairs), 'pair')} among {counted(found.compared, 'submission')}.", "bold")
-    )
-    if found.left_out:
-        console.note(f"{counted(found.left_out, 'more pair')} not listed; raise --share.")
-    if found.unreadable:
-        console.note(f"{len(found.unreadable)} not compared: not Python, or over 200 kB.")
-
-
 _LISTED = 200
 #: Reasons whose words are the list of files again.
 _ABOUT_FILES = frozenset({"no_file", "ambiguous_files"})
+
+
+class AssignedOne(msgspec.Struct, frozen=True, kw_only=True):
+    """A file that became a student's submission; null scores do not count."""
+
+    student: str
+    exercise: str
+    file: str
+    score_before: float | None
+    score_after: float | None
+    state_before: str
+    state_after: str
+
+
+class FoundFile(msgspec.Struct, frozen=True, kw_only=True):
+    """A file that may be meant for an exercise, and which of its functions it defines.
+
+    ``kind`` says what it is, or why it cannot be read; it is empty for a .py file or a notebook.
+    """
+
+    file: str
+    defines: tuple[str, ...]
+    proposed: bool
+    kind: str = ""
+
+
+class UnsettledOne(msgspec.Struct, frozen=True, kw_only=True):
+    """Work that could not be graded; ``reason`` is the code of the problem, ``message`` says it in words."""
+
+    student: str
+    exercise: str
+    reason: str
+    message: str
+    files: tuple[FoundFile, ...]
+
+
+class GradeAssign(Envelope, tag="course.grade-assign/1", frozen=True, kw_only=True):
+    """The assigned files, and the cases that are left."""
+
+    dry_run: bool
+    assigned: tuple[AssignedOne, ...]
+    unsettled: tuple[UnsettledOne, ...]
 
 
 def assign(
@@ -497,9 +409,8 @@ def _show_assigned(console: Console, done: list[Assigned], *, dry_run: bool) -> 
     for item in done:
         one, after = item.assignment, item.after
         was = item.before.verdict.state if item.before else "missing"
-        points = "no score" if after.score is None else format_points(after.score)
-        most = format_points(after.max_score)
-        words = f"{was} -> {after.verdict.state}, {points} of {most}; from {quoted(one.name)}"
+        scored = f"{points(after.score)} of {format_points(after.max_score)}"
+        words = f"{was} -> {after.verdict.state}, {scored}; from {quoted(one.name)}"
         console.item(f"{one_line(one.student)} {one.exercise}", words)
     if done:
         console.line((f"{len(done)} {'would be assigned' if dry_run else 'assigned and graded'}.", "bold"))
@@ -535,6 +446,13 @@ def _show_unsettled(console: Console, left: list[Unsettled], out: Path, words: s
         console.note(f"{given} gives a score by hand; {other} grades another file.")
 
 
+class GradeLog(Envelope, tag="course.grade-log/1", frozen=True, kw_only=True):
+    """Every run, and every change of a grade."""
+
+    runs: tuple[Run, ...]
+    changes: tuple[Decision, ...]
+
+
 def log(
     out: Out,
     student: Annotated[str | None, argument("STUDENT", complete=student_ids)] = None,
@@ -565,60 +483,3 @@ def log(
         if before != after:
             console.line(f"{before} -> {after}", indent=12)
     return 0
-
-
-def salvage(
-    out: Out,
-    to: Annotated[Path, option("--to NEW", "Folder for the intact rows; must be new.")],
-    dry_run: Annotated[bool, option("--dry-run", "Report what can be recovered; write nothing.")] = False,
-) -> int:
-    """Recover the intact parts of a damaged gradebook and its backups.
-
-    Everything goes into a new folder; the damaged file and its backups stay unchanged. The exit code is 0
-    if nothing is known to be lost, else 6 with a list; `course grade run --resume` grades what is missing.
-    """
-    console = current()
-    if to.exists():
-        raise UsageError(
-            f"{to} exists already; nothing was changed.", help="Name a new folder.", code="out_exists"
-        )
-    folder = private_folder() if dry_run else to
-    make_folder(folder)
-    try:
-        path = folder / "gradebook.sqlite"
-        told = rescue(out / path.name, path)
-        with Gradebook(path, writing=True) as book:
-            lost = "; ".join(told.lost) or "nothing known to be lost"
-            book.note(Decision("", "", "salvage", "", "", f"from {one_line(str(out))}", "", lost))
-            if not dry_run:
-                export_all(folder, Results(book))
-        if not dry_run:
-            back_up(path)
-    finally:
-        if dry_run:
-            remove_tree(folder)
-        elif not any(folder.iterdir()):
-            folder.rmdir()
-    code = 6 if told.lost else 0
-    if console.json:
-        console.emit(filled(GradeSalvage, told, exit_code=code, dry_run=dry_run, out=str(to)))
-        return code
-    _show_salvaged(console, told, to, dry_run=dry_run)
-    return code
-
-
-def _show_salvaged(console: Console, told: Salvaged, to: Path, *, dry_run: bool) -> None:
-    for name in ("results", "submissions", "overrides", "journal", "snapshots"):
-        backed = told.from_backup[name]
-        words = f"{told.rows[name]}" + (f", {backed} of them from a backup" if backed else "")
-        console.item(name, words, width=12)
-    for entry in told.lost[:_LISTED]:
-        console.line(f"lost: {one_line(entry)}")
-    console.line(
-        (f"{len(told.lost)} known to be lost." if told.lost else "Nothing is known to be lost.", "bold")
-    )
-    if not dry_run:
-        with open_results(to) as results:
-            folder = results.book.run_options().get("folder", "SUBMISSIONS")
-        rest = command("grade", "run", folder, "--out", to, "--resume")
-        console.note(f"Written: {to}. {rest} grades what is missing.")

@@ -4,29 +4,55 @@ import secrets
 from pathlib import Path
 from typing import Annotated
 
+import msgspec
+
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import cwd, load_catalog
 from course.cli.frame.options import argument, option
 from course.cli.frame.registry import COMMANDS, group
-from course.cli.frame.replies import filled
-from course.cli.grade.changing import assign, late, log, override, rerun, salvage, similar
-from course.cli.grade.options import Exercises, Missing, moved_scores, one_of, show_roster
-from course.cli.grade.replies import GradeExport
-from course.cli.grade.running import explain, run
+from course.cli.frame.replies import Envelope, filled
+from course.cli.grade.changing import assign, late, log, override
+from course.cli.grade.options import Exercises, Missing, Out, Share, moved_scores, one_of, show_roster
+from course.cli.grade.running import explain, rerun, run
 from course.errors import CourseError, UsageError
 from course.grading.container import write_autograder
 from course.grading.exports.formats import AUTOGRADER, FORMATS
 from course.grading.exports.formats import export as write
-from course.grading.exports.grades import STDOUT, grade_line
+from course.grading.exports.grades import STDOUT, grade_line, write_bytes
 from course.grading.exports.selection import ExportOptions, Written, select
-from course.grading.results.effective import Results, counting, moved
+from course.grading.gradebook.book import Gradebook
+from course.grading.gradebook.records import Decision
+from course.grading.gradebook.salvage import Salvaged, back_up
+from course.grading.gradebook.salvage import salvage as rescue
+from course.grading.results.effective import Results, ScoreChange, counting, moved
 from course.grading.results.merge import Merged, merged
 from course.grading.results.roster import Roster, read_roster
-from course.grading.running.folder import open_results, remember
-from course.printable import command, one_line
+from course.grading.running.folder import export_all, make_folder, open_results, remember
+from course.grading.similar import Similar, compare, page
+from course.isolation.launch import private_folder, remove_tree
+from course.printable import command, counted, one_line, some
 from course.scoring.verdict import LARGEST_SEED
 
-_SHOWN = 20
+#: Rows of a list; of what is lost, all but what no terminal keeps.
+_SHOWN, _MOST_LOST = 20, 200
+
+
+class GradeExport(Envelope, tag="course.grade-export/1", frozen=True, kw_only=True):
+    """The export. ``unmatched`` are students without a row in the roster, left out with ``--partial``.
+
+    ``moved`` are the scores that a second roster changed, ``dropped`` the students whom it does not have,
+    ``kept`` rows of the platform's file that have a teacher's grade, feedback or excuse.
+    """
+
+    format: str
+    paths: tuple[str, ...]
+    rows: int
+    unmatched: tuple[str, ...]
+    without_grade: tuple[str, ...]
+    notes: tuple[str, ...]
+    moved: tuple[ScoreChange, ...] = ()
+    dropped: tuple[str, ...] = ()
+    kept: tuple[str, ...] = ()
 
 
 def export(
@@ -191,6 +217,162 @@ def _show(console: Console, name: str, written: Written, out: Path | None, found
             console.line(f"and {len(listed) - _SHOWN} more", indent=2)
     for note in written.notes:
         console.note(note)
+
+
+# ---
+# ``similar`` and ``salvage``.
+
+
+class SimilarPair(msgspec.Struct, frozen=True, kw_only=True):
+    """Two submissions of one exercise; ``share`` of the smaller one is in the other."""
+
+    exercise: str
+    first: str
+    second: str
+    share: float
+    lines: int
+
+
+class SimilarGroup(msgspec.Struct, frozen=True, kw_only=True):
+    """Submissions of one exercise that similar pairs link; ``share`` is that of the weakest pair."""
+
+    exercise: str
+    members: tuple[str, ...]
+    share: float
+
+
+class GradeSimilar(Envelope, tag="course.grade-similar/1", frozen=True, kw_only=True):
+    """Pairs, the most alike first, and groups, the largest first; the page shows the pairs side by side."""
+
+    compared: int
+    pairs: tuple[SimilarPair, ...]
+    groups: tuple[SimilarGroup, ...]
+    unreadable: tuple[str, ...]
+    page: str
+
+
+def similar(
+    out: Out,
+    exercise: Exercises = None,
+    # The right solutions in solutions/*/accepted share 0.39 at most with the model solution, by weight; a
+    # copy whose names were changed shares 1.
+    share: Share = 0.6,
+    output: Annotated[Path | None, option("-o --output FILE", "Page; OUT/similar.html if left out.")] = None,
+) -> int:
+    """Find submissions that are alike.
+
+    Writes a page that shows them side by side. Everything happens on this machine. Names, comments and
+    layout do not count, and neither does the stub. Similarity is a reason to talk with students, not a proof.
+    """
+    console = current()
+    catalog = load_catalog()
+    with open_results(out) as results, console.working("Comparing"):
+        found = compare(results, catalog, tuple(exercise or ()), at_least=share)
+    target = output or out / "similar.html"
+    write_bytes(target, page(found).encode("utf-8"))
+    if console.json:
+        pairs = tuple(
+            filled(
+                SimilarPair, one, first=one.first.label, second=one.second.label, share=round(one.share, 4)
+            )
+            for one in found.pairs
+        )
+        groups = tuple(filled(SimilarGroup, one, share=round(one.share, 4)) for one in found.groups)
+        console.emit(filled(GradeSimilar, found, pairs=pairs, groups=groups, page=str(target)))
+        return 0
+    _show_similar(console, found)
+    console.note(f"Side by side: {target}")
+    return 0
+
+
+def _show_similar(console: Console, found: Similar) -> None:
+    for one in found.groups[:_SHOWN]:
+        names = some([one_line(name) for name in one.members], 8)
+        words = f"{one.exercise}, weakest pair {one.share:.0%}: {names}"
+        console.item(f"group of {len(one.members)}", words)
+    if found.groups[_SHOWN:]:
+        console.line(f"and {counted(len(found.groups) - _SHOWN, 'more group')}", indent=2)
+    for pair in found.pairs[:_SHOWN]:
+        both = f"{one_line(pair.first.label)} and {one_line(pair.second.label)}"
+        console.item(
+            f"{pair.share:.0%}", f"{both}, {pair.exercise}, {counted(pair.lines, 'line')} alike", width=5
+        )
+    if len(found.pairs) > _SHOWN:
+        console.line(f"and {counted(len(found.pairs) - _SHOWN, 'more pair')}", indent=2)
+    console.line(
+        (f"{counted(len(found.pairs), 'pair')} among {counted(found.compared, 'submission')}.", "bold")
+    )
+    if found.left_out:
+        console.note(f"{counted(found.left_out, 'more pair')} not listed; raise --share.")
+    if found.unreadable:
+        console.note(f"{len(found.unreadable)} not compared: not Python, or over 200 kB.")
+
+
+class GradeSalvage(Envelope, tag="course.grade-salvage/1", frozen=True, kw_only=True):
+    """Rows by table, the number that only a backup had, and the known losses."""
+
+    dry_run: bool
+    rows: dict[str, int]
+    from_backup: dict[str, int]
+    lost: tuple[str, ...]
+    out: str
+
+
+def salvage(
+    out: Out,
+    to: Annotated[Path, option("--to NEW", "Folder for the intact rows; must be new.")],
+    dry_run: Annotated[bool, option("--dry-run", "Report what can be recovered; write nothing.")] = False,
+) -> int:
+    """Recover the intact parts of a damaged gradebook and its backups.
+
+    Everything goes into a new folder; the damaged file and its backups stay unchanged. The exit code is 0
+    if nothing is known to be lost, else 6 with a list; `course grade run --resume` grades what is missing.
+    """
+    console = current()
+    if to.exists():
+        raise UsageError(
+            f"{to} exists already; nothing was changed.", help="Name a new folder.", code="out_exists"
+        )
+    folder = private_folder() if dry_run else to
+    make_folder(folder)
+    try:
+        path = folder / "gradebook.sqlite"
+        told = rescue(out / path.name, path)
+        with Gradebook(path, writing=True) as book:
+            lost = "; ".join(told.lost) or "nothing known to be lost"
+            book.note(Decision("", "", "salvage", "", "", f"from {one_line(str(out))}", "", lost))
+            if not dry_run:
+                export_all(folder, Results(book))
+        if not dry_run:
+            back_up(path)
+    finally:
+        if dry_run:
+            remove_tree(folder)
+        elif not any(folder.iterdir()):
+            folder.rmdir()
+    code = 6 if told.lost else 0
+    if console.json:
+        console.emit(filled(GradeSalvage, told, exit_code=code, dry_run=dry_run, out=str(to)))
+        return code
+    _show_salvaged(console, told, to, dry_run=dry_run)
+    return code
+
+
+def _show_salvaged(console: Console, told: Salvaged, to: Path, *, dry_run: bool) -> None:
+    for name in ("results", "submissions", "overrides", "journal", "snapshots"):
+        backed = told.from_backup[name]
+        words = f"{told.rows[name]}" + (f", {backed} of them from a backup" if backed else "")
+        console.item(name, words, width=12)
+    for entry in told.lost[:_MOST_LOST]:
+        console.line(f"lost: {one_line(entry)}")
+    console.line(
+        (f"{len(told.lost)} known to be lost." if told.lost else "Nothing is known to be lost.", "bold")
+    )
+    if not dry_run:
+        with open_results(to) as results:
+            folder = results.book.run_options().get("folder", "SUBMISSIONS")
+        rest = command("grade", "run", folder, "--out", to, "--resume")
+        console.note(f"Written: {to}. {rest} grades what is missing.")
 
 
 app = group(COMMANDS["grade"].summary)

@@ -7,9 +7,8 @@ from typing import Annotated, Any, TypeVar
 
 import msgspec
 
-from course.cli.frame.completion import choice_of, exercise_ids, run_numbers
 from course.cli.frame.console import Console
-from course.cli.frame.options import argument, option
+from course.cli.frame.options import argument, choice_of, exercise_ids, option, run_numbers
 from course.errors import UsageError
 from course.grading.intake.downloads import LAYOUTS
 from course.grading.results.effective import ScoreChange

@@ -1,10 +1,8 @@
-"""``course grade run`` and ``course grade explain``: a class graded, and one result with its history."""
-
-from __future__ import annotations
+"""``course grade run``, ``rerun`` and ``explain``: a class graded, and graded again; one result explained."""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
@@ -12,12 +10,13 @@ from typing import Annotated, Any
 from course import extras
 from course.catalog.load import Catalog
 from course.catalog.models import CourseRef
-from course.cli.frame.completion import exercise_ids, graded_ids, student_ids, submitted_ids
 from course.cli.frame.console import Console, current, meter
 from course.cli.frame.here import load_catalog
-from course.cli.frame.options import argument, option
-from course.cli.frame.replies import filled
+from course.cli.frame.options import argument, exercise_ids, graded_ids, option, student_ids, submitted_ids
+from course.cli.frame.replies import Envelope, filled
 from course.cli.grade.options import (
+    Against,
+    Isolation,
     Jobs,
     Layout,
     LocalCluster,
@@ -33,23 +32,49 @@ from course.cli.grade.options import (
     show_change,
     show_roster,
 )
-from course.cli.grade.replies import GradeSummary
 from course.cli.work.verdict import show_everything
-from course.errors import INTERRUPTED, CourseError, NotFoundError, UsageError
+from course.errors import INTERRUPTED, CourseError, InternalError, NotFoundError, UsageError
 from course.grading.exports.grades import grade_line
 from course.grading.gradebook.records import Decision, Result
-from course.grading.results.effective import MISSING, NOT_YET, Effective
+from course.grading.results.effective import MISSING, NOT_YET, Effective, ScoreChange
 from course.grading.results.late import in_days
 from course.grading.results.roster import read_roster
 from course.grading.running import batch
 from course.grading.running.folder import open_results
-from course.grading.running.rerun import Regraded, RerunOptions, rerun
+from course.grading.running.rerun import Change, Regraded, RerunOptions
+from course.grading.running.rerun import rerun as regrade
 from course.grading.running.run import GradeAll, RunOptions, Summary, Ungraded, grade_class
 from course.printable import command, counted, one_line
 from course.scoring.judging.submission import Terms
 from course.scoring.verdict import LARGEST_SEED, format_points, in_points
 
 _MOST_TROUBLED = 20
+
+
+class GradeSummary(Envelope, tag="course.grade-summary/1", frozen=True, kw_only=True):
+    """The last line of ``grade run``: counts over the whole gradebook."""
+
+    graded: int
+    ungradable: int
+    grader_error: int
+    passed: int
+    not_submitted: int
+    already_graded: int
+    isolation: dict[str, int]
+    seed: int
+    elapsed_s: float
+    out: str
+    troubled: tuple[Ungraded, ...]
+    unrecognised: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()
+    strangers: tuple[str, ...] = ()
+    unjudged: tuple[str, ...] = ()
+    graders: str = ""
+    edited: tuple[str, ...] = ()
+    would_change: tuple[Change, ...] = ()
+    unsettled: int = 0
+    moved: tuple[ScoreChange, ...] = ()
+    dropped: tuple[str, ...] = ()
 
 
 def run(
@@ -91,25 +116,26 @@ def run(
             f"Each folder in {submissions} is taken for a student, and all are called as exercises. If they"
             " are one student's, name the folder above them."
         )
-    progress = _Progress(console, catalog.ref)
+    reached = [0, 0]
 
     def grading(accepted: str) -> tuple[Summary, Regraded | None]:
         mine = replace(options, accepted=accepted)
-        with _graders(jobs, local_cluster, scheduler) as grade, progress.shown() as report:
+        graders = _graders(jobs, local_cluster, scheduler)
+        with graders as grade, _progress(console, catalog.ref, reached) as report:
             summary = grade_class(submissions, out, catalog, mine, report, grade=grade)
             return summary, _would_change(console, summary, out, catalog, terms, grade)
 
     try:
         summary, tried = agreed(console, grading, yes=yes)
     except KeyboardInterrupt:
-        raise _interrupted(progress, out) from None
+        raise _interrupted(reached, out) from None
     _show_summary(console, summary, out, options, tried)
     return summary.exit_code
 
 
-def _interrupted(progress: _Progress, out: Path) -> CourseError:
+def _interrupted(reached: list[int], out: Path) -> CourseError:
     """What is there after Ctrl-C, and how it goes on."""
-    done, total = progress.reached
+    done, total = reached
     if not out.exists():
         told = CourseError("Interrupted before anything was graded; nothing was written.", code="interrupted")
     else:
@@ -128,7 +154,7 @@ def _would_change(
         return None
     options = RerunOptions(dry_run=True, level=terms.level, at_least=terms.at_least)
     with open_results(out) as results, console.working("Grading with the edited graders, to compare"):
-        return rerun(results, catalog, options, grade=grade)
+        return regrade(results, catalog, options, grade=grade)
 
 
 def _show_edited(console: Console, summary: Summary, tried: Regraded | None, out: Path) -> None:
@@ -196,6 +222,72 @@ def _show_people(console: Console, summary: Summary) -> None:
             )
 
 
+class GradeRerun(Envelope, tag="course.grade-rerun/1", frozen=True, kw_only=True):
+    """The students whose scores change, by how much, and because of which check."""
+
+    dry_run: bool
+    regraded: int
+    up_to_date: int
+    kept: int
+    grader_error: int
+    changes: tuple[Change, ...]
+    graders: str = ""
+
+
+def rerun(
+    out: Out,
+    dry_run: Annotated[bool, option("--dry-run", "Show what would change; change nothing.")] = False,
+    everything: Annotated[bool, option("--all", "Also regrade results that the same graders gave.")] = False,
+    jobs: Jobs = 1,
+    timeout: Annotated[
+        float | None, option("--timeout S", "As in the run if left out.", min=0.1, max=60.0)
+    ] = None,
+    isolation: Isolation = "auto",
+    against: Against = "",
+    reason: Annotated[str, option("--reason TEXT", "Kept with the regrading.")] = "",
+    yes: Yes = False,
+) -> int:
+    """Grade again, with the present graders or earlier ones.
+
+    Regrades the results of other graders, and results that a fault of the grader left without a score. Shows
+    whose score changes, by how much and because of which check. The submissions are in the gradebook; old
+    results stay beside the new ones, and overrides still count.
+    """
+    console = current()
+    level, at_least = levels(isolation)
+    options = RerunOptions(dry_run, everything, level, at_least, timeout, against, reason)
+    catalog = load_catalog()
+
+    def grading(accepted: str) -> Regraded:
+        mine = replace(options, accepted=accepted)
+        with open_results(out, writing=not dry_run) as results, console.working("Grading again"):
+            return regrade(results, catalog, mine, grade=partial(batch.grade_all, graders=jobs))
+
+    done = agreed(console, grading, yes=yes)
+    code = InternalError.exit_code if done.faults else 0
+    if console.json:
+        console.emit(filled(GradeRerun, done, exit_code=code, dry_run=dry_run, grader_error=done.faults))
+    else:
+        _show_rerun(console, done, out, dry_run=dry_run)
+    return code
+
+
+def _show_rerun(console: Console, done: Regraded, out: Path, *, dry_run: bool) -> None:
+    for change in done.changes:
+        show_change(console, change)
+    would = "would change" if dry_run else "changed"
+    console.line((f"{done.regraded - done.faults} graded again; {len(done.changes)} {would}.", "bold"))
+    if done.up_to_date:
+        console.note(f"Graded by the same graders already: {done.up_to_date}; --all grades them again.")
+    if done.kept:
+        console.note(f"Without a submission in the gradebook, and unchanged: {done.kept}.")
+    show_faults(console, done, out)
+    if dry_run and done.changes:
+        console.note(
+            "Nothing was changed. Without --dry-run the scores change, and the old results are kept."
+        )
+
+
 def explain(
     out: Out,
     student: Annotated[str, argument("STUDENT", complete=student_ids)],
@@ -229,34 +321,26 @@ def explain(
     return 0
 
 
-@dataclass
-class _Progress:
-    """Shows results as they arrive: a bar on a terminal, lines elsewhere, JSON Lines with ``--json``.
+@contextmanager
+def _progress(
+    console: Console, course: CourseRef, reached: list[int]
+) -> Iterator[Callable[[Effective, int, int], None]]:
+    """Show results as they arrive: a bar on a terminal, lines elsewhere, JSON Lines with ``--json``.
 
-    Attributes:
-        reached: students done, and all.
+    Gives a function to call with each result, students done, and all of them; ``reached`` keeps the latter.
     """
+    with meter(console) if console.fancy else nullcontext() as advance:
 
-    console: Console
-    course: CourseRef
-    reached: tuple[int, int] = 0, 0
+        def report(result: Effective, done: int, total: int) -> None:
+            reached[:] = done, total
+            if console.json:
+                console.emit_line(grade_line(result, course))
+            elif advance is not None:
+                advance(done, total, "graded")
+            elif not console.quiet:
+                console.line(_graded(result, done, total))
 
-    @contextmanager
-    def shown(self) -> Iterator[Callable[[Effective, int, int], None]]:
-        """A function to call with each result, students done, and all of them."""
-        console = self.console
-        with meter(console) if console.fancy else nullcontext() as advance:
-
-            def report(result: Effective, done: int, total: int) -> None:
-                self.reached = done, total
-                if console.json:
-                    console.emit_line(grade_line(result, self.course))
-                elif advance is not None:
-                    advance(done, total, "graded")
-                elif not console.quiet:
-                    console.line(_graded(result, done, total))
-
-            yield report
+        yield report
 
 
 def _graded(result: Effective, done: int, total: int) -> str:

@@ -13,10 +13,9 @@ from rich.console import Console as RichConsole
 from course.browser import keep_closed
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise, Lesson
-from course.cli.frame.completion import LessonName, WarmUpName
 from course.cli.frame.console import MAX_WIDTH, Console, current
 from course.cli.frame.here import Here, here_or_outside
-from course.cli.frame.options import option
+from course.cli.frame.options import LessonName, WarmUpName, option
 from course.cli.frame.replies import Envelope, NextStep, filled
 from course.cli.home.advice import after_lesson
 from course.cli.home.learning import day

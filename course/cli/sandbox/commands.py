@@ -11,11 +11,10 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from course.cli.frame.completion import choice_of, scene_ids, scene_settings
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import named
 from course.cli.frame.here import target as target_file
-from course.cli.frame.options import argument, option
+from course.cli.frame.options import argument, choice_of, option, scene_ids, scene_settings
 from course.cli.frame.registry import COMMANDS, OPTIONS
 from course.cli.frame.replies import filled
 from course.cli.sandbox import play as playing

@@ -4,15 +4,13 @@ A worked example is checked with its mistake and without it, through the session
 both motions are drawn. On a terminal the user types the line that is right. Nothing is written anywhere.
 """
 
-from __future__ import annotations
-
 import difflib
 import os
 import shutil
 import sys
 import textwrap
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -73,9 +71,8 @@ _ACTIVATE = ("bin/activate", "Scripts/activate")
 
 @dataclass(frozen=True)
 class _Motion:
-    """A module, its checks' results, and the motion it computed: positions (m) and velocities (m/s)."""
+    """The checks' results of a module, and the motion it computed: positions (m) and velocities (m/s)."""
 
-    source: str
     verdict: Verdict
     x: np.ndarray[Any, Any]
     v: np.ndarray[Any, Any]
@@ -99,15 +96,17 @@ def demo() -> int:
         (Path(example.folder) / name).read_text(encoding="utf-8") for name in (MISTAKEN, example.module)
     )
     with attempts.open_session(example, catalog) as session:
-        bench = _Bench(console, session)
-        before = bench.motion(mistaken, passes=False)
-        _show_mistake(console, example, before)
-        fixed = _ask(bench, mistaken, right) if console.converses else right
-        if not fixed:
+        before = _motion(console, session, _checked(console, session, mistaken), passes=False)
+        _show_mistake(console, example, mistaken, before.verdict)
+        if console.converses:
+            fixed = _ask(console, session, mistaken, right)
+        else:
+            fixed = _checked(console, session, right)
+        if fixed is None:
             _say_next(console)
             return 0
-        after = bench.motion(fixed, passes=True)
-    change = _change(mistaken, fixed)
+        after = _motion(console, session, fixed, passes=True)
+    change = _change(mistaken, fixed.source.decode())
     _show_fixed(console, example, before, after, change)
     _say_next(console)
     course = catalog.ref
@@ -125,63 +124,46 @@ def demo() -> int:
     return 0
 
 
-@dataclass
-class _Bench:
-    """Checks versions of the module, and lets them compute the motion that is drawn."""
-
-    console: Console
-    _session: GradingSession
-    _checked: dict[str, Attempt] = field(default_factory=dict)
-
-    def verdict(self, source: str) -> Verdict:
-        """The checks' results; each version is checked once."""
-        return self._attempt(source).verdict
-
-    def motion(self, source: str, *, passes: bool) -> _Motion:
-        """The motion of a version whose checks must pass, or must not."""
-        verdict, problem = self.verdict(source), self._attempt(source).problem
-        if problem is not None:
-            raise InternalError(problem.message, help=problem.help, code=problem.code)
-        if verdict.all_pass != passes:
-            raise InternalError(
-                "The demonstration failed: the file with the mistake must fail its checks, and the corrected "
-                "file pass them.",
-                help="Run `course doctor`; if it finds nothing, please report this.",
-                code="demo_failed",
-            )
-        task = self._session.exercise.task[0].id
-        with self.console.working("Computing both motions"):
-            x, v = self._session.using(
-                self._submission(source), lambda live: live.call(task, STRETCH, RATE, STEP, STEPS)
-            )
-        return _Motion(source, verdict, np.array(x), np.array(v))
-
-    def _attempt(self, source: str) -> Attempt:
-        if source not in self._checked:
-            with self.console.working("Checking"):
-                made = attempts.attempt_in(self._session, self._submission(source), time.perf_counter())
-            self._checked[source] = made
-        return self._checked[source]
-
-    def _submission(self, source: str) -> Submission:
-        # What a terminal cannot decode it hands over as lone surrogates; a file with them is no text either.
-        return Submission({self._session.exercise.module: source.encode(errors="surrogatepass")})
+def _checked(console: Console, session: GradingSession, source: str) -> Attempt:
+    # What a terminal cannot decode it hands over as lone surrogates; a file with them is no text either.
+    submission = Submission({session.exercise.module: source.encode(errors="surrogatepass")})
+    with console.working("Checking"):
+        return attempts.attempt_in(session, submission, time.perf_counter())
 
 
-def _show_mistake(console: Console, example: Exercise, before: _Motion) -> None:
+def _motion(console: Console, session: GradingSession, made: Attempt, *, passes: bool) -> _Motion:
+    """The motion of a version whose checks must pass, or must not."""
+    if made.problem is not None:
+        raise InternalError(made.problem.message, help=made.problem.help, code=made.problem.code)
+    if made.verdict.all_pass != passes:
+        raise InternalError(
+            "The demonstration failed: the file with the mistake must fail its checks, and the corrected "
+            "file pass them.",
+            help="Run `course doctor`; if it finds nothing, please report this.",
+            code="demo_failed",
+        )
+    exercise = session.exercise
+    with console.working("Computing both motions"):
+        x, v = session.using(
+            Submission({exercise.module: made.source}),
+            lambda live: live.call(exercise.task[0].id, STRETCH, RATE, STEP, STEPS),
+        )
+    return _Motion(made.verdict, np.array(x), np.array(v))
+
+
+def _show_mistake(console: Console, example: Exercise, mistaken: str, verdict: Verdict) -> None:
     with console.paged():
         console.heading("1. This function calls itself explicit Euler. Each of its steps:")
-        console.block(_loop(before.source), "python", indent=2)
+        console.block(_loop(mistaken), "python", indent=2)
         console.blank()
-        show_verdict(console, example, before.verdict, whole=False, brief=True)
+        show_verdict(console, example, verdict, whole=False, brief=True)
 
 
-def _ask(bench: _Bench, mistaken: str, right: str) -> str:
-    """The module as the user fixes it, or ``right`` if they do not; "" if they leave.
+def _ask(console: Console, session: GradingSession, mistaken: str, right: str) -> Attempt | None:
+    """The module as the user fixes it, or ``right`` if they do not; None if they leave.
 
     What is typed replaces the wrong line and is checked as any submission is.
     """
-    console = bench.console
     wrong = next(line for line in mistaken.splitlines() if line not in right.splitlines())
     indent = wrong[: len(wrong) - len(wrong.lstrip())]
     console.blank()
@@ -190,23 +172,22 @@ def _ask(bench: _Bench, mistaken: str, right: str) -> str:
     while True:
         typed = console.ask(question)
         if typed is None or typed.lower() in {"q", "quit"}:
-            return ""
+            return None
         if not typed:
-            return right
+            return _checked(console, session, right)
         if typed.split() == wrong.split():
             question = (
                 "That is the line as it was. Type it as it should be (Enter shows the answer, q leaves): "
             )
             continue
-        source = mistaken.replace(wrong, indent + typed)
-        verdict = bench.verdict(source)
-        if verdict.all_pass:
-            return source
-        _show_finding(console, verdict)
+        made = _checked(console, session, mistaken.replace(wrong, indent + typed))
+        if made.verdict.all_pass:
+            return made
+        _show_finding(console, made.verdict)
         tries += 1
         if tries == TRIES:
             console.line("This is the answer:")
-            return right
+            return _checked(console, session, right)
         question = "Type the line again (Enter shows the answer, q leaves): "
 
 

@@ -1,7 +1,5 @@
 """``course doctor``: what works on this machine, what is missing and the command that installs it."""
 
-from __future__ import annotations
-
 import contextlib
 import getpass
 import importlib.metadata
@@ -208,15 +206,12 @@ def protection() -> tuple[str, tuple[str, ...], tuple[str, ...]]:
 
 def _workspace(*, repair: bool) -> tuple[str | None, str | None, str | None]:
     """The workspace, the repairs in it, and its faults."""
+    root = repaired = None
     try:
         here = find_workspace()
-    except CourseError as error:
-        return None, None, f"{error.message} {error.help}"
-    if here is None:
-        return None, None, None
-    root, store = str(here.workspace.root), here.workspace.store
-    repaired = None
-    try:
+        if here is None:
+            return None, None, None
+        root, store = str(here.workspace.root), here.workspace.store
         if repair:
             result = store.repair()
             repaired = (

@@ -12,10 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from course.catalog.models import Exercise
-from course.cli.frame.completion import ExerciseName, OneExercise, exercise_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, write
-from course.cli.frame.options import argument, option
+from course.cli.frame.options import ExerciseName, OneExercise, argument, exercise_ids, option
 from course.cli.frame.replies import Backup, FileReply, NextStep
 from course.cli.work.checking import report_source_file
 from course.cli.work.chosen import asked_for, chosen_work

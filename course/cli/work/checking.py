@@ -6,10 +6,9 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
 from course.catalog.models import CourseRef, Exercise
-from course.cli.frame.completion import ExerciseName, Verbose, check_ids, choice_of
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
-from course.cli.frame.options import option
+from course.cli.frame.options import ExerciseName, Verbose, check_ids, choice_of, option
 from course.cli.frame.replies import ErrorBody, ErrorReply, NextStep, filled
 from course.cli.home.advice import next_step
 from course.cli.work.chosen import StudentWork, asked_for, chosen_work, worked_on

@@ -12,10 +12,9 @@ from pathlib import Path
 from typing import Annotated
 
 from course.catalog.models import Exercise, Rubric
-from course.cli.frame.completion import ExerciseName, grade_lists, task_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, named
-from course.cli.frame.options import option
+from course.cli.frame.options import ExerciseName, grade_lists, option, task_ids
 from course.cli.frame.replies import NextStep
 from course.cli.home.advice import after_warm_up
 from course.cli.work.chosen import asked_for, chosen_work

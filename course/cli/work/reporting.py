@@ -8,10 +8,9 @@ from pathlib import Path
 from typing import Annotated
 
 from course.cli.frame import here
-from course.cli.frame.completion import ExerciseName
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, named
-from course.cli.frame.options import option
+from course.cli.frame.options import ExerciseName, option
 from course.cli.frame.replies import WrittenFile, filled
 from course.cli.home.advice import after_report
 from course.cli.work.checking import report_source_file

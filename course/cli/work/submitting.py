@@ -17,10 +17,9 @@ from typing import Annotated, Any
 
 from course.catalog.models import Exercise
 from course.catalog.pack import zip_entry
-from course.cli.frame.completion import exercise_ids
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, named
-from course.cli.frame.options import argument, option
+from course.cli.frame.options import argument, exercise_ids, option
 from course.cli.frame.replies import FileReply
 from course.cli.work.chosen import StudentWork, as_handed_in, work_of
 from course.cli.work.replies import Submit, SubmitFile

@@ -1,22 +1,25 @@
 """The command line, run in this process on the miniature course, with a stand-in for the sandbox."""
 
-from __future__ import annotations
-
 import functools
 import json
 import os
 import shutil
+import subprocess
+import sys
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
 import jsonschema
+import msgspec
 import pytest
 
-from course.cli.frame import registry
-from course.cli.frame.schemas import schema_of
+from course.cli.frame import app, registry
+from course.cli.frame.replies import schema_of
+from course.handed_in import attempts
 from course.progress.store import Store
-from tests.command_line import in_process
+from course.scoring.verdict import CheckResult, Problem, Status, Tolerance, Verdict
+from tests.command_line import ROOT, in_process
 
 MINI_COURSE = Path(__file__).resolve().parents[2] / "fixtures" / "mini_course"
 make_command = registry._load
@@ -49,8 +52,6 @@ class FakeSession:
     printed = ""
 
     def __init__(self, exercise):
-        from course.scoring.verdict import CheckResult
-
         self.exercise = exercise
         self.curves = {}
         self.checks = [
@@ -73,17 +74,14 @@ class FakeSession:
         return None
 
     def grade(self, submission, only=()):
-        from course.scoring.verdict import Problem, Verdict
-
         source = submission.files[self.exercise.module].decode()
         self.printed = "".join(f"row {n}\n" for n in range(9)) if "PRINTS" in source else ""
         common = {"exercise": self.exercise.id, "scope": "public", "isolation": "L1"}
         if "UNREADABLE" in source or "FAULT" in source:
             state = "ungradable" if "UNREADABLE" in source else "grader_error"
             problem = Problem("syntax_error", "Line 1 cannot be read.", "Look at line 1.")
-            return Verdict(
-                state=state, score=0, max_score=4.0, passed=False, checks=(), error=problem, **common
-            )
+            common |= {"state": state, "error": problem, "checks": ()}
+            return Verdict(score=0, max_score=4.0, passed=False, **common)
         results = [self._result(check, source) for check in self.checks]
         results = [result for result in results if not only or result.id in only]
         score, most = sum(r.points for r in results), sum(r.max_points for r in results)
@@ -94,10 +92,6 @@ class FakeSession:
         )  # fmt: skip
 
     def _result(self, check, source):
-        import msgspec
-
-        from course.scoring.verdict import Status, Tolerance
-
         body = source.partition(f"def {check.task}(")[2].partition("\ndef ")[0]
         if "RIGHT" in body:
             said = "a row\n" if "SAYS" in body else None
@@ -122,6 +116,19 @@ def record(workspace):
     return Store(workspace / ".course" / "progress.sqlite")
 
 
+needs_setpriv = pytest.mark.skipif(shutil.which("setpriv") is None, reason="has no setpriv")
+
+
+def as_anybody(*words, cwd):
+    """Run a line as a process for which permissions count; root reads everything, unless it gives that up."""
+    nobody = ["setpriv", "--bounding-set=-dac_override,-dac_read_search", "--inh-caps=-all", "--"]
+    return subprocess.run(
+        [*(nobody if os.geteuid() == 0 else ()), sys.executable, "-m", "course", *words],
+        cwd=cwd, env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True, text=True, timeout=120, check=False,
+    )  # fmt: skip
+
+
 def files_in(root):
     """Every file in a folder, with what it holds."""
     return {path: path.read_bytes() for path in root.rglob("*") if path.is_file()}
@@ -132,12 +139,14 @@ def validator(tag):
     return jsonschema.Draft202012Validator(schema_of(tag))
 
 
-def keeps_its_schema(out):
-    """Every reply of every command that these tests run is as ``course schema`` says."""
+def keeps_its_schema(out, code):
+    """Every reply of every command that these tests run is as its schema says, the last has the exit code."""
     for line in filter(None, out.split("\n")):
         reply = json.loads(line)
         problems = [f"{e.json_path}: {e.message}" for e in validator(reply["schema"]).iter_errors(reply)]
         assert not problems, problems[0][:1000]
+    if reply["schema"] != "course.grade/1":  # whose code is that of the work
+        assert (reply["exit_code"], reply["ok"]) == (code, code == 0)
 
 
 @functools.cache
@@ -156,9 +165,6 @@ def course(monkeypatch, tmp_path, capsys):
 
     A fault of the course ends a test that has not said with ``course.faulty`` that it makes one.
     """
-    from course.cli.frame import app
-    from course.handed_in import attempts
-
     monkeypatch.setenv("COURSE_CONTENT", str(MINI_COURSE))
     monkeypatch.setenv("COURSE_CACHE", str(tmp_path / ".cache"))
     monkeypatch.setenv("COLUMNS", "80")
@@ -174,7 +180,7 @@ def course(monkeypatch, tmp_path, capsys):
         captured = capsys.readouterr()
         assert run.faulty or "A fault in the course" not in captured.err, captured.err
         if "--json" in words:
-            keeps_its_schema(captured.out)
+            keeps_its_schema(captured.out, code)
         return Ran(code, captured.out, captured.err)
 
     run.faulty = False

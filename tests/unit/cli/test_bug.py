@@ -1,17 +1,17 @@
 """``course bug``: versions, levels and the last traceback, and nothing that says whose they are."""
 
-from __future__ import annotations
-
 import os
 import platform
 import tempfile
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from course import __file__ as package
 from course import __version__
 from course.cli.frame.app import INSTALLATION
+from course.cli.setup import doctor
 
 USER, HOST = "planted.person", "planted-laptop"
 
@@ -35,26 +35,19 @@ def somebody(monkeypatch, tmp_path):
 HERE = f"{INSTALLATION}{Path(package).resolve().parent}\n"
 
 
-def crash_in(course, monkeypatch, message):
-    """Have a command of the course fail by a fault of its own."""
-    from course.cli.setup import doctor
-
-    def break_(*_, **__):
-        raise RuntimeError(message)
-
-    monkeypatch.setattr(doctor, "load_catalog", break_)
-    course.faulty = True
-    ran = course("doctor", "-C", ".")
-    assert ran.code == 70
-
-
 def test_a_report_names_nobody(course, somebody, monkeypatch, tmp_path):
     home, temporary = somebody
     windows = f"C:\\Users\\{USER}\\x.py"
     machines = f"{HOST} or {HOST.upper()}.EXAMPLE.ORG"
     said = f"no {home / 'stuff' / 'x.py'} nor {windows!r} on {machines} of {USER.title()}"
+
+    def break_():
+        raise RuntimeError(said)
+
+    course.faulty = True
     with monkeypatch.context() as broken:
-        crash_in(course, broken, said)
+        broken.setattr(doctor, "load_catalog", break_)
+        assert course("doctor", "-C", ".").code == 70
     assert list(temporary.glob("course-crash-*.txt"))
     ran = course("bug", "--json")
     assert ran.code == 0
@@ -78,8 +71,6 @@ def test_a_report_names_nobody(course, somebody, monkeypatch, tmp_path):
 )  # fmt: skip
 def test_a_name_is_known_however_it_is_spelt(monkeypatch, written):
     """In a folder's name, with its accents apart, and as a string or an address has it."""
-    from course.cli.setup import doctor
-
     monkeypatch.setattr(doctor, "_places", lambda: [("/home/Jürgen", "~")])
     names = [("Jürgen Planted", "<user>"), ("Jürgen", "<user>"), (HOST, "<machine>")]
     monkeypatch.setattr(doctor, "_names", lambda: names)
@@ -89,12 +80,8 @@ def test_a_name_is_known_however_it_is_spelt(monkeypatch, written):
 
 def test_the_name_in_full_is_one_of_them(somebody, monkeypatch):
     pwd = pytest.importorskip("pwd")
-    from types import SimpleNamespace
-
-    from course.cli.setup.doctor import redacted
-
     monkeypatch.setattr(pwd, "getpwuid", lambda _: SimpleNamespace(pw_gecos="Ada Planted,,,", pw_name=USER))
-    assert redacted("/media/Ada Planted/disk and adaptive") == "/media/<user>/disk and adaptive"
+    assert doctor.redacted("/media/Ada Planted/disk and adaptive") == "/media/<user>/disk and adaptive"
 
 
 def test_a_report_has_versions_and_the_level_and_keeps_the_one_before(course, somebody, tmp_path):

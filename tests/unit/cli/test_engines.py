@@ -1,13 +1,11 @@
 """``course engines``: what is here, what is missing, and a comparison that says where each number is from."""
 
-from __future__ import annotations
-
 import csv
 import re
 
 import pytest
 
-from course.cli.engines.screen import best_rows
+from course.cli.engines import best_rows
 from course.engines import compare as comparing
 from course.engines import reference
 from course.engines.registry import ENGINES, Availability

@@ -1,7 +1,5 @@
 """Every value that is one of a few is completed, and each shell gets its own script."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import sqlite3

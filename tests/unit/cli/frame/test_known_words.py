@@ -1,14 +1,13 @@
-"""Words that people bring from other tools, choices where one is missing, and help by use."""
-
-from __future__ import annotations
+"""Words of a line: global options, those of other tools, choices where one is missing, help by use."""
 
 import json
 
 import pytest
 
 from course.cli.frame.console import filled
+from course.cli.frame.options import global_options
 from course.cli.frame.registry import ALSO, COMMANDS
-from course.errors import CourseError
+from tests.unit.cli.conftest import MINI_COURSE
 
 
 @pytest.mark.parametrize(
@@ -31,6 +30,20 @@ def test_a_word_of_another_tool_does_what_it_means(course, workspace, write, wor
     assert not {*ALSO} & {*COMMANDS}
 
 
+def test_a_double_dash_ends_the_search_for_global_options():
+    line = global_options(["check", "--", "--json", "-C"])
+    assert not line.settings.json
+    assert line.rest == ("check", "--", "--json", "-C")
+    assert not line.problem
+
+
+@pytest.mark.parametrize("words", [["-C", "a/b", "check"], ["check", "-Ca/b"], ["-Ca", "check", "-C", "b"]])
+def test_the_folder_may_be_attached_and_two_add_up(words):
+    line = global_options(words)
+    assert line.settings.directory in {"a/b", "a\\b"}
+    assert line.rest == ("check",)
+
+
 def test_help_before_a_command_is_its_help(course):
     assert course("help", "check").out == course("check", "--help").out
     assert course("help").out == course("--help").out
@@ -51,16 +64,11 @@ def test_a_choice_that_is_missing_is_shown(course, workspace):
     assert "There are doubling" in ran.err
 
 
-def test_one_exercise_is_handed_in_by_itself(course, workspace, write):
-    write("RIGHT", "RIGHT")
-    ran = course("submit", "doubling", "--json")
-    assert ran.code == 0, ran.err
-    assert [one["path"] for one in ran.json["files"]] == ["doubling/doubling.py"]
-    assert ran.json["output"].endswith("doubling-submission.zip")
-    assert course("submit", "tripling").code == 5
-
-
-def test_help_is_grouped_by_use_and_offers_what_works_here(course, monkeypatch):
+def test_help_is_grouped_by_use_and_offers_what_works_here(course, students_content, monkeypatch):
+    assert "For instructors:" not in (said := course("--help", "--plain").out)
+    assert "For authors:" not in said
+    assert "submit" in said
+    monkeypatch.setenv("COURSE_CONTENT", str(MINI_COURSE))
     said = course("--help", "--plain").out
     headings = [
         "Learn:",
@@ -73,19 +81,7 @@ def test_help_is_grouped_by_use_and_offers_what_works_here(course, monkeypatch):
     ]
     assert [line for line in said.splitlines() if line in headings] == headings
 
-    class Wheel:
-        is_checkout = False
-
-    monkeypatch.setattr("course.cli.frame.registry.content", Wheel)
-    said = course("--help", "--plain").out
-    assert "For instructors:" not in said
-    assert "For authors:" not in said
-    assert "submit" in said
-
-    def nowhere():
-        raise CourseError("There is no course here.")
-
-    monkeypatch.setattr("course.cli.frame.registry.content", nowhere)
+    monkeypatch.setenv("COURSE_CONTENT", "nowhere")
     assert course("--help", "--plain").code == 0
 
 

@@ -1,7 +1,5 @@
 """A gradebook of somebody else's holds programs; they run only after the person who grades has agreed."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from pathlib import Path

@@ -1,27 +1,22 @@
 """`course grade` as an instructor types it."""
 
-from __future__ import annotations
-
-import csv
-import io
 import json
 import os
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 
 from tests.command_line import in_process
-from tests.unit.cli.conftest import MINI_COURSE, files_in
-from tests.unit.grading.made import zipped
+from tests.unit.cli.conftest import MINI_COURSE
+from tests.unit.grading.made import read_csv, zipped
 
 WRONG = b"\ndef double(x):\n    print('I saw', x)\n    return x\n"
 
 
-def course(*arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
-    return in_process(*arguments, env={**os.environ, "COURSE_CONTENT": str(MINI_COURSE), **environment})
+def course(*arguments: object) -> subprocess.CompletedProcess[str]:
+    return in_process(*arguments, env={**os.environ, "COURSE_CONTENT": str(MINI_COURSE)})
 
 
 @pytest.fixture(scope="module")
@@ -50,8 +45,11 @@ def test_a_run_leaves_a_gradebook_and_what_is_made_from_it(graded: Path) -> None
         "students",
     }  # fmt: skip
     assert {path.name for path in (graded / "students").iterdir()} == {"1.html", "2.html", "3.html"}
-    rows = list(csv.DictReader(io.StringIO((graded / "grades.csv").read_text("utf-8-sig"))))
-    assert {row["student"]: row["score"] for row in rows} == {"'=bob": "6", "ada": "10", "cy": "0"}
+    assert {row["student"]: row["score"] for row in read_csv(graded / "grades.csv")} == {
+        "'=bob": "6",
+        "ada": "10",
+        "cy": "0",
+    }
 
 
 def test_explain_shows_hidden_values_to_the_instructor_or_why_there_is_no_grade(graded: Path) -> None:
@@ -78,45 +76,6 @@ def test_a_warm_up_is_graded_where_its_message_says_to_put_it_and_is_explained(t
     said = in_process(*explain, env=dict(os.environ)).stdout
     assert "without the minus one" in said
     assert "diagnosis: MINUS_ONE_FORGOTTEN" in said
-
-
-@pytest.mark.parametrize(
-    ("arguments", "code", "error"),
-    [
-        (("explain", "OUT", "nobody", "doubling"), 5, "result_not_found"),
-        (("explain", "NOWHERE", "ada", "doubling"), 5, "gradebook_not_found"),
-        (("run", "CLASS", "--out", "OUT"), 2, "out_exists"),
-        (("run", "CLASS", "--out", "NEW", "--exercise", "no-such"), 5, "exercise_not_found"),
-        (("run", "CLASS", "--out", "NEW", "--only", "nobody"), 2, "student_not_found"),
-        (("run", "CLASS", "--out", "NEW", "--isolation", "none"), 2, "usage"),
-        (("run", "NOWHERE", "--out", "NEW"), 5, "submissions_not_found"),
-        (("run", "CLASS", "--out", "OUT", "--resume", "--seed", "5"), 2, "other_seed"),
-    ],
-)
-def test_wrong_calls_are_named_and_touch_nothing(
-    graded: Path, arguments: tuple[str, ...], code: int, error: str
-) -> None:
-    home = graded.parent
-    places = {"OUT": graded, "CLASS": home / "class", "NOWHERE": graded / "no", "NEW": home / "new"}
-    before = files_in(graded)
-    done = course("grade", *[places.get(word, word) for word in arguments], "--json")
-    assert done.returncode == code, done.stdout + done.stderr
-    body = json.loads(done.stdout)
-    assert (body["ok"], body["exit_code"], body["error"]["code"]) == (False, code, error)
-    assert body["error"]["help"]
-    assert before == files_in(graded)
-
-
-def test_a_students_installation_is_told_so(tmp_path: Path) -> None:
-    student = tmp_path / "course"
-    shutil.copytree(MINI_COURSE, student)
-    shutil.rmtree(student / "graders")
-    (tmp_path / "class").mkdir()
-    done = course(
-        "grade", "run", tmp_path / "class", "--out", tmp_path / "out", "--json", COURSE_CONTENT=str(student)
-    )
-    assert done.returncode == 4
-    assert json.loads(done.stdout)["error"]["code"] == "needs_checkout"
 
 
 def test_nobody_adds_lines_of_their_own_to_what_the_instructor_reads(tmp_path: Path) -> None:

@@ -1,14 +1,7 @@
 """`course grade export|override|late|rerun|similar|explain`: what an instructor types after a run."""
 
-from __future__ import annotations
-
-import csv
-import io
 import json
-import os
 import shutil
-import subprocess
-import sys
 import zipfile
 from pathlib import Path
 
@@ -20,8 +13,8 @@ from course.grading.results.roster import Person, Roster
 from course.grading.running import batch
 from course.grading.running.batch import Graded
 from course.grading.similar import Similar
-from tests.unit.cli.conftest import files_in
-from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, key, make_book
+from tests.unit.cli.conftest import as_anybody, files_in, needs_setpriv
+from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, key, make_book, read_csv
 from tests.unit.grading.test_results import DAY, DUE, POLICY
 
 ROSTER = """student,name,email,canvas_id,moodle_key,extension_days
@@ -38,6 +31,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for student in ("ada", "bob"):
             at = DUE.timestamp() + 2 * DAY
             book.add_times([SubmittedAt(student, "doubling", digest(student), "gradescope", at)])
+    (folder / "class" / "ada").mkdir(parents=True)
     (folder / "roster.csv").write_text(ROSTER, "utf-8")
     (folder / "late.toml").write_text(POLICY.replace("bob", "nobody"), "utf-8")
     return folder
@@ -50,8 +44,7 @@ def out(made: Path, tmp_path: Path) -> Path:
 
 
 def grades(path: Path) -> dict[str, dict[str, str]]:
-    rows = csv.DictReader(io.StringIO(path.read_text("utf-8-sig"), newline=""))
-    return {row["student"]: row for row in rows}
+    return {row["student"]: row for row in read_csv(path)}
 
 
 def test_no_name_or_reason_adds_a_line(course, tmp_path: Path) -> None:
@@ -125,6 +118,14 @@ def test_what_is_missing_is_said_in_full_and_nothing_is_said_where_there_is_noth
         (("late", "out", "--policy", "roster.csv"), 2, "invalid_policy"),
         (("late", "out", "--policy", "late.toml", "--clear"), 2, "usage"),
         (("late", "out", "--times", "roster.csv"), 2, "invalid_times"),
+        (("explain", "out", "nobody", "doubling"), 5, "result_not_found"),
+        (("explain", "nowhere", "ada", "doubling"), 5, "gradebook_not_found"),
+        (("run", "class", "--out", "out"), 2, "out_exists"),
+        (("run", "class", "--out", "new", "--exercise", "no-such"), 5, "exercise_not_found"),
+        (("run", "class", "--out", "new", "--only", "nobody"), 2, "student_not_found"),
+        (("run", "class", "--out", "new", "--isolation", "none"), 2, "usage"),
+        (("run", "nowhere", "--out", "new"), 5, "submissions_not_found"),
+        (("run", "class", "--out", "out", "--resume", "--seed", "5"), 2, "other_seed"),
         (("rerun", "nowhere"), 5, "gradebook_not_found"),
         (("similar", "nowhere"), 5, "gradebook_not_found"),
     ],
@@ -271,7 +272,7 @@ def test_a_share_is_a_part_of_one_or_a_percentage_and_else_refused_with_both_for
         asked.append(at_least)
         return Similar()
 
-    monkeypatch.setattr("course.cli.grade.changing.compare", compare)
+    monkeypatch.setattr("course.cli.grade.commands.compare", compare)
     for text in ("0.25", "25%", " 25 % "):
         assert course("grade", "similar", "out", "--share", text).code == 0
     assert course("grade", "similar", "out").code == 0
@@ -281,33 +282,21 @@ def test_a_share_is_a_part_of_one_or_a_percentage_and_else_refused_with_both_for
     assert asked == [0.25, 0.25, 0.25, 0.6]
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="how root gives up its rights is Linux's")
+def test_a_students_installation_is_told_so(course, students_content, tmp_path: Path) -> None:
+    (tmp_path / "class").mkdir()
+    ran = course("grade", "run", "class", "--out", "out", "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (4, "needs_checkout")
+
+
+@needs_setpriv
 def test_a_folder_that_cannot_be_written_is_said_and_can_still_be_read(course, out: Path) -> None:
-    """In a process of its own, in which permissions count even for root."""
-    root = Path(__file__).resolve().parents[4]
-    code = (
-        "import sys\n"
-        "from course.cli.frame.app import run\n"
-        "print(run(['grade', 'explain', sys.argv[1], 'ada', 'doubling', '--quiet']))\n"
-        "print(run(['grade', 'override', sys.argv[1], 'ada', 'doubling', '--score', '1', '--reason', 'x']))\n"
-        "print(run(['grade', 'export', sys.argv[1]]))\n"
-    )
-    # 24 is PR_CAPBSET_DROP, 1 is CAP_DAC_OVERRIDE: after the exec root may do what the modes say.
-    first = (
-        "import ctypes, os, sys\n"
-        "ctypes.CDLL(None).prctl(24, 1, 0, 0, 0)\n"
-        "os.execv(sys.executable, [sys.executable, '-c', *sys.argv[1:]])\n"
-    )
     (out / "gradebook.sqlite").chmod(0o444)
     out.chmod(0o555)
+    lines = ("explain out ada doubling", "override out ada doubling --score 1 --reason x", "export out")
     try:
-        done = subprocess.run(
-            [sys.executable, "-c", first, code, str(out)],
-            env={**os.environ, "PYTHONPATH": str(root)}, capture_output=True, text=True, check=False,
-        )  # fmt: skip
+        read, written, exported = (as_anybody("grade", *line.split(), cwd=out.parent) for line in lines)
     finally:
         out.chmod(0o755)
-    codes = [line for line in done.stdout.splitlines() if line.isdigit()]
-    assert codes == ["0", "4", "4"], done.stdout + done.stderr
-    assert "gradebook.sqlite cannot be written" in done.stderr
-    assert "grades.csv cannot be written" in done.stderr
+    assert (read.returncode, written.returncode, exported.returncode) == (0, 4, 4), read.stderr
+    assert "gradebook.sqlite cannot be written" in written.stderr
+    assert "grades.csv cannot be written" in exported.stderr

@@ -1,8 +1,5 @@
 """`course grade assign|log|salvage`, and what `--dry-run` and `--resume` say before a score changes."""
 
-from __future__ import annotations
-
-import csv
 import dataclasses
 import io
 import json
@@ -20,7 +17,7 @@ from course.grading.running.batch import Graded
 from course.scoring.judging.submission import Terms
 from course.scoring.verdict import Problem
 from tests.unit.grading.conftest import MINI
-from tests.unit.grading.made import verdict, zipped
+from tests.unit.grading.made import read_csv, verdict, zipped
 from tests.unit.grading.running.test_run import right
 
 pytestmark = pytest.mark.usefixtures("unpacked")
@@ -324,7 +321,7 @@ def test_students_who_are_called_as_exercises_are_graded_and_it_is_said(course, 
     ran = course("grade", "run", "other", "--out", "new", "--json")
     assert ran.code == 0, ran.err
     assert "taken for a student" in ran.err
-    table = csv.DictReader((here / "new" / "grades.csv").read_text("utf-8-sig").splitlines())
+    table = read_csv(here / "new" / "grades.csv")
     full = {row["student"]: row["score"] == row["max_score"] for row in table}
     assert full == {"doubling": True, "halving": True}
 

@@ -1,7 +1,5 @@
 """A gradebook that is newer, damaged, changed by hand or in use: every command says so and loses nothing."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import shutil
@@ -10,7 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from course.errors import MissingCapabilityError
 from course.grading.exports.formats import FORMATS
+from course.grading.exports.html_report import pages
 from course.grading.gradebook.book import Gradebook
 from course.grading.running import batch
 from course.grading.running.folder import export_all, open_results
@@ -141,8 +141,6 @@ def test_while_a_run_writes_every_other_command_is_told_and_the_run_goes_on(cour
 def test_the_gradebook_is_held_until_the_last_page_is_written(
     course, out: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from course.grading.exports.html_report import pages
-
     refused = []
 
     def write_pages(*arguments: object) -> object:
@@ -159,9 +157,6 @@ def test_the_gradebook_is_held_until_the_last_page_is_written(
 def test_pages_that_cannot_be_written_cost_nothing_but_themselves(
     course, out: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from course.errors import MissingCapabilityError
-    from course.grading.exports.html_report import pages
-
     def write_pages(path: Path, *_: object) -> None:
         raise MissingCapabilityError(f"{path} cannot be written.", help="-o", code="cannot_write")
 

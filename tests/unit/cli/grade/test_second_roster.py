@@ -1,7 +1,5 @@
 """A later roster is merged into the stored one: what it does not say stays."""
 
-from __future__ import annotations
-
 import csv
 import datetime as dt
 import io

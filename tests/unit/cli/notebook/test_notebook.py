@@ -1,11 +1,10 @@
 """``course notebook``, and notebooks that are handed in."""
 
-from __future__ import annotations
-
 import contextlib
 import importlib.util
 import json
 import queue
+import subprocess
 import urllib.error
 import urllib.request
 import zipfile
@@ -13,7 +12,9 @@ from pathlib import Path
 
 import pytest
 
+from course import browser
 from course.cli.work import chosen as handing_in
+from course.notebooks import server
 from tests.unit.cli.conftest import needs_jupyterlab
 
 GOOD = "def double(x):\n    'RIGHT'"
@@ -172,22 +173,6 @@ def test_submit_says_why_a_notebook_cannot_go_in(course, workspace, write, monke
     assert "is not a notebook" in ran.json["left_out"][0]["action"]
 
 
-def test_a_zip_with_a_notebook_is_graded_like_the_module(course, workspace):
-    from course.catalog.load import Catalog
-    from course.grading.intake.downloads import Place, Student
-    from course.grading.intake.students import read_student
-
-    course("notebook", "build", "doubling")
-    write_into(workspace / "doubling" / "doubling.ipynb", GOOD, OTHER)
-    course("submit", "-o", "sent.zip")
-    folder = workspace / "class"
-    folder.mkdir()
-    (workspace / "sent.zip").rename(folder / "sent.zip")
-    (entry,) = read_student(Student("ada", Place(folder)), [Catalog().exercise("doubling")], required=True)
-    assert entry.submission is not None
-    assert GOOD.encode() in entry.submission.files["doubling.py"]
-
-
 def test_nbgrader_notebooks_carry_its_marks(course, tmp_path):
     ran = course("notebook", "build", "doubling", "--format", "nbgrader", "--out", "site")
     assert ran.code == 0
@@ -224,8 +209,6 @@ def test_open_and_executed_say_in_one_sentence_what_is_missing(course, workspace
 @needs_jupyterlab
 def test_open_leaves_it_to_the_course_whether_a_browser_is_opened(course, workspace, monkeypatch):
     """JupyterLab by itself starts one in the terminal where there is no display."""
-    import subprocess
-
     said = []
 
     def started(command, **_):
@@ -243,9 +226,6 @@ def test_open_leaves_it_to_the_course_whether_a_browser_is_opened(course, worksp
 @needs_jupyterlab
 @pytest.mark.parametrize("display", ["", ":0"])
 def test_open_shows_a_page_or_says_how_to_get_to_it(course, workspace, monkeypatch, display):
-    from course import browser
-    from course.notebooks import server
-
     shown = queue.Queue()
     lab = server.Lab("http://localhost:8888/lab?token=1", None)
     monkeypatch.setattr(server, "started", lambda *_: contextlib.nullcontext(lab))
@@ -267,15 +247,13 @@ def test_open_prints_an_address_that_lets_one_in_and_leaves_what_is_there(
     course, workspace, monkeypatch, wanted
 ):
     """The server is asked while the command waits for it to end."""
-    from course.notebooks.server import Lab
-
     path = workspace / "doubling" / "doubling.ipynb"
     course("notebook", "build", "doubling")
     write_into(path, GOOD)
     mine = path.read_bytes()
     said = []
 
-    def wait(lab: Lab) -> int:
+    def wait(lab: server.Lab) -> int:
         contents = lab.address.replace("/lab/tree/", "/api/contents/").replace("/lab?", "/api/contents?")
         for address in (lab.address, contents, contents.partition("?")[0]):
             try:
@@ -285,7 +263,7 @@ def test_open_prints_an_address_that_lets_one_in_and_leaves_what_is_there(
                 said.append((error.code, b""))
         return 0
 
-    monkeypatch.setattr(Lab, "wait", wait)
+    monkeypatch.setattr(server.Lab, "wait", wait)
     monkeypatch.setenv("JUPYTER_RUNTIME_DIR", str(workspace.parent / "runtime"))
     ran = course("open", *([wanted] if wanted else []), "--no-browser", "--json")
     assert ran.code == 0, ran.err
@@ -305,8 +283,6 @@ def test_open_prints_an_address_that_lets_one_in_and_leaves_what_is_there(
 
 @needs_jupyterlab
 def test_a_jupyterlab_that_does_not_start_is_quoted(course, workspace, monkeypatch, tmp_path):
-    from course.notebooks import server
-
     stand_in = tmp_path / "python"
     stand_in.write_text("#!/bin/sh\necho 'no room left \033[31m' >&2\nexit 3\n")
     stand_in.chmod(0o755)

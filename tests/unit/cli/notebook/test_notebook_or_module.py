@@ -1,7 +1,5 @@
 """The file of an exercise that counts: the module, or the notebook that was worked in instead."""
 
-from __future__ import annotations
-
 import io
 import json
 from pathlib import Path
@@ -12,7 +10,6 @@ from course.cli.frame.console import Console, Settings
 from course.cli.frame.here import Here
 from course.cli.loop import Watcher
 from course.handed_in import attempts as sessions
-from course.progress.workspace import Workspace
 from tests.unit.cli.conftest import record
 from tests.unit.cli.notebook.test_notebook import GOOD, OTHER, write_into
 
@@ -24,10 +21,6 @@ def notebook(course, workspace) -> Path:
     """The exercise's notebook beside its stub, as it is generated."""
     assert course("notebook", "build", "doubling").code == 0
     return workspace / "doubling" / "doubling.ipynb"
-
-
-def attempts(workspace: Path) -> list[dict]:
-    return [dict(event.data) for event in Workspace.find(workspace).store.events("check")]
 
 
 def test_check_reads_the_notebook_where_the_module_is_still_the_stub_and_says_so(course, notebook):
@@ -117,7 +110,7 @@ def test_a_notebook_is_recorded_as_the_module_is_and_submit_knows_it(course, wor
     course("check", "doubling")
     notebook.with_suffix(".py").write_text(f"{GOOD}\n\n\n{OTHER}\n")
     course("check", "doubling")
-    first, second = attempts(workspace)
+    first, second = (dict(event.data) for event in record(workspace).events("check"))
     for told in (first, second):
         told.pop("seconds")
         told.pop("sha256")

@@ -1,1 +1,0 @@
-"""``course engines``: real engines on this machine, in tests with known answers."""

@@ -85,12 +85,10 @@ class ScreenPrinter(FancyPrinter):
             no_color=not in_colour,
             color_system="truecolor" if in_colour else None,
         )
-        script = progress.script
-        figures = [one.id for one in b.walk_blocks(script.blocks) if isinstance(one, b.Figure)]
         self._width = max(20, width - 2)
-        super().__init__(catalog, script.lesson, console, figures, None, min(self._width, COLUMN))
+        super().__init__(catalog, progress.script, console, None, min(self._width, COLUMN))
         self._progress = progress
-        self._script = script
+        self._script = progress.script
         self._practice = practice
         self._busy = busy
         self._picture = picture

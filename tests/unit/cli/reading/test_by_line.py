@@ -14,7 +14,7 @@ from course.catalog.load import Catalog
 from course.cli.frame.console import Console, Settings, install
 from course.cli.frame.here import Here
 from course.cli.reading.by_line import LineReader
-from course.cli.reading.lesson import Reader, paginate
+from course.cli.reading.lesson import Printer, paginate, printer
 from course.progress.workspace import Workspace
 from course.reading.parts import read_script
 from course.reading.record import predictions_of
@@ -26,7 +26,7 @@ LESSON = "numerical-integration"
 OFFERS = re.compile(r"Here (1 2 3 say|r runs|start puts|check runs)")
 _PAGES = paginate(read_script(CATALOG.lesson(LESSON), CATALOG.tasks(LESSON)).blocks)
 #: The page that ends with the first prediction, 1 for the first page.
-ASKED = 1 + next(at for at, page in enumerate(_PAGES) if isinstance(page.blocks[-1], Prediction))
+ASKED = 1 + next(at for at, page in enumerate(_PAGES) if isinstance(page[-1], Prediction))
 
 
 @pytest.fixture
@@ -51,8 +51,11 @@ class Typed:
 
     def read(self, lesson: str, here: Here | None) -> bool:
         chosen = CATALOG.lesson(lesson)
-        reader = Reader(CATALOG, chosen, self.console.rich(), plain=True)
-        return LineReader(self.console, here, CATALOG, chosen, reader).read()
+        return LineReader(self.console, here, CATALOG, chosen, self.prints(lesson)).read()
+
+    def prints(self, lesson: str) -> Printer:
+        script = read_script(CATALOG.lesson(lesson), CATALOG.warm_ups(lesson))
+        return printer(CATALOG, script, self.console.rich(), plain=True)
 
     @property
     def said(self) -> str:
@@ -71,9 +74,9 @@ def test_every_lesson_is_there_whole_and_says_each_fact_once(lesson: str, worksp
     assert someone.read(lesson, Here.load())
     printed = Typed(lambda _: None)
     chosen = CATALOG.lesson(lesson)
-    reader = Reader(CATALOG, chosen, printed.console.rich(), plain=True)
-    for page in reader.pages:
-        reader.show(page)
+    prints = printed.prints(lesson)
+    prints.head()
+    prints.blocks(read_script(chosen, CATALOG.warm_ups(lesson)).blocks)
     ours = {"", "Kept.", "You said: it grows", "What you type below a page does something; ? lists what."}
     said = [line for line in someone.said.splitlines() if line not in ours and not OFFERS.match(line)]
     tasks = CATALOG.tasks(lesson)

@@ -65,11 +65,8 @@ class _Opened:
         return (self._record.trouble if self._record.store is not None else "") or self._unread
 
     def _events(self) -> tuple[Any, ...]:
-        if (store := self._record.store) is None:
-            return ()
         try:
-            split = self._catalog.syllabus.split
-            return lesson_events(lambda name: store.events("", name), self._lesson.id, split)
+            return lesson_events(self._record.store, self._lesson.id, self._catalog.syllabus.split)
         except CourseError as error:
             self._unread = f"{error.message} {error.help}"
             return ()

@@ -2,36 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping
 from datetime import datetime
 from functools import cached_property
 from types import MappingProxyType
 
 from course.progress.history import History, Mistake, history_of, mistakes_of
 from course.progress.quiz import QuizHistory, quiz_history
-from course.progress.store import Event, Record
+from course.progress.store import Event, Record, Store
 from course.progress.workspace import Workspace
 
 
-def lesson_events(
-    events: Callable[[str], Iterable[Event]], lesson: str, split: Mapping[str, str]
-) -> tuple[Event, ...]:
-    """What is recorded about a lesson, oldest first.
+def lesson_events(store: Store | None, lesson: str, split: Mapping[str, str]) -> tuple[Event, ...]:
+    """What is recorded about a lesson, oldest first; nothing outside of a workspace.
 
     Of a lesson that was part of another one: first what it keeps of that one's record. An end that was
     reached before the two were parted does not say how many blocks there were.
 
     Args:
-        events: those about a lesson.
         split: lessons that were part of another one, and that one.
+
+    Raises:
+        IntegrityError, MissingCapabilityError: the record cannot be read.
     """
-    whole = events(split[lesson]) if lesson in split else ()
+    if store is None:
+        return ()
+    whole = store.events(subject=split[lesson]) if lesson in split else ()
     kept = [
         event
         for event in whole
         if event.kind in {"prediction", "cell"} or (event.kind == "lesson" and "blocks" not in event.data)
     ]
-    return (*kept, *events(lesson))
+    return (*kept, *store.events(subject=lesson))
 
 
 class Standing:

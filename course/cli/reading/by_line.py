@@ -370,11 +370,8 @@ def _leads_elsewhere(typed: str) -> bool:
 
 def _events(here: Here | None, lesson: Lesson) -> tuple[Event, ...]:
     """The recorded events of a lesson; none where the record cannot be read."""
-    if here is not None:
-        with contextlib.suppress(CourseError):
-            return lesson_events(
-                lambda name: here.workspace.store.events(subject=name), lesson.id, here.catalog.syllabus.split
-            )
+    with contextlib.suppress(CourseError):
+        return lesson_events(here.workspace.store, lesson.id, here.catalog.syllabus.split) if here else ()
     return ()
 
 

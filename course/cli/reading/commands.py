@@ -194,11 +194,13 @@ def _section(script: Script, slug: str) -> Section:
 def _read_on_screen(
     console: Console, here: Here | None, catalog: Catalog, chosen: Lesson, section: str = ""
 ) -> int:
-    from course.cli.reading.screen.app import read
+    from course.cli.reading.screen.app import ReaderApp
+    from course.cli.reading.screen.running import Drawer
 
-    last, trouble = read(catalog, chosen.id, here.workspace if here else None, section)
-    lesson = last.script.lesson
-    for warning in (here.warnings if here else []) + ([trouble] if trouble else []):
+    app = ReaderApp(catalog, chosen.id, section, here.workspace if here else None, Drawer())
+    app.play()
+    last, lesson = app.page.progress, app.page.progress.script.lesson
+    for warning in (here.warnings if here else []) + ([app.page.trouble] if app.page.trouble else []):
         console.warn(warning)
     _say_unkept(console, here)
     console.next(_after(here, lesson, read=True) if last.read else f"course lesson {lesson.id}")

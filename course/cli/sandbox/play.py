@@ -255,12 +255,16 @@ def play(console: Console, options: PlayOptions) -> int:
     if lines := unwritten(picked.path):
         left = f"and {len(lines) - 1} more below are" if len(lines) > 1 else "is"
         console.note(f"{picked.path}:{lines[0]}: this line {left} still to be written.")
-    if options.web:
-        require("web")
-    seen = options.web or (not options.unseen and console.interactive and console.fancy)
-    if seen:
-        return _play_seen(console, picked, options, targets)
-    return _run_unseen(console, picked, options, targets, _guess(console, picked, options))
+    if not options.web and (options.unseen or not console.interactive or not console.fancy):
+        return _run_unseen(console, picked, options, targets, _guess(console, picked, options))
+    browser = not options.no_browser
+    recorded = open_view(
+        console, picked, web=options.web, port=options.port, browser=browser, guess=options.guess
+    )
+    if "record" in targets:
+        write(targets["record"], recorded, "record")
+    console.note(("After playing: ", "bold"), picked.scene.after)
+    return 0
 
 
 def _check(options: PlayOptions) -> None:
@@ -297,33 +301,24 @@ def _guess(console: Console, chosen: Chosen, options: PlayOptions) -> float | No
 # -- seen ------------------------------------------------------------------------------------------------
 
 
-def _play_seen(console: Console, chosen: Chosen, options: PlayOptions, targets: dict[str, Path]) -> int:
-    """Open a view; it asks for the prediction and shows the comparison itself."""
-    browser = not options.no_browser
-    recorded = _view_of(
-        console, chosen, web=options.web, port=options.port, browser=browser, guess=options.guess
-    )
-    if "record" in targets:
-        write(targets["record"], recorded, "record")
-    console.note(("After playing: ", "bold"), chosen.scene.after)
-    return 0
+def open_view(
+    console: Console,
+    chosen: Chosen | None,
+    *,
+    web: bool,
+    port: int,
+    browser: bool,
+    guess: float | None = None,
+) -> bytes:
+    """Play a scene, or all of them, until the user leaves; the recording of what was played last.
 
-
-def gallery(console: Console, *, web: bool, port: int = 0, browser: bool = True) -> int:
-    """Open a view with all scenes."""
+    The view asks for the prediction and shows the comparison itself.
+    """
     if web:
         require("web")
-    _view_of(console, None, web=web, port=port, browser=browser, guess=None)
-    return 0
-
-
-def _view_of(
-    console: Console, chosen: Chosen | None, *, web: bool, port: int, browser: bool, guess: float | None
-) -> bytes:
-    """Play until the user leaves; the recording of what was played last."""
-    view = _view("web" if web else "terminal")
+    play_in = _view("web" if web else "terminal")
     more: dict[str, Any] = {"port": port, "open_browser": browser, "say": _saying(console)} if web else {}
-    return view(chosen, _desk(), guess=guess, **more)
+    return play_in(chosen, _desk(), guess=guess, **more)
 
 
 def _desk() -> Desk:
@@ -382,6 +377,7 @@ def _run_unseen(
     recordings: list[Recording] = []
     watch = (lambda world: recordings.append(Recording(world))) if "record" in targets else None
     filming = bool({"gif", "mp4"} & targets.keys())
+    end = chosen.scene.duration if options.duration is None else options.duration
     with console.working(f"Running {chosen.scene.id}"):
         done = running.run(
             chosen,
@@ -390,7 +386,7 @@ def _run_unseen(
             every=options.every if options.csv else 0.0,
             on_frame=None if film is None else _taker(film, options, made, filming=filming),
             fps=_FPS if filming else 1.0,
-            also_at=_picture_times(chosen, options),
+            also_at=(end if options.at is None else options.at,) if "png" in targets else (),
             watch=watch,
         )
     if recordings:
@@ -410,14 +406,6 @@ def _run_unseen(
         _keep(chosen, done.comparison)
     _emit(console, chosen, done, told, files)
     return 0
-
-
-def _picture_times(chosen: Chosen, options: PlayOptions) -> tuple[float, ...]:
-    """The time of the one picture: the end by default."""
-    if options.png is None:
-        return ()
-    end = chosen.scene.duration if options.duration is None else options.duration
-    return (end if options.at is None else options.at,)
 
 
 def _taker(

@@ -220,14 +220,6 @@ def test_a_crash_between_the_last_answer_and_the_score_loses_nothing(quiz, bank,
     assert "5 of 5 right" in ran.out
 
 
-def test_a_retake_asks_in_other_variants(quiz, bank, types):
-    for seed in (SEED, 3):
-        types(*key(bank, seed=seed).values())
-        assert quiz("take", "--seed", str(seed)).code == 0
-        again = quiz("take", "--questions", "--json").json["seed"]
-        assert all(bank.variant(name, again) != bank.variant(name, seed) for name in bank.ids)
-
-
 def test_without_a_terminal_nothing_is_asked(quiz):
     for words in (("take",), ("take", "--json"), ("take", "--seed", "3")):
         ran = quiz(*words)

@@ -108,20 +108,3 @@ def test_records_with_missing_fields_are_understood():
     history = _history(("check", {}), ("hint", {}), ("start", {}))
     assert history.last.score == 0.0
     assert history.failing_tasks() == frozenset()
-
-
-def test_a_function_that_is_not_begun_earns_no_hint_when_another_one_was_written():
-    def checks(first, second):
-        both = (("double", first), ("halve", second))
-        return [
-            {"id": task, "task": task, "status": "pass" if code is None else "fail", "diagnosis": code}
-            for task, code in both
-        ]
-
-    new = "NOT_IMPLEMENTED"
-    history = _history(_check(FIRST, checks=checks(None, new)))
-    assert (history.failing_tasks(), history.unwritten_tasks()) == ({"halve"}, {"halve"})
-    assert not history.hint_is_due(STUB)
-    history = _history(_check(FIRST, checks=checks("SIGN", new)))
-    assert history.unwritten_tasks() == {"halve"}
-    assert history.hint_is_due(STUB)

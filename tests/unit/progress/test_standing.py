@@ -54,10 +54,3 @@ def test_who_read_a_lesson_before_it_was_parted_has_read_both(workspace, data, r
     standing = Standing.of(workspace, {"b": "a"})
     assert standing.read.keys() & {"a", "b"} == read
     assert {standing.read[name] for name in read} == {standing.read["a"]}
-
-
-def test_outside_of_a_workspace_nothing_is_begun():
-    nowhere = Standing()
-    assert (nowhere.read, nowhere.mistakes, nowhere.started) == ({}, (), frozenset())
-    assert not nowhere.is_begun("integrators")
-    assert not nowhere.is_complete("integrators")

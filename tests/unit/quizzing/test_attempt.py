@@ -18,16 +18,6 @@ def test_the_mark_is_the_smallest_number_that_reaches_seventy_per_cent() -> None
         assert 0 < least <= total
 
 
-def test_an_attempt_is_scored(bank: Bank) -> None:
-    posed = bank.pose(4)
-    answers = {question.question: question.key.id for question in posed}
-    assert (mark(posed, answers).score, mark(posed, answers).passed) == (2, True)
-    wrong = next(choice for choice in posed[0].choices if not choice.right)
-    result = mark(posed, {**answers, posed[0].question: wrong.letter})
-    assert (result.score, result.total, result.passed) == (1, 2, False)
-    assert [marked.chosen for marked in result.missed] == [wrong]
-
-
 def test_an_answer_that_is_no_option_is_an_error(bank: Bank) -> None:
     with pytest.raises(KeyError):
         mark(bank.pose(4), {"sums": "z", "colours": "a"})

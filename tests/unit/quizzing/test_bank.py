@@ -41,15 +41,6 @@ def test_options_are_shuffled_evenly(bank: Bank) -> None:
     assert all(200 < places[letter] < 300 for letter in "abcd")
 
 
-def test_an_option_answers_to_its_id_its_letter_and_its_number(bank: Bank) -> None:
-    (posed,) = bank.pose(5, only=["colours"])
-    second = posed.choices[1]
-    assert all(posed.choice(name) is second for name in (second.id, "b", "B", " 2 "))
-    assert posed.choice("e") is None
-    assert posed.choice("0") is None
-    assert posed.choice("") is None
-
-
 def test_options_that_round_to_the_same_are_refused_where_they_are_posed(quiz: Path) -> None:
     path = quiz / "sums.toml"
     path.write_text(path.read_text().replace('formula = "a + 1"', 'formula = "a + b + 0.001"'))

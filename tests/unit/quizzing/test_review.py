@@ -58,10 +58,3 @@ def test_a_question_is_never_due_sooner_than_the_gap_after_it_was_last_missed(
     else:
         after = sum(at > missed[-1] for at, right in answers if right)
         assert after >= ROUNDS
-
-
-@pytest.mark.parametrize("days", range(1, 8))
-def test_practice_every_day_is_counted_every_other_day(days: int) -> None:
-    answers = [on(0, False), *(on(number, True) for number in range(1, days + 1))]
-    due = due_after("q", answers)
-    assert (due is None) == (days >= ROUNDS * GAP_DAYS)

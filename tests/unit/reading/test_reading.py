@@ -148,9 +148,7 @@ def test_what_was_done_in_a_lesson_before_it_was_parted_is_in_both_parts(lesson,
     store.append("bookmark", lesson.id, {"block": 3, "part": 0.0, "words": words_of(whole.blocks[3])})
 
     def opened():
-        events = lesson_events(
-            lambda name: store.events("", name), part.lesson.id, {part.lesson.id: lesson.id}
-        )
+        events = lesson_events(store, part.lesson.id, {part.lesson.id: lesson.id})
         return InProgress(part, events, store.append)
 
     begun = opened()

@@ -48,18 +48,11 @@ class Bench:
     Args:
         progress: the lesson.
         done: called in the cells' thread with the cell, the code that ran and its result.
-        clock: real time, in s.
     """
 
-    def __init__(
-        self,
-        progress: InProgress,
-        done: Callable[[Cell, str, CellOutput], None],
-        clock: Callable[[], float] = perf_counter,
-    ) -> None:
+    def __init__(self, progress: InProgress, done: Callable[[Cell, str, CellOutput], None]) -> None:
         self._progress = progress
         self._done = done
-        self._clock = clock
         self._runner: CellRunner | None = None
         self._pool: ThreadPoolExecutor | None = None
         self._since = 0.0
@@ -70,7 +63,7 @@ class Bench:
         """Run a cell; False if one is running already."""
         if self.cell is not None:
             return False
-        self.cell, self._since, self._stopped = cell, self._clock(), False
+        self.cell, self._since, self._stopped = cell, perf_counter(), False
         self._submit(self._run, cell, self._progress.cell(cell).source)
         return True
 
@@ -89,7 +82,7 @@ class Bench:
         """The key of the cell that runs and what to say of it; empty if none does."""
         if self.cell is None:
             return "", ""
-        return self.cell.key, f"runs, {self._clock() - self._since:.0f} s; Ctrl-C stops it"
+        return self.cell.key, f"runs, {perf_counter() - self._since:.0f} s; Ctrl-C stops it"
 
     def close(self) -> None:
         """Stop the cell that runs, and end its process."""

@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 from course.catalog.blocks import Prediction
-from course.catalog.load import Catalog
 from course.cli.frame.console import Console, Settings, install
 from course.cli.frame.here import Here
 from course.cli.reading.by_line import LineReader
@@ -18,10 +17,10 @@ from course.cli.reading.lesson import Printer, paginate, printer
 from course.progress.workspace import Workspace
 from course.reading.parts import read_script
 from course.reading.record import predictions_of
+from tests.unit.cli.reading.conftest import CATALOG
 from tests.unit.cli.reading.test_each_fact_once import repeated
 
 pytestmark = pytest.mark.usefixtures("sandboxes")
-CATALOG = Catalog()
 LESSON = "numerical-integration"
 OFFERS = re.compile(r"Here (1 2 3 say|r runs|start puts|check runs)")
 _PAGES = paginate(read_script(CATALOG.lesson(LESSON), CATALOG.tasks(LESSON)).blocks)
@@ -30,10 +29,9 @@ ASKED = 1 + next(at for at, page in enumerate(_PAGES) if isinstance(page[-1], Pr
 
 
 @pytest.fixture
-def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Workspace:
-    made = Workspace.create(tmp_path / "mine", CATALOG.course_id, CATALOG.version)
-    monkeypatch.chdir(made.root)
-    return made
+def workspace(mine: Workspace, monkeypatch: pytest.MonkeyPatch) -> Workspace:
+    monkeypatch.chdir(mine.root)
+    return mine
 
 
 class Typed:

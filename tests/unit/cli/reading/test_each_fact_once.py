@@ -9,11 +9,10 @@ from pathlib import Path
 import pytest
 
 from course.authoring.exercises.grading import solution_path
-from course.catalog.load import Catalog
 from course.cli.frame import app
 from course.cli.reading.lesson import sentences
+from tests.unit.cli.reading.conftest import CATALOG
 
-CATALOG = Catalog()
 EXERCISE = "integrators"
 #: Code, output and tables are as they are: a cell of a table may say what another says.
 _VERBATIM = re.compile(r"^(Python code|It prints|Text|Table), \d+ ")
@@ -58,13 +57,6 @@ def heard(capsys: pytest.CaptureFixture[str], *words: str) -> str:
     said = capsys.readouterr()
     assert "\x1b" not in said.out
     return said.out + said.err
-
-
-@pytest.mark.parametrize("lesson", CATALOG.lesson_ids())
-def test_a_lesson(lesson: str, capsys: pytest.CaptureFixture[str]) -> None:
-    text = heard(capsys, "lesson", lesson)
-    assert "Section: Sources" in text
-    assert repeated(text) == []
 
 
 @pytest.mark.usefixtures("sandboxes")

@@ -8,23 +8,13 @@ import subprocess
 
 import pytest
 
-from tests.unit.cli.conftest import files_in, record
+from tests.unit.cli.conftest import files_in
 
 
 def test_the_dashboard_outside_of_a_workspace_says_how_to_begin(course):
     ran = course()
     assert ran.code == 0
     assert "course init" in ran.out
-
-
-def test_the_dashboard_names_the_next_step(course, workspace, write):
-    record(workspace).append("lesson", "twice-as-much")
-    assert "Next: course check doubling" in course().out
-    write("RIGHT", "RIGHT")
-    course("check")
-    ran = course()
-    assert "every public check passes" in ran.out
-    assert "Next: course start halving" in ran.out
 
 
 def test_the_dashboard_survives_a_damaged_record(course, workspace):

@@ -12,7 +12,7 @@ from course.catalog.reading import Document
 from course.errors import ContentError
 from course.progress import quiz
 from course.progress.quiz import Attempt, QuizHistory
-from course.quizzing.bank import Bank, PosedQuestion, Result, clashing, mark, pose_case
+from course.quizzing.bank import Bank, MarkedQuestion, PosedQuestion, Result, clashing, mark, pose_case
 
 Record = Callable[[str, str, dict[str, object]], None]
 
@@ -36,7 +36,8 @@ def begun(bank: Bank, seed: int, version: str, record: Record) -> Attempt:
     attempt = quiz.Attempt(
         id=secrets.token_hex(8), seed=seed, version=version, questions=bank.ids, started=datetime.now(UTC)
     )
-    record(quiz.START, "", quiz.start_data(attempt.id, seed, attempt.version, attempt.questions))
+    asked = {"seed": seed, "version": version, "questions": list(attempt.questions)}
+    record(quiz.START, "", {"attempt": attempt.id, **asked})
     return attempt
 
 
@@ -50,15 +51,23 @@ def caught_up(attempt: Attempt, history: QuizHistory) -> Attempt | None:
 def answered(attempt: Attempt, question: str, option: str, record: Record) -> None:
     """Record one answer at once, so that nothing is lost however the program ends."""
     attempt.answers[question] = option
-    record(quiz.ANSWER, question, quiz.answer_data(attempt.id, option))
+    record(quiz.ANSWER, question, {"attempt": attempt.id, "option": option})
 
 
 def finished(attempt: Attempt, posed: Sequence[PosedQuestion], record: Record) -> Result:
     """Score an attempt that is answered, and record its end."""
     result = mark(posed, attempt.answers)
     right = {marked.posed.question: marked.right for marked in result.marked}
-    record(quiz.DONE, "", quiz.done_data(attempt.id, right, passed=result.passed))
+    score = {"right": right, "score": result.score, "passed": result.passed}
+    record(quiz.DONE, "", {"attempt": attempt.id, **score})
     return result
+
+
+def reviewed(posed: PosedQuestion, option: str, seed: int, record: Record) -> MarkedQuestion:
+    """Mark one answer of a review, and record it."""
+    (marked,) = mark([posed], {posed.question: option}).marked
+    record(quiz.REVIEW, posed.question, {"seed": seed, "option": option, "right": marked.right})
+    return marked
 
 
 # ---

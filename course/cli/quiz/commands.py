@@ -23,11 +23,18 @@ from course.cli.quiz.screen import (
     printed_seed,
 )
 from course.errors import INTERRUPTED, UsageError
-from course.progress import quiz
 from course.progress.quiz import Attempt
 from course.quizzing.answers import AnswerFile, read_answers
-from course.quizzing.bank import MarkedQuestion, PosedQuestion, check_seed, mark, mark_sentence, needed
-from course.quizzing.desk import Due, answered, finished, fits
+from course.quizzing.bank import (
+    MarkedQuestion,
+    PosedQuestion,
+    Result,
+    check_seed,
+    mark,
+    mark_sentence,
+    needed,
+)
+from course.quizzing.desk import Due, answered, finished, fits, reviewed
 
 app = group(COMMANDS["quiz"].summary)
 
@@ -67,7 +74,8 @@ def take(answers: AnswersOption = None, seed: SeedOption = None, questions: Ques
         posed = desk.bank.pose(seed)
         screen.show_mark(console, len(posed))
         return screen.hand_out(console, desk.here, posed, seed, "take")
-    attempt, resumed = open_or_new(console, desk, seed)
+    attempt = open_or_new(console, desk, seed)
+    resumed = bool(attempt.answers)
     posed = desk.bank.pose(attempt.seed)
     screen.show_mark(console, len(posed))
     console.note(KEYS)
@@ -151,7 +159,7 @@ def _finish(
 ) -> int:
     result = finished(attempt, posed, desk.here.record)
     due = desk.reviews()
-    step = _step(result.missed, due, passed=result.passed)
+    step = _step(result, due)
     screen.show_result(console, result)
     if result.passed:  # else the lesson to read comes first
         screen.show_first_due(console, due, today())
@@ -175,10 +183,10 @@ def _finish(
     )
 
 
-def _step(missed: Sequence[MarkedQuestion], due: Sequence[Due], *, passed: bool) -> str:
-    if passed:
+def _step(result: Result, due: Sequence[Due]) -> str:
+    if result.passed:
         return "course quiz review" if due else "course"
-    read = next((marked.posed.read for marked in missed if marked.posed.read), "")
+    read = next((one.posed.read for one in result.marked if not one.right and one.posed.read), "")
     return f"course lesson {read}" if read else "course quiz take"
 
 
@@ -210,7 +218,7 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
         if one is None:
             console.line("The rest stays due: `course quiz review` continues with it.")
             return INTERRUPTED
-        marked.append(_reviewed(desk, question, one.id, seed))
+        marked.append(reviewed(question, one.id, seed, desk.here.record))
         screen.show_marked(console, marked[-1], number)
     return _end_review(console, desk, seed, marked)
 
@@ -220,17 +228,10 @@ def _review_file(console: Console, desk: Desk, path: Path, seed: int | None, ids
     seed = _seed("review", file, seed, file.seed)
     posed = desk.bank.pose(seed, only=ids)
     options = file.choose(posed, desk.bank, seed)
-    marked = [_reviewed(desk, question, options[question.question], seed) for question in posed]
+    marked = [reviewed(one, options[one.question], seed, desk.here.record) for one in posed]
     for number, one in enumerate(marked, start=1):
         screen.show_marked(console, one, number)
     return _end_review(console, desk, seed, marked)
-
-
-def _reviewed(desk: Desk, posed: PosedQuestion, option: str, seed: int) -> MarkedQuestion:
-    """Mark and record one answer of a review."""
-    (marked,) = mark([posed], {posed.question: option}).marked
-    desk.here.record(quiz.REVIEW, posed.question, quiz.review_data(seed, option, right=marked.right))
-    return marked
 
 
 def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence[MarkedQuestion]) -> int:

@@ -20,7 +20,7 @@ from course.cli.frame.app import again
 from course.cli.frame.console import Console
 from course.cli.frame.here import Here
 from course.cli.reading.lesson import Printer, paginate
-from course.cli.reading.screen.running import Bench, write_new
+from course.cli.reading.screen.running import Bench, write_cell
 from course.errors import CourseError
 from course.printable import counted
 from course.progress.standing import lesson_events
@@ -289,9 +289,8 @@ class LineReader:
 
     def _edit(self, cell: Cell) -> None:
         if cell.number not in self._files:
-            name = f"{self._script.lesson.id}-{cell.number}.py"
             try:
-                self._files[cell.number] = write_new(name, self._progress.cell(cell).source + "\n")
+                self._files[cell.number] = write_cell(self._progress, cell)
             except CourseError as error:
                 self._console.error(error.message, error.help)
                 return

@@ -117,6 +117,7 @@ def test_below_the_mark_every_option_of_what_was_missed_is_explained_on_request(
     ran = quiz("take", "--seed", str(SEED))
     assert ran.code == 1
     assert ran.out.count("3 of 5 right, 4 needed: not passed") == 1
+    assert f"Next: course lesson {bank.pose(SEED, wrong)[0].read}\n" in ran.out
     whole = quiz("history", "--all").out
     assert whole.count("Read again: course lesson ") == 2
     assert "why-simulate, digital-twin: due" in whole

@@ -15,7 +15,7 @@ from course.catalog import blocks as b
 from course.cli.reading.screen.asking import Edit, Predict
 from course.cli.reading.screen.page import KEYS, Item, Page
 from course.cli.reading.screen.printing import answered, hint_is_named, line_to_mend
-from course.cli.reading.screen.running import write_new
+from course.cli.reading.screen.running import write_cell
 from course.errors import CourseError
 from course.reading.parts import Cell, Question
 from course.reading.record import InProgress, Judgement, Place
@@ -163,14 +163,10 @@ class CellItem(Item):
 
     def write(self, page: Page) -> None:
         """Write it into a file of the current folder."""
-        cell = self._cell(page)
-        name = f"{page.progress.script.lesson.id}-{cell.number}.py"
         try:
-            path = write_new(name, page.progress.cell(cell).source + "\n")
+            page.reader.say(f"Wrote {write_cell(page.progress, self._cell(page))}")
         except CourseError as error:
             page.reader.say(error.message)
-        else:
-            page.reader.say(f"Wrote {path}")
 
     def _cell(self, page: Page) -> Cell:
         cell = page.progress.script.cell_at(self.block)

@@ -361,18 +361,14 @@ def _standing_lines(now: Standing, name: str, *, possible: bool) -> Iterator[Tex
     else:
         if now.fixed:
             yield Text.assemble(("Fixed: ", "bold green"), ", ".join(now.fixed))
-        yield from _said(now.reply, name)
+        yield from _said(now.reply, f"course hint {name} or h: a hint" if hint_is_named(now) else "")
     if now.hint:
         yield Text(now.hint, style="italic")
 
 
 def hint_is_named(now: Standing) -> bool:
     """Whether the last check named a hint as the next step: one is due."""
-    return _names_hint(now.reply or {})
-
-
-def _names_hint(reply: dict[str, Any]) -> bool:
-    return _step(reply).startswith("course hint")
+    return _step(now.reply or {}).startswith("course hint")
 
 
 def line_to_mend(now: Standing, source: str) -> int:
@@ -390,7 +386,7 @@ def _checks(reply: dict[str, Any]) -> tuple[tuple[CheckResult, ...], CheckResult
     return checks, next((check for check in checks if check.status != "pass"), None)
 
 
-def _said(reply: dict[str, Any], name: str) -> Iterator[Text]:
+def _said(reply: dict[str, Any], offer: str) -> Iterator[Text]:
     if "error" in reply:
         yield Text(reply["error"]["message"], style="red")
         yield Text(reply["error"].get("help", ""))
@@ -413,7 +409,6 @@ def _said(reply: dict[str, Any], name: str) -> Iterator[Text]:
     yield from _printed("Your code printed:", first.stdout)
     passing = sum(check.status == "pass" for check in checks)
     some = f"{passing} of {len(checks)} checks pass.  " if len(checks) > 1 else ""
-    offer = f"course hint {name} or h: a hint" if _names_hint(reply) else ""
     if some or offer:
         yield Text(f"{some}{offer}".rstrip(), style="dim")
 

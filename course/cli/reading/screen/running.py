@@ -136,16 +136,16 @@ def _hear_no_ctrl_c() -> None:
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
 
 
-def write_new(name: str, text: str) -> Path:
-    """Write a file into the current folder; an existing one keeps its name and content.
+def write_cell(progress: InProgress, cell: Cell) -> Path:
+    """Write a cell's code into a file of the current folder; an existing one keeps its name and content.
 
     Raises:
         MissingCapabilityError: the folder cannot be written.
     """
-    for path in numbered(Path(name)):
+    for path in numbered(Path(f"{progress.script.lesson.id}-{cell.number}.py")):
         try:
             with contextlib.suppress(FileExistsError), path.open("x", encoding="utf-8") as file:
-                file.write(text)
+                file.write(progress.cell(cell).source + "\n")
                 break
         except OSError as error:
             raise MissingCapabilityError(

@@ -94,15 +94,7 @@ async def to_question(app: ReaderApp, pilot: Any, number: int = 1) -> None:
 
 
 @pytest.mark.parametrize("lesson", LESSONS)
-@pytest.mark.parametrize(
-    "size",
-    [
-        (80, 24),
-        pytest.param((40, 20), marks=pytest.mark.soak),
-        pytest.param((160, 50), marks=pytest.mark.soak),
-    ],
-)
-def test_every_lesson_is_read_by_space_alone_to_its_end_and_each_figure_is_an_item(size, lesson):
+def test_every_lesson_is_read_by_space_alone_to_its_end_and_each_figure_is_an_item(lesson):
     title = CATALOG.lesson(lesson).title.split(":")[0][:20]
 
     async def journey(app, pilot):
@@ -120,7 +112,7 @@ def test_every_lesson_is_read_by_space_alone_to_its_end_and_each_figure_is_an_it
         app.page.rebuild()
         assert [item.block for item in app.page.book.items if isinstance(item, FigureItem)] == figures_of(app)
 
-    reading(journey, size=size, lesson=lesson)
+    reading(journey, lesson=lesson)
 
 
 def test_a_prediction_is_typed_kept_and_compared_and_a_skip_is_kept_too(mine):
@@ -519,12 +511,17 @@ def test_the_code_of_a_cell_is_printed_as_it_is_in_the_lesson(capsys):
 
 
 def test_a_file_that_is_there_is_not_overwritten(tmp_path: Path, monkeypatch):
-    from course.cli.reading.screen.running import write_new
-
     monkeypatch.chdir(tmp_path)
-    first, second = write_new("a-1.py", "x = 1\n"), write_new("a-1.py", "x = 2\n")
-    assert (first.name, second.name) == ("a-1.py", "a-1-2.py")
-    assert first.read_text() == "x = 1\n"
+    (tmp_path / f"{LESSON}-1.py").write_text("mine")
+
+    async def journey(app, pilot):
+        cell = await to_cell(app, pilot)
+        await pilot.press("w")
+        assert app.message == f"Wrote {LESSON}-1-2.py"
+        assert (tmp_path / f"{LESSON}-1-2.py").read_text() == f"{cell.source}\n"
+
+    reading(journey)
+    assert (tmp_path / f"{LESSON}-1.py").read_text() == "mine"
 
 
 def test_a_box_leaves_no_letters_of_the_page_beside_it():

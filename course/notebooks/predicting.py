@@ -9,8 +9,8 @@ from course.catalog.load import Catalog
 from course.catalog.models import Lesson
 from course.errors import CourseError, NotFoundError
 from course.notebooks.sandbox import alive
+from course.progress.history import lesson_events
 from course.progress.quiz import quiz_history
-from course.progress.standing import lesson_events
 from course.progress.workspace import Recorder
 from course.quizzing.bank import Bank, Result, fresh_seed
 from course.reading.parts import Question, Script, read_script

@@ -239,7 +239,6 @@ class Recorder:
         return cls(workspace.store)
 
     def __call__(self, kind: str, subject: str, data: Mapping[str, Any]) -> None:
-        """Add an event."""
         if self.store is None:
             return
         try:

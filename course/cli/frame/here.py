@@ -20,8 +20,7 @@ from course.cli.frame.replies import Backup, Envelope, WrittenFile
 from course.errors import CourseError, MissingCapabilityError, NotFoundError, UngradableError, UsageError
 from course.handed_in.limits import MAX_FILE
 from course.ids import WARM_UPS
-from course.progress.history import History, history_of
-from course.progress.standing import Standing
+from course.progress.history import History, Standing, history_of
 from course.progress.workspace import Recorder, Workspace, write_atomically
 from course.strangers import read_bytes
 

@@ -22,8 +22,7 @@ from course.cli.home.replies import (
     WarmUpState,
 )
 from course.errors import CourseError
-from course.progress.history import Mistake
-from course.progress.standing import Standing
+from course.progress.history import Mistake, Standing
 from course.reading.parts import Question, Script, read_script
 from course.reading.record import RecordedPrediction, predictions_of, tally
 

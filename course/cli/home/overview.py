@@ -23,8 +23,7 @@ from course.cli.home.replies import (
 )
 from course.errors import CourseError
 from course.printable import counted
-from course.progress.history import History
-from course.progress.standing import Standing
+from course.progress.history import History, Standing
 from course.scoring.verdict import format_points
 
 #: States of an exercise, as a person reads them.

@@ -126,7 +126,6 @@ def _ask_all(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[Pos
 
 
 def _take_file(console: Console, desk: Desk, path: Path, seed: int | None) -> int:
-    """An attempt whose answers are all in a file."""
     file = read_answers(path)
     open_one = desk.history.open
     seed = _seed("take", file, seed, file.seed, open_one.seed if open_one is not None else None)

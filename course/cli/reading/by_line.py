@@ -23,7 +23,7 @@ from course.cli.reading.lesson import Printer, paginate
 from course.cli.reading.screen.running import Bench, write_cell
 from course.errors import CourseError
 from course.printable import counted
-from course.progress.standing import lesson_events
+from course.progress.history import lesson_events
 from course.progress.store import Event
 from course.reading.cells import CellOutput
 from course.reading.parts import Cell, Question, read_script
@@ -311,7 +311,6 @@ class LineReader:
         return self._catalog.exercise(block.id) if isinstance(block, b.Task) else None
 
     def _on_task(self, words: Callable[[Exercise], list[str]]) -> Callable[[str, int], None]:
-        """A command of the course for the warm-up or exercise of a page."""
 
         def do(_: str, number: int) -> None:
             task = self._task(number)

@@ -29,7 +29,7 @@ from course.cli.work.checking import check as check_work
 from course.cli.work.replies import Start
 from course.errors import CourseError, NotFoundError, UsageError
 from course.printable import counted
-from course.progress.standing import Standing
+from course.progress.history import Standing
 from course.reading.parts import Script, Section, read_script
 
 # ---
@@ -213,7 +213,6 @@ def _say_unkept(console: Console, here: Here | None) -> None:
 
 
 def _print_code(console: Console, script: Script, number: int) -> int:
-    """Print the code of one cell, unchanged, ready for a file."""
     cells = script.shown_cells
     if number > len(cells):
         raise NotFoundError(
@@ -264,7 +263,7 @@ def warmup(
     exercises are; they count for nothing.
     """
     console = current()
-    lesson = _lesson_named(name)
+    lesson = name if name and name in here_or_outside()[1].lesson_ids() else ""  # a number is a warm-up's
     if name is None or lesson:
         if check:
             raise UsageError("--check needs the id of a warm-up.", help="`course warmup` lists them.")
@@ -297,13 +296,7 @@ def _warm_up(catalog: Catalog, name: str) -> Exercise:
     return chosen
 
 
-def _lesson_named(name: str | None) -> str:
-    """The id of the lesson that this is the id of; "" if it is of none. A number is a warm-up's."""
-    return name if name and name in here_or_outside()[1].lesson_ids() else ""
-
-
 def _list(console: Console, lesson: str = "") -> int:
-    """The warm-ups of all lessons, or of one."""
     here, catalog = here_or_outside()
     try:
         standing = here.standing() if here else Standing()
@@ -335,7 +328,6 @@ def _list(console: Console, lesson: str = "") -> int:
 
 
 def _begin(console: Console, here: Here, chosen: Exercise) -> int:
-    """Its text, and its file in the workspace."""
     if not console.quiet and not console.json:
         show_text(console, here, chosen)
     files = put(console, here, chosen)

@@ -317,7 +317,12 @@ def open_view(
     if web:
         require("web")
     play_in = _view("web" if web else "terminal")
-    more: dict[str, Any] = {"port": port, "open_browser": browser, "say": _saying(console)} if web else {}
+
+    def say(text: str) -> None:
+        console.line(text)
+        console.flush()  # even into a file or a pipe: the page is served until somebody ends it
+
+    more: dict[str, Any] = {"port": port, "open_browser": browser, "say": say} if web else {}
     return play_in(chosen, _desk(), guess=guess, **more)
 
 
@@ -341,16 +346,6 @@ def _desk() -> Desk:
         return str(here.write(path, data, why="sandbox").path)
 
     return Desk(keep=_keep, save=save, played=frozenset(played), opened=opened)
-
-
-def _saying(console: Console) -> Callable[[str], None]:
-    """Say a line at once, even into a file or a pipe: the page is served until somebody ends it."""
-
-    def say(text: str) -> None:
-        console.line(text)
-        console.flush()
-
-    return say
 
 
 def _view(name: str) -> Callable[..., bytes]:

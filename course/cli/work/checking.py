@@ -81,9 +81,6 @@ def _reply(check: str, curve: Curve) -> CurveReply:
     return filled(CurveReply, curve, check=check, **points)
 
 
-FAILED = 1
-
-
 def check(
     exercise: ExerciseName = None,
     everything: Annotated[bool, option("--all", "Check every exercise you have started.")] = False,
@@ -143,7 +140,7 @@ def reply_to(
     return filled(
         Check,
         verdict,
-        exit_code=0 if verdict.all_pass else FAILED,
+        exit_code=0 if verdict.all_pass else 1,
         course=course,
         next=NextStep(step) if step else None,
         printed=printed,

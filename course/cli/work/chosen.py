@@ -204,7 +204,6 @@ def _notebook(here: Here, exercise: Exercise) -> StudentWork:
 
 
 def _is_edited(here: Here, work: StudentWork) -> bool:
-    """Whether a file was edited since it was handed out."""
     if work.notebook is None:
         return here.workspace.is_edited(work.exercise.place, work.name, work.data)
     return not is_untouched(work.data) and fingerprint(work.source) != fingerprint(work.stub)
@@ -271,7 +270,6 @@ def as_handed_in(work: StudentWork) -> Submission:
 
 
 def _without_outputs(data: bytes) -> bytes:
-    """A notebook without outputs, which are large and are not graded."""
     notebook = json.loads(data.decode("utf-8-sig"))
     sheets = [notebook, *notebook.get("worksheets", [])]
     for cell in (cell for sheet in sheets for cell in sheet.get("cells", [])):

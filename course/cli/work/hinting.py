@@ -291,7 +291,6 @@ def _rubric(here: Here, chosen: Exercise) -> Rubric:
 
 
 def _recorded(here: Here, chosen: Exercise, rubric: Rubric) -> tuple[str, tuple[str, ...]]:
-    """The newest answer and the newest grades."""
     said = ""
     graded: tuple[str, ...] = ()
     for event in here.workspace.store.events(KIND, chosen.id):

@@ -251,7 +251,6 @@ def _show(
 
 
 def _score(one: _GoesIn) -> str:
-    """What the public checks say of a file."""
     verdict, exercise = one.verdict, one.work.exercise
     if verdict is None or verdict.state != "graded":
         return "not checked" if verdict is None else "cannot be graded"

@@ -389,7 +389,7 @@ def annotate(console: Console, here: Here, work: StudentWork, verdict: Verdict, 
     for check in verdict.checks:
         if check.status in {"pass", "skip"}:
             continue
-        line = _line_of(work, check)
+        line = line_of(work.data.decode("utf-8", "replace"), check, traced=work.notebook is None)
         if (line, check.message) in said:
             continue
         said.add((line, check.message))
@@ -451,11 +451,6 @@ def unread_line(source: bytes | str) -> int:
     except (SyntaxError, ValueError, LookupError) as problem:  # the last: a codec of no text
         return getattr(problem, "lineno", None) or 1
     return 1
-
-
-def _line_of(work: StudentWork, check: CheckResult) -> int:
-    text = work.data.decode("utf-8", "replace")
-    return line_of(text, check, traced=work.notebook is None)
 
 
 def line_of(text: str, check: CheckResult, *, traced: bool = True) -> int:

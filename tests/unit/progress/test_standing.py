@@ -7,7 +7,7 @@ import pytest
 from course.catalog.load import Catalog
 from course.cli.frame import app
 from course.errors import IntegrityError
-from course.progress.standing import Standing
+from course.progress.history import Standing
 from course.progress.store import Store
 from course.progress.workspace import Workspace
 

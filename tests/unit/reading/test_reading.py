@@ -9,7 +9,7 @@ import msgspec
 import pytest
 
 from course.catalog.models import Lesson
-from course.progress.standing import lesson_events
+from course.progress.history import lesson_events
 from course.progress.store import Store
 from course.reading.parts import read_script, words_of
 from course.reading.record import InProgress, Layout, Place, Row, Writer, find

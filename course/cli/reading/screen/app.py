@@ -117,14 +117,12 @@ class ReaderApp(FullScreenApp):
         self.page.open(self._first, section=self._section)
 
     def on_unmount(self) -> None:
-        """End what runs, and write down the place."""
         self.page.end_cells()
         self.page.keep_place()
         if self.page.pictures is not None:
             self.page.pictures.close()
 
     def on_resize(self, event: Resize) -> None:
-        """Reflow; the line at the top stays."""
         if event.size != self.page.laid_for:
             self.call_after_refresh(self.page.reflow)
 
@@ -187,7 +185,6 @@ class ReaderApp(FullScreenApp):
             self.page.say_round()
 
     def action_return(self) -> None:
-        """Back to where a link was followed."""
         if self.page.trail:
             self.page.open(*self.page.trail.pop())
 
@@ -215,7 +212,6 @@ class ReaderApp(FullScreenApp):
     # -- acting ------------------------------------------------------------------------------------------
 
     def action_act(self) -> None:
-        """Do what Enter does here."""
         if self.page.item is not None:
             self.page.item.act(self.page)
         else:
@@ -251,7 +247,6 @@ class ReaderApp(FullScreenApp):
             judged.judge(self.page, _JUDGED[key])
 
     def action_open_figure(self) -> None:
-        """The figure at hand in the system's viewer."""
         figure = in_sight(self.page, FigureItem)
         if figure is not None:
             figure.act(self.page)
@@ -291,7 +286,6 @@ class ReaderApp(FullScreenApp):
         ]
 
     def action_next_hit(self) -> None:
-        """The next place in this lesson where the words are."""
         if not self._wanted:
             self.say("/ searches for words.")
             return

@@ -25,7 +25,7 @@ from course.cli.reading.screen.printing import BlockRows, ScreenPrinter
 from course.cli.reading.screen.running import Bench, Drawer, Practice
 from course.errors import CourseError
 from course.full_screen import FullScreenApp
-from course.progress.standing import lesson_events
+from course.progress.history import lesson_events
 from course.progress.store import Event
 from course.progress.workspace import Workspace
 from course.reading.parts import Cell, read_script
@@ -334,7 +334,6 @@ class Page(Widget):
         return self.pictures.rows(name, curve, width, self.room) if self.pictures is not None else []
 
     def _take_picture(self, name: str) -> None:
-        """The picture of a figure or a task has arrived."""
         for index, block in enumerate(self.progress.script.blocks):
             if any(isinstance(one, b.Figure | b.Task) and one.id == name for one in b.walk_blocks((block,))):
                 self.rebuild(index)
@@ -463,7 +462,6 @@ class Page(Widget):
 
     @property
     def _lead(self) -> int:
-        """Lines above the text."""
         return 0 if self.app.size.height < _LOW else 1
 
     @property

@@ -121,7 +121,6 @@ class ScreenPrinter(FancyPrinter):
         return self._laid_out(shown, index) if shown is not None else BlockRows()
 
     def _tail_rows(self) -> BlockRows:
-        """The lesson is read, and the next step."""
         lesson, ids = self._lesson, self._catalog.lesson_ids()
         following = ids[ids.index(lesson.id) + 1 :][:1] if lesson.id in ids else ()
         links = [(f"exercise:{name}", f"Practise: {name}") for name in lesson.exercises]
@@ -237,7 +236,6 @@ class ScreenPrinter(FancyPrinter):
         return Group(shown, Text(""), line)
 
     def _compared(self, question: Question) -> RenderableType:
-        """The prediction, the run's result, and the reader's own judgement."""
         said = self._progress.prediction(question)
         assert said is not None
         facts = [("You said", said.text)]
@@ -274,7 +272,6 @@ class ScreenPrinter(FancyPrinter):
         return Group(*shown, self._rule(""))
 
     def _outputs(self, cell: Cell) -> list[RenderableType]:
-        """The recorded output, and the cell's result here."""
         state = self._progress.cell(cell)
         recorded = cell.output or ""
         if state.ran is None:

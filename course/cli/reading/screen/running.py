@@ -328,7 +328,6 @@ class Practice:
             return ()
 
     def _recorded(self, name: str) -> Standing:
-        """The workspace's record of a task."""
         if self._workspace is None:
             return Standing()
         exercise = self._catalog.exercise(name)

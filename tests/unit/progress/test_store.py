@@ -51,6 +51,13 @@ def _sql(store, statement):
         database.execute(statement)
 
 
+def test_events_come_back_by_kind_and_subject_in_the_order_they_were_added(store):
+    for event in (("start", "doubling"), ("check", "doubling"), ("check", "halving")):
+        store.append(*event)
+    assert [event.subject for event in store.events("check")] == ["doubling", "halving"]
+    assert [event.kind for event in store.events(subject="doubling")] == ["start", "check"]
+
+
 def test_asking_an_absent_record_makes_no_file(store):
     assert store.events() == ()
     assert not store.path.exists()

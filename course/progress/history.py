@@ -10,7 +10,7 @@ import ast
 import hashlib
 import math
 import warnings
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
 from functools import cached_property
@@ -18,7 +18,7 @@ from types import MappingProxyType
 from typing import Any
 
 from course.progress.quiz import QuizHistory, quiz_history
-from course.progress.store import Event, Record, Store
+from course.progress.store import Event, Store
 from course.progress.workspace import Workspace
 
 _PASS, _SKIP = "pass", "skip"
@@ -383,7 +383,7 @@ class Standing:
     Each question reads the events that it needs, and raises IntegrityError if one of them is spoilt.
 
     Args:
-        record: None outside of a workspace.
+        workspace: as it is now; its IntegrityError and MissingCapabilityError are raised.
         split: lessons that were part of another one, and that one.
 
     Attributes:
@@ -391,26 +391,13 @@ class Standing:
     """
 
     def __init__(
-        self,
-        record: Record | None = None,
-        started: Collection[str] = (),
-        split: Mapping[str, str] = MappingProxyType({}),
-        workspace: Workspace | None = None,
+        self, workspace: Workspace | None = None, split: Mapping[str, str] = MappingProxyType({})
     ) -> None:
-        self._record = record
-        self._split = split
         self._workspace = workspace
-        self.started = frozenset(started)
+        self._split = split
+        self._record = workspace.store.record() if workspace is not None else None
+        self.started = frozenset(workspace.started() if workspace is not None else ())
         self._histories: dict[str, History] = {}
-
-    @classmethod
-    def of(cls, workspace: Workspace, split: Mapping[str, str] = MappingProxyType({})) -> Standing:
-        """As it is now.
-
-        Raises:
-            IntegrityError, MissingCapabilityError: the record cannot be read.
-        """
-        return cls(workspace.store.record(), workspace.started(), split, workspace)
 
     def events(self, kind: str = "", subject: str = "") -> tuple[Event, ...]:
         """What was recorded of a kind and about a subject, oldest first; an empty string stands for any."""

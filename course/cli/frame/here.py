@@ -186,7 +186,7 @@ class Here:
 
     def standing(self) -> Standing:
         """How far the student is with everything, as it is now; raises what ``history`` raises."""
-        return Standing.of(self.workspace, self.catalog.syllabus.split)
+        return Standing(self.workspace, self.catalog.syllabus.split)
 
     def record(self, kind: str, subject: str, data: dict[str, object]) -> None:
         """Note an event; where that fails, the command goes on and says so."""

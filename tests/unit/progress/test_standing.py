@@ -38,7 +38,7 @@ def test_the_record_is_read_once(workspace, monkeypatch):
 def test_an_event_that_somebody_spoilt_costs_those_alone_who_need_it(workspace, monkeypatch):
     monkeypatch.setattr("course.progress.store._now", lambda: "some time")
     workspace.store.append("check", "elsewhere")
-    standing = Standing.of(workspace)
+    standing = Standing(workspace)
     (name,) = standing.started
     assert standing.is_begun(name)
     assert len(standing.read) == 1
@@ -51,6 +51,6 @@ def test_an_event_that_somebody_spoilt_costs_those_alone_who_need_it(workspace, 
 @pytest.mark.parametrize(("data", "read"), [({"version": "1.2.0"}, {"a", "b"}), ({"blocks": 40}, {"a"})])
 def test_who_read_a_lesson_before_it_was_parted_has_read_both(workspace, data, read):
     workspace.store.append("lesson", "a", data)
-    standing = Standing.of(workspace, {"b": "a"})
+    standing = Standing(workspace, {"b": "a"})
     assert standing.read.keys() & {"a", "b"} == read
     assert {standing.read[name] for name in read} == {standing.read["a"]}

@@ -262,13 +262,15 @@ class Practice:
         self._saved[name] = stamp
         return stamp not in {before, 0}
 
-    def check(self, name: str) -> bool:
-        """Check it, as ``course check`` does; False if something is going on already."""
-        return self._run(name, "check", "Checking")
-
-    def hint(self, name: str) -> bool:
-        """Ask for the hint that is due, as ``course hint`` does; False if something is going on already."""
-        return self._run(name, "hint", "Asking")
+    def ask(self, name: str, command: str) -> bool:
+        """Do what ``course check`` or ``course hint`` does; False if something is going on already."""
+        if self.busy:
+            return False
+        what = "Checking" if command == "check" else "Asking"
+        self._standings[name] = replace(self.of(name), busy=what)
+        self._thread = threading.Thread(target=self._work, args=(name, command), name="practice")
+        self._thread.start()
+        return True
 
     def close(self) -> None:
         """End what runs."""
@@ -278,15 +280,7 @@ class Practice:
         if self._thread is not None:
             self._thread.join()
 
-    def _run(self, name: str, command: str, what: str) -> bool:
-        if self.busy:
-            return False
-        self._standings[name] = replace(self.of(name), busy=what)
-        self._thread = threading.Thread(target=self._ask, args=(name, command), name="practice")
-        self._thread.start()
-        return True
-
-    def _ask(self, name: str, command: str) -> None:
+    def _work(self, name: str, command: str) -> None:
         """In a thread: the command's answer."""
         reply = self._reply(name, command)
         now = replace(self._standings[name], busy="")

@@ -10,7 +10,7 @@ from typing import Annotated
 from course.cli.frame.console import Console, current
 from course.cli.frame.options import option
 from course.cli.frame.registry import COMMANDS, group
-from course.cli.frame.replies import NextStep
+from course.cli.frame.replies import NextStep, filled
 from course.cli.quiz import screen
 from course.cli.quiz.screen import (
     KEYS,
@@ -164,15 +164,15 @@ def _finish(
         screen.show_first_due(console, due, today())
     console.next(step)
     return desk.here.answer(
-        Quiz(
+        filled(
+            Quiz,
+            result,
             exit_code=0 if result.passed else 1,
             course=desk.here.course,
             seed=attempt.seed,
             resumed=resumed,
-            score=result.score,
             max_score=result.total,
             needed=needed(result.total),
-            passed=result.passed,
             mark=mark_sentence(result.total),
             questions=tuple(screen.question_reply(marked) for marked in result.marked),
             review=screen.due_reply(due),
@@ -290,7 +290,7 @@ def history(
     ready = bool(due) and due[0].on <= today()
     step = "course quiz review" if ready else "course" if passed else "course quiz take"
     console.next(step)
-    console.emit(
+    return desk.here.answer(
         QuizHistoryReply(
             course=desk.here.course,
             mark=mark_sentence(len(desk.bank.ids)),
@@ -301,4 +301,3 @@ def history(
             next=NextStep(step),
         )
     )
-    return 0

@@ -6,7 +6,6 @@ sight; and after each answer, which is compared with what was predicted.
 
 from __future__ import annotations
 
-import abc
 import os
 import re
 from collections.abc import Iterator
@@ -74,7 +73,7 @@ def link_words(catalog: Catalog, target: str, words: str) -> str:
     return f"{words} ({command})"
 
 
-class Printer(abc.ABC):
+class _Printer:
     """Prints the parts of one lesson on one console.
 
     Args:
@@ -93,14 +92,6 @@ class Printer(abc.ABC):
         self._figure_ids = [one.id for one in b.walk_blocks(script.blocks) if isinstance(one, b.Figure)]
         self._figures_dir = figures_dir
         self.pictures: list[Path] = []
-
-    @abc.abstractmethod
-    def head(self) -> None:
-        """Title, summary, objectives."""
-
-    @abc.abstractmethod
-    def blocks(self, blocks: tuple[b.Block, ...]) -> None:
-        """Print blocks in order, with an empty line between sections at least."""
 
     def _number_of(self, figure: b.Figure) -> int:
         return self._figure_ids.index(figure.id) + 1
@@ -123,7 +114,7 @@ class Printer(abc.ABC):
 _SENTENCE_END = re.compile(r"(?<=[.!?])(?<!\b[A-Z]\.)[\"”)]?\s+(?=[A-Z\"“(\d])")
 
 
-class PlainPrinter(Printer):
+class PlainPrinter(_Printer):
     """Prints the parts of one lesson as plain lines.
 
     Args:
@@ -138,6 +129,7 @@ class PlainPrinter(Printer):
         self._told_how = False  # to save them: said once
 
     def head(self) -> None:
+        """Title, summary, objectives."""
         lesson = self._lesson
         self._say(f"Lesson: {lesson.title}")
         self._say(f"Reading time: about {counted(lesson.minutes, 'minute')}")
@@ -148,6 +140,7 @@ class PlainPrinter(Printer):
             self._say(f"Exercise for this lesson: {exercise_id}")
 
     def blocks(self, blocks: tuple[b.Block, ...]) -> None:
+        """Print blocks in order, an empty line between sections."""
         for block in blocks:
             if isinstance(block, b.Heading):
                 self._say("")
@@ -301,7 +294,7 @@ _COLOURS = {
 _SPANS = {"emphasis": "italic", "strong": "bold", "code": "bold cyan"}
 
 
-class FancyPrinter(Printer):
+class FancyPrinter(_Printer):
     """Prints the parts of one lesson with Rich."""
 
     def __init__(
@@ -311,6 +304,7 @@ class FancyPrinter(Printer):
         self._prose = min(max(20, width - _MARGIN), _PROSE)
 
     def head(self) -> None:
+        """Title, summary, objectives."""
         for shown, above in self._head(f"{self._lesson.id} · "):
             self._print(shown, above=above)
 
@@ -327,6 +321,7 @@ class FancyPrinter(Printer):
             yield Text.assemble(("Then practise: ", "bold"), (commands, _SPANS["code"])), 1
 
     def blocks(self, blocks: tuple[b.Block, ...]) -> None:
+        """Print blocks in order, an empty line before each."""
         for block in blocks:
             shown = self._block(block)
             if shown is not None:
@@ -543,6 +538,9 @@ def _facts(header: list[Text], rows: list[list[Text]]) -> RenderableType:
         for name, cell in zip(header[1:], row[1:], strict=True):
             shown.append(Padding(Text.assemble(name, ": ", cell), (0, 0, 0, 2)))
     return Group(*shown)
+
+
+Printer = PlainPrinter | FancyPrinter
 
 
 def printer(

@@ -399,7 +399,23 @@ def _run_unseen(
     files = tuple(write(targets[kind], made[kind], kind) for kind in targets)
     if guess is not None:
         _keep(chosen, done.comparison)
-    _emit(console, chosen, done, told, files)
+    scene = chosen.scene
+    settings = {"step": scene.step, "iterations": float(scene.iterations), "seed": float(scene.seed)}
+    console.emit(
+        filled(
+            Sandbox,
+            done,
+            scene=scene.id,
+            title=scene.title,
+            settings={**settings, **chosen.parameters, **chosen.settings},
+            momentum=SandboxMomentum(before=done.momentum_before, after=done.momentum_after),
+            prediction=done.comparison,
+            description=told,
+            after=scene.after,
+            versions=versions(),
+            files=files,
+        )
+    )
     return 0
 
 
@@ -469,28 +485,4 @@ def _keep(chosen: Chosen, comparison: Comparison | None) -> None:
             "right": bool(comparison.guess_right),
             "settings": {**chosen.parameters, **chosen.settings},
         },
-    )
-
-
-def _emit(
-    console: Console, chosen: Chosen, done: Run, told: tuple[str, ...], files: tuple[SandboxFile, ...]
-) -> None:
-    if not console.json:
-        return
-    scene = chosen.scene
-    settings = {"step": scene.step, "iterations": float(scene.iterations), "seed": float(scene.seed)}
-    console.emit(
-        filled(
-            Sandbox,
-            done,
-            scene=scene.id,
-            title=scene.title,
-            settings={**settings, **chosen.parameters, **chosen.settings},
-            momentum=SandboxMomentum(before=done.momentum_before, after=done.momentum_after),
-            prediction=done.comparison,
-            description=told,
-            after=scene.after,
-            versions=versions(),
-            files=files,
-        )
     )

@@ -77,9 +77,8 @@ def submit(
         console.line(f"There was a file of that name; it is kept at {here.workspace.shown(Path(backup))}.")
     console.line((f"Wrote {target}.", "bold"))
     console.note("Hand in that file. Hidden checks run when it is graded.")
-    for note in (*notes, *here.warnings):
-        console.warn(note)
-    console.emit(
+    here.warnings[:0] = notes
+    return here.answer(
         Submit(
             course=here.course,
             output=str(target),
@@ -90,7 +89,6 @@ def submit(
             warnings=tuple(notes),
         )
     )
-    return 0
 
 
 def archive(

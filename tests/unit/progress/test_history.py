@@ -1,4 +1,4 @@
-"""What the events of an exercise add up to: when a hint is due, its numbers, and the mistakes made."""
+"""What the events add up to: when a hint is due, its numbers, the mistakes made, and where a student is."""
 
 from __future__ import annotations
 
@@ -6,9 +6,13 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
+from course.catalog.load import Catalog
+from course.cli.frame import app
+from course.errors import IntegrityError
 from course.handed_in.attempts import Attempt, numbers_of
-from course.progress.history import fingerprint, history_of, mistakes_of
-from course.progress.store import Event
+from course.progress.history import Standing, fingerprint, history_of, mistakes_of
+from course.progress.store import Event, Store
+from course.progress.workspace import Workspace
 from course.scoring.verdict import CheckResult, Status, Verdict, Visibility
 
 STUB = fingerprint(b"def double(x):\n    raise NotImplementedError\n")
@@ -228,3 +232,47 @@ def test_what_mends_no_mistake(later: list[Event], found: list[tuple[str, int]])
 def test_work_to_do_and_what_follows_from_a_mistake_are_none():
     codes = ("NOT_IMPLEMENTED", "MISSING_FUNCTION", "CALLS_A_WRONG_FUNCTION")
     assert mistakes_of([run(1, *((code, "fail", code) for code in codes))]) == ()
+
+
+@pytest.fixture
+def workspace(tmp_path, monkeypatch):
+    """A workspace of the course itself with a lesson read and an exercise begun; the current folder."""
+    catalog = Catalog()
+    made = Workspace.create(tmp_path / "w", catalog.course_id, catalog.version)
+    monkeypatch.chdir(made.root)
+    first, *_ = catalog.exercises()
+    made.store.append("lesson", first.lesson)
+    made.store.append("start", first.id)
+    made.give(first.place, first.module, first.stub_path.read_bytes())
+    return made
+
+
+def test_the_record_is_read_once(workspace, monkeypatch):
+    reads, connection = [], Store._connection
+    monkeypatch.setattr(
+        Store, "_connection", lambda self, *, create: reads.append(create) or connection(self, create=create)
+    )
+    for command in ((), ("progress",), ("exercises",), ("lessons",), ("next",), ("go", "--json")):
+        reads.clear()
+        assert (app.run(command), reads) == (0, [False]), command
+
+
+def test_an_event_that_somebody_spoilt_costs_those_alone_who_need_it(workspace, monkeypatch):
+    monkeypatch.setattr("course.progress.store._now", lambda: "some time")
+    workspace.store.append("check", "elsewhere")
+    standing = Standing(workspace)
+    (name,) = standing.started
+    assert standing.is_begun(name)
+    assert len(standing.read) == 1
+    with pytest.raises(IntegrityError, match="event 3 cannot be read"):
+        standing.history("elsewhere")
+    with pytest.raises(IntegrityError, match="event 3 cannot be read"):
+        assert standing.quiz.best is None
+
+
+@pytest.mark.parametrize(("data", "read"), [({"version": "1.2.0"}, {"a", "b"}), ({"blocks": 40}, {"a"})])
+def test_who_read_a_lesson_before_it_was_parted_has_read_both(workspace, data, read):
+    workspace.store.append("lesson", "a", data)
+    standing = Standing(workspace, {"b": "a"})
+    assert standing.read.keys() & {"a", "b"} == read
+    assert {standing.read[name] for name in read} == {standing.read["a"]}

@@ -122,7 +122,7 @@ def _audit_question(catalog: Catalog, document: Document[Question], findings: Fi
                 "Name who says so and in which year.",
             )
     for fault in faults_in(document):
-        findings.add(document.path, fault.line, "quiz", fault.message, fault.fix)
+        findings.add(document.path, fault.line, "quiz", fault.problem, fault.help)
 
 
 @dataclass(frozen=True, slots=True)

@@ -133,37 +133,25 @@ def due_after(question: str, outcomes: Iterable[tuple[datetime, bool]]) -> Due |
 # a matter of sampling: each case is posed once.
 
 
-@dataclass(frozen=True, slots=True)
-class Fault:
-    """Something wrong with a question, and the line to look at."""
-
-    line: int | None
-    message: str
-    fix: str
-
-
-def faults_in(document: Document[Question]) -> Iterator[Fault]:
+def faults_in(document: Document[Question]) -> Iterator[ContentError]:
     """The first fault of each variant: a formula without a value, or options that cannot be told apart."""
     for index, variant in enumerate(document.value.variant):
         for case in range(variant.cases):
-            fault = _fault(document, index, case)
-            if fault is not None:
+            try:
+                _check_case(document, index, case)
+            except ContentError as fault:
                 yield fault
                 break
 
 
-def _fault(document: Document[Question], index: int, case: int) -> Fault | None:
-    try:
-        posed = pose_case(document, index, case)
-    except ContentError as error:
-        return Fault(error.line, error.problem, error.help)
-    clash = clashing(posed.choices)
-    if clash is None:
-        return None
+def _check_case(document: Document[Question], index: int, case: int) -> None:
+    posed = pose_case(document, index, case)
+    if (clash := clashing(posed.choices)) is None:
+        return
     one, other = (posed.choices[place] for place in clash)
-    return Fault(
-        document.lines.line(("variant", index, "option", clash[1], "text")),
+    document.fail(
+        ("variant", index, "option", clash[1], "text"),
         f"variant {posed.variant}: option {other.id} reads {other.text!r}, and option {one.id} reads "
         f"{one.text!r}; these numbers are too close to tell apart.",
-        "Change a formula, or the values it is computed from, so that options differ by more than 2 %.",
+        fix="Change a formula, or the values it is computed from, so that options differ by more than 2 %.",
     )

@@ -17,7 +17,7 @@ from course.catalog.models import Exercise, Task
 from course.cli.frame.console import STATUS_STYLE, Console
 from course.cli.frame.here import Here, cwd
 from course.cli.work.chosen import StudentWork
-from course.errors import CourseError, UsageError
+from course.errors import CourseError
 from course.printable import counted, steady, unheeded
 from course.scoring.verdict import CheckResult, Verdict, format_points, in_points, numbers_of
 
@@ -52,14 +52,6 @@ def show_loading(console: Console, printed: str, *, whole: bool) -> None:
     if printed and not console.quiet:
         show_lines(console, "Loading your file printed:", printed, whole=whole)
         console.gap()
-
-
-def show_unshown(console: Console, verdict: Verdict) -> None:
-    """Say that passing checks printed something."""
-    count = sum(1 for check in verdict.checks if check.status == "pass" and check.stdout)
-    if count:
-        what = "a check that passes" if count == 1 else f"{count} checks that pass"
-        console.note((f"Your code printed in {what}; --verbose shows it.", "dim"))
 
 
 _DETAIL_INDENT = 4
@@ -105,8 +97,10 @@ def show_verdict(
             if check.task not in known:
                 page.check(check)
         page.close(keyed=keyed)
-        if not verbose:
-            show_unshown(console, verdict)
+        unshown = sum(check.status == "pass" and bool(check.stdout) for check in verdict.checks)
+        if unshown and not verbose:
+            what = "a check that passes" if unshown == 1 else f"{unshown} checks that pass"
+            console.note((f"Your code printed in {what}; --verbose shows it.", "dim"))
         for warning in verdict.warnings:
             console.line(f"Note: {warning}")
     sentences = summary(exercise, verdict) if whole else _part(verdict)
@@ -370,17 +364,6 @@ FORMATS = ("text", "github", "lines")
 
 #: How a student's frame begins in a traceback, as ``StudentFailure`` has it.
 _FRAME = re.compile(r"^\S+\.py:(\d+) in ", re.MULTILINE)
-
-
-def known_format(name: str) -> str:
-    """The name of a format.
-
-    Raises:
-        UsageError: there is none of that name.
-    """
-    if name not in FORMATS:
-        raise UsageError(f"There is no format {name[:20]!r}.", help=f"Formats: {', '.join(FORMATS)}.")
-    return name
 
 
 def annotate(console: Console, here: Here, work: StudentWork, verdict: Verdict, form: str) -> None:

@@ -55,7 +55,7 @@ def test_every_case_is_gone_through(quiz: Path, formula: str, said: str, line: s
     path = quiz / "sums.toml"
     path.write_text(path.read_text().replace('formula = "a + 1"', f'formula = "{formula}"'))
     (fault,) = faults_in(read_questions(quiz)[0])
-    assert said in fault.message
+    assert said in fault.problem
     assert fault.line == path.read_text().split("\n").index(line) + 1
 
 

@@ -22,7 +22,7 @@ from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, named
 from course.cli.frame.options import argument, option
 from course.cli.frame.replies import FileReply
-from course.cli.work.chosen import StudentWork, as_handed_in, work_of
+from course.cli.work.chosen import StudentWork, work_of
 from course.cli.work.replies import Submit, SubmitFile
 from course.errors import CourseError, UngradableError, UsageError
 from course.handed_in import attempts
@@ -186,7 +186,7 @@ def _checked(console: Console, here: Here, works: Sequence[StudentWork]) -> list
 
 def _check(here: Here, work: StudentWork) -> _GoesIn:
     try:
-        made = attempts.attempt(work.exercise, here.catalog, as_handed_in(work))
+        made = attempts.attempt(work.exercise, here.catalog, work.submission)
         if not _is_known(here, work):
             here.record("check", work.exercise.id, made.data(here.catalog.version, one_of_many=True))
     except CourseError as error:

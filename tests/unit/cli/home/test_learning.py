@@ -77,6 +77,7 @@ def test_a_mistake_is_seen_then_mended_and_its_section_goes_with_it(course, work
     shown = course("progress", "--plain").out
     assert "(doubling: double)\n" in shown
     assert "Mistakes: 1 made, 0 fixed\n" in shown
+    assert "Not right." in shown, "a diagnosis that has no words is not shown as a code"
     write("RIGHT", "RIGHT")
     course("check")
     body = course("progress", "--json").json
@@ -97,21 +98,6 @@ def test_an_exception_is_named_among_the_mistakes(course, workspace):
 def test_who_did_nothing_yet_reads_nothing_about_it(course, workspace):
     shown = course("progress", "--plain").out
     assert not any(word in shown for word in ("Predictions", "Mistakes", "To read again"))
-
-
-@pytest.mark.parametrize("columns", [40, 80, 120])
-def test_a_screen_cuts_no_line(asking, workspace, write, monkeypatch, columns):
-    course, question = asking
-    say(workspace, question, text="eleven")
-    say(workspace, question, judged="wrong")
-    write("wrong", "wrong")
-    course("check")
-    monkeypatch.setenv("FORCE_COLOR", "1")
-    monkeypatch.setenv("NO_COLOR", "1")
-    monkeypatch.setenv("COLUMNS", str(columns))
-    shown = course("progress").out
-    assert max(map(len, shown.splitlines())) <= columns + len("\x1b[1m\x1b[0m")
-    assert "Not right." in shown, "a diagnosis that has no words is not shown as a code"
 
 
 def test_a_section_that_is_not_there_is_refused_with_those_that_are(course, workspace):

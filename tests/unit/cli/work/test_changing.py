@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import subprocess
+from pathlib import Path
 
 import pytest
 
@@ -87,6 +88,7 @@ def test_update_replaces_what_was_not_edited_and_puts_the_rest_beside(
     assert (folder / "README.md").read_text().endswith("# newer\n")
     assert (workspace / body["changes"][0]["backup"]).read_bytes() == old_readme
     assert (folder / "doubling.py").read_bytes() == mine
+    assert Path(body["changes"][1]["new"]) == folder / "doubling.py.new"
     assert (folder / "doubling.py.new").read_text().endswith("# newer\n")
     assert 'version = "9.0.0"' in (workspace / "course.toml").read_text()
     done = files_in(folder)

@@ -118,7 +118,7 @@ def update(dry_run: Annotated[bool, option("--dry-run", "Only print what would b
         console.note("Nothing was changed. To do it: course update")
     if not dry_run:
         if old != new:
-            here.workspace.with_version(new)
+            here.workspace.note_version(new)
             console.line(f"The workspace is at version {new} now (it was {old}).")
         here.record("update", "", {"from": old, "to": new, "changes": [[c.path, c.action] for c in changes]})
     return here.answer(Update(dry_run=dry_run, from_version=old, to_version=new, changes=changes))

@@ -110,7 +110,7 @@ def test_replacing_a_file_behind_a_link_keeps_the_link(tmp_path):
 def test_the_version_is_changed_and_comments_stay(workspace):
     marker = workspace.root / "course.toml"
     marker.write_text(marker.read_text() + "# my own note\n")
-    assert workspace.with_version("1.1.0").version == "1.1.0"
+    workspace.note_version("1.1.0")
     assert Workspace.read(workspace.root).version == "1.1.0"
     assert "# my own note" in marker.read_text()
 

@@ -421,12 +421,11 @@ class Drawer:
     def close(self) -> None:
         """End the drawing process."""
         if self._process is not None:
-            self._process.kill()
-            self._process.wait()
-            for stream in (self._process.stdin, self._process.stdout):
-                if stream is not None:
-                    with contextlib.suppress(OSError):
-                        stream.close()
+            with (
+                contextlib.suppress(OSError),
+                self._process,
+            ):  # then its streams are closed, and it is waited for
+                self._process.kill()
             self._process = None
         if self._folder is not None:
             self._folder.cleanup()

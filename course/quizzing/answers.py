@@ -169,7 +169,7 @@ def read_answers(path: Path) -> AnswerFile:
 
 def _read(path: Path) -> str:
     try:
-        data = read_bytes(path, MAX_BYTES)
+        data = read_bytes(path)
     except OSError as error:
         raise UsageError(
             f"{path} cannot be read: {error.strerror or error}.",

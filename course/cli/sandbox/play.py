@@ -16,7 +16,7 @@ from course.cli.frame import here
 from course.cli.frame.console import Console
 from course.cli.frame.here import Here, cwd, named, target
 from course.cli.frame.replies import Backup, Envelope, filled
-from course.errors import CourseError, MissingCapabilityError, UsageError
+from course.errors import CourseError, UsageError
 from course.extras import require
 from course.printable import counted
 from course.progress.store import numbered
@@ -349,15 +349,7 @@ def _desk() -> Desk:
 
 
 def _view(name: str) -> Callable[..., bytes]:
-    try:
-        module = importlib.import_module(f"course.sandbox.views.{name}.view")
-    except ModuleNotFoundError as error:
-        raise MissingCapabilityError(
-            f"This installation has no {name} view ({error.name} is missing).",
-            help="Run the scene with --headless, --describe or --gif FILE.",
-            code="no_view",
-        ) from error
-    play_in: Callable[..., bytes] = module.play
+    play_in: Callable[..., bytes] = importlib.import_module(f"course.sandbox.views.{name}.view").play
     return play_in
 
 

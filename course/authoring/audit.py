@@ -106,7 +106,7 @@ def _audit_question(catalog: Catalog, document: Document[Question], findings: Fi
             problem = f"the source of variant {variant.id} has no date."
             wrong(("variant", index, "source"), problem, "Name who says so and in which year.")
     for fault in faults_in(document):
-        findings.add(document.path, fault.line, "quiz", fault.message, fault.fix)
+        findings.add(document.path, fault.line, "quiz", fault.problem, fault.help)
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,8 +9,8 @@ from course.catalog.load import Catalog
 from course.catalog.models import Lesson
 from course.errors import CourseError, NotFoundError
 from course.notebooks.sandbox import alive
+from course.progress.history import lesson_events
 from course.progress.quiz import quiz_history
-from course.progress.standing import lesson_events
 from course.progress.workspace import Recorder
 from course.quizzing.bank import Bank, Result, fresh_seed
 from course.reading.parts import Question, Script, read_script
@@ -65,11 +65,8 @@ class _Opened:
         return (self._record.trouble if self._record.store is not None else "") or self._unread
 
     def _events(self) -> tuple[Any, ...]:
-        if (store := self._record.store) is None:
-            return ()
         try:
-            split = self._catalog.syllabus.split
-            return lesson_events(lambda name: store.events("", name), self._lesson.id, split)
+            return lesson_events(self._record.store, self._lesson.id, self._catalog.syllabus.split)
         except CourseError as error:
             self._unread = f"{error.message} {error.help}"
             return ()

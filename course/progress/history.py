@@ -1,7 +1,7 @@
-"""The history of one exercise, from its events.
+"""The history of one exercise, and where a student is with all, from the events.
 
 The record only lists events; this module answers the commands' questions about them: which checks fail
-now, is another hint due, was it ever passed.
+now, is another hint due, was it ever passed, which lessons were read.
 """
 
 from __future__ import annotations
@@ -13,9 +13,13 @@ import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
+from functools import cached_property
+from types import MappingProxyType
 from typing import Any
 
-from course.progress.store import Event
+from course.progress.quiz import QuizHistory, quiz_history
+from course.progress.store import Event, Store
+from course.progress.workspace import Workspace
 
 _PASS, _SKIP = "pass", "skip"
 _UNWRITTEN = "NOT_IMPLEMENTED"
@@ -344,3 +348,94 @@ def _take(found: dict[tuple[str, str, str], Mistake], event: Event) -> None:
             one.open -= passed
             if not one.open:
                 one.mended = run.at
+
+
+# ---
+# Where a student is with everything, by a record that is read once.
+
+
+def lesson_events(store: Store | None, lesson: str, split: Mapping[str, str]) -> tuple[Event, ...]:
+    """What is recorded about a lesson, oldest first; nothing outside of a workspace.
+
+    Of a lesson that was part of another one: first what it keeps of that one's record. An end that was
+    reached before the two were parted does not say how many blocks there were.
+
+    Args:
+        split: lessons that were part of another one, and that one.
+
+    Raises:
+        IntegrityError, MissingCapabilityError: the record cannot be read.
+    """
+    if store is None:
+        return ()
+    whole = store.events(subject=split[lesson]) if lesson in split else ()
+    kept = [
+        event
+        for event in whole
+        if event.kind in {"prediction", "cell"} or (event.kind == "lesson" and "blocks" not in event.data)
+    ]
+    return (*kept, *store.events(subject=lesson))
+
+
+class Standing:
+    """Where a student was at one moment; without a workspace, nowhere.
+
+    Each question reads the events that it needs, and raises IntegrityError if one of them is spoilt.
+
+    Args:
+        workspace: as it is now; its IntegrityError and MissingCapabilityError are raised.
+        split: lessons that were part of another one, and that one.
+
+    Attributes:
+        started: ids of the exercises that something was handed out for.
+    """
+
+    def __init__(
+        self, workspace: Workspace | None = None, split: Mapping[str, str] = MappingProxyType({})
+    ) -> None:
+        self._workspace = workspace
+        self._split = split
+        self._record = workspace.store.record() if workspace is not None else None
+        self.started = frozenset(workspace.started() if workspace is not None else ())
+        self._histories: dict[str, History] = {}
+
+    def events(self, kind: str = "", subject: str = "") -> tuple[Event, ...]:
+        """What was recorded of a kind and about a subject, oldest first; an empty string stands for any."""
+        return self._record.events(kind, subject) if self._record is not None else ()
+
+    def history(self, exercise: str) -> History:
+        """What was recorded about an exercise or a warm-up."""
+        if exercise not in self._histories:
+            self._histories[exercise] = history_of(self.events(subject=exercise))
+        return self._histories[exercise]
+
+    def is_begun(self, exercise: str) -> bool:
+        """Whether it was started, or checked: a notebook needs no start."""
+        return exercise in self.started or self.history(exercise).last is not None
+
+    def has_file(self, place: str, module: str) -> bool:
+        """Whether an exercise that was begun still has a file."""
+        return self._workspace is None or self._workspace.has_file(place, module)
+
+    def is_complete(self, exercise: str) -> bool:
+        """Whether every check passed when all were last run."""
+        last = self.history(exercise).last_graded
+        return last is not None and last.all_pass
+
+    @cached_property
+    def read(self) -> dict[str, datetime]:
+        """When each lesson was first read to its end, by its id."""
+        ends = self.events("lesson")
+        found = {event.subject: event.at for event in reversed(ends)}
+        whole = {event.subject: event.at for event in reversed(ends) if "blocks" not in event.data}
+        return {part: whole[old] for part, old in self._split.items() if old in whole} | found
+
+    @cached_property
+    def quiz(self) -> QuizHistory:
+        """The attempts at the quiz, and the reviews."""
+        return quiz_history(self.events())
+
+    @cached_property
+    def mistakes(self) -> tuple[Mistake, ...]:
+        """The mistakes that checks recognised, in the order they were first made."""
+        return mistakes_of(self.events())

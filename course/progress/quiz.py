@@ -2,12 +2,13 @@
 
 Four kinds of events: ``quiz-start`` opens an attempt, each ``quiz-answer`` is one answer (so that an attempt
 that is interrupted goes on where it was), ``quiz-done`` closes it with its score, and ``quiz-review`` is one
-question answered in a review. Events hold ids and seeds only; the questions follow from the seed.
+question answered in a review; the subject of these two is the question. Events hold ids and seeds only; the
+questions follow from the seed. ``course.quizzing.desk`` records them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any
@@ -108,26 +109,6 @@ class QuizHistory:
         for review in self.reviews:
             found.setdefault(review.question, []).append((review.at, review.right))
         return {name: sorted(entries) for name, entries in found.items()}
-
-
-def start_data(attempt: str, seed: int, version: str, questions: Sequence[str]) -> dict[str, object]:
-    """The data of ``quiz-start``."""
-    return {"attempt": attempt, "seed": seed, "version": version, "questions": list(questions)}
-
-
-def answer_data(attempt: str, option: str) -> dict[str, object]:
-    """The data of ``quiz-answer``; its subject is the question."""
-    return {"attempt": attempt, "option": option}
-
-
-def done_data(attempt: str, right: Mapping[str, bool], *, passed: bool) -> dict[str, object]:
-    """The data of ``quiz-done``."""
-    return {"attempt": attempt, "right": dict(right), "score": sum(right.values()), "passed": passed}
-
-
-def review_data(seed: int, option: str, *, right: bool) -> dict[str, object]:
-    """The data of ``quiz-review``; its subject is the question."""
-    return {"seed": seed, "option": option, "right": right}
 
 
 def quiz_history(events: Iterable[Event]) -> QuizHistory:

@@ -200,12 +200,11 @@ class Workspace:
             raise _not_writable(self.state / "backups", error) from error
         return copy
 
-    def with_version(self, version: str) -> Workspace:
+    def note_version(self, version: str) -> None:
         """Note in ``course.toml`` which version the content is from now; comments there stay."""
         marker = self.root / MARKER
         text = marker.read_text(encoding="utf-8-sig")
         write_atomically(marker, _VERSION_LINE.sub(rf'\g<1>"{version}"', text, count=1).encode())
-        return Workspace(root=self.root, course_id=self.course_id, version=version)
 
     def _given_path(self, place: str, name: str) -> Path:
         return self.state / "given" / place / name
@@ -239,7 +238,6 @@ class Recorder:
         return cls(workspace.store)
 
     def __call__(self, kind: str, subject: str, data: Mapping[str, Any]) -> None:
-        """Add an event."""
         if self.store is None:
             return
         try:

@@ -56,7 +56,13 @@ class AnswerFile:
         Raises:
             UsageError: an answer is missing, or is to a question or an option that is not there.
         """
-        self._check_seed(seed)
+        if self.seed is not None and self.seed != seed:
+            self.fail(
+                "seed",
+                f"these answers are for seed {self.seed}, and the questions of seed {seed} are asked.",
+                f"Leave --seed out, or print the others: course quiz take --questions --seed {seed}.",
+                "answers_for_other_seed",
+            )
         asked = {question.question: question for question in posed}
         for name in self.answers:
             if name not in asked:
@@ -74,15 +80,6 @@ class AnswerFile:
                 "answers_missing",
             )
         return {name: self._option(name, asked[name], bank, seed) for name in asked}
-
-    def _check_seed(self, seed: int) -> None:
-        if self.seed is not None and self.seed != seed:
-            self.fail(
-                "seed",
-                f"these answers are for seed {self.seed}, and the questions of seed {seed} are asked.",
-                f"Leave --seed out, or print the others: course quiz take --questions --seed {seed}.",
-                "answers_for_other_seed",
-            )
 
     def _unknown_question(self, name: str, asked: list[str], bank: Bank) -> NoReturn:
         if name in bank.ids:
@@ -172,7 +169,7 @@ def read_answers(path: Path) -> AnswerFile:
 
 def _read(path: Path) -> str:
     try:
-        data = read_bytes(path, MAX_BYTES)
+        data = read_bytes(path)
     except OSError as error:
         raise UsageError(
             f"{path} cannot be read: {error.strerror or error}.",

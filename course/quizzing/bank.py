@@ -321,10 +321,6 @@ class Result:
     def passed(self) -> bool:
         return self.score >= needed(self.total)
 
-    @property
-    def missed(self) -> tuple[MarkedQuestion, ...]:
-        return tuple(marked for marked in self.marked if not marked.right)
-
 
 def needed(total: int) -> int:
     """How many of ``total`` questions must be right: the smallest whole number that reaches the share."""

@@ -12,7 +12,7 @@ from course.catalog.reading import Document
 from course.errors import ContentError
 from course.progress import quiz
 from course.progress.quiz import Attempt, QuizHistory
-from course.quizzing.bank import Bank, PosedQuestion, Result, clashing, mark, pose_case
+from course.quizzing.bank import Bank, MarkedQuestion, PosedQuestion, Result, clashing, mark, pose_case
 
 Record = Callable[[str, str, dict[str, object]], None]
 
@@ -36,7 +36,8 @@ def begun(bank: Bank, seed: int, version: str, record: Record) -> Attempt:
     attempt = quiz.Attempt(
         id=secrets.token_hex(8), seed=seed, version=version, questions=bank.ids, started=datetime.now(UTC)
     )
-    record(quiz.START, "", quiz.start_data(attempt.id, seed, attempt.version, attempt.questions))
+    asked = {"seed": seed, "version": version, "questions": list(attempt.questions)}
+    record(quiz.START, "", {"attempt": attempt.id, **asked})
     return attempt
 
 
@@ -50,15 +51,23 @@ def caught_up(attempt: Attempt, history: QuizHistory) -> Attempt | None:
 def answered(attempt: Attempt, question: str, option: str, record: Record) -> None:
     """Record one answer at once, so that nothing is lost however the program ends."""
     attempt.answers[question] = option
-    record(quiz.ANSWER, question, quiz.answer_data(attempt.id, option))
+    record(quiz.ANSWER, question, {"attempt": attempt.id, "option": option})
 
 
 def finished(attempt: Attempt, posed: Sequence[PosedQuestion], record: Record) -> Result:
     """Score an attempt that is answered, and record its end."""
     result = mark(posed, attempt.answers)
     right = {marked.posed.question: marked.right for marked in result.marked}
-    record(quiz.DONE, "", quiz.done_data(attempt.id, right, passed=result.passed))
+    score = {"right": right, "score": result.score, "passed": result.passed}
+    record(quiz.DONE, "", {"attempt": attempt.id, **score})
     return result
+
+
+def reviewed(posed: PosedQuestion, option: str, seed: int, record: Record) -> MarkedQuestion:
+    """Mark one answer of a review, and record it."""
+    (marked,) = mark([posed], {posed.question: option}).marked
+    record(quiz.REVIEW, posed.question, {"seed": seed, "option": option, "right": marked.right})
+    return marked
 
 
 # ---
@@ -124,37 +133,25 @@ def due_after(question: str, outcomes: Iterable[tuple[datetime, bool]]) -> Due |
 # a matter of sampling: each case is posed once.
 
 
-@dataclass(frozen=True, slots=True)
-class Fault:
-    """Something wrong with a question, and the line to look at."""
-
-    line: int | None
-    message: str
-    fix: str
-
-
-def faults_in(document: Document[Question]) -> Iterator[Fault]:
+def faults_in(document: Document[Question]) -> Iterator[ContentError]:
     """The first fault of each variant: a formula without a value, or options that cannot be told apart."""
     for index, variant in enumerate(document.value.variant):
         for case in range(variant.cases):
-            fault = _fault(document, index, case)
-            if fault is not None:
+            try:
+                _check_case(document, index, case)
+            except ContentError as fault:
                 yield fault
                 break
 
 
-def _fault(document: Document[Question], index: int, case: int) -> Fault | None:
-    try:
-        posed = pose_case(document, index, case)
-    except ContentError as error:
-        return Fault(error.line, error.problem, error.help)
-    clash = clashing(posed.choices)
-    if clash is None:
-        return None
+def _check_case(document: Document[Question], index: int, case: int) -> None:
+    posed = pose_case(document, index, case)
+    if (clash := clashing(posed.choices)) is None:
+        return
     one, other = (posed.choices[place] for place in clash)
-    return Fault(
-        document.lines.line(("variant", index, "option", clash[1], "text")),
+    document.fail(
+        ("variant", index, "option", clash[1], "text"),
         f"variant {posed.variant}: option {other.id} reads {other.text!r}, and option {one.id} reads "
         f"{one.text!r}; these numbers are too close to tell apart.",
-        "Change a formula, or the values it is computed from, so that options differ by more than 2 %.",
+        fix="Change a formula, or the values it is computed from, so that options differ by more than 2 %.",
     )

@@ -18,7 +18,7 @@ import pytest
 from course.authoring.exercises.grading import mistakes_of, solution_path
 from course.catalog.load import Catalog
 from course.progress.workspace import Workspace
-from tests.unit.cli.reading.test_each_fact_once import repeated
+from tests.unit.cli.reading.test_by_line import repeated
 
 pty = pytest.importorskip("pty")
 LESSON = "numerical-integration"

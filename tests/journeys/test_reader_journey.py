@@ -248,31 +248,6 @@ def test_without_colours_nothing_is_coloured_and_nothing_is_missing(terminal: Te
         terminal.still()
 
 
-@pytest.mark.parametrize("terminal", [(80, 24)], indirect=True, ids=["80x24"])
-def test_a_cell_that_hangs_survives_other_sizes_and_is_stopped(terminal: Terminal) -> None:
-    opened(terminal)
-    to_a_cell(terminal)
-    where = terminal.screen().splitlines()[0]
-    terminal.keys("e")
-    terminal.wait("Ctrl-R")
-    terminal.keys("C-Home")
-    terminal.type("while True: pass")
-    terminal.keys("Enter")
-    terminal.still()
-    terminal.keys("C-r")
-    terminal.wait("Ctrl-C stop it")
-    for size in ((40, 20), (120, 40), (60, 12), (80, 24)):
-        terminal.resize(*size)
-        time.sleep(0.3)
-        assert "Ctrl-C stop it" in foot(terminal.still()), terminal.screen()
-    terminal.keys("C-c")
-    terminal.wait("stopped", "Stopped")
-    terminal.keys("q")
-    terminal.wait(*NEXT)
-    assert terminal.state() == AS_IT_WAS
-    assert opened(terminal).splitlines()[0] == where
-
-
 def to_a_cell(terminal: Terminal) -> None:
     """Turn pages until a cell is at hand."""
     for _ in range(60):

@@ -20,8 +20,7 @@ from course.cli.frame.replies import Backup, Envelope, WrittenFile
 from course.errors import CourseError, MissingCapabilityError, NotFoundError, UngradableError, UsageError
 from course.handed_in.limits import MAX_FILE
 from course.ids import WARM_UPS
-from course.progress.history import History, history_of
-from course.progress.standing import Standing
+from course.progress.history import History, Standing, history_of
 from course.progress.workspace import Recorder, Workspace, write_atomically
 from course.strangers import read_bytes
 
@@ -187,7 +186,7 @@ class Here:
 
     def standing(self) -> Standing:
         """How far the student is with everything, as it is now; raises what ``history`` raises."""
-        return Standing.of(self.workspace, self.catalog.syllabus.split)
+        return Standing(self.workspace, self.catalog.syllabus.split)
 
     def record(self, kind: str, subject: str, data: dict[str, object]) -> None:
         """Note an event; where that fails, the command goes on and says so."""

@@ -10,8 +10,7 @@ from course.catalog.models import Exercise, Lesson
 from course.cli.frame.here import Here
 from course.errors import CourseError
 from course.handed_in.attempts import Attempt
-from course.progress.history import fingerprint
-from course.progress.standing import Standing
+from course.progress.history import Standing, fingerprint
 from course.scoring.verdict import format_points, in_points
 
 

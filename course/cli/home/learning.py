@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime
 from functools import cache
@@ -22,9 +23,8 @@ from course.cli.home.replies import (
     WarmUpState,
 )
 from course.errors import CourseError
-from course.progress.history import Mistake
-from course.progress.standing import Standing
-from course.reading.parts import Question, Script, read_script
+from course.progress.history import Mistake, Standing
+from course.reading.parts import Script, read_script
 from course.reading.record import RecordedPrediction, predictions_of, tally
 
 #: So many days of predictions are shown; ``--json`` has all.
@@ -46,28 +46,25 @@ class Learning:
         said = predictions_of(standing.events())
         self.predictions = self._predictions(said) if said else None
         self.mistakes = tuple(self._mistakes(standing.mistakes))
-        self.revisit = tuple(self._revisit(said))
+        self.revisit = tuple(self._revisit())
 
     # -- predictions -----------------------------------------------------------------------------------
 
     def _predictions(self, said: Sequence[RecordedPrediction]) -> PredictionsState:
         lessons = [one for one in self._catalog.lesson_ids() if any(each.lesson == one for each in said)]
         days = sorted({_day(one) for one in said})
+        each = []
+        for one in said:
+            section, question = self._asked(one)
+            moment, words = one.at.isoformat(), one.text or None
+            each.append(
+                filled(PredictionState, one, section=section, question=question, said=words, at=moment)
+            )
         return PredictionsState(
             all=_counts("all", said),
             by_lesson=tuple(_counts(one, [x for x in said if x.lesson == one]) for one in lessons),
             by_day=tuple(_counts(day, [x for x in said if _day(x) == day]) for day in days),
-            each=tuple(
-                filled(
-                    PredictionState,
-                    one,
-                    section=self._section(one),
-                    question=asked[1].words if (asked := self._asked(one)) else "",
-                    said=one.text or None,
-                    at=one.at.isoformat(),
-                )
-                for one in said
-            ),
+            each=tuple(each),
         )
 
     def _script(self, lesson: str) -> Script | None:
@@ -77,17 +74,14 @@ class Learning:
         except CourseError:
             return None
 
-    def _asked(self, said: RecordedPrediction) -> tuple[Script, Question] | None:
-        """The lesson and its question; None if it is gone."""
+    def _asked(self, said: RecordedPrediction) -> tuple[str, str]:
+        """Where it was asked, as "lesson#section", and the question; "" for what is gone."""
         script = self._scripts(said.lesson)
         asked = next((one for one in script.questions if one.key == said.key), None) if script else None
-        return (script, asked) if script and asked else None
-
-    def _section(self, said: RecordedPrediction) -> str:
-        """Where it was asked, as "lesson#section"; "" if it is gone."""
-        asked = self._asked(said)
-        section = asked[0].section_of(asked[1].index) if asked else None
-        return f"{said.lesson}#{section.slug}" if section else ""
+        if script is None or asked is None:
+            return "", ""
+        section = script.section_of(asked.index)
+        return f"{said.lesson}#{section.slug}" if section else "", asked.words
 
     # -- mistakes --------------------------------------------------------------------------------------
 
@@ -111,16 +105,13 @@ class Learning:
 
     # -- what to read again ----------------------------------------------------------------------------
 
-    def _revisit(self, said: Sequence[RecordedPrediction]) -> Iterable[Revisit]:
+    def _revisit(self) -> Iterable[Revisit]:
         why: dict[str, list[str]] = {}
         for one in self.mistakes:
             if one.mended_at is None:
                 why.setdefault(one.read, []).append(f"{one.task} in {one.exercise}: {one.diagnosis}")
-        wrong: dict[str, int] = {}
-        for each in said:
-            place = self._section(each) if each.judged == "wrong" else ""
-            if place:
-                wrong[place] = wrong.get(place, 0) + 1
+        said = self.predictions.each if self.predictions is not None else ()
+        wrong = Counter(each.section for each in said if each.judged == "wrong" and each.section)
         for place, count in wrong.items():
             often = "a prediction was" if count == 1 else f"{count} predictions were"
             why.setdefault(place, []).append(f"{often} wrong")

@@ -23,8 +23,7 @@ from course.cli.home.replies import (
 )
 from course.errors import CourseError
 from course.printable import counted
-from course.progress.history import History
-from course.progress.standing import Standing
+from course.progress.history import History, Standing
 from course.scoring.verdict import format_points
 
 #: States of an exercise, as a person reads them.
@@ -70,8 +69,10 @@ def progress() -> int:
         show_learning(console, learning)
     step = next_in_course(catalog, standing)
     console.next(step)
-    console.emit(
-        Progress(
+    return here.answer(
+        filled(
+            Progress,
+            learning,
             course=here.course,
             workspace=str(here.workspace.root),
             lessons=lessons,
@@ -80,12 +81,8 @@ def progress() -> int:
             next=NextStep(step),
             quiz=quiz,
             warm_ups=warm_ups,
-            predictions=learning.predictions,
-            mistakes=learning.mistakes,
-            revisit=learning.revisit,
         )
     )
-    return 0
 
 
 def _show_reading(console: Console, lessons: Sequence[LessonState], warm_ups: Sequence[WarmUpState]) -> None:
@@ -155,10 +152,10 @@ def quiz_state(catalog: Catalog, standing: Standing) -> QuizState | None:
     questions = len(list(catalog.content.quiz.glob("*.toml")))
     if not questions:
         return None
-    counting, best = standing.quiz.counting, standing.quiz.best
+    best = standing.quiz.best
     if best is None:
         return QuizState(attempts=0, best=None, total=questions, passed=False)
-    return QuizState(attempts=len(counting), best=best.score, total=best.total, passed=best.passed)
+    return QuizState(len(standing.quiz.counting), best.score, best.total, best.passed)
 
 
 def lesson_states(catalog: Catalog, standing: Standing) -> tuple[LessonState, ...]:

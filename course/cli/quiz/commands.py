@@ -10,7 +10,7 @@ from typing import Annotated
 from course.cli.frame.console import Console, current
 from course.cli.frame.options import option
 from course.cli.frame.registry import COMMANDS, group
-from course.cli.frame.replies import NextStep
+from course.cli.frame.replies import NextStep, filled
 from course.cli.quiz import screen
 from course.cli.quiz.screen import (
     KEYS,
@@ -23,11 +23,18 @@ from course.cli.quiz.screen import (
     printed_seed,
 )
 from course.errors import INTERRUPTED, UsageError
-from course.progress import quiz
 from course.progress.quiz import Attempt
 from course.quizzing.answers import AnswerFile, read_answers
-from course.quizzing.bank import MarkedQuestion, PosedQuestion, check_seed, mark, mark_sentence, needed
-from course.quizzing.desk import Due, answered, finished, fits
+from course.quizzing.bank import (
+    MarkedQuestion,
+    PosedQuestion,
+    Result,
+    check_seed,
+    mark,
+    mark_sentence,
+    needed,
+)
+from course.quizzing.desk import Due, answered, finished, fits, reviewed
 
 app = group(COMMANDS["quiz"].summary)
 
@@ -67,7 +74,8 @@ def take(answers: AnswersOption = None, seed: SeedOption = None, questions: Ques
         posed = desk.bank.pose(seed)
         screen.show_mark(console, len(posed))
         return screen.hand_out(console, desk.here, posed, seed, "take")
-    attempt, resumed = open_or_new(console, desk, seed)
+    attempt = open_or_new(console, desk, seed)
+    resumed = bool(attempt.answers)
     posed = desk.bank.pose(attempt.seed)
     screen.show_mark(console, len(posed))
     console.note(KEYS)
@@ -118,7 +126,6 @@ def _ask_all(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[Pos
 
 
 def _take_file(console: Console, desk: Desk, path: Path, seed: int | None) -> int:
-    """An attempt whose answers are all in a file."""
     file = read_answers(path)
     open_one = desk.history.open
     seed = _seed("take", file, seed, file.seed, open_one.seed if open_one is not None else None)
@@ -151,21 +158,21 @@ def _finish(
 ) -> int:
     result = finished(attempt, posed, desk.here.record)
     due = desk.reviews()
-    step = _step(result.missed, due, passed=result.passed)
+    step = _step(result, due)
     screen.show_result(console, result)
     if result.passed:  # else the lesson to read comes first
         screen.show_first_due(console, due, today())
     console.next(step)
     return desk.here.answer(
-        Quiz(
+        filled(
+            Quiz,
+            result,
             exit_code=0 if result.passed else 1,
             course=desk.here.course,
             seed=attempt.seed,
             resumed=resumed,
-            score=result.score,
             max_score=result.total,
             needed=needed(result.total),
-            passed=result.passed,
             mark=mark_sentence(result.total),
             questions=tuple(screen.question_reply(marked) for marked in result.marked),
             review=screen.due_reply(due),
@@ -175,10 +182,10 @@ def _finish(
     )
 
 
-def _step(missed: Sequence[MarkedQuestion], due: Sequence[Due], *, passed: bool) -> str:
-    if passed:
+def _step(result: Result, due: Sequence[Due]) -> str:
+    if result.passed:
         return "course quiz review" if due else "course"
-    read = next((marked.posed.read for marked in missed if marked.posed.read), "")
+    read = next((one.posed.read for one in result.marked if not one.right and one.posed.read), "")
     return f"course lesson {read}" if read else "course quiz take"
 
 
@@ -210,7 +217,7 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
         if one is None:
             console.line("The rest stays due: `course quiz review` continues with it.")
             return INTERRUPTED
-        marked.append(_reviewed(desk, question, one.id, seed))
+        marked.append(reviewed(question, one.id, seed, desk.here.record))
         screen.show_marked(console, marked[-1], number)
     return _end_review(console, desk, seed, marked)
 
@@ -220,17 +227,10 @@ def _review_file(console: Console, desk: Desk, path: Path, seed: int | None, ids
     seed = _seed("review", file, seed, file.seed)
     posed = desk.bank.pose(seed, only=ids)
     options = file.choose(posed, desk.bank, seed)
-    marked = [_reviewed(desk, question, options[question.question], seed) for question in posed]
+    marked = [reviewed(one, options[one.question], seed, desk.here.record) for one in posed]
     for number, one in enumerate(marked, start=1):
         screen.show_marked(console, one, number)
     return _end_review(console, desk, seed, marked)
-
-
-def _reviewed(desk: Desk, posed: PosedQuestion, option: str, seed: int) -> MarkedQuestion:
-    """Mark and record one answer of a review."""
-    (marked,) = mark([posed], {posed.question: option}).marked
-    desk.here.record(quiz.REVIEW, posed.question, quiz.review_data(seed, option, right=marked.right))
-    return marked
 
 
 def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence[MarkedQuestion]) -> int:
@@ -290,7 +290,7 @@ def history(
     ready = bool(due) and due[0].on <= today()
     step = "course quiz review" if ready else "course" if passed else "course quiz take"
     console.next(step)
-    console.emit(
+    return desk.here.answer(
         QuizHistoryReply(
             course=desk.here.course,
             mark=mark_sentence(len(desk.bank.ids)),
@@ -301,4 +301,3 @@ def history(
             next=NextStep(step),
         )
     )
-    return 0

@@ -424,17 +424,17 @@ class Desk:
         return schedule(self.history.outcomes(), self.bank.ids)
 
 
-def open_or_new(console: Console, desk: Desk, seed: int | None) -> tuple[Attempt, bool]:
-    """The attempt to go on with, or a new one; and whether it was begun before."""
+def open_or_new(console: Console, desk: Desk, seed: int | None) -> Attempt:
+    """The attempt to go on with, or a new one."""
     open_one = desk.history.open
     if open_one is not None and seed in (None, open_one.seed):
         if fits(desk.bank, open_one):
-            return open_one, bool(open_one.answers)
+            return open_one
         console.line("The questions have changed since you left your last attempt, so a new one begins.")
     elif open_one is not None and open_one.answers:
         left = f"{len(open_one.answers)} of {len(open_one.questions)} answered"
         console.line(f"This is another attempt; the one you left (seed {open_one.seed}, {left}) ends here.")
-    return desk.begin(desk.new_seed() if seed is None else seed), False
+    return desk.begin(desk.new_seed() if seed is None else seed)
 
 
 def printed_seed(console: Console, desk: Desk, seed: int | None) -> int:
@@ -445,7 +445,7 @@ def printed_seed(console: Console, desk: Desk, seed: int | None) -> int:
     open_one = desk.history.open
     if seed is not None and open_one is not None and open_one.answers:
         return seed
-    return open_or_new(console, desk, seed)[0].seed
+    return open_or_new(console, desk, seed).seed
 
 
 def agrees(bank: Bank, attempt: Attempt, seed: int, answers: Mapping[str, str]) -> bool:

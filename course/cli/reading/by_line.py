@@ -19,11 +19,11 @@ from course.catalog.models import Exercise, Lesson
 from course.cli.frame.app import again
 from course.cli.frame.console import Console
 from course.cli.frame.here import Here
-from course.cli.reading.lesson import Reader, paginate
-from course.cli.reading.screen.running import Bench, write_new
+from course.cli.reading.lesson import Printer, paginate
+from course.cli.reading.screen.running import Bench, write_cell
 from course.errors import CourseError
 from course.printable import counted
-from course.progress.standing import lesson_events
+from course.progress.history import lesson_events
 from course.progress.store import Event
 from course.reading.cells import CellOutput
 from course.reading.parts import Cell, Question, read_script
@@ -52,16 +52,16 @@ class LineReader:
 
     Args:
         here: the student's workspace; None outside of one, where nothing is kept.
-        reader: shows its pages.
+        shown: prints it.
     """
 
     def __init__(
-        self, console: Console, here: Here | None, catalog: Catalog, lesson: Lesson, reader: Reader
+        self, console: Console, here: Here | None, catalog: Catalog, lesson: Lesson, shown: Printer
     ) -> None:
-        self._console, self._here, self._catalog, self._reader = console, here, catalog, reader
+        self._console, self._here, self._catalog, self._shown = console, here, catalog, shown
         self._script = read_script(lesson, catalog.tasks(lesson.id))
         self._pages = paginate(self._script.blocks)
-        self._starts = list(itertools.accumulate((len(page.blocks) for page in self._pages), initial=0))
+        self._starts = list(itertools.accumulate(map(len, self._pages), initial=0))
         self._events = _events(here, lesson)
         self._progress = InProgress(self._script, self._events, self._write, catalog.version)
         self._files: dict[int, Path] = {}  # by number of the cell that the student changes in it
@@ -109,7 +109,9 @@ class LineReader:
     def _show(self, number: int) -> None:
         task = self._task(number)
         if task is None:
-            self._reader.show(self._pages[number])
+            if number == 0:
+                self._shown.head()
+            self._shown.blocks(self._pages[number])
             if self._cells(number):
                 self._bench.prepare()  # so that the first run need not wait for its process
             return
@@ -287,9 +289,8 @@ class LineReader:
 
     def _edit(self, cell: Cell) -> None:
         if cell.number not in self._files:
-            name = f"{self._script.lesson.id}-{cell.number}.py"
             try:
-                self._files[cell.number] = write_new(name, self._progress.cell(cell).source + "\n")
+                self._files[cell.number] = write_cell(self._progress, cell)
             except CourseError as error:
                 self._console.error(error.message, error.help)
                 return
@@ -306,11 +307,10 @@ class LineReader:
     # -- tasks -----------------------------------------------------------------------------------------
 
     def _task(self, number: int) -> Exercise | None:
-        block = self._pages[number].blocks[-1]
+        block = self._pages[number][-1]
         return self._catalog.exercise(block.id) if isinstance(block, b.Task) else None
 
     def _on_task(self, words: Callable[[Exercise], list[str]]) -> Callable[[str, int], None]:
-        """A command of the course for the warm-up or exercise of a page."""
 
         def do(_: str, number: int) -> None:
             task = self._task(number)
@@ -368,11 +368,8 @@ def _leads_elsewhere(typed: str) -> bool:
 
 def _events(here: Here | None, lesson: Lesson) -> tuple[Event, ...]:
     """The recorded events of a lesson; none where the record cannot be read."""
-    if here is not None:
-        with contextlib.suppress(CourseError):
-            return lesson_events(
-                lambda name: here.workspace.store.events(subject=name), lesson.id, here.catalog.syllabus.split
-            )
+    with contextlib.suppress(CourseError):
+        return lesson_events(here.workspace.store, lesson.id, here.catalog.syllabus.split) if here else ()
     return ()
 
 

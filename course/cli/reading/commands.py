@@ -12,6 +12,7 @@ from rich.console import Console as RichConsole
 
 from course.browser import keep_closed
 from course.catalog.load import Catalog
+from course.catalog.markdown import read_task
 from course.catalog.models import Exercise, Lesson
 from course.cli.frame.console import MAX_WIDTH, Console, current
 from course.cli.frame.here import Here, here_or_outside
@@ -21,14 +22,14 @@ from course.cli.home.advice import after_lesson
 from course.cli.home.learning import day
 from course.cli.home.overview import lesson_states, warm_up_states
 from course.cli.home.replies import LessonState, WarmUpState
-from course.cli.reading.lesson import Reader
+from course.cli.reading.lesson import Printer, printer
 from course.cli.work.changing import put
 from course.cli.work.checking import check as check_work
 from course.cli.work.replies import Start
 from course.errors import CourseError, NotFoundError, UsageError
 from course.printable import counted
-from course.progress.standing import Standing
-from course.reading.parts import Section, read_script
+from course.progress.history import Standing
+from course.reading.parts import Script, Section, read_script
 
 # ---
 # Replies of the commands about lessons.
@@ -104,23 +105,27 @@ def lesson(
     console, (here, catalog) = current(), here_or_outside()
     called, _, slug = (name or _next_unread(here, catalog)).partition("#")
     chosen = catalog.lesson_called(called)
-    section = _section(catalog, chosen, slug) if slug else None
-    if code is not None:
-        return _print_code(console, chosen, code)
     if no_browser:
         keep_closed()
-    if not page and figures is None and console.fills_the_screen:
-        return _read_on_screen(console, here, catalog, chosen, section)
+    on_screen = code is None and not page and figures is None and console.fills_the_screen
+    if on_screen and not slug:  # the first page need not wait for what is read here
+        return _read_on_screen(console, here, catalog, chosen)
+    script = read_script(chosen, catalog.warm_ups(chosen.id))
+    section = _section(script, slug) if slug else None
+    if code is not None:
+        return _print_code(console, script, code)
+    if on_screen:
+        return _read_on_screen(console, here, catalog, chosen, slug)
     text = io.StringIO()
-    reader = _reader(catalog, chosen, console, figures, text if console.json else None)
+    shown = _printer(catalog, script, console, figures, text if console.json else None)
     paged, whole = page and console.interactive and section is None, section is None
     if section is not None:
-        reader.show_section(section)
+        shown.blocks(script.blocks[section.start : section.end])
     elif paged:
-        whole = _read_by_line(console, here, catalog, chosen, reader)
+        whole = _read_by_line(console, here, catalog, chosen, shown)
     else:
-        for item in reader.pages:
-            reader.show(item)
+        shown.head()
+        shown.blocks(script.blocks)
     # Printing is not reading: the student may never have seen the end.
     if here is not None and whole and paged:
         here.record("lesson", chosen.id, {"version": catalog.version})
@@ -131,10 +136,10 @@ def lesson(
         _say_unkept(console, here)
     for warning in here.warnings if here else ():
         console.warn(warning)
-    for picture in reader.pictures:
+    for picture in shown.pictures:
         console.note(f"Wrote {picture}")
     console.next(step)
-    console.emit(_reply(chosen, text.getvalue(), tuple(map(str, reader.pictures)), step))
+    console.emit(_reply(chosen, text.getvalue(), tuple(map(str, shown.pictures)), step))
     return 0
 
 
@@ -157,14 +162,14 @@ def _next_unread(here: Here | None, catalog: Catalog) -> str:
     return next((item for item in ids if item not in read), ids[0])
 
 
-def _reader(
-    catalog: Catalog, chosen: Lesson, console: Console, figures: Path | None, text: io.StringIO | None
-) -> Reader:
-    """The lesson, ready to be shown on the console, or put into ``text`` as ``--plain`` shows it."""
+def _printer(
+    catalog: Catalog, script: Script, console: Console, figures: Path | None, text: io.StringIO | None
+) -> Printer:
+    """What prints a lesson on the console, or into ``text`` as ``--plain`` shows it."""
     if text is None:
-        return Reader(
+        return printer(
             catalog,
-            chosen,
+            script,
             console.rich(),
             plain=console.plain,
             figures_dir=figures,
@@ -172,29 +177,29 @@ def _reader(
             wraps=console.wraps,
         )
     quiet = RichConsole(file=text, width=MAX_WIDTH, no_color=True, markup=False, emoji=False, highlight=False)
-    return Reader(catalog, chosen, quiet, plain=True, figures_dir=figures, width=MAX_WIDTH)
+    return printer(catalog, script, quiet, plain=True, figures_dir=figures)
 
 
-def _section(catalog: Catalog, chosen: Lesson, slug: str) -> Section:
-    sections = read_script(chosen, catalog.warm_ups(chosen.id)).sections
-    found = next((section for section in sections if section.slug == slug), None)
+def _section(script: Script, slug: str) -> Section:
+    found = next((section for section in script.sections if section.slug == slug), None)
     if found is None:
-        known = ", ".join(section.slug for section in sections if section.level == 2)
+        known = ", ".join(section.slug for section in script.sections if section.level == 2)
         raise NotFoundError(
-            f"{chosen.id} has no section {slug!r}.", help=f"It has: {known}.", code="section_not_found"
+            f"{script.lesson.id} has no section {slug!r}.", help=f"It has: {known}.", code="section_not_found"
         )
     return found
 
 
 def _read_on_screen(
-    console: Console, here: Here | None, catalog: Catalog, chosen: Lesson, section: Section | None
+    console: Console, here: Here | None, catalog: Catalog, chosen: Lesson, section: str = ""
 ) -> int:
-    from course.cli.reading.screen.app import read
+    from course.cli.reading.screen.app import ReaderApp
+    from course.cli.reading.screen.running import Drawer
 
-    slug = section.slug if section is not None else ""
-    last, trouble = read(catalog, chosen.id, here.workspace if here else None, slug)
-    lesson = last.script.lesson
-    for warning in (here.warnings if here else []) + ([trouble] if trouble else []):
+    app = ReaderApp(catalog, chosen.id, section, here.workspace if here else None, Drawer())
+    app.play()
+    last, lesson = app.page.progress, app.page.progress.script.lesson
+    for warning in (here.warnings if here else []) + ([app.page.trouble] if app.page.trouble else []):
         console.warn(warning)
     _say_unkept(console, here)
     console.next(_after(here, lesson, read=True) if last.read else f"course lesson {lesson.id}")
@@ -206,27 +211,28 @@ def _say_unkept(console: Console, here: Here | None) -> None:
         console.note("Your place and your predictions are kept in a workspace only: course init my-course")
 
 
-def _print_code(console: Console, chosen: Lesson, number: int) -> int:
-    """Print the code of one cell, unchanged, ready for a file."""
-    cells = read_script(chosen).shown_cells
+def _print_code(console: Console, script: Script, number: int) -> int:
+    cells = script.shown_cells
     if number > len(cells):
         raise NotFoundError(
-            f"{chosen.id} has {counted(len(cells), 'cell')}.", help="Name one of them.", code="cell_not_found"
+            f"{script.lesson.id} has {counted(len(cells), 'cell')}.",
+            help="Name one of them.",
+            code="cell_not_found",
         )
     source = cells[number - 1].source
     console.raw(f"{source}\n")
-    console.emit(_reply(chosen, source))
+    console.emit(_reply(script.lesson, source))
     return 0
 
 
 def _read_by_line(
-    console: Console, here: Here | None, catalog: Catalog, chosen: Lesson, reader: Reader
+    console: Console, here: Here | None, catalog: Catalog, chosen: Lesson, shown: Printer
 ) -> bool:
     from course.cli.reading.by_line import LineReader
     from course.isolation.probe import kept_sandboxes
 
     with kept_sandboxes():  # its tasks are checked one after the other
-        return LineReader(console, here, catalog, chosen, reader).read()
+        return LineReader(console, here, catalog, chosen, shown).read()
 
 
 def _after(here: Here | None, chosen: Lesson, *, read: bool) -> str:
@@ -256,7 +262,7 @@ def warmup(
     exercises are; they count for nothing.
     """
     console = current()
-    lesson = _lesson_named(name)
+    lesson = name if name and name in here_or_outside()[1].lesson_ids() else ""  # a number is a warm-up's
     if name is None or lesson:
         if check:
             raise UsageError("--check needs the id of a warm-up.", help="`course warmup` lists them.")
@@ -289,13 +295,7 @@ def _warm_up(catalog: Catalog, name: str) -> Exercise:
     return chosen
 
 
-def _lesson_named(name: str | None) -> str:
-    """The id of the lesson that this is the id of; "" if it is of none. A number is a warm-up's."""
-    return name if name and name in here_or_outside()[1].lesson_ids() else ""
-
-
 def _list(console: Console, lesson: str = "") -> int:
-    """The warm-ups of all lessons, or of one."""
     here, catalog = here_or_outside()
     try:
         standing = here.standing() if here else Standing()
@@ -327,7 +327,6 @@ def _list(console: Console, lesson: str = "") -> int:
 
 
 def _begin(console: Console, here: Here, chosen: Exercise) -> int:
-    """Its text, and its file in the workspace."""
     if not console.quiet and not console.json:
         show_text(console, here, chosen)
     files = put(console, here, chosen)
@@ -343,8 +342,7 @@ def _begin(console: Console, here: Here, chosen: Exercise) -> int:
 
 
 def show_text(console: Console, here: Here, chosen: Exercise) -> None:
-    lesson = here.catalog.lesson(chosen.lesson)
-    reader = _reader(here.catalog, lesson, console, None, None)
+    script = read_script(here.catalog.lesson(chosen.lesson), here.catalog.warm_ups(chosen.lesson))
     console.heading(chosen.title, counted(chosen.minutes, "minute"))
-    reader.show_task(chosen)
+    _printer(here.catalog, script, console, None, None).blocks(read_task(chosen.readme_path))
     console.blank()

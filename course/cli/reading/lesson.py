@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import assert_never
 
@@ -23,13 +23,11 @@ from rich.text import Text
 
 from course.catalog import blocks as b
 from course.catalog.load import Catalog
-from course.catalog.markdown import read_task
-from course.catalog.models import Exercise, Lesson
 from course.cli.frame.pictures import Code, picture, protocol_of
 from course.errors import NotFoundError
 from course.figures.registry import build, save
 from course.printable import counted
-from course.reading.parts import Section, is_unseen, read_script
+from course.reading.parts import Script, is_unseen
 
 # ---
 # Words shared by all ways of printing a lesson.
@@ -75,6 +73,35 @@ def link_words(catalog: Catalog, target: str, words: str) -> str:
     return f"{words} ({command})"
 
 
+class _Printer:
+    """Prints the parts of one lesson on one console.
+
+    Args:
+        catalog: names what the lesson links to.
+        figures_dir: folder to write the figures to as PNG; None writes none. A UsageError is raised where it
+            cannot be written to.
+
+    Attributes:
+        pictures: those written so far.
+    """
+
+    def __init__(self, catalog: Catalog, script: Script, console: Console, figures_dir: Path | None) -> None:
+        self._catalog = catalog
+        self._lesson = script.lesson
+        self._console = console
+        self._figure_ids = [one.id for one in b.walk_blocks(script.blocks) if isinstance(one, b.Figure)]
+        self._figures_dir = figures_dir
+        self.pictures: list[Path] = []
+
+    def _number_of(self, figure: b.Figure) -> int:
+        return self._figure_ids.index(figure.id) + 1
+
+    def _saved(self, figure: b.Figure) -> Path:
+        assert self._figures_dir is not None
+        self.pictures.append(save(figure.id, self._figures_dir))
+        return self.pictures[-1]
+
+
 # ---
 # A lesson for a screen reader or a log: one fact per line, no boxes, no meaning in position or colour.
 #
@@ -87,18 +114,19 @@ def link_words(catalog: Catalog, target: str, words: str) -> str:
 _SENTENCE_END = re.compile(r"(?<=[.!?])(?<!\b[A-Z]\.)[\"”)]?\s+(?=[A-Z\"“(\d])")
 
 
-@dataclass
-class PlainPrinter:
-    """Prints the parts of one lesson as plain lines."""
+class PlainPrinter(_Printer):
+    """Prints the parts of one lesson as plain lines.
 
-    _catalog: Catalog
-    _lesson: Lesson
-    _console: Console
-    _figure_ids: list[str]
-    _figures_dir: Path | None
-    _wraps: bool
-    pictures: list[Path] = field(default_factory=list)
-    _told_how: bool = False  # to save them: said once
+    Args:
+        wraps: lines wrap between words.
+    """
+
+    def __init__(
+        self, catalog: Catalog, script: Script, console: Console, figures_dir: Path | None, wraps: bool
+    ) -> None:
+        super().__init__(catalog, script, console, figures_dir)
+        self._wraps = wraps
+        self._told_how = False  # to save them: said once
 
     def head(self) -> None:
         """Title, summary, objectives."""
@@ -201,17 +229,14 @@ class PlainPrinter:
         self._say(f"End of {'output' if label == 'It prints' else label.lower()}")
 
     def _figure(self, figure: b.Figure) -> None:
-        number = self._figure_ids.index(figure.id) + 1
-        self._prose(f"Figure {number}: {self._words(figure.caption)}")
+        self._prose(f"Figure {self._number_of(figure)}: {self._words(figure.caption)}")
         self._prose(f"The figure shows: {figure.alt}")
         if self._figures_dir is None:
             if not self._told_how:
                 self._say(f"To save the pictures: course lesson {self._lesson.id} --figures DIR")
             self._told_how = True
             return
-        path = save(figure.id, self._figures_dir)
-        self.pictures.append(path)
-        self._say(f"Picture: {path}")
+        self._say(f"Picture: {self._saved(figure)}")
 
     def _words(self, inlines: b.Inlines) -> str:
         parts = []
@@ -269,26 +294,14 @@ _COLOURS = {
 _SPANS = {"emphasis": "italic", "strong": "bold", "code": "bold cyan"}
 
 
-class FancyPrinter:
+class FancyPrinter(_Printer):
     """Prints the parts of one lesson with Rich."""
 
     def __init__(
-        self,
-        catalog: Catalog,
-        lesson: Lesson,
-        console: Console,
-        figure_ids: list[str],
-        figures_dir: Path | None,
-        width: int,
+        self, catalog: Catalog, script: Script, console: Console, figures_dir: Path | None, width: int
     ) -> None:
-        self._catalog = catalog
-        self._lesson = lesson
-        self._console = console
-        self._figure_ids = figure_ids
-        self._figures_dir = figures_dir
-        self._room = max(20, width - _MARGIN)
-        self._prose = min(self._room, _PROSE)
-        self.pictures: list[Path] = []
+        super().__init__(catalog, script, console, figures_dir)
+        self._prose = min(max(20, width - _MARGIN), _PROSE)
 
     def head(self) -> None:
         """Title, summary, objectives."""
@@ -421,14 +434,12 @@ class FancyPrinter:
         return Group(*shown)
 
     def _caption(self, figure: b.Figure) -> Text:
-        number = self._figure_ids.index(figure.id) + 1
-        return Text.assemble((f"Figure {number}. ", "bold"), self._text(figure.caption))
+        return Text.assemble((f"Figure {self._number_of(figure)}. ", "bold"), self._text(figure.caption))
 
     def _where(self, figure: b.Figure) -> Text:
         """The picture's path, or the command that writes it."""
         if self._figures_dir is not None:
-            path = save(figure.id, self._figures_dir)
-            self.pictures.append(path)
+            path = self._saved(figure)
             link = Style(link=path.absolute().as_uri())
             return Text.assemble(("Picture: ", "bold"), (str(path), link))
         if protocol_of(self._console, os.environ):
@@ -529,99 +540,49 @@ def _facts(header: list[Text], rows: list[list[Text]]) -> RenderableType:
     return Group(*shown)
 
 
-@dataclass(frozen=True, slots=True)
-class Page:
-    """One screenful of reading: a section, or a section up to a prediction.
-
-    Attributes:
-        section: the heading it is under; empty before the first.
-        blocks: what it shows, the heading included where the section starts here.
-        first: the lesson's title, summary and objectives come before it.
-    """
-
-    section: str
-    blocks: tuple[b.Block, ...]
-    first: bool = False
+Printer = PlainPrinter | FancyPrinter
 
 
-class Reader:
-    """A lesson being read on one console.
+def printer(
+    catalog: Catalog,
+    script: Script,
+    console: Console,
+    *,
+    plain: bool = False,
+    figures_dir: Path | None = None,
+    width: int | None = None,
+    wraps: bool = False,
+) -> Printer:
+    """What prints a lesson on one console.
 
     Args:
-        catalog: names what the lesson links to.
         plain: one fact a line, no boxes, formulae in words, figures and diagrams as their descriptions.
-        figures_dir: folder to write the figures to as PNG; None writes none.
         width: columns to use; the console's own if left out.
         wraps: plain lines wrap between words.
-
-    Raises:
-        ContentError: the lesson cannot be read or parsed.
-        UsageError: the folder for figures cannot be written to.
-
-    Attributes:
-        script: the lesson with its warm-ups in their places.
-        pages: all of its pages, in reading order.
     """
-
-    def __init__(
-        self,
-        catalog: Catalog,
-        lesson: Lesson,
-        console: Console,
-        *,
-        plain: bool = False,
-        figures_dir: Path | None = None,
-        width: int | None = None,
-        wraps: bool = False,
-    ) -> None:
-        self._lesson = lesson
-        self.script = read_script(lesson, catalog.warm_ups(lesson.id))
-        self.pages = paginate(self.script.blocks)
-        everything = b.walk_blocks(self.script.blocks)
-        numbers = [block.id for block in everything if isinstance(block, b.Figure)]
-        self._printer: FancyPrinter | PlainPrinter
-        # A terminal that cannot show the drawings and formulae gets what a screen reader gets.
-        if plain or not console.encoding.lower().startswith("utf"):
-            self._printer = PlainPrinter(catalog, lesson, console, numbers, figures_dir, wraps)
-        else:
-            room = width or console.width
-            self._printer = FancyPrinter(catalog, lesson, console, numbers, figures_dir, room)
-
-    @property
-    def pictures(self) -> tuple[Path, ...]:
-        """The pictures written so far."""
-        return tuple(self._printer.pictures)
-
-    def show(self, page: Page) -> None:
-        if page.first:
-            self._printer.head()
-        self._printer.blocks(page.blocks)
-
-    def show_section(self, section: Section) -> None:
-        """Print one section of the lesson."""
-        self._printer.blocks(self.script.blocks[section.start : section.end])
-
-    def show_task(self, warm_up: Exercise) -> None:
-        """Print the text of a warm-up of the lesson."""
-        self._printer.blocks(read_task(warm_up.readme_path))
+    # A terminal that cannot show the drawings and formulae gets what a screen reader gets.
+    if plain or not console.encoding.lower().startswith("utf"):
+        return PlainPrinter(catalog, script, console, figures_dir, wraps)
+    return FancyPrinter(catalog, script, console, figures_dir, width or console.width)
 
 
-def paginate(blocks: tuple[b.Block, ...]) -> tuple[Page, ...]:
-    """Blocks as pages; a task has one of its own, and none shows nothing."""
-    pages: list[Page] = []
-    section, current = "", []  # type: str, list[b.Block]
+def paginate(blocks: tuple[b.Block, ...]) -> tuple[tuple[b.Block, ...], ...]:
+    """Blocks as pages, each a screenful of reading: a section, or a section up to a prediction.
+
+    A task has a page of its own, and none shows nothing.
+    """
+    pages: list[tuple[b.Block, ...]] = []
+    current: list[b.Block] = []
     for block in blocks:
         begins = isinstance(block, b.Task) or (isinstance(block, b.Heading) and block.level == 2)
         if (begins or (current and _ends_page(current[-1]))) and not all(map(is_unseen, current)):
-            pages.append(Page(section, tuple(current), first=not pages))
+            pages.append(tuple(current))
             current = []
-        if isinstance(block, b.Heading) and block.level == 2:
-            section = b.plain_text(block.inlines)
         current.append(block)
     if pages and all(map(is_unseen, current)):
-        pages[-1] = replace(pages[-1], blocks=(*pages[-1].blocks, *current))
+        pages[-1] += tuple(current)
     elif current:
-        pages.append(Page(section, tuple(current), first=not pages))
+        pages.append(tuple(current))
     return tuple(pages)
 
 

@@ -82,8 +82,9 @@ def menu(
         return None
     console = current()
     if web or (console.interactive and console.fancy):
-        return playing.gallery(console, web=web, port=port, browser=not no_browser)
-    _list(console, None)
+        playing.open_view(console, None, web=web, port=port, browser=not no_browser)
+    else:
+        _list(console, None)
     return 0
 
 

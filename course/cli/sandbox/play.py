@@ -16,7 +16,7 @@ from course.cli.frame import here
 from course.cli.frame.console import Console
 from course.cli.frame.here import Here, cwd, named, target
 from course.cli.frame.replies import Backup, Envelope, filled
-from course.errors import CourseError, MissingCapabilityError, UsageError
+from course.errors import CourseError, UsageError
 from course.extras import require
 from course.printable import counted
 from course.progress.store import numbered
@@ -255,12 +255,16 @@ def play(console: Console, options: PlayOptions) -> int:
     if lines := unwritten(picked.path):
         left = f"and {len(lines) - 1} more below are" if len(lines) > 1 else "is"
         console.note(f"{picked.path}:{lines[0]}: this line {left} still to be written.")
-    if options.web:
-        require("web")
-    seen = options.web or (not options.unseen and console.interactive and console.fancy)
-    if seen:
-        return _play_seen(console, picked, options, targets)
-    return _run_unseen(console, picked, options, targets, _guess(console, picked, options))
+    if not options.web and (options.unseen or not console.interactive or not console.fancy):
+        return _run_unseen(console, picked, options, targets, _guess(console, picked, options))
+    browser = not options.no_browser
+    recorded = open_view(
+        console, picked, web=options.web, port=options.port, browser=browser, guess=options.guess
+    )
+    if "record" in targets:
+        write(targets["record"], recorded, "record")
+    console.note(("After playing: ", "bold"), picked.scene.after)
+    return 0
 
 
 def _check(options: PlayOptions) -> None:
@@ -297,33 +301,29 @@ def _guess(console: Console, chosen: Chosen, options: PlayOptions) -> float | No
 # -- seen ------------------------------------------------------------------------------------------------
 
 
-def _play_seen(console: Console, chosen: Chosen, options: PlayOptions, targets: dict[str, Path]) -> int:
-    """Open a view; it asks for the prediction and shows the comparison itself."""
-    browser = not options.no_browser
-    recorded = _view_of(
-        console, chosen, web=options.web, port=options.port, browser=browser, guess=options.guess
-    )
-    if "record" in targets:
-        write(targets["record"], recorded, "record")
-    console.note(("After playing: ", "bold"), chosen.scene.after)
-    return 0
+def open_view(
+    console: Console,
+    chosen: Chosen | None,
+    *,
+    web: bool,
+    port: int,
+    browser: bool,
+    guess: float | None = None,
+) -> bytes:
+    """Play a scene, or all of them, until the user leaves; the recording of what was played last.
 
-
-def gallery(console: Console, *, web: bool, port: int = 0, browser: bool = True) -> int:
-    """Open a view with all scenes."""
+    The view asks for the prediction and shows the comparison itself.
+    """
     if web:
         require("web")
-    _view_of(console, None, web=web, port=port, browser=browser, guess=None)
-    return 0
+    play_in = _view("web" if web else "terminal")
 
+    def say(text: str) -> None:
+        console.line(text)
+        console.flush()  # even into a file or a pipe: the page is served until somebody ends it
 
-def _view_of(
-    console: Console, chosen: Chosen | None, *, web: bool, port: int, browser: bool, guess: float | None
-) -> bytes:
-    """Play until the user leaves; the recording of what was played last."""
-    view = _view("web" if web else "terminal")
-    more: dict[str, Any] = {"port": port, "open_browser": browser, "say": _saying(console)} if web else {}
-    return view(chosen, _desk(), guess=guess, **more)
+    more: dict[str, Any] = {"port": port, "open_browser": browser, "say": say} if web else {}
+    return play_in(chosen, _desk(), guess=guess, **more)
 
 
 def _desk() -> Desk:
@@ -348,26 +348,8 @@ def _desk() -> Desk:
     return Desk(keep=_keep, save=save, played=frozenset(played), opened=opened)
 
 
-def _saying(console: Console) -> Callable[[str], None]:
-    """Say a line at once, even into a file or a pipe: the page is served until somebody ends it."""
-
-    def say(text: str) -> None:
-        console.line(text)
-        console.flush()
-
-    return say
-
-
 def _view(name: str) -> Callable[..., bytes]:
-    try:
-        module = importlib.import_module(f"course.sandbox.views.{name}.view")
-    except ModuleNotFoundError as error:
-        raise MissingCapabilityError(
-            f"This installation has no {name} view ({error.name} is missing).",
-            help="Run the scene with --headless, --describe or --gif FILE.",
-            code="no_view",
-        ) from error
-    play_in: Callable[..., bytes] = module.play
+    play_in: Callable[..., bytes] = importlib.import_module(f"course.sandbox.views.{name}.view").play
     return play_in
 
 
@@ -382,6 +364,7 @@ def _run_unseen(
     recordings: list[Recording] = []
     watch = (lambda world: recordings.append(Recording(world))) if "record" in targets else None
     filming = bool({"gif", "mp4"} & targets.keys())
+    end = chosen.scene.duration if options.duration is None else options.duration
     with console.working(f"Running {chosen.scene.id}"):
         done = running.run(
             chosen,
@@ -390,7 +373,7 @@ def _run_unseen(
             every=options.every if options.csv else 0.0,
             on_frame=None if film is None else _taker(film, options, made, filming=filming),
             fps=_FPS if filming else 1.0,
-            also_at=_picture_times(chosen, options),
+            also_at=(end if options.at is None else options.at,) if "png" in targets else (),
             watch=watch,
         )
     if recordings:
@@ -408,16 +391,24 @@ def _run_unseen(
     files = tuple(write(targets[kind], made[kind], kind) for kind in targets)
     if guess is not None:
         _keep(chosen, done.comparison)
-    _emit(console, chosen, done, told, files)
+    scene = chosen.scene
+    settings = {"step": scene.step, "iterations": float(scene.iterations), "seed": float(scene.seed)}
+    console.emit(
+        filled(
+            Sandbox,
+            done,
+            scene=scene.id,
+            title=scene.title,
+            settings={**settings, **chosen.parameters, **chosen.settings},
+            momentum=SandboxMomentum(before=done.momentum_before, after=done.momentum_after),
+            prediction=done.comparison,
+            description=told,
+            after=scene.after,
+            versions=versions(),
+            files=files,
+        )
+    )
     return 0
-
-
-def _picture_times(chosen: Chosen, options: PlayOptions) -> tuple[float, ...]:
-    """The time of the one picture: the end by default."""
-    if options.png is None:
-        return ()
-    end = chosen.scene.duration if options.duration is None else options.duration
-    return (end if options.at is None else options.at,)
 
 
 def _taker(
@@ -486,28 +477,4 @@ def _keep(chosen: Chosen, comparison: Comparison | None) -> None:
             "right": bool(comparison.guess_right),
             "settings": {**chosen.parameters, **chosen.settings},
         },
-    )
-
-
-def _emit(
-    console: Console, chosen: Chosen, done: Run, told: tuple[str, ...], files: tuple[SandboxFile, ...]
-) -> None:
-    if not console.json:
-        return
-    scene = chosen.scene
-    settings = {"step": scene.step, "iterations": float(scene.iterations), "seed": float(scene.seed)}
-    console.emit(
-        filled(
-            Sandbox,
-            done,
-            scene=scene.id,
-            title=scene.title,
-            settings={**settings, **chosen.parameters, **chosen.settings},
-            momentum=SandboxMomentum(before=done.momentum_before, after=done.momentum_after),
-            prediction=done.comparison,
-            description=told,
-            after=scene.after,
-            versions=versions(),
-            files=files,
-        )
     )

@@ -117,7 +117,7 @@ def update(dry_run: Annotated[bool, option("--dry-run", "Only print what would b
         console.note("Nothing was changed. To do it: course update")
     if not dry_run:
         if old != new:
-            here.workspace.with_version(new)
+            here.workspace.note_version(new)
             console.line(f"The workspace is at version {new} now (it was {old}).")
         here.record("update", "", {"from": old, "to": new, "changes": [[c.path, c.action] for c in changes]})
     return here.answer(Update(dry_run=dry_run, from_version=old, to_version=new, changes=changes))
@@ -150,10 +150,7 @@ def _update_notebook(here: Here, notebook: Generated, *, dry_run: bool) -> Chang
     with contextlib.suppress(CannotMergeError):
         new = merged(mine, notebook.data)
         action = "current" if new == mine else "replace" if is_untouched(mine) else "merge"
-    to = path.with_name(f"{path.stem}.new.ipynb") if action == "beside" else path
-    kept = None if dry_run or action == "current" else write(to, new, why="update").backup
-    beside = str(to) if action == "beside" else None
-    return Change(path=str(path), action=action, new=beside, backup=kept.backup if kept else None)
+    return _put(path, f"{path.stem}.new.ipynb", new, action, dry_run=dry_run or action == "current")
 
 
 def _update_file(here: Here, exercise: Exercise, name: str, new: bytes, *, dry_run: bool) -> Change:
@@ -164,26 +161,27 @@ def _update_file(here: Here, exercise: Exercise, name: str, new: bytes, *, dry_r
         return Change(path=str(path), action="missing")
     mine = path.read_bytes()
     if same_text(mine, new):
-        if not dry_run and given != new:
-            workspace.remember(exercise.place, name, new)
-        return Change(path=str(path), action="current")
-    if given is not None and same_text(given, new):
+        action = "current"
+    elif given is not None and same_text(given, new):
         return Change(path=str(path), action="current")  # edited by the student, and nothing newer to offer
-    if not workspace.is_edited(exercise.place, name, mine):
-        backup = None
-        if not dry_run:
-            backup = str(workspace.backup(path, "update"))
-            write_atomically(path, new)
-            workspace.remember(exercise.place, name, new)
-        return Change(path=str(path), action="replace", backup=backup)
-    beside = path.with_name(f"{name}.new")
-    backup = None
-    if not dry_run:
-        if beside.is_file() and beside.read_bytes() != new:
-            backup = str(workspace.backup(beside, "update"))
-        write_atomically(beside, new)
+    else:
+        action = "beside" if workspace.is_edited(exercise.place, name, mine) else "replace"
+    change = _put(path, f"{name}.new", new, action, dry_run=dry_run or action == "current")
+    if not dry_run and given != new:
         workspace.remember(exercise.place, name, new)
-    return Change(path=str(path), action="beside", new=str(beside), backup=backup)
+    return change
+
+
+def _put(path: Path, beside: str, new: bytes, action: str, *, dry_run: bool) -> Change:
+    """Write the newer content where the action wants it, with a copy of what it replaces."""
+    to = path.with_name(beside) if action == "beside" else path
+    kept = None if dry_run else write(to, new, why="update").backup
+    return Change(
+        path=str(path),
+        action=action,
+        new=str(to) if action == "beside" else None,
+        backup=kept.backup if kept else None,
+    )
 
 
 def _sentence(here: Here, change: Change, *, dry_run: bool) -> str:

@@ -17,7 +17,6 @@ from course.cli.work.verdict import (
     FORMATS,
     annotate,
     annotate_error,
-    known_format,
     show_changes,
     show_loading,
     show_verdict,
@@ -80,9 +79,6 @@ def _reply(check: str, curve: Curve) -> CurveReply:
     return filled(CurveReply, curve, check=check, **points)
 
 
-FAILED = 1
-
-
 def check(
     exercise: ExerciseName = None,
     everything: Annotated[bool, option("--all", "Check every exercise you have started.")] = False,
@@ -105,7 +101,8 @@ def check(
 
     from course.isolation.probe import kept_sandboxes
 
-    form = known_format(form)
+    if form not in FORMATS:
+        raise UsageError(f"There is no format {form[:20]!r}.", help=f"Formats: {', '.join(FORMATS)}.")
     console, here = current(), Here.load()
     if everything:
         if exercise is not None or only is not None:
@@ -142,7 +139,7 @@ def reply_to(
     return filled(
         Check,
         verdict,
-        exit_code=0 if verdict.all_pass else FAILED,
+        exit_code=0 if verdict.all_pass else 1,
         course=course,
         next=NextStep(step) if step else None,
         printed=printed,
@@ -179,8 +176,12 @@ def _check_one(
         brief = exercise.is_warm_up and not verbose
         if console.draws:  # above, so that the finding stays on the screen
             show_curve(console, made)
-        if only is None:
-            _show_changes(console, here, exercise)
+        if only is None:  # first the functions that the last edit broke, and those that it fixed
+            fixed, broke = (
+                [f"{task.title}  [{task.id}]" for task in exercise.task if task.id in changed]
+                for changed in here.known_history(exercise).changed_tasks()
+            )
+            show_changes(console, broke, fixed)
         show_verdict(console, exercise, verdict, verbose=verbose, whole=only is None, brief=brief)
         if not console.draws:
             show_curve(console, made, drawn=False)
@@ -189,15 +190,6 @@ def _check_one(
     step = next_step(here, made) if only is None or not verdict.all_pass else ""
     again = f"course check {exercise.id}"
     return reply_to(here.course, verdict, step or again, made.printed, curve_replies(made))
-
-
-def _show_changes(console: Console, here: Here, exercise: Exercise) -> None:
-    """First the functions that the last edit broke, and those that it fixed."""
-    fixed, broke = (
-        [f"{task.title}  [{task.id}]" for task in exercise.task if task.id in changed]
-        for changed in here.known_history(exercise).changed_tasks()
-    )
-    show_changes(console, broke, fixed)
 
 
 def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int:

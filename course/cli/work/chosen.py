@@ -135,16 +135,17 @@ def work_of(
     left_out: list[FileReply] = []
     started = here.warm_ups_started() if warm_ups else ()
     for exercise in only or (*here.catalog.exercises(), *started):
-        module = _handed_in_module(here, exercise)
+        there = here.workspace.path(exercise.place, exercise.module).exists()
+        module = _module(here, exercise) if there else None
         notebook, why_not = _handed_in_notebook(here, exercise)
-        if isinstance(module, StudentWork):
+        if module is not None and _is_edited(here, module):
             chosen.append(module)
             why_not = f"{exercise.module} was worked in too, and is handed in" if notebook else why_not
         elif notebook is not None:
             chosen.append(notebook)
-        elif module == _STUB or exercise.id in here.workspace.started() or here.moved(exercise):
+        elif there or exercise.id in here.workspace.started() or here.moved(exercise):
             other = here.misnamed(exercise) or here.moved(exercise)
-            why = f"{module}; {other} is not read" if other else module
+            why = (_STUB if there else "not there") + (f"; {other} is not read" if other else "")
             left_out.append(FileReply(path=f"{exercise.place}/{exercise.module}", action=why))
         if why_not:
             path = f"{exercise.place}/{_notebook_name(exercise)}"
@@ -152,7 +153,7 @@ def work_of(
     return chosen, left_out
 
 
-_STUB, _MISSING = "still the stub", "not there"
+_STUB = "still the stub"
 
 
 def _notebook_name(exercise: Exercise) -> str:
@@ -204,7 +205,6 @@ def _notebook(here: Here, exercise: Exercise) -> StudentWork:
 
 
 def _is_edited(here: Here, work: StudentWork) -> bool:
-    """Whether a file was edited since it was handed out."""
     if work.notebook is None:
         return here.workspace.is_edited(work.exercise.place, work.name, work.data)
     return not is_untouched(work.data) and fingerprint(work.source) != fingerprint(work.stub)
@@ -228,16 +228,10 @@ def _beside_notebook(here: Here, module: StudentWork) -> StudentWork:
 # -- as they are handed in -----------------------------------------------------------------------------------
 
 
-def _handed_in_module(here: Here, exercise: Exercise) -> StudentWork | str:
-    """The module to hand in, or why there is none."""
-    if not here.workspace.path(exercise.place, exercise.module).exists():
-        return _MISSING
-    module = _module(here, exercise)
-    return module if _is_edited(here, module) else _STUB
-
-
 def _handed_in_notebook(here: Here, exercise: Exercise) -> tuple[StudentWork | None, str]:
     """The notebook to hand in; or None and the reason, "" where there is none."""
+    from course.handed_in.notebook import notebook_source
+
     if not here.workspace.path(exercise.place, _notebook_name(exercise)).exists():
         return None, ""
     try:
@@ -252,26 +246,11 @@ def _handed_in_notebook(here: Here, exercise: Exercise) -> tuple[StudentWork | N
         return None, "its outputs cannot be read; clear them in Jupyter and save it again"
     if len(small) > MAX_FILE:
         return None, f"larger than {MAX_FILE:,} bytes without its outputs, which no grading run takes"
-    return replace(notebook, data=small), ""
-
-
-def as_handed_in(work: StudentWork) -> Submission:
-    """A file as a grading run reads it: from the bytes that go into the archive alone.
-
-    Raises:
-        UngradableError: it is a notebook that cannot be graded.
-    """
-    from course.scoring.judging.submission import Submission
-
-    if work.notebook is None:
-        return Submission({work.exercise.module: work.data})
-    from course.handed_in.notebook import notebook_source
-
-    return notebook_source(work.data, work.exercise, work.name).submission(work.exercise)
+    # As a grading run reads it: from the bytes that go into the archive alone.
+    return replace(notebook, data=small, notebook=notebook_source(small, exercise, notebook.name)), ""
 
 
 def _without_outputs(data: bytes) -> bytes:
-    """A notebook without outputs, which are large and are not graded."""
     notebook = json.loads(data.decode("utf-8-sig"))
     sheets = [notebook, *notebook.get("worksheets", [])]
     for cell in (cell for sheet in sheets for cell in sheet.get("cells", [])):

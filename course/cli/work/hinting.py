@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
+from msgspec.structs import replace
+
 from course.catalog.models import Exercise, Rubric
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, named
@@ -68,29 +70,40 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
     """Decide what to show, and record it if it is new; arguments as of ``give_hint``."""
     history = here.history(exercise)
     started = exercise.id in here.workspace.started()
-    again = f"course check {exercise.id}" if started else f"course start {exercise.id}"
+    again = NextStep(f"course check {exercise.id}" if started else f"course start {exercise.id}")
     task = _task(exercise, history, wanted)
     last = history.last
+    reply = Hint(exercise=exercise.id, given=False, reason="", task=None, hint=None, message="", next=again)
     if last is None:
         message = "Hints follow a check that failed. Check your work first."
-        return _hint(exercise, again, reason="not_checked", message=message)
+        return replace(reply, reason="not_checked", message=message)
     if started and not here.workspace.has_file(exercise.place, exercise.module):
         here.source(exercise)  # raises, and says how to get it back
     if last.state != "graded":
         message = "Your file could not be run at the last check; what that check said is the hint for now."
-        return _hint(exercise, again, reason="ungradable", message=message)
+        return replace(reply, reason="ungradable", message=message)
     if task is None:
         which = f"Every public check of {wanted} passes" if wanted else "Every public check passes"
         done = after_warm_up(here, exercise) if exercise.is_warm_up else "course submit"
-        step = again if wanted else done
+        step = again if wanted else NextStep(done)
         message = f"{which}: there is nothing to hint at."
-        return _hint(exercise, step, reason="passing", message=message)
+        return replace(reply, reason="passing", message=message, next=step)
+    reply = replace(reply, task=task)
     entry, shown, failed = exercise.task_called(task), history.hints_for(task), history.diagnosed(task)
     begun = task not in history.unwritten_tasks()
     if not begun or not history.hint_is_due(fingerprint(here.stub(exercise))):
         shown_last = next((index for index in reversed(shown) if index < len(entry.hints)), None)
-        last_words = None if shown_last is None else entry.said(shown_last, failed)
-        return _not_due(exercise, task, last_words, named or _file_name(here, exercise))
+        file = named or _file_name(here, exercise)
+        step = NextStep(f"course check {exercise.id}")
+        words = None if shown_last is None else entry.said(shown_last, failed)
+        message = (
+            f"The first hint follows an attempt at this function. Write something in {file}, however rough, "
+            "and check it; then ask again."
+            if words is None
+            else f"You have had that one already. The next one follows a check that fails on changed code in "
+            f"{file}."
+        )
+        return replace(reply, reason="unchanged", hint=words, message=message, next=step)
     following = entry.following({code for code, _ in failed}, shown)
     if following is None:
         message = (
@@ -98,10 +111,10 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
             f"Read the lesson again with this function beside it: course lesson {exercise.lesson}. "
             "A solution can be shown after a pass, where one was released."
         )
-        step = f"course lesson {exercise.lesson}"
-        return _hint(exercise, step, reason="exhausted", task=task, message=message)
+        step = NextStep(f"course lesson {exercise.lesson}")
+        return replace(reply, reason="exhausted", message=message, next=step)
     here.record("hint", exercise.id, {"task": task, "index": following, "fingerprint": last.fingerprint})
-    return _hint(exercise, again, given=True, task=task, hint=entry.said(following, failed))
+    return replace(reply, given=True, hint=entry.said(following, failed))
 
 
 def _task(exercise: Exercise, history: History, wanted: str | None) -> str | None:
@@ -125,42 +138,6 @@ def _file_name(here: Here, exercise: Exercise) -> str:
         return chosen_work(here, exercise).name
     except CourseError:
         return exercise.module
-
-
-def _not_due(exercise: Exercise, task: str, last: str | None, file: str) -> Hint:
-    if last is None:
-        message = (
-            f"The first hint follows an attempt at this function. Write something in {file}, however rough, "
-            "and check it; then ask again."
-        )
-    else:
-        message = (
-            "You have had that one already. The next one follows a check that fails on changed code in "
-            f"{file}."
-        )
-    step = f"course check {exercise.id}"
-    return _hint(exercise, step, reason="unchanged", task=task, hint=last, message=message)
-
-
-def _hint(
-    exercise: Exercise,
-    step: str,
-    *,
-    given: bool = False,
-    reason: str = "",
-    task: str | None = None,
-    hint: str | None = None,
-    message: str = "",
-) -> Hint:
-    return Hint(
-        exercise=exercise.id,
-        given=given,
-        reason=reason,
-        task=task,
-        hint=hint,
-        message=message,
-        next=NextStep(step),
-    )
 
 
 def solution(exercise: ExerciseName = None) -> int:
@@ -313,7 +290,6 @@ def _rubric(here: Here, chosen: Exercise) -> Rubric:
 
 
 def _recorded(here: Here, chosen: Exercise, rubric: Rubric) -> tuple[str, tuple[str, ...]]:
-    """The newest answer and the newest grades."""
     said = ""
     graded: tuple[str, ...] = ()
     for event in here.workspace.store.events(KIND, chosen.id):

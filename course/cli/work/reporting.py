@@ -106,7 +106,6 @@ def _drawn(console: Console, plot: Plot, path: Path) -> WrittenFile:
 
 
 def _write_bag(console: Console, made: Report, bag: Path) -> str:
-    """Write the streams as a bag, and list its content."""
     if not made.streams:
         raise UsageError(
             "This report has no sensor streams to write.",

@@ -21,7 +21,7 @@ from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here, named
 from course.cli.frame.options import argument, exercise_ids, option
 from course.cli.frame.replies import FileReply
-from course.cli.work.chosen import StudentWork, as_handed_in, work_of
+from course.cli.work.chosen import StudentWork, work_of
 from course.cli.work.replies import Submit, SubmitFile
 from course.errors import CourseError, UngradableError, UsageError
 from course.handed_in import attempts
@@ -76,9 +76,8 @@ def submit(
         console.line(f"There was a file of that name; it is kept at {here.workspace.shown(Path(backup))}.")
     console.line((f"Wrote {target}.", "bold"))
     console.note("Hand in that file. Hidden checks run when it is graded.")
-    for note in (*notes, *here.warnings):
-        console.warn(note)
-    console.emit(
+    here.warnings[:0] = notes
+    return here.answer(
         Submit(
             course=here.course,
             output=str(target),
@@ -89,7 +88,6 @@ def submit(
             warnings=tuple(notes),
         )
     )
-    return 0
 
 
 def archive(
@@ -187,7 +185,7 @@ def _checked(console: Console, here: Here, works: Sequence[StudentWork]) -> list
 
 def _check(here: Here, work: StudentWork) -> _GoesIn:
     try:
-        made = attempts.attempt(work.exercise, here.catalog, as_handed_in(work))
+        made = attempts.attempt(work.exercise, here.catalog, work.submission)
         if not _is_known(here, work):
             here.record("check", work.exercise.id, made.data(here.catalog.version, one_of_many=True))
     except CourseError as error:
@@ -250,7 +248,6 @@ def _show(
 
 
 def _score(one: _GoesIn) -> str:
-    """What the public checks say of a file."""
     verdict, exercise = one.verdict, one.work.exercise
     if verdict is None or verdict.state != "graded":
         return "not checked" if verdict is None else "cannot be graded"

@@ -17,7 +17,7 @@ from course.catalog.models import Exercise, Task
 from course.cli.frame.console import STATUS_STYLE, Console
 from course.cli.frame.here import Here, cwd
 from course.cli.work.chosen import StudentWork
-from course.errors import CourseError, UsageError
+from course.errors import CourseError
 from course.printable import counted, steady, unheeded
 from course.scoring.verdict import CheckResult, Verdict, format_points, in_points, numbers_of
 
@@ -52,14 +52,6 @@ def show_loading(console: Console, printed: str, *, whole: bool) -> None:
     if printed and not console.quiet:
         show_lines(console, "Loading your file printed:", printed, whole=whole)
         console.gap()
-
-
-def show_unshown(console: Console, verdict: Verdict) -> None:
-    """Say that passing checks printed something."""
-    count = sum(1 for check in verdict.checks if check.status == "pass" and check.stdout)
-    if count:
-        what = "a check that passes" if count == 1 else f"{count} checks that pass"
-        console.note((f"Your code printed in {what}; --verbose shows it.", "dim"))
 
 
 _DETAIL_INDENT = 4
@@ -105,8 +97,10 @@ def show_verdict(
             if check.task not in known:
                 page.check(check)
         page.close(keyed=keyed)
-        if not verbose:
-            show_unshown(console, verdict)
+        unshown = sum(check.status == "pass" and bool(check.stdout) for check in verdict.checks)
+        if unshown and not verbose:
+            what = "a check that passes" if unshown == 1 else f"{unshown} checks that pass"
+            console.note((f"Your code printed in {what}; --verbose shows it.", "dim"))
         for warning in verdict.warnings:
             console.line(f"Note: {warning}")
     sentences = summary(exercise, verdict) if whole else _part(verdict)
@@ -372,24 +366,13 @@ FORMATS = ("text", "github", "lines")
 _FRAME = re.compile(r"^\S+\.py:(\d+) in ", re.MULTILINE)
 
 
-def known_format(name: str) -> str:
-    """The name of a format.
-
-    Raises:
-        UsageError: there is none of that name.
-    """
-    if name not in FORMATS:
-        raise UsageError(f"There is no format {name[:20]!r}.", help=f"Formats: {', '.join(FORMATS)}.")
-    return name
-
-
 def annotate(console: Console, here: Here, work: StudentWork, verdict: Verdict, form: str) -> None:
     """One line for each cause of a failed check; a cause of several is said once."""
     said = set()
     for check in verdict.checks:
         if check.status in {"pass", "skip"}:
             continue
-        line = _line_of(work, check)
+        line = line_of(work.data.decode("utf-8", "replace"), check, traced=work.notebook is None)
         if (line, check.message) in said:
             continue
         said.add((line, check.message))
@@ -451,11 +434,6 @@ def unread_line(source: bytes | str) -> int:
     except (SyntaxError, ValueError, LookupError) as problem:  # the last: a codec of no text
         return getattr(problem, "lineno", None) or 1
     return 1
-
-
-def _line_of(work: StudentWork, check: CheckResult) -> int:
-    text = work.data.decode("utf-8", "replace")
-    return line_of(text, check, traced=work.notebook is None)
 
 
 def line_of(text: str, check: CheckResult, *, traced: bool = True) -> int:

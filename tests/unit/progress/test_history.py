@@ -1,13 +1,19 @@
-"""What the events of an exercise add up to: above all, when a hint is due."""
+"""What the events add up to: when a hint is due, its numbers, the mistakes made, and where a student is."""
 
 from __future__ import annotations
 
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from course.progress.history import fingerprint, history_of
-from course.progress.store import Event
+from course.catalog.load import Catalog
+from course.cli.frame import app
+from course.errors import IntegrityError
+from course.handed_in.attempts import Attempt, numbers_of
+from course.progress.history import Standing, fingerprint, history_of, mistakes_of
+from course.progress.store import Event, Store
+from course.progress.workspace import Workspace
+from course.scoring.verdict import CheckResult, Status, Verdict, Visibility
 
 STUB = fingerprint(b"def double(x):\n    raise NotImplementedError\n")
 FIRST = fingerprint(b"def double(x):\n    return x\n")
@@ -53,11 +59,6 @@ def test_a_hint_is_due_after_a_failed_check_of_code_changed_since_the_last_one(w
     history = _history(*events)
     assert history.hint_is_due(STUB) is due
     assert history.hints_for("double") == tuple(data["index"] for kind, data in events if kind == "hint")
-
-
-def test_failing_tasks_are_those_of_the_newest_whole_run():
-    assert _history(_check(FIRST), _check(SECOND, status="pass")).failing_tasks() == frozenset()
-    assert _history(_check(FIRST, status="pass"), _check(SECOND)).failing_tasks() == {"double"}
 
 
 @pytest.mark.parametrize("odd", ["abc", None, [1], float("nan"), {}])
@@ -110,18 +111,168 @@ def test_records_with_missing_fields_are_understood():
     assert history.failing_tasks() == frozenset()
 
 
-def test_a_function_that_is_not_begun_earns_no_hint_when_another_one_was_written():
-    def checks(first, second):
-        both = (("double", first), ("halve", second))
-        return [
-            {"id": task, "task": task, "status": "pass" if code is None else "fail", "diagnosis": code}
-            for task, code in both
-        ]
+NOW = datetime(2025, 1, 1, tzinfo=UTC)
 
-    new = "NOT_IMPLEMENTED"
-    history = _history(_check(FIRST, checks=checks(None, new)))
-    assert (history.failing_tasks(), history.unwritten_tasks()) == ({"halve"}, {"halve"})
-    assert not history.hint_is_due(STUB)
-    history = _history(_check(FIRST, checks=checks("SIGN", new)))
-    assert history.unwritten_tasks() == {"halve"}
-    assert history.hint_is_due(STUB)
+
+def failed(expected=None, actual=None, **fields):
+    usual = {
+        "id": "reach", "title": "", "task": "throw", "status": Status.FAIL, "visibility": Visibility.PUBLIC,
+        "points": 0.0, "max_points": 1.0, "expected": expected, "actual": actual,
+    }  # fmt: skip
+    return CheckResult(**(usual | fields))
+
+
+def recorded(*checks):
+    """What ``course check`` writes down."""
+    verdict = Verdict(
+        exercise="throwing", scope="public", state="graded", score=0.0, max_score=1.0, passed=False,
+        checks=checks, isolation="L1",
+    )  # fmt: skip
+    return Attempt(None, b"", verdict, 0.1).data("1")
+
+
+@pytest.mark.parametrize(
+    ("expected", "got", "fields"),
+    [
+        (4.5, 3.75, {"expected": "4.5", "got": "3.75", "off": "-0.75", "ratio": "0.8333"}),
+        (2.0, 2.00000001, {"expected": "2", "got": "2.00000001", "off": "+1e-08"}),
+        (30, 29, {"expected": "30", "got": "29", "off": "-1", "ratio": "0.9667"}),
+        (0.0, 1.0, {"expected": "0", "got": "1", "off": "+1"}),
+        (2.0, -0.0, {"expected": "2", "got": "0", "off": "-2"}),
+        (1.0, float("inf"), {"expected": "1", "got": "inf"}),
+        (True, False, {"expected": "True", "got": "False"}),
+        ([1.0, 2], [1.0, 3], {"expected": "[1, 2]", "got": "[1, 3]"}),
+        (
+            {"q[2]": 0.5},
+            {"q[2]": 1.0},
+            {"expected": "0.5", "got": "1", "off": "+0.5", "ratio": "2", "at": "q[2]"},
+        ),
+        ({"at most": 0.03}, 2.0, {"expected": "at most 0.03", "got": "2"}),
+        (None, 3.0, {"got": "3"}),
+        (3.0, None, {"expected": "3"}),
+        (list(range(9)), 1, {"got": "1"}),
+        ("a result", "ValueError: " + 40 * "x", {"expected": "a result"}),
+        (1, 10**400, {"expected": "1"}),
+        (None, None, {}),
+    ],
+)
+def test_values_are_written_for_a_sentence_or_left_out(expected, got, fields):
+    assert numbers_of(failed(expected, got)) == fields
+
+
+def test_inputs_are_fields_by_their_names():
+    given = {"h": 1 / 30, "q0": [1e7, 1e7 + 0.3], "path": list(range(50))}
+    found = numbers_of(failed(2.0, 1.0, input=given))
+    assert found == {
+        "h": "0.03333",
+        "q0": "[10000000, 10000000.3]",
+        "expected": "2",
+        "got": "1",
+        "off": "-1",
+        "ratio": "0.5",
+    }
+
+
+@pytest.mark.parametrize("other", [{"visibility": Visibility.HIDDEN}, {"status": Status.PASS}])
+def test_nothing_is_told_of_a_hidden_check_or_of_one_that_passed(other):
+    check = failed(2.0, 1.0, input={"h": 0.05}, **other)
+    assert numbers_of(check) == {}
+    assert "numbers" not in recorded(check)["checks"][0]
+
+
+@pytest.mark.parametrize("odd", ["abc", 3, None, [1]])
+def test_a_record_that_somebody_changed_has_no_numbers(odd):
+    data = recorded(failed(2.0, 1.0))
+    data["checks"][0]["numbers"] = odd
+    history = history_of([Event(id=1, at=NOW, kind="check", subject="throwing", data=data)])
+    assert history.diagnosed("throw") == (("", {}),)
+
+
+START = datetime(2026, 11, 22, 10, tzinfo=UTC)
+
+
+def run(minute: int, *checks: tuple[str, str, str | None], subject: str = "integrators") -> Event:
+    """(id, status, diagnosis) of each check of one function."""
+    results = [
+        failed(id=name, task="step", status=status, diagnosis=diagnosis) for name, status, diagnosis in checks
+    ]
+    return Event(minute, START + timedelta(minutes=minute), "check", subject, recorded(*results))
+
+
+def test_a_mistake_has_its_first_and_last_run_and_the_one_that_mended_it():
+    (one,) = mistakes_of(
+        [
+            run(1, ("order", "fail", "SWAPPED"), ("energy", "fail", "SWAPPED")),
+            run(2, ("order", "fail", "SWAPPED"), ("energy", "pass", None)),
+            run(3, ("order", "pass", None), ("energy", "pass", None)),
+            run(4, ("order", "pass", None), ("energy", "pass", None)),
+        ]
+    )
+    assert (one.exercise, one.task, one.diagnosis, one.runs) == ("integrators", "step", "SWAPPED", 2)
+    minutes = [(at - START).seconds // 60 for at in (one.first, one.last, one.mended)]
+    assert minutes == [1, 2, 3]
+
+
+@pytest.mark.parametrize(
+    ("later", "found"),
+    [
+        ([run(2, ("order", "fail", "SIGN"))], [("SWAPPED", 1), ("SIGN", 1)]),
+        ([run(2, ("order", "pass", None)), run(3, ("order", "fail", "SWAPPED"))], [("SWAPPED", 2)]),
+        ([run(2, ("order", "pass", None), subject="other")], [("SWAPPED", 1)]),
+        ([run(2, ("order", "skip", None))], [("SWAPPED", 1)]),
+    ],
+    ids=["another failure of its check", "made again", "a check of that name elsewhere", "skipped"],
+)
+def test_what_mends_no_mistake(later: list[Event], found: list[tuple[str, int]]):
+    mistakes = mistakes_of([run(1, ("order", "fail", "SWAPPED")), *later])
+    assert [(one.diagnosis, one.runs) for one in mistakes] == found
+    assert {one.mended for one in mistakes} == {None}
+
+
+def test_work_to_do_and_what_follows_from_a_mistake_are_none():
+    codes = ("NOT_IMPLEMENTED", "MISSING_FUNCTION", "CALLS_A_WRONG_FUNCTION")
+    assert mistakes_of([run(1, *((code, "fail", code) for code in codes))]) == ()
+
+
+@pytest.fixture
+def workspace(tmp_path, monkeypatch):
+    """A workspace of the course itself with a lesson read and an exercise begun; the current folder."""
+    catalog = Catalog()
+    made = Workspace.create(tmp_path / "w", catalog.course_id, catalog.version)
+    monkeypatch.chdir(made.root)
+    first, *_ = catalog.exercises()
+    made.store.append("lesson", first.lesson)
+    made.store.append("start", first.id)
+    made.give(first.place, first.module, first.stub_path.read_bytes())
+    return made
+
+
+def test_the_record_is_read_once(workspace, monkeypatch):
+    reads, connection = [], Store._connection
+    monkeypatch.setattr(
+        Store, "_connection", lambda self, *, create: reads.append(create) or connection(self, create=create)
+    )
+    for command in ((), ("progress",), ("exercises",), ("lessons",), ("next",), ("go", "--json")):
+        reads.clear()
+        assert (app.run(command), reads) == (0, [False]), command
+
+
+def test_an_event_that_somebody_spoilt_costs_those_alone_who_need_it(workspace, monkeypatch):
+    monkeypatch.setattr("course.progress.store._now", lambda: "some time")
+    workspace.store.append("check", "elsewhere")
+    standing = Standing(workspace)
+    (name,) = standing.started
+    assert standing.is_begun(name)
+    assert len(standing.read) == 1
+    with pytest.raises(IntegrityError, match="event 3 cannot be read"):
+        standing.history("elsewhere")
+    with pytest.raises(IntegrityError, match="event 3 cannot be read"):
+        assert standing.quiz.best is None
+
+
+@pytest.mark.parametrize(("data", "read"), [({"version": "1.2.0"}, {"a", "b"}), ({"blocks": 40}, {"a"})])
+def test_who_read_a_lesson_before_it_was_parted_has_read_both(workspace, data, read):
+    workspace.store.append("lesson", "a", data)
+    standing = Standing(workspace, {"b": "a"})
+    assert standing.read.keys() & {"a", "b"} == read
+    assert {standing.read[name] for name in read} == {standing.read["a"]}

@@ -55,26 +55,12 @@ explanation = "Neither number is nothing."
 id = "apples"
 prompt = "An apple and a pear?"
 source = "Somebody 2001"
-[[variant.option]]
-id = "two-fruits"
-text = "Two fruits"
-right = true
-explanation = "Both are fruits."
-[[variant.option]]
-id = "two-apples"
-text = "Two apples"
-misconception = "counts-on"
-explanation = "A pear is no apple."
-[[variant.option]]
-id = "no-fruit"
-text = "No fruit"
-misconception = "takes-away"
-explanation = "Nobody took them."
-[[variant.option]]
-id = "one-fruit"
-text = "One fruit"
-misconception = "takes-away"
-explanation = "Nobody ate one."
+option = [
+  { id = "two-fruits", text = "Two fruits", right = true, explanation = "Both are fruits." },
+  { id = "two-apples", text = "Two apples", misconception = "counts-on", explanation = "No apple." },
+  { id = "no-fruit", text = "No fruit", misconception = "takes-away", explanation = "Nobody took them." },
+  { id = "one-fruit", text = "One fruit", misconception = "takes-away", explanation = "Nobody ate one." },
+]
 """
 
 COLOURS = """\

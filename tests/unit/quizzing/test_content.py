@@ -118,16 +118,15 @@ def test_what_the_questions_on_choosing_say_of_engines_is_in_the_reference() -> 
 # -- the numbers, against the physics --------------------------------------------------------------------
 
 
+def motion(stepper, system, q: float, h: float, steps: float):
+    """From rest, so many steps."""
+    return steppers.trajectory(stepper, system, steppers.State.at_rest([q]), h, round(steps))
+
+
 def test_the_energy_of_the_spring_is_what_explicit_euler_gives(bank: Bank) -> None:
     for shown in cases(bank, "numerical-integration", "growing-spring"):
         omega, h, t_end = numbers(shown.prompt)
-        path = steppers.trajectory(
-            steppers.ExplicitEuler(),
-            Oscillator(omega=omega),
-            steppers.State.at_rest([1.0]),
-            h,
-            round(t_end / h),
-        )
+        path = motion(steppers.ExplicitEuler(), Oscillator(omega=omega), 1.0, h, t_end / h)
         energy = path.v[:, 0] ** 2 + (omega * path.q[:, 0]) ** 2
         assert numbers(shown.key.text)[0] == pytest.approx(energy[-1] / energy[0], rel=0.006)
 
@@ -138,7 +137,7 @@ def test_the_energy_of_the_spring_is_what_explicit_euler_gives(bank: Bank) -> No
 def test_the_bias_of_the_falling_ball_is_what_the_methods_give(bank: Bank, option: str, stepper) -> None:
     for shown in cases(bank, "numerical-integration", "falling-ball"):
         t_end, h = numbers(shown.prompt)[:2]
-        path = steppers.trajectory(stepper(), FreeFall(), steppers.State.at_rest([0.0]), h, round(t_end / h))
+        path = motion(stepper(), FreeFall(), 0.0, h, t_end / h)
         off = path.q[-1, 0] + 9.81 * t_end**2 / 2
         choice = shown.choice(option)
         assert choice is not None
@@ -150,16 +149,11 @@ def test_the_stiff_contact_blows_up_just_above_the_limit(bank: Bank) -> None:
     for shown in cases(bank, "numerical-integration", "stiff-contact"):
         k, m = numbers(shown.prompt)[:2]
         limit = numbers(shown.key.text)[0] / 1000
-        grown = []
-        for h in (0.99 * limit, 1.01 * limit):
-            path = steppers.trajectory(
-                steppers.SemiImplicitEuler(),
-                Oscillator(omega=float(np.sqrt(k / m))),
-                steppers.State.at_rest([1.0]),
-                h,
-                500,
-            )
-            grown.append(np.abs(path.q).max())
+        spring = Oscillator(omega=float(np.sqrt(k / m)))
+        paths = [
+            motion(steppers.SemiImplicitEuler(), spring, 1.0, h, 500) for h in (0.99 * limit, 1.01 * limit)
+        ]
+        grown = [np.abs(path.q).max() for path in paths]
         assert grown[0] < 20
         assert grown[1] > 1e20
 
@@ -167,9 +161,7 @@ def test_the_stiff_contact_blows_up_just_above_the_limit(bank: Bank) -> None:
 def test_the_finer_verlet_error_falls_as_the_method_does(bank: Bank) -> None:
     @cache
     def error(h: float) -> float:
-        path = steppers.trajectory(
-            steppers.VelocityVerlet(), Oscillator(omega=1.0), steppers.State.at_rest([1.0]), h, round(6.0 / h)
-        )
+        path = motion(steppers.VelocityVerlet(), Oscillator(omega=1.0), 1.0, h, 6.0 / h)
         return float(abs(path.q[-1, 0] - np.cos(6.0)))
 
     for shown in cases(bank, "numerical-integration", "finer-verlet"):

@@ -15,7 +15,8 @@ from course.errors import UngradableError
 from course.grading.quiz import grade_quiz, quiz_version, record_sha256, score_record
 from course.progress import quiz as progress
 from course.progress.store import Store
-from course.quizzing.bank import MAX_SEED, Bank, mark
+from course.quizzing.bank import MAX_SEED, Bank
+from course.quizzing.desk import answered, begun, finished, reviewed
 from course.scoring.verdict import Status
 
 
@@ -35,16 +36,19 @@ def attempt(bank: Bank, seed: int, wrong: int = 0) -> dict[str, Any]:
     }
 
 
-def take(store: Store, bank: Bank, name: str, seed: int, wrong: int = 0, *, finish: bool = True) -> None:
+@pytest.fixture
+def store(tmp_path: Path) -> Store:
+    return Store(tmp_path / "p.sqlite")
+
+
+def take(store: Store, bank: Bank, seed: int, wrong: int = 0, *, finish: bool = True) -> progress.Attempt:
     """What ``course quiz take`` records."""
-    record = attempt(bank, seed, wrong)
-    store.append(progress.START, "", progress.start_data(name, seed, "1.0.0", bank.ids))
-    for question, option in record["answers"].items():
-        store.append(progress.ANSWER, question, progress.answer_data(name, option))
+    taken = begun(bank, seed, "1.0.0", store.append)
+    for question, option in attempt(bank, seed, wrong)["answers"].items():
+        answered(taken, question, option, store.append)
     if finish:
-        result = mark(bank.pose(seed), record["answers"])
-        right = {marked.posed.question: marked.right for marked in result.marked}
-        store.append(progress.DONE, "", progress.done_data(name, right, passed=result.passed))
+        finished(taken, bank.pose(seed), store.append)
+    return taken
 
 
 def history(store: Store) -> progress.QuizHistory:
@@ -54,63 +58,56 @@ def history(store: Store) -> progress.QuizHistory:
 # -- the record of progress ------------------------------------------------------------------------------
 
 
-def test_the_newest_attempt_goes_on_until_it_is_finished(tmp_path: Path, bank: Bank) -> None:
-    store = Store(tmp_path / "p.sqlite")
-    take(store, bank, "one", 5, finish=False)
-    take(store, bank, "two", 6, finish=False)
-    newest = history(store).open
-    assert newest is not None
-    assert newest.id == "two"
+def test_the_newest_attempt_goes_on_until_it_is_finished(store: Store, bank: Bank) -> None:
+    take(store, bank, 5, finish=False)
+    newest = take(store, bank, 6, finish=False)
+    left = history(store).open
+    assert left is not None
+    assert left.id == newest.id
     assert progress.records(history(store)) == []
 
 
-def test_the_first_answer_counts_and_nothing_after_the_end(tmp_path: Path, bank: Bank) -> None:
-    store = Store(tmp_path / "p.sqlite")
-    take(store, bank, "one", 5)
+def test_the_first_answer_counts_and_nothing_after_the_end(store: Store, bank: Bank) -> None:
+    """Two terminals may go on with the same attempt."""
+    one = take(store, bank, 5, finish=False)
+    answered(one, "sums", "none", store.append)
+    assert history(store).attempts[0].answers == attempt(bank, 5)["answers"]
+    one.answers |= attempt(bank, 5)["answers"]
+    finished(one, bank.pose(5), store.append)
     before = history(store)
-    store.append(progress.ANSWER, "sums", progress.answer_data("one", "none"))
-    store.append(progress.DONE, "", progress.done_data("one", {"sums": False}, passed=False))
-    store.append(progress.ANSWER, "sums", progress.answer_data("nobody", "none"))
+    answered(one, "sums", "none", store.append)
+    finished(one, bank.pose(5), store.append)
+    store.append(progress.ANSWER, "sums", {"attempt": "nobody", "option": "none"})
     assert history(store) == before
 
 
-def test_of_two_answers_to_one_question_the_first_counts(tmp_path: Path, bank: Bank) -> None:
-    """Two terminals may go on with the same attempt."""
-    store = Store(tmp_path / "p.sqlite")
-    take(store, bank, "one", 5, finish=False)
-    store.append(progress.ANSWER, "sums", progress.answer_data("one", "none"))
-    assert history(store).attempts[0].answers == attempt(bank, 5)["answers"]
-
-
-def test_of_one_seed_the_first_attempt_counts_and_of_those_the_best(tmp_path: Path, bank: Bank) -> None:
-    store = Store(tmp_path / "p.sqlite")
-    take(store, bank, "one", 5, wrong=1)
-    take(store, bank, "two", 5)
-    assert [told.id for told in history(store).counting] == ["one"]
-    take(store, bank, "three", 6)
-    take(store, bank, "four", 7, wrong=2)
+def test_of_one_seed_the_first_attempt_counts_and_of_those_the_best(store: Store, bank: Bank) -> None:
+    first = take(store, bank, 5, wrong=1)
+    take(store, bank, 5)
+    assert [told.id for told in history(store).counting] == [first.id]
+    take(store, bank, 6)
+    take(store, bank, 7, wrong=2)
     best = history(store).best
     assert best is not None
-    assert (best.id, best.score, best.total) == ("three", 2, 2)
+    assert (best.seed, best.score, best.total) == (6, 2, 2)
     assert [record["seed"] for record in progress.records(history(store))] == [5, 6, 7]
 
 
 def test_of_too_many_attempts_the_best_travel(
-    bank: Bank, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    bank: Bank, store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    store = Store(tmp_path / "p.sqlite")
     monkeypatch.setattr(progress, "MAX_RECORDS", 8)
     for seed in range(progress.MAX_RECORDS + 2):
-        take(store, bank, f"a{seed}", seed, wrong=0 if seed == 0 else 2 if seed in {1, 2} else 1)
+        take(store, bank, seed, wrong=0 if seed == 0 else 2 if seed in {1, 2} else 1)
     kept = progress.records(history(store))
     assert [record["seed"] for record in kept] == [0, *range(3, progress.MAX_RECORDS + 2)]
     assert score_record(bank, kept) is not None
 
 
-def test_outcomes_are_joined_from_attempts_and_reviews(tmp_path: Path, bank: Bank) -> None:
-    store = Store(tmp_path / "p.sqlite")
-    take(store, bank, "one", 5, wrong=1)
-    store.append(progress.REVIEW, "sums", progress.review_data(9, "total", right=True))
+def test_outcomes_are_joined_from_attempts_and_reviews(store: Store, bank: Bank) -> None:
+    take(store, bank, 5, wrong=1)
+    (posed,) = bank.pose(9, only=["sums"])
+    reviewed(posed, posed.key.id, 9, store.append)
     outcomes = history(store).outcomes()
     assert [right for _, right in outcomes["sums"]] == [False, True]
     assert [right for _, right in outcomes["colours"]] == [True]

@@ -8,7 +8,7 @@ import msgspec
 import pytest
 
 from course.catalog.models import Lesson
-from course.progress.standing import lesson_events
+from course.progress.history import lesson_events
 from course.progress.store import Event, Store
 from course.reading.parts import read_script, words_of
 from course.reading.record import InProgress, Layout, Place, Row, Writer, find, predictions_of, tally
@@ -147,9 +147,7 @@ def test_what_was_done_in_a_lesson_before_it_was_parted_is_in_both_parts(lesson,
     store.append("bookmark", lesson.id, {"block": 3, "part": 0.0, "words": words_of(whole.blocks[3])})
 
     def opened():
-        events = lesson_events(
-            lambda name: store.events("", name), part.lesson.id, {part.lesson.id: lesson.id}
-        )
+        events = lesson_events(store, part.lesson.id, {part.lesson.id: lesson.id})
         return InProgress(part, events, store.append)
 
     begun = opened()

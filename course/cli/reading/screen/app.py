@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from time import perf_counter
 from typing import Any, ClassVar
 
 from textual.app import ComposeResult
@@ -25,55 +23,15 @@ from course.cli.reading.screen.items import (
     unjudged,
 )
 from course.cli.reading.screen.page import Item, Page
-from course.cli.reading.screen.running import Drawer, Practice
-from course.errors import CourseError
+from course.cli.reading.screen.running import Drawer
 from course.full_screen import FullScreenApp, TextOverlay
-from course.progress.standing import lesson_events
-from course.progress.store import Event
 from course.progress.workspace import Workspace
-from course.reading.record import InProgress, Judgement, Place, Writer, find
+from course.reading.record import Judgement, Place, find
 
 _JUDGED: dict[str, Judgement] = {"1": "right", "2": "nearly", "3": "wrong"}
 #: How often the last line and running work are looked at, in s.
 _TICK = 0.25
 _WHEEL = 3
-
-
-def read(
-    catalog: Catalog, first: str, workspace: Workspace | None, section: str = ""
-) -> tuple[InProgress, str]:
-    """Read until the reader leaves. The terminal is restored, whatever happens.
-
-    Args:
-        workspace: the student's; None outside of one.
-        first, section: as of ``ReaderApp``.
-
-    Returns:
-        The lesson that was open last, and why something was not recorded ("" if all was).
-    """
-    store = workspace.store if workspace is not None else None
-    writer = Writer(store)
-    troubles: list[str] = []
-
-    def events(lesson: str) -> tuple[Event, ...]:
-        if store is None:
-            return ()
-        try:
-            return lesson_events(lambda name: store.events(subject=name), lesson, catalog.syllabus.split)
-        except CourseError as error:
-            troubles.append(f"{error.message} {error.help}")
-            return ()
-
-    practice = Practice(catalog, workspace)
-    app = ReaderApp(
-        catalog, first, section, events=events, write=writer, pictures=Drawer(), practice=practice
-    )
-    try:
-        app.play()
-    finally:
-        practice.close()
-        writer.close()
-    return app.page.progress, writer.trouble or "".join(troubles[:1])
 
 
 class ReaderApp(FullScreenApp):
@@ -82,10 +40,8 @@ class ReaderApp(FullScreenApp):
     Args:
         first: id of the lesson to open.
         section: slug of the section to open it at; where it was left if empty.
-        events: what is recorded about a lesson.
-        write: called with each new event: kind, subject, data.
+        workspace: the student's; None outside of one.
         pictures: draws figures for this terminal; None to describe them.
-        practice: the warm-ups and exercises in the student's workspace.
 
     Attributes:
         page: the lesson that is open, and the items on it that keys act on.
@@ -133,22 +89,24 @@ class ReaderApp(FullScreenApp):
         catalog: Catalog,
         first: str,
         section: str = "",
-        *,
-        events: Callable[[str], Sequence[Event]] = lambda _: (),
-        write: Callable[[str, str, Mapping[str, Any]], None] = lambda *_: None,
+        workspace: Workspace | None = None,
         pictures: Drawer | None = None,
-        practice: Practice | None = None,
-        clock: Callable[[], float] = perf_counter,
     ) -> None:
-        super().__init__(clock)
+        super().__init__()
         self.catalog = catalog
         self._first, self._section = first, section
         self._wanted = ""
         shown = pictures if self.in_colour else None
-        practice = practice or Practice(catalog, None)
-        self.page = Page(self, catalog, practice, shown, events, write, items_of, keys_of, clock)
+        self.page = Page(self, catalog, workspace, shown, items_of, keys_of)
 
     # -- coming and going --------------------------------------------------------------------------------
+
+    def play(self) -> None:
+        """Read until the reader leaves; whatever happens, the record is written."""
+        try:
+            super().play()
+        finally:
+            self.page.close()
 
     def compose(self) -> ComposeResult:
         yield self.page
@@ -159,14 +117,12 @@ class ReaderApp(FullScreenApp):
         self.page.open(self._first, section=self._section)
 
     def on_unmount(self) -> None:
-        """End what runs, and write down the place."""
         self.page.end_cells()
         self.page.keep_place()
         if self.page.pictures is not None:
             self.page.pictures.close()
 
     def on_resize(self, event: Resize) -> None:
-        """Reflow; the line at the top stays."""
         if event.size != self.page.laid_for:
             self.call_after_refresh(self.page.reflow)
 
@@ -229,7 +185,6 @@ class ReaderApp(FullScreenApp):
             self.page.say_round()
 
     def action_return(self) -> None:
-        """Back to where a link was followed."""
         if self.page.trail:
             self.page.open(*self.page.trail.pop())
 
@@ -257,7 +212,6 @@ class ReaderApp(FullScreenApp):
     # -- acting ------------------------------------------------------------------------------------------
 
     def action_act(self) -> None:
-        """Do what Enter does here."""
         if self.page.item is not None:
             self.page.item.act(self.page)
         else:
@@ -293,7 +247,6 @@ class ReaderApp(FullScreenApp):
             judged.judge(self.page, _JUDGED[key])
 
     def action_open_figure(self) -> None:
-        """The figure at hand in the system's viewer."""
         figure = in_sight(self.page, FigureItem)
         if figure is not None:
             figure.act(self.page)
@@ -333,7 +286,6 @@ class ReaderApp(FullScreenApp):
         ]
 
     def action_next_hit(self) -> None:
-        """The next place in this lesson where the words are."""
         if not self._wanted:
             self.say("/ searches for words.")
             return

@@ -78,7 +78,6 @@ class Predict(Overlay[str]):
         self.query_one(Input).focus()
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Take it, if something was typed."""
         if event.value.strip():
             self.close(event.value.strip())
 
@@ -111,7 +110,6 @@ class Choice(_Chooser):
             )
 
     def on_mount(self) -> None:
-        """At the place where the reader is."""
         chooser = self.query_one(OptionList)
         keys = [key for key, _ in self._options]
         if self._at in keys:

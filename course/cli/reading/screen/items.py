@@ -15,13 +15,12 @@ from course.catalog import blocks as b
 from course.cli.reading.screen.asking import Edit, Predict
 from course.cli.reading.screen.page import KEYS, Item, Page
 from course.cli.reading.screen.printing import answered, hint_is_named, line_to_mend
-from course.cli.reading.screen.running import write_new
+from course.cli.reading.screen.running import write_cell
 from course.errors import CourseError
 from course.reading.parts import Cell, Question
 from course.reading.record import InProgress, Judgement, Place
 
 _BUSY = "Something is being checked already."
-_BACK = "You followed a link.   Backspace back to where it was"
 
 Kind = TypeVar("Kind", bound=Item)
 
@@ -42,21 +41,20 @@ class LinkItem(Item):
     def act(self, page: Page) -> None:
         kind, _, rest = self.target.partition(":")
         name, _, slug = rest.partition("#")
-        if kind == "lesson" or self.target.startswith("#"):
-            page.leave_trail()
-            page.open(name or page.progress.script.lesson.id, section=slug or self.target.partition("#")[2])
-            page.reader.say(_BACK)
-        elif kind == "exercise":
+        if kind not in {"lesson", "exercise"} and not self.target.startswith("#"):
+            shown = opened(self.target)
+            if not shown:  # no browser can show it here
+                page.app.copy_to_clipboard(self.target)
+            page.reader.say(f"Opened {self.target}" if shown else f"Copied: {self.target}")
+            return
+        page.leave_trail()
+        if kind == "exercise":
             # Where a warm-up or an exercise is done: in the lesson that leads to it.
             lesson = page.catalog.exercise(name).lesson
-            page.leave_trail()
             page.open(lesson, Place(page.in_progress(lesson).script.task(name)))
-            page.reader.say(_BACK)
-        elif opened(self.target):
-            page.reader.say(f"Opened {self.target}")
-        else:  # no browser can show it here
-            page.app.copy_to_clipboard(self.target)
-            page.reader.say(f"Copied: {self.target}")
+        else:
+            page.open(name or page.progress.script.lesson.id, section=slug or self.target.partition("#")[2])
+        page.reader.say("You followed a link.   Backspace back to where it was")
 
 
 class QuestionItem(Item):
@@ -163,14 +161,10 @@ class CellItem(Item):
 
     def write(self, page: Page) -> None:
         """Write it into a file of the current folder."""
-        cell = self._cell(page)
-        name = f"{page.progress.script.lesson.id}-{cell.number}.py"
         try:
-            path = write_new(name, page.progress.cell(cell).source + "\n")
+            page.reader.say(f"Wrote {write_cell(page.progress, self._cell(page))}")
         except CourseError as error:
             page.reader.say(error.message)
-        else:
-            page.reader.say(f"Wrote {path}")
 
     def _cell(self, page: Page) -> Cell:
         cell = page.progress.script.cell_at(self.block)
@@ -229,7 +223,7 @@ class TaskItem(Item):
     def tick(self, page: Page) -> None:
         """Check it where the student saved it in an editor."""
         if page.practice.was_saved(self.target):
-            page.practice.check(self.target)
+            page.practice.ask(self.target, "check")
             page.rebuild(self.block)
 
     def run(self, page: Page) -> None:
@@ -238,7 +232,7 @@ class TaskItem(Item):
         if not practice.possible:
             page.reader.say("Make a workspace first: course init my-course")
         elif practice.of(self.target).file:
-            if not practice.check(self.target):
+            if not practice.ask(self.target, "check"):
                 page.reader.say(_BUSY)
         else:
             try:
@@ -253,7 +247,7 @@ class TaskItem(Item):
         """The hint that is due."""
         if not page.practice.of(self.target).file:
             self.run(page)
-        elif page.practice.hint(self.target):
+        elif page.practice.ask(self.target, "hint"):
             page.show_task(self.target)
         else:
             page.reader.say(_BUSY)
@@ -271,7 +265,7 @@ class TaskItem(Item):
 
         def done(check: bool | None) -> None:
             if check:
-                practice.check(self.target)
+                practice.ask(self.target, "check")
             if check is not None:
                 page.rebuild(self.block)
 

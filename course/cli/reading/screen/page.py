@@ -6,7 +6,7 @@ Above the text stands a head line, below it a position bar and a line of keys.
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -23,10 +23,13 @@ from course.catalog import blocks as b
 from course.catalog.load import Catalog
 from course.cli.reading.screen.printing import BlockRows, ScreenPrinter
 from course.cli.reading.screen.running import Bench, Drawer, Practice
+from course.errors import CourseError
 from course.full_screen import FullScreenApp
+from course.progress.history import lesson_events
 from course.progress.store import Event
+from course.progress.workspace import Workspace
 from course.reading.parts import Cell, read_script
-from course.reading.record import InProgress, Layout, Place, Row
+from course.reading.record import InProgress, Layout, Place, Row, Writer
 
 if TYPE_CHECKING:  # it needs NumPy, and no first page waits for that
     from course.reading.cells import CellOutput
@@ -161,15 +164,13 @@ class Page(Widget):
 
     Args:
         reader: the app, which shows messages.
-        practice: the warm-ups and exercises in the student's workspace.
+        workspace: the student's; None outside of one.
         pictures: draws figures for this terminal; None to describe them.
-        events: what is recorded about a lesson.
-        write: called with each new event: kind, subject, data.
         items_of: finds the items of a block.
         keys_of: the keys that matter on a page.
-        clock: real time, in s.
 
     Attributes:
+        practice: the warm-ups and exercises in the workspace.
         progress: the lesson that is open.
         book: it as laid out.
         top: the first row on the screen.
@@ -187,18 +188,18 @@ class Page(Widget):
         self,
         reader: FullScreenApp,
         catalog: Catalog,
-        practice: Practice,
+        workspace: Workspace | None,
         pictures: Drawer | None,
-        events: Callable[[str], Sequence[Event]],
-        write: Callable[[str, str, Mapping[str, Any]], None],
         items_of: ItemsOf,
         keys_of: Callable[[Page], str],
-        clock: Callable[[], float],
     ) -> None:
         super().__init__()
-        self.reader, self.catalog, self.practice, self.pictures = reader, catalog, practice, pictures
-        self._events, self._write = events, write
-        self._items_of, self._keys_of, self._clock = items_of, keys_of, clock
+        self.reader, self.catalog, self.pictures = reader, catalog, pictures
+        self.practice = Practice(catalog, workspace)
+        self._store = workspace.store if workspace is not None else None
+        self._write = Writer(self._store)
+        self._unread = ""  # why the record could not be read
+        self._items_of, self._keys_of = items_of, keys_of
         self.progress: InProgress
         self.book = Book(lambda _: (BlockRows(), []), 0)  # nothing, until a lesson is open
         self.top = 0
@@ -211,7 +212,7 @@ class Page(Widget):
         self._opened: dict[str, InProgress] = {}
         self._place_timer: Timer | None = None
         self._head, self._keys, self._position, self._share, self._told = "", "", "", 0.0, ""
-        practice.changed = lambda name: self.from_thread(self.show_answer, name)
+        self.practice.changed = lambda name: self.from_thread(self.show_answer, name)
         if pictures is not None:
             pictures.drawn = lambda name: self.from_thread(self._take_picture, name)
 
@@ -219,6 +220,25 @@ class Page(Widget):
         """Do something here that another thread asks for."""
         with contextlib.suppress(RuntimeError):  # the reader is gone
             self.reader.call_from_thread(act, *arguments)
+
+    # -- the record --------------------------------------------------------------------------------------
+
+    @property
+    def trouble(self) -> str:
+        """Why something was not recorded, or could not be read; empty if all was."""
+        return self._write.trouble or self._unread
+
+    def _events(self, lesson_id: str) -> Sequence[Event]:
+        try:
+            return lesson_events(self._store, lesson_id, self.catalog.syllabus.split)
+        except CourseError as error:
+            self._unread = self._unread or f"{error.message} {error.help}"
+            return ()
+
+    def close(self) -> None:
+        """End what is checked, and wait until everything is written; not in the app's own thread."""
+        self.practice.close()
+        self._write.close()
 
     # -- opening a lesson --------------------------------------------------------------------------------
 
@@ -314,7 +334,6 @@ class Page(Widget):
         return self.pictures.rows(name, curve, width, self.room) if self.pictures is not None else []
 
     def _take_picture(self, name: str) -> None:
-        """The picture of a figure or a task has arrived."""
         for index, block in enumerate(self.progress.script.blocks):
             if any(isinstance(one, b.Figure | b.Task) and one.id == name for one in b.walk_blocks((block,))):
                 self.rebuild(index)
@@ -399,7 +418,7 @@ class Page(Widget):
             def done(cell: Cell, source: str, gave: CellOutput) -> None:
                 self.from_thread(self._took, progress, cell, source, gave)
 
-            self.bench = Bench(progress, done, self._clock)
+            self.bench = Bench(progress, done)
         return self.bench
 
     def end_cells(self) -> None:
@@ -443,7 +462,6 @@ class Page(Widget):
 
     @property
     def _lead(self) -> int:
-        """Lines above the text."""
         return 0 if self.app.size.height < _LOW else 1
 
     @property

@@ -85,12 +85,10 @@ class ScreenPrinter(FancyPrinter):
             no_color=not in_colour,
             color_system="truecolor" if in_colour else None,
         )
-        script = progress.script
-        figures = [one.id for one in b.walk_blocks(script.blocks) if isinstance(one, b.Figure)]
         self._width = max(20, width - 2)
-        super().__init__(catalog, script.lesson, console, figures, None, min(self._width, COLUMN))
+        super().__init__(catalog, progress.script, console, None, min(self._width, COLUMN))
         self._progress = progress
-        self._script = script
+        self._script = progress.script
         self._practice = practice
         self._busy = busy
         self._picture = picture
@@ -123,7 +121,6 @@ class ScreenPrinter(FancyPrinter):
         return self._laid_out(shown, index) if shown is not None else BlockRows()
 
     def _tail_rows(self) -> BlockRows:
-        """The lesson is read, and the next step."""
         lesson, ids = self._lesson, self._catalog.lesson_ids()
         following = ids[ids.index(lesson.id) + 1 :][:1] if lesson.id in ids else ()
         links = [(f"exercise:{name}", f"Practise: {name}") for name in lesson.exercises]
@@ -239,7 +236,6 @@ class ScreenPrinter(FancyPrinter):
         return Group(shown, Text(""), line)
 
     def _compared(self, question: Question) -> RenderableType:
-        """The prediction, the run's result, and the reader's own judgement."""
         said = self._progress.prediction(question)
         assert said is not None
         facts = [("You said", said.text)]
@@ -276,7 +272,6 @@ class ScreenPrinter(FancyPrinter):
         return Group(*shown, self._rule(""))
 
     def _outputs(self, cell: Cell) -> list[RenderableType]:
-        """The recorded output, and the cell's result here."""
         state = self._progress.cell(cell)
         recorded = cell.output or ""
         if state.ran is None:
@@ -363,18 +358,14 @@ def _standing_lines(now: Standing, name: str, *, possible: bool) -> Iterator[Tex
     else:
         if now.fixed:
             yield Text.assemble(("Fixed: ", "bold green"), ", ".join(now.fixed))
-        yield from _said(now.reply, name)
+        yield from _said(now.reply, f"course hint {name} or h: a hint" if hint_is_named(now) else "")
     if now.hint:
         yield Text(now.hint, style="italic")
 
 
 def hint_is_named(now: Standing) -> bool:
     """Whether the last check named a hint as the next step: one is due."""
-    return _names_hint(now.reply or {})
-
-
-def _names_hint(reply: dict[str, Any]) -> bool:
-    return _step(reply).startswith("course hint")
+    return _step(now.reply or {}).startswith("course hint")
 
 
 def line_to_mend(now: Standing, source: str) -> int:
@@ -392,7 +383,7 @@ def _checks(reply: dict[str, Any]) -> tuple[tuple[CheckResult, ...], CheckResult
     return checks, next((check for check in checks if check.status != "pass"), None)
 
 
-def _said(reply: dict[str, Any], name: str) -> Iterator[Text]:
+def _said(reply: dict[str, Any], offer: str) -> Iterator[Text]:
     if "error" in reply:
         yield Text(reply["error"]["message"], style="red")
         yield Text(reply["error"].get("help", ""))
@@ -415,7 +406,6 @@ def _said(reply: dict[str, Any], name: str) -> Iterator[Text]:
     yield from _printed("Your code printed:", first.stdout)
     passing = sum(check.status == "pass" for check in checks)
     some = f"{passing} of {len(checks)} checks pass.  " if len(checks) > 1 else ""
-    offer = f"course hint {name} or h: a hint" if _names_hint(reply) else ""
     if some or offer:
         yield Text(f"{some}{offer}".rstrip(), style="dim")
 

@@ -48,18 +48,11 @@ class Bench:
     Args:
         progress: the lesson.
         done: called in the cells' thread with the cell, the code that ran and its result.
-        clock: real time, in s.
     """
 
-    def __init__(
-        self,
-        progress: InProgress,
-        done: Callable[[Cell, str, CellOutput], None],
-        clock: Callable[[], float] = perf_counter,
-    ) -> None:
+    def __init__(self, progress: InProgress, done: Callable[[Cell, str, CellOutput], None]) -> None:
         self._progress = progress
         self._done = done
-        self._clock = clock
         self._runner: CellRunner | None = None
         self._pool: ThreadPoolExecutor | None = None
         self._since = 0.0
@@ -70,7 +63,7 @@ class Bench:
         """Run a cell; False if one is running already."""
         if self.cell is not None:
             return False
-        self.cell, self._since, self._stopped = cell, self._clock(), False
+        self.cell, self._since, self._stopped = cell, perf_counter(), False
         self._submit(self._run, cell, self._progress.cell(cell).source)
         return True
 
@@ -89,7 +82,7 @@ class Bench:
         """The key of the cell that runs and what to say of it; empty if none does."""
         if self.cell is None:
             return "", ""
-        return self.cell.key, f"runs, {self._clock() - self._since:.0f} s; Ctrl-C stops it"
+        return self.cell.key, f"runs, {perf_counter() - self._since:.0f} s; Ctrl-C stops it"
 
     def close(self) -> None:
         """Stop the cell that runs, and end its process."""
@@ -143,16 +136,16 @@ def _hear_no_ctrl_c() -> None:
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
 
 
-def write_new(name: str, text: str) -> Path:
-    """Write a file into the current folder; an existing one keeps its name and content.
+def write_cell(progress: InProgress, cell: Cell) -> Path:
+    """Write a cell's code into a file of the current folder; an existing one keeps its name and content.
 
     Raises:
         MissingCapabilityError: the folder cannot be written.
     """
-    for path in numbered(Path(name)):
+    for path in numbered(Path(f"{progress.script.lesson.id}-{cell.number}.py")):
         try:
             with contextlib.suppress(FileExistsError), path.open("x", encoding="utf-8") as file:
-                file.write(text)
+                file.write(progress.cell(cell).source + "\n")
                 break
         except OSError as error:
             raise MissingCapabilityError(
@@ -269,13 +262,15 @@ class Practice:
         self._saved[name] = stamp
         return stamp not in {before, 0}
 
-    def check(self, name: str) -> bool:
-        """Check it, as ``course check`` does; False if something is going on already."""
-        return self._run(name, "check", "Checking")
-
-    def hint(self, name: str) -> bool:
-        """Ask for the hint that is due, as ``course hint`` does; False if something is going on already."""
-        return self._run(name, "hint", "Asking")
+    def ask(self, name: str, command: str) -> bool:
+        """Do what ``course check`` or ``course hint`` does; False if something is going on already."""
+        if self.busy:
+            return False
+        what = "Checking" if command == "check" else "Asking"
+        self._standings[name] = replace(self.of(name), busy=what)
+        self._thread = threading.Thread(target=self._work, args=(name, command), name="practice")
+        self._thread.start()
+        return True
 
     def close(self) -> None:
         """End what runs."""
@@ -285,15 +280,7 @@ class Practice:
         if self._thread is not None:
             self._thread.join()
 
-    def _run(self, name: str, command: str, what: str) -> bool:
-        if self.busy:
-            return False
-        self._standings[name] = replace(self.of(name), busy=what)
-        self._thread = threading.Thread(target=self._ask, args=(name, command), name="practice")
-        self._thread.start()
-        return True
-
-    def _ask(self, name: str, command: str) -> None:
+    def _work(self, name: str, command: str) -> None:
         """In a thread: the command's answer."""
         reply = self._reply(name, command)
         now = replace(self._standings[name], busy="")
@@ -335,7 +322,6 @@ class Practice:
             return ()
 
     def _recorded(self, name: str) -> Standing:
-        """The workspace's record of a task."""
         if self._workspace is None:
             return Standing()
         exercise = self._catalog.exercise(name)
@@ -435,12 +421,11 @@ class Drawer:
     def close(self) -> None:
         """End the drawing process."""
         if self._process is not None:
-            self._process.kill()
-            self._process.wait()
-            for stream in (self._process.stdin, self._process.stdout):
-                if stream is not None:
-                    with contextlib.suppress(OSError):
-                        stream.close()
+            with (
+                contextlib.suppress(OSError),
+                self._process,
+            ):  # then its streams are closed, and it is waited for
+                self._process.kill()
             self._process = None
         if self._folder is not None:
             self._folder.cleanup()

@@ -1,39 +1,39 @@
-"""A lesson by typed lines: all that can be done on the whole screen, and each fact said once."""
+"""A lesson by typed lines, and what else is met with ``--plain``: all of it, and each fact once."""
 
 from __future__ import annotations
 
 import io
 import re
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
+from course.authoring.exercises.grading import solution_path
 from course.catalog.blocks import Prediction
-from course.catalog.load import Catalog
+from course.cli.frame import app
 from course.cli.frame.console import Console, Settings, install
 from course.cli.frame.here import Here
 from course.cli.reading.by_line import LineReader
-from course.cli.reading.lesson import Reader, paginate
+from course.cli.reading.lesson import Printer, paginate, printer, sentences
 from course.progress.workspace import Workspace
 from course.reading.parts import read_script
 from course.reading.record import predictions_of
-from tests.unit.cli.reading.test_each_fact_once import repeated
+from tests.unit.cli.reading.conftest import CATALOG
 
 pytestmark = pytest.mark.usefixtures("sandboxes")
-CATALOG = Catalog()
 LESSON = "numerical-integration"
 OFFERS = re.compile(r"Here (1 2 3 say|r runs|start puts|check runs)")
 _PAGES = paginate(read_script(CATALOG.lesson(LESSON), CATALOG.tasks(LESSON)).blocks)
 #: The page that ends with the first prediction, 1 for the first page.
-ASKED = 1 + next(at for at, page in enumerate(_PAGES) if isinstance(page.blocks[-1], Prediction))
+ASKED = 1 + next(at for at, page in enumerate(_PAGES) if isinstance(page[-1], Prediction))
 
 
 @pytest.fixture
-def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Workspace:
-    made = Workspace.create(tmp_path / "mine", CATALOG.course_id, CATALOG.version)
-    monkeypatch.chdir(made.root)
-    return made
+def workspace(mine: Workspace, monkeypatch: pytest.MonkeyPatch) -> Workspace:
+    monkeypatch.chdir(mine.root)
+    return mine
 
 
 class Typed:
@@ -51,8 +51,11 @@ class Typed:
 
     def read(self, lesson: str, here: Here | None) -> bool:
         chosen = CATALOG.lesson(lesson)
-        reader = Reader(CATALOG, chosen, self.console.rich(), plain=True)
-        return LineReader(self.console, here, CATALOG, chosen, reader).read()
+        return LineReader(self.console, here, CATALOG, chosen, self.prints(lesson)).read()
+
+    def prints(self, lesson: str) -> Printer:
+        script = read_script(CATALOG.lesson(lesson), CATALOG.warm_ups(lesson))
+        return printer(CATALOG, script, self.console.rich(), plain=True)
 
     @property
     def said(self) -> str:
@@ -71,9 +74,9 @@ def test_every_lesson_is_there_whole_and_says_each_fact_once(lesson: str, worksp
     assert someone.read(lesson, Here.load())
     printed = Typed(lambda _: None)
     chosen = CATALOG.lesson(lesson)
-    reader = Reader(CATALOG, chosen, printed.console.rich(), plain=True)
-    for page in reader.pages:
-        reader.show(page)
+    prints = printed.prints(lesson)
+    prints.head()
+    prints.blocks(read_script(chosen, CATALOG.warm_ups(lesson)).blocks)
     ours = {"", "Kept.", "You said: it grows", "What you type below a page does something; ? lists what."}
     said = [line for line in someone.said.splitlines() if line not in ours and not OFFERS.match(line)]
     tasks = CATALOG.tasks(lesson)
@@ -165,3 +168,74 @@ def test_outside_of_a_workspace_it_reads_and_says_what_a_task_needs(
 
     assert typed.read(LESSON, None)
     assert typed.said.count("Make a workspace first: course init my-course") == 1
+
+
+EXERCISE = "integrators"
+#: Code, output and tables are as they are: a cell of a table may say what another says.
+_VERBATIM = re.compile(r"^(Python code|It prints|Text|Table), \d+ ")
+#: A formula may come back; and four functions may each pass a check of the same name.
+_MAY_COME_BACK = ("Formula: ", "pass: ")
+#: Fewer words are a label, such as "diagnosis: TIMEOUT".
+_WORDS = 5
+WRONG = """
+
+def explicit_euler_step(accel, t, q, v, h):
+    v = v + h * accel(t, q, v)
+    return q + h * v, v
+
+
+def integrate(*_):
+    return 1
+"""
+
+
+def repeated(text: str) -> list[str]:
+    """Sentences that are there more than once."""
+    said: Counter[str] = Counter()
+    verbatim = False
+    for line in text.splitlines():
+        verbatim = verbatim or bool(_VERBATIM.match(line))
+        if not verbatim and not line.strip().startswith(_MAY_COME_BACK):
+            said.update(one for one in sentences(line.strip()) if len(one.split()) >= _WORDS)
+        verbatim = verbatim and not line.startswith("End of ")
+    return [one for one, count in said.items() if count > 1]
+
+
+def test_a_sentence_that_is_said_twice_is_found() -> None:
+    once = "The energy grows by four per cent."
+    code = "Python code, 1 lines:\nx = 1  # the energy grows by itself\nEnd of python code\n"
+    assert repeated(f"{once}\n{code}{code}") == []
+    assert repeated(f"{once}\nMore of it here. {once}\n") == [once]
+
+
+def heard(capsys: pytest.CaptureFixture[str], *words: str) -> str:
+    capsys.readouterr()
+    app.run((*words, "--plain"))
+    said = capsys.readouterr()
+    assert "\x1b" not in said.out
+    return said.out + said.err
+
+
+def test_the_way_through_an_exercise(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Started, failed, hinted at, mended, looked back at."""
+    assert app.run(("init", str(tmp_path / "mine"))) == 0
+    monkeypatch.chdir(tmp_path / "mine")
+    path = tmp_path / "mine" / EXERCISE / f"{EXERCISE}.py"
+    right = solution_path(CATALOG, CATALOG.exercise(EXERCISE)).read_text("utf-8")
+    steps: list[tuple[str, ...]] = [("start", EXERCISE), ("check", EXERCISE), ("hint", EXERCISE)]
+    steps += [("exercises",), ("lessons",), ("warmup",), ("next",), (), ("progress",)]
+    found = {words: repeated(heard(capsys, *words)) for words in steps}
+    for wrong in (WRONG, ""):
+        path.write_text(right + wrong, "utf-8")
+        for words in (
+            ("check", EXERCISE),
+            ("check", EXERCISE, "--verbose"),
+            ("hint", EXERCISE),
+            ("progress",),
+        ):
+            found[(*words, f"wrong: {bool(wrong)}")] = repeated(heard(capsys, *words))
+    # Two objectives may have the same evidence.
+    found[()] = [one for one in found[()] if not one.startswith("lessons read: ")]
+    assert {words: twice for words, twice in found.items() if twice} == {}

@@ -13,7 +13,6 @@ import pytest
 from textual.events import Key
 
 from course.catalog import blocks as b
-from course.catalog.load import Catalog
 from course.cli.frame.app import run
 from course.cli.frame.pictures import half_blocks
 from course.cli.reading.screen import page as paging
@@ -21,43 +20,27 @@ from course.cli.reading.screen.app import ReaderApp
 from course.cli.reading.screen.asking import Edit
 from course.cli.reading.screen.items import CellItem, FigureItem, keys_of
 from course.cli.reading.screen.page import fitting
-from course.progress.store import Store
+from course.progress.workspace import Workspace
 from course.reading.parts import Cell
-from course.reading.record import Place, Writer
-from tests.unit.cli.reading.driving import drive, screen, settled
+from course.reading.record import Place
+from tests.unit.cli.reading.conftest import CATALOG, drive, screen, settled
 
-LESSON, LESSONS = "numerical-integration", Catalog().lesson_ids()
+LESSON, LESSONS = "numerical-integration", CATALOG.lesson_ids()
 #: What the issue of this reader asks for: a key's screen at 200 columns, in s of this process's own time.
 KEY_S = 0.05
 
 
-@pytest.fixture(scope="module")
-def catalog() -> Catalog:
-    return Catalog()
-
-
 def reading(
-    catalog: Catalog,
     journey: Callable[[ReaderApp, Any], Awaitable[None]],
     *,
     size: tuple[int, int] = (80, 24),
     lesson: str = LESSON,
-    store: Store | None = None,
+    workspace: Workspace | None = None,
     section: str = "",
 ) -> ReaderApp:
     """Open a lesson, do what ``journey`` does, leave."""
-    write = Writer(store)
-    events = (lambda name: store.events(subject=name)) if store else (lambda _: ())
-    app = ReaderApp(catalog, lesson, section, events=events, write=write)
-
-    async def left(app: ReaderApp, pilot: Any) -> None:
-        await journey(app, pilot)
-        app.page.keep_place()
-
-    try:
-        drive(app, left, size)
-    finally:
-        write.close()
+    app = ReaderApp(CATALOG, lesson, section, workspace)
+    drive(app, journey, size)
     return app
 
 
@@ -111,16 +94,8 @@ async def to_question(app: ReaderApp, pilot: Any, number: int = 1) -> None:
 
 
 @pytest.mark.parametrize("lesson", LESSONS)
-@pytest.mark.parametrize(
-    "size",
-    [
-        (80, 24),
-        pytest.param((40, 20), marks=pytest.mark.soak),
-        pytest.param((160, 50), marks=pytest.mark.soak),
-    ],
-)
-def test_every_lesson_is_read_by_space_alone_to_its_end_and_each_figure_is_an_item(catalog, size, lesson):
-    title = catalog.lesson(lesson).title.split(":")[0][:20]
+def test_every_lesson_is_read_by_space_alone_to_its_end_and_each_figure_is_an_item(lesson):
+    title = CATALOG.lesson(lesson).title.split(":")[0][:20]
 
     async def journey(app, pilot):
         assert not app.page.progress.read
@@ -137,11 +112,10 @@ def test_every_lesson_is_read_by_space_alone_to_its_end_and_each_figure_is_an_it
         app.page.rebuild()
         assert [item.block for item in app.page.book.items if isinstance(item, FigureItem)] == figures_of(app)
 
-    reading(catalog, journey, size=size, lesson=lesson)
+    reading(journey, lesson=lesson)
 
 
-def test_a_prediction_is_typed_kept_and_compared_and_a_skip_is_kept_too(catalog, tmp_path):
-    store = Store(tmp_path / "progress.sqlite")
+def test_a_prediction_is_typed_kept_and_compared_and_a_skip_is_kept_too(mine):
 
     async def journey(app, pilot):
         await to_question(app, pilot)
@@ -170,12 +144,12 @@ def test_a_prediction_is_typed_kept_and_compared_and_a_skip_is_kept_too(catalog,
         await pilot.press("s")
         assert app.page.progress.prediction(second).skipped
 
-    reading(catalog, journey, store=store)
-    said, judged, skipped = [event.data for event in store.events("prediction")]
+    reading(journey, workspace=mine)
+    said, judged, skipped = [event.data for event in mine.store.events("prediction")]
     assert (said["text"], judged["judged"], skipped["text"]) == ("half a metre", "wrong", "")
 
 
-def test_a_second_key_that_closes_a_box_closes_nothing_else(catalog):
+def test_a_second_key_that_closes_a_box_closes_nothing_else():
     async def journey(app, pilot):
         await pilot.press("question_mark")
         await pilot.pause(0.2)
@@ -190,11 +164,10 @@ def test_a_second_key_that_closes_a_box_closes_nothing_else(catalog):
         await pilot.pause(0.2)
         assert len(app.screen_stack) == 1
 
-    reading(catalog, journey)
+    reading(journey)
 
 
-def test_a_number_below_an_answer_judges_it_though_a_cell_is_at_hand(catalog, tmp_path):
-    store = Store(tmp_path / "progress.sqlite")
+def test_a_number_below_an_answer_judges_it_though_a_cell_is_at_hand(mine):
 
     async def journey(app, pilot):
         question = app.page.progress.script.questions[0]
@@ -213,10 +186,10 @@ def test_a_number_below_an_answer_judges_it_though_a_cell_is_at_hand(catalog, tm
         await pilot.pause()
         assert "3 wrong" not in screen(app)
 
-    reading(catalog, journey, size=(80, 50), store=store)
+    reading(journey, size=(80, 50), workspace=mine)
 
 
-def test_space_past_an_open_prediction_says_so_and_b_leads_back(catalog):
+def test_space_past_an_open_prediction_says_so_and_b_leads_back():
     async def journey(app, pilot):
         await to_question(app, pilot)
         while not app.message.startswith("You passed an open prediction."):
@@ -226,10 +199,10 @@ def test_space_past_an_open_prediction_says_so_and_b_leads_back(catalog):
         await pilot.press("b")
         assert "predict" in keys_of(app.page)
 
-    reading(catalog, journey)
+    reading(journey)
 
 
-def test_the_bar_is_empty_until_the_whole_lesson_is_laid_out(catalog, monkeypatch):
+def test_the_bar_is_empty_until_the_whole_lesson_is_laid_out(monkeypatch):
     shares = []
     said = paging.Page.say_round
 
@@ -243,10 +216,10 @@ def test_the_bar_is_empty_until_the_whole_lesson_is_laid_out(catalog, monkeypatc
         assert {share for whole, share in shares if not whole} == {0.0}
         assert 0.0 < app.page._share < 0.3
 
-    reading(catalog, journey)
+    reading(journey)
 
 
-def test_a_cell_runs_is_changed_fails_is_stopped_and_reset(catalog):
+def test_a_cell_runs_is_changed_fails_is_stopped_and_reset():
     async def journey(app, pilot):
         cell = await to_cell(app, pilot)
         await pilot.press("r")
@@ -263,6 +236,7 @@ def test_a_cell_runs_is_changed_fails_is_stopped_and_reset(catalog):
         await pilot.pause(0.5)
         await pilot.resize_terminal(60, 30)  # in the middle of a cell
         await pilot.pause(0.2)
+        assert "Ctrl-C stop it" in screen(app).splitlines()[-1]
         await pilot.press("ctrl+c")
         await ran(app, pilot)
         assert app.page.progress.cell(cell).error == "Stopped."
@@ -270,10 +244,10 @@ def test_a_cell_runs_is_changed_fails_is_stopped_and_reset(catalog):
         await ran(app, pilot)
         assert app.page.progress.cell(cell).printed == cell.output
 
-    reading(catalog, journey)
+    reading(journey)
 
 
-def test_nothing_that_takes_an_answer_as_read_is_on_the_screen_of_its_prediction(catalog):
+def test_nothing_that_takes_an_answer_as_read_is_on_the_screen_of_its_prediction():
     async def journey(app, pilot):
         await to_question(app, pilot, 9)
         assert "the answer is shown here" in screen(app)
@@ -287,10 +261,10 @@ def test_nothing_that_takes_an_answer_as_read_is_on_the_screen_of_its_prediction
         assert "The two implicit methods" in screen(app)
         assert "So why not always step implicitly?" in screen(app)
 
-    reading(catalog, journey, size=(80, 90))
+    reading(journey, size=(80, 90))
 
 
-def test_the_editor_keeps_and_drops(catalog):
+def test_the_editor_keeps_and_drops():
     async def journey(app, pilot):
         cell = await editing(app, pilot)
         await pilot.press("x", "escape")
@@ -313,10 +287,10 @@ def test_the_editor_keeps_and_drops(catalog):
         await pilot.press("u")
         assert app.page.progress.cell(cell).source == cell.source
 
-    reading(catalog, journey)
+    reading(journey)
 
 
-def test_keys_that_come_in_a_burst_act_in_their_order(catalog):
+def test_keys_that_come_in_a_burst_act_in_their_order():
     """A terminal on a busy machine hands over many keys at once."""
     typed = ["end", *["backspace"] * 6, *"v2, v1", "home", "#", "ctrl+r"]
 
@@ -333,10 +307,10 @@ def test_keys_that_come_in_a_burst_act_in_their_order(catalog):
                 break
         assert kept == ["#return v2, v1", True]
 
-    reading(catalog, journey)
+    reading(journey)
 
 
-def test_the_editor_copies_indents_and_goes_to_both_ends_and_ctrl_c_never_loses_what_was_typed(catalog):
+def test_the_editor_copies_indents_and_goes_to_both_ends_and_ctrl_c_never_loses_what_was_typed():
     async def journey(app, pilot):
         cell = await editing(app, pilot)
         await pilot.press(*"abc", "shift+left", "shift+left", "ctrl+c")
@@ -354,10 +328,10 @@ def test_the_editor_copies_indents_and_goes_to_both_ends_and_ctrl_c_never_loses_
         assert changed.endswith("\n    if 1:  \n        1\n        "), "it stands in a loop"
         assert len(app.screen_stack) == 1
 
-    reading(catalog, journey)
+    reading(journey)
 
 
-def test_ctrl_c_in_the_editor_stops_a_cell_that_runs(catalog):
+def test_ctrl_c_in_the_editor_stops_a_cell_that_runs():
     async def journey(app, pilot):
         cell = await editing(app, pilot)
         await pilot.press(*"while 1: pass", "enter", "ctrl+r")
@@ -369,11 +343,10 @@ def test_ctrl_c_in_the_editor_stops_a_cell_that_runs(catalog):
         await pilot.pause()
         assert app.page.progress.cell(cell).source.startswith("xwhile")
 
-    reading(catalog, journey)
+    reading(journey)
 
 
-def test_what_is_typed_is_kept_however_the_reader_is_left(catalog, tmp_path):
-    store = Store(tmp_path / "progress.sqlite")
+def test_what_is_typed_is_kept_however_the_reader_is_left(mine):
     left = ["ctrl+q", "SIGINT", "SIGTERM", "SIGHUP"]
     typed = ""
 
@@ -395,11 +368,10 @@ def test_what_is_typed_is_kept_however_the_reader_is_left(catalog, tmp_path):
 
     for expected in ("", "3a", "2a3a", "1a2a3a", "0a1a2a3a"):
         typed = expected
-        reading(catalog, journey, store=store)
+        reading(journey, workspace=mine)
 
 
-def test_the_place_is_kept_to_the_line_and_only_a_section_that_there_is_goes_before_it(catalog, tmp_path):
-    store = Store(tmp_path / "progress.sqlite")
+def test_the_place_is_kept_to_the_line_and_only_a_section_that_there_is_goes_before_it(mine):
     seen = []
 
     async def forward(app, pilot):
@@ -411,30 +383,29 @@ def test_the_place_is_kept_to_the_line_and_only_a_section_that_there_is_goes_bef
         seen.append(app.page.place())
         seen.append(screen(app).splitlines()[0])
 
-    reading(catalog, forward, store=store)
-    reading(catalog, back, store=store, section="no-such-section")
-    reading(catalog, back, store=store, size=(40, 20))
-    reading(catalog, back, store=store, section="swap-two-lines")
+    reading(forward, workspace=mine)
+    reading(back, workspace=mine, section="no-such-section")
+    reading(back, workspace=mine, size=(40, 20))
+    reading(back, workspace=mine, section="swap-two-lines")
     place, again, _, narrow, _, _, title = seen
     assert again == place
     assert narrow.block == place.block
     assert "· Swap two lines" in title
 
 
-def test_the_place_is_kept_by_a_window_that_closes_as_it_changes(catalog, tmp_path, monkeypatch):
+def test_the_place_is_kept_by_a_window_that_closes_as_it_changes(mine, monkeypatch):
     monkeypatch.setattr(paging, "_SETTLED", 1e6)  # nothing is kept but by leaving
-    store = Store(tmp_path / "progress.sqlite")
 
     async def journey(app, pilot):
         await pilot.press("space", "space", "space")
         app.page.lay_out(app.page.place())  # the rest of the lesson follows a moment later
         assert not app.page.book.whole
 
-    app = reading(catalog, journey, store=store)
-    assert store.events("bookmark", LESSON)[-1].data["block"] == app.page.place().block > 0
+    app = reading(journey, workspace=mine)
+    assert mine.store.events("bookmark", LESSON)[-1].data["block"] == app.page.place().block > 0
 
 
-def test_links_search_contents_and_the_way_back(catalog):
+def test_links_search_contents_and_the_way_back():
     async def journey(app, pilot):
         start = app.page.place()
         await pilot.press("slash")
@@ -450,17 +421,17 @@ def test_links_search_contents_and_the_way_back(catalog):
         await pilot.pause()
         await pilot.press("end", "enter")
         await settled(app, pilot)
-        assert app.page.progress.script.lesson.id == catalog.lesson_ids()[-1]
+        assert app.page.progress.script.lesson.id == CATALOG.lesson_ids()[-1]
         link = next(item for item in app.page.book.items if item.target.startswith("lesson:"))
         app.page.item = link
         await pilot.press("enter")
         await settled(app, pilot)
         assert app.page.progress.script.lesson.id == link.target.partition(":")[2].partition("#")[0]
 
-    reading(catalog, journey)
+    reading(journey)
 
 
-def test_tab_comes_to_predictions_cells_and_tasks_before_the_links_beside_them(catalog):
+def test_tab_comes_to_predictions_cells_and_tasks_before_the_links_beside_them():
     async def journey(app, pilot):
         while not (any(i.inline for i in app.page.items()) and any(not i.inline for i in app.page.items())):
             await pilot.press("space")
@@ -472,10 +443,10 @@ def test_tab_comes_to_predictions_cells_and_tasks_before_the_links_beside_them(c
         assert came == sorted(came)
         assert came.count(False) == blocks
 
-    reading(catalog, journey, size=(80, 40))
+    reading(journey, size=(80, 40))
 
 
-def test_tab_reaches_everything_that_can_be_acted_on(catalog):
+def test_tab_reaches_everything_that_can_be_acted_on():
     def key_of(item):
         return type(item), item.block, item.number
 
@@ -492,10 +463,10 @@ def test_tab_reaches_everything_that_can_be_acted_on(catalog):
         await pilot.press("G", "space")
         assert app.message == "This is the end. Enter: go on"
 
-    reading(catalog, journey, size=(60, 20), lesson="why-simulate")
+    reading(journey, size=(60, 20), lesson="why-simulate")
 
 
-def test_without_colour_nothing_is_said_by_colour(catalog, monkeypatch):
+def test_without_colour_nothing_is_said_by_colour(monkeypatch):
     monkeypatch.setenv("NO_COLOR", "1")
 
     async def journey(app, pilot):
@@ -505,11 +476,11 @@ def test_without_colour_nothing_is_said_by_colour(catalog, monkeypatch):
         assert "▸" in screen(app)
         assert "Predict first" in screen(app)
 
-    reading(catalog, journey)
+    reading(journey)
 
 
 @pytest.mark.soak
-def test_a_key_is_answered_soon_at_200_columns(catalog):
+def test_a_key_is_answered_soon_at_200_columns():
     async def journey(app, pilot):
         times = []
         for key in ["space"] * 8 + ["down"] * 4 + ["b"] * 4 + ["tab"] * 4:
@@ -519,7 +490,7 @@ def test_a_key_is_answered_soon_at_200_columns(catalog):
         # The median: a collection of garbage may fall into any single one.
         assert sorted(times)[len(times) // 2] < KEY_S, times
 
-    reading(catalog, journey, size=(200, 50))
+    reading(journey, size=(200, 50))
 
 
 def test_a_figure_is_pixels_with_letters_over_them():
@@ -540,15 +511,20 @@ def test_the_code_of_a_cell_is_printed_as_it_is_in_the_lesson(capsys):
 
 
 def test_a_file_that_is_there_is_not_overwritten(tmp_path: Path, monkeypatch):
-    from course.cli.reading.screen.running import write_new
-
     monkeypatch.chdir(tmp_path)
-    first, second = write_new("a-1.py", "x = 1\n"), write_new("a-1.py", "x = 2\n")
-    assert (first.name, second.name) == ("a-1.py", "a-1-2.py")
-    assert first.read_text() == "x = 1\n"
+    (tmp_path / f"{LESSON}-1.py").write_text("mine")
+
+    async def journey(app, pilot):
+        cell = await to_cell(app, pilot)
+        await pilot.press("w")
+        assert app.message == f"Wrote {LESSON}-1-2.py"
+        assert (tmp_path / f"{LESSON}-1-2.py").read_text() == f"{cell.source}\n"
+
+    reading(journey)
+    assert (tmp_path / f"{LESSON}-1.py").read_text() == "mine"
 
 
-def test_a_box_leaves_no_letters_of_the_page_beside_it(catalog):
+def test_a_box_leaves_no_letters_of_the_page_beside_it():
     async def journey(app, pilot):
         for columns in (40, 80, 90, 120):
             await pilot.resize_terminal(columns, 24)
@@ -564,10 +540,10 @@ def test_a_box_leaves_no_letters_of_the_page_beside_it(catalog):
             for left, *_, right in within:
                 assert not left.strip() + right.strip()
 
-    reading(catalog, journey)
+    reading(journey)
 
 
-def test_a_block_that_is_laid_out_again_below_leaves_the_screen_as_it_was_cut(catalog: Catalog) -> None:
+def test_a_block_that_is_laid_out_again_below_leaves_the_screen_as_it_was_cut() -> None:
     async def look(app: ReaderApp, pilot: Any) -> None:
         page, book = app.page, app.page.book
         assert book is not None
@@ -577,7 +553,7 @@ def test_a_block_that_is_laid_out_again_below_leaves_the_screen_as_it_was_cut(ca
         await pilot.pause()
         assert page.end() == cut
 
-    reading(catalog, look, size=(40, 20), section="worked-example-one-step-by-hand")
+    reading(look, size=(40, 20), section="worked-example-one-step-by-hand")
 
 
 def test_a_line_of_keys_that_is_too_long_ends_with_how_to_see_all() -> None:

@@ -12,13 +12,12 @@ import pytest
 
 from course.authoring.exercises.grading import solution_path
 from course.catalog import blocks as b
-from course.catalog.load import Catalog
 from course.cli.reading.screen.app import ReaderApp
-from course.cli.reading.screen.running import Drawer, Practice
+from course.cli.reading.screen.running import Drawer
 from course.errors import MissingCapabilityError
 from course.progress.workspace import Workspace
 from course.reading.parts import read_script, words_of
-from tests.unit.cli.reading.driving import drive, screen
+from tests.unit.cli.reading.conftest import CATALOG, drive, screen
 
 LESSON, TASK = "numerical-integration", "which-line-first"
 CHECK = {
@@ -27,25 +26,12 @@ CHECK = {
 }  # fmt: skip
 
 
-@pytest.fixture(scope="module")
-def catalog() -> Catalog:
-    return Catalog()
-
-
-@pytest.fixture
-def workspace(tmp_path: Path, catalog: Catalog) -> Workspace:
-    return Workspace.create(tmp_path / "mine", catalog.course_id, catalog.version)
-
-
 def doing(
-    catalog: Catalog,
     workspace: Workspace | None,
     journey: Callable[[ReaderApp, Any], Awaitable[None]],
     pictures: Drawer | None = None,
-) -> ReaderApp:
+) -> None:
     """Open the lesson at its warm-up, do what ``journey`` does, leave."""
-    practice = Practice(catalog, workspace)
-    app = ReaderApp(catalog, LESSON, practice=practice, pictures=pictures)
 
     async def there(app: ReaderApp, pilot: Any) -> None:
         blocks = app.page.progress.script.blocks
@@ -54,11 +40,7 @@ def doing(
         await pilot.pause()
         await journey(app, pilot)
 
-    try:
-        drive(app, there)
-    finally:
-        practice.close()
-    return app
+    drive(ReaderApp(CATALOG, LESSON, workspace=workspace, pictures=pictures), there)
 
 
 def file_of(workspace: Workspace) -> Path:
@@ -76,15 +58,15 @@ async def answered(app: ReaderApp, pilot: Any) -> None:
     pytest.fail("the check never ended")
 
 
-def test_a_warm_up_stands_at_the_end_of_its_section(catalog: Catalog) -> None:
-    script = read_script(catalog.lesson(LESSON), catalog.warm_ups(LESSON))
-    bare = read_script(catalog.lesson(LESSON))
+def test_a_warm_up_stands_at_the_end_of_its_section() -> None:
+    script = read_script(CATALOG.lesson(LESSON), CATALOG.warm_ups(LESSON))
+    bare = read_script(CATALOG.lesson(LESSON))
     tasks = [(i, one) for i, one in enumerate(script.blocks) if isinstance(one, b.Task)]
-    assert [one.id for _, one in tasks] == [one.id for one in catalog.warm_ups(LESSON)]
+    assert [one.id for _, one in tasks] == [one.id for one in CATALOG.warm_ups(LESSON)]
     for index, task in tasks:
         section = script.section_at(index)
         assert section is not None
-        assert catalog.exercise(task.id).after in (section.slug, "")
+        assert CATALOG.exercise(task.id).after in (section.slug, "")
         assert index + 1 == section.end
     assert [cell.key for cell in script.cells] == [cell.key for cell in bare.cells]
     assert [one.key for one in script.questions] == [one.key for one in bare.questions]
@@ -92,9 +74,9 @@ def test_a_warm_up_stands_at_the_end_of_its_section(catalog: Catalog) -> None:
     assert "mass on a spring" in words_of(tasks[1][1]), "search finds it"
 
 
-def test_no_prediction_keeps_a_task_closed(catalog: Catalog) -> None:
-    for lesson in catalog.lesson_ids():
-        script = read_script(catalog.lesson(lesson), catalog.tasks(lesson))
+def test_no_prediction_keeps_a_task_closed() -> None:
+    for lesson in CATALOG.lesson_ids():
+        script = read_script(CATALOG.lesson(lesson), CATALOG.tasks(lesson))
         closed = [
             one.id
             for index, one in enumerate(script.blocks)
@@ -105,7 +87,7 @@ def test_no_prediction_keeps_a_task_closed(catalog: Catalog) -> None:
 
 @pytest.mark.parametrize("how", ["escape", "ctrl+q", "SIGTERM", "SIGHUP"])
 def test_what_is_typed_into_its_file_is_kept_however_the_editor_or_the_reader_is_left(
-    catalog: Catalog, workspace: Workspace, how: str
+    mine: Workspace, how: str
 ) -> None:
     async def journey(app: ReaderApp, pilot: Any) -> None:
         await pilot.press("e")
@@ -118,14 +100,12 @@ def test_what_is_typed_into_its_file_is_kept_however_the_editor_or_the_reader_is
             await pilot.press(how)
         await pilot.pause(0.2)
 
-    doing(catalog, workspace, journey)
-    assert file_of(workspace).read_text().startswith("#")
+    doing(mine, journey)
+    assert file_of(mine).read_text().startswith("#")
 
 
-def test_a_file_that_was_not_changed_is_left_alone_when_the_reader_is_left(
-    catalog: Catalog, workspace: Workspace
-) -> None:
-    path = file_of(workspace)
+def test_a_file_that_was_not_changed_is_left_alone_when_the_reader_is_left(mine: Workspace) -> None:
+    path = file_of(mine)
 
     async def journey(app: ReaderApp, pilot: Any) -> None:
         await pilot.press("e")
@@ -133,13 +113,11 @@ def test_a_file_that_was_not_changed_is_left_alone_when_the_reader_is_left(
         path.write_text("# from another editor\n")
         await pilot.press("ctrl+q")
 
-    doing(catalog, workspace, journey)
+    doing(mine, journey)
     assert path.read_text() == "# from another editor\n"
 
 
-def test_what_cannot_be_written_stays_in_the_editor(
-    catalog: Catalog, workspace: Workspace, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_cannot_be_written_stays_in_the_editor(mine: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> None:
         raise MissingCapabilityError(
             "The workspace cannot be written.", help="Make room.", code="not_writable"
@@ -159,12 +137,12 @@ def test_what_cannot_be_written_stays_in_the_editor(
         await pilot.press("escape")
         await pilot.pause(0.2)
 
-    doing(catalog, workspace, journey)
-    assert file_of(workspace).read_text().startswith("#")
+    doing(mine, journey)
+    assert file_of(mine).read_text().startswith("#")
 
 
-def test_what_is_done_is_remembered(catalog: Catalog, workspace: Workspace) -> None:
-    workspace.store.append("check", TASK, {"all_pass": True})
+def test_what_is_done_is_remembered(mine: Workspace) -> None:
+    mine.store.append("check", TASK, {"all_pass": True})
 
     async def journey(app: ReaderApp, pilot: Any) -> None:
         assert "5 minutes, done" in screen(app)
@@ -172,24 +150,22 @@ def test_what_is_done_is_remembered(catalog: Catalog, workspace: Workspace) -> N
         await pilot.pause(0.2)
         await pilot.press("escape", "G")
         await pilot.pause(0.2)
-        assert f"{len(catalog.warm_ups(LESSON)) - 1} warm-ups are left" in screen(app)
+        assert f"{len(CATALOG.warm_ups(LESSON)) - 1} warm-ups are left" in screen(app)
 
-    doing(catalog, workspace, journey)
+    doing(mine, journey)
 
 
-def test_outside_of_a_workspace_it_says_what_is_needed(catalog: Catalog) -> None:
+def test_outside_of_a_workspace_it_says_what_is_needed() -> None:
     async def journey(app: ReaderApp, pilot: Any) -> None:
         assert "course init my-course" in screen(app)
         await pilot.press("r", "e", "enter")
         await pilot.pause()
         assert "Make a workspace first" in screen(app)
 
-    doing(catalog, None, journey)
+    doing(None, journey)
 
 
-def test_its_editor_opens_at_the_function_that_the_finding_is_about(
-    catalog: Catalog, workspace: Workspace
-) -> None:
+def test_its_editor_opens_at_the_function_that_the_finding_is_about(mine: Workspace) -> None:
     from textual.widgets import TextArea
 
     at: list[str] = []
@@ -197,7 +173,7 @@ def test_its_editor_opens_at_the_function_that_the_finding_is_about(
     async def journey(app: ReaderApp, pilot: Any) -> None:
         await pilot.press("enter")
         await pilot.pause()
-        path = file_of(workspace)
+        path = file_of(mine)
         path.write_text("# a note\n" * 30 + path.read_text())
         await pilot.pause(0.6)
         await answered(app, pilot)
@@ -206,13 +182,13 @@ def test_its_editor_opens_at_the_function_that_the_finding_is_about(
         area = app.screen.query_one(TextArea)
         at.append(area.text.splitlines()[area.cursor_location[0]])
 
-    doing(catalog, workspace, journey)
-    (task,) = catalog.exercise(TASK).task
+    doing(mine, journey)
+    (task,) = CATALOG.exercise(TASK).task
     assert at[0].startswith(f"def {task.id}(")
 
 
 def test_one_is_started_checked_hinted_at_mended_and_done_in_its_place_and_is_so_when_opened_again(
-    catalog: Catalog, workspace: Workspace
+    mine: Workspace,
 ) -> None:
     async def journey(app: ReaderApp, pilot: Any) -> None:
         assert "Which line comes first?" in screen(app)
@@ -226,15 +202,15 @@ def test_one_is_started_checked_hinted_at_mended_and_done_in_its_place_and_is_so
         assert "every step adds energy" in screen(app)
         assert "hint" not in screen(app), "nothing was tried yet"
         # Saved by an editor of the student's: checked without a key.
-        path = file_of(workspace)
+        path = file_of(mine)
         path.write_text(path.read_text().replace("return", "return -1.0 *", 1))
         await pilot.pause(0.6)
         await answered(app, pilot)
         assert "h hint" in screen(app)
-        path.write_bytes(solution_path(catalog, catalog.exercise(TASK)).read_bytes())
+        path.write_bytes(solution_path(CATALOG, CATALOG.exercise(TASK)).read_bytes())
         await pilot.pause(0.6)
         await answered(app, pilot)
-        assert f"Fixed: {catalog.exercise(TASK).task[0].id}" in screen(app)
+        assert f"Fixed: {CATALOG.exercise(TASK).task[0].id}" in screen(app)
         assert "Done: every check passes." in screen(app)
 
     async def again(app: ReaderApp, pilot: Any) -> None:
@@ -242,14 +218,14 @@ def test_one_is_started_checked_hinted_at_mended_and_done_in_its_place_and_is_so
         await pilot.pause()
         assert "Done: every check passed." in screen(app)
 
-    doing(catalog, workspace, journey)
-    doing(catalog, workspace, again)
-    passed = [event.data["all_pass"] for event in workspace.store.events("check", TASK)]
+    doing(mine, journey)
+    doing(mine, again)
+    passed = [event.data["all_pass"] for event in mine.store.events("check", TASK)]
     assert passed == [False, False, True]
-    assert [event.subject for event in workspace.store.events("start")] == [TASK]
+    assert [event.subject for event in mine.store.events("start")] == [TASK]
 
 
-def test_the_curve_of_a_failed_check_stands_above_its_finding(catalog: Catalog, workspace: Workspace) -> None:
+def test_the_curve_of_a_failed_check_stands_above_its_finding(mine: Workspace) -> None:
     """An exercise's, put where a warm-up is: a reply is a reply."""
     words = {"quantity": "q", "units": "m", "right_is": "RK4", "description": "Your curve leaves it."}
     numbers = {"t": list(range(40)), "yours": [2 * i for i in range(40)], "right": list(range(40))}
@@ -271,4 +247,4 @@ def test_the_curve_of_a_failed_check_stands_above_its_finding(catalog: Catalog, 
         assert places == sorted(places)
         assert sum("▀" in line for line in shown.splitlines()) >= 8
 
-    doing(catalog, workspace, journey, pictures=Drawer())
+    doing(mine, journey, pictures=Drawer())

@@ -8,11 +8,10 @@ import signal
 import sys
 import time
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
-from course.progress.store import Store
+from course.progress.workspace import Workspace
 from tests.command_line import in_process
 from tests.terminals import AS_IT_WAS, Terminal, needs_tmux
 
@@ -21,21 +20,15 @@ LESSON = "numerical-integration"
 
 
 @pytest.fixture
-def workspace(tmp_path: Path) -> Path:
-    assert in_process("init", tmp_path / "mine").returncode == 0
-    return tmp_path / "mine"
-
-
-@pytest.fixture
-def terminal(workspace: Path) -> Iterator[Terminal]:
-    with contextlib.closing(Terminal(workspace, (80, 24))) as made:
+def terminal(mine: Workspace) -> Iterator[Terminal]:
+    with contextlib.closing(Terminal(mine.root, (80, 24))) as made:
         yield made
 
 
 def test_a_student_reads_predicts_runs_and_comes_back_to_the_line(
-    terminal: Terminal, workspace: Path
+    terminal: Terminal, mine: Workspace
 ) -> None:
-    store = Store(workspace / ".course" / "progress.sqlite")
+    store = mine.store
     terminal.line(f"sh -c 'echo $$ > pid; exec {sys.executable} -m course lesson {LESSON}'")
     terminal.wait("min left")
     terminal.type("G")
@@ -59,7 +52,7 @@ def test_a_student_reads_predicts_runs_and_comes_back_to_the_line(
     terminal.resize(60, 30)
     terminal.type("j")
     terminal.still()
-    os.kill(int((workspace / "pid").read_text()), signal.SIGTERM)  # a closed window: the place is kept
+    os.kill(int((mine.root / "pid").read_text()), signal.SIGTERM)  # a closed window: the place is kept
     terminal.wait("Next: course")
     assert terminal.state() == AS_IT_WAS
     assert store.events("cell", LESSON)[-1].data["error"] == ""
@@ -73,8 +66,8 @@ def test_a_student_reads_predicts_runs_and_comes_back_to_the_line(
     assert store.events("bookmark", LESSON)[-1].data["block"] == place["block"]
 
 
-def test_after_a_lesson_in_watch_a_stop_and_fg_go_on(terminal: Terminal, workspace: Path) -> None:
-    assert in_process("-C", workspace, "start", "integrators").returncode == 0
+def test_after_a_lesson_in_watch_a_stop_and_fg_go_on(terminal: Terminal, mine: Workspace) -> None:
+    assert in_process("-C", mine.root, "start", "integrators").returncode == 0
     terminal.line(f"{sys.executable} -m course watch integrators")
     terminal.wait("q leave")
     for _ in range(2):
@@ -97,9 +90,9 @@ def test_after_a_lesson_in_watch_a_stop_and_fg_go_on(terminal: Terminal, workspa
     "before", ["TERM=dumb", "LANG=C LC_ALL=C PYTHONUTF8=0 PYTHONCOERCECLOCALE=0", "TERM="]
 )
 def test_a_terminal_that_cannot_be_drawn_on_gets_the_printed_lesson(
-    terminal: Terminal, workspace: Path, before: str
+    terminal: Terminal, mine: Workspace, before: str
 ) -> None:
     terminal.line(f"env {before} {sys.executable} -m course lesson why-simulate")  # few figures to draw
     assert "\x1b" not in terminal.wait("Next: course")
     assert terminal.state() == AS_IT_WAS
-    assert not Store(workspace / ".course" / "progress.sqlite").events("lesson")
+    assert not mine.store.events("lesson")

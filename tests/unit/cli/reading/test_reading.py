@@ -12,8 +12,9 @@ from rich.console import Console
 
 from course.catalog.models import Lesson
 from course.cli.frame.pictures import protocol_of
-from course.cli.reading.lesson import Reader, sentences, value_spoken, value_text
+from course.cli.reading.lesson import paginate, printer, sentences, value_spoken, value_text
 from course.errors import NotFoundError
+from course.reading.parts import read_script, words_of
 
 TEXT = """+++
 ignored = true
@@ -89,10 +90,6 @@ class StubCatalog:
             raise NotFoundError("no such lesson")
         return name
 
-    def warm_ups(self, lesson: str) -> tuple[()]:
-        del lesson
-        return ()
-
 
 CATALOG = cast("Any", StubCatalog())
 
@@ -118,12 +115,13 @@ def shown(lesson: Lesson, width: int = 60, **options: Any) -> str:
     return written(console)
 
 
-def read_whole(lesson: Lesson, console: Console, **options: Any) -> tuple[Path, ...]:
-    """Every page; the pictures that were written."""
-    reader = Reader(CATALOG, lesson, console, **options)
-    for page in reader.pages:
-        reader.show(page)
-    return reader.pictures
+def read_whole(lesson: Lesson, console: Console, **options: Any) -> list[Path]:
+    """All of it; the pictures that were written."""
+    script = read_script(lesson)
+    prints = printer(CATALOG, script, console, **options)
+    prints.head()
+    prints.blocks(script.blocks)
+    return prints.pictures
 
 
 @pytest.mark.parametrize("width", [40, 60, 80, 120])
@@ -230,14 +228,12 @@ def test_without_colour_code_keeps_its_marks(lesson: Lesson) -> None:
 def test_a_page_ends_where_a_section_or_a_prediction_does_whose_answer_it_does_not_show(
     lesson: Lesson,
 ) -> None:
-    console = console_of()
-    reader = Reader(CATALOG, lesson, console)
-    sections = ["", "First section", "First section", "Second section", "Sources"]
-    assert [page.section for page in reader.pages] == sections
-    assert [page.first for page in reader.pages] == [True, False, False, False, False]
-    reader.show(reader.pages[1])
-    assert "What comes out?" in written(console)
-    assert "four 4" not in written(console)
+    pages = paginate(read_script(lesson).blocks)
+    said = ["\n".join(map(words_of, page)) for page in pages]
+    begins = ["Opening words", "First section", "print", "Second section", "Sources"]
+    assert all(text.startswith(words) for text, words in zip(said, begins, strict=True))
+    assert "What comes out?" in said[1]
+    assert "four 4" not in said[1]
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from course.cli.frame.console import Console
-from course.cli.work.verdict import _line_of, _shown, github, unread_line
+from course.cli.work.verdict import _shown, github, line_of, unread_line
 from tests.command_line import in_process
 
 #: What the runner puts back, in its order: ActionCommand.cs of actions/runner.
@@ -125,9 +125,9 @@ def test_a_file_that_cannot_be_read_is_marked_where_it_cannot(course, write):
 
 def test_a_line_in_a_notebook_is_that_of_its_text():
     text = '{"cells": [\n  {"source": [\n    "def double(x):\\n",\n    "    return x\\n"\n]}]}'
-    work = SimpleNamespace(notebook=object(), data=text.encode())
-    assert _line_of(work, SimpleNamespace(task="double", traceback="nb.py:9 in double")) == 3
-    assert _line_of(work, SimpleNamespace(task="doublings", traceback=None)) == 1
+    raised = SimpleNamespace(task="double", traceback="nb.py:9 in double")
+    assert line_of(text, raised, traced=False) == 3
+    assert line_of(text, SimpleNamespace(task="doublings", traceback=None), traced=False) == 1
 
 
 # -- course init --with ------------------------------------------------------------------------------------

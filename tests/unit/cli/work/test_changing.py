@@ -1,6 +1,11 @@
-"""The stub and newer versions of it; nothing is lost on the way."""
+"""How an exercise begins, the stub and newer versions of it; nothing is lost on the way."""
 
 from __future__ import annotations
+
+import os
+import re
+import subprocess
+from pathlib import Path
 
 import pytest
 
@@ -11,17 +16,14 @@ def test_diff_shows_lines_added_and_removed_or_says_that_there_are_none(course, 
     ran = course("diff")
     assert ran.code == 0
     assert "as it was handed out" in ran.out
+    path = workspace / "doubling" / "doubling.py"
+    path.write_text(path.read_text() + "# one more\n")
+    assert "1 line added, 0 removed." in course("diff").out
     write("RIGHT", "wrong")
     body = course("diff", "--json").json
     assert body["changed"]
     assert "+    'RIGHT'" in body["diff"]
     assert body["added"] == sum(row.startswith("+") for row in body["diff"].splitlines()[2:])
-
-
-def test_one_line_is_counted_as_one(course, workspace):
-    path = workspace / "doubling" / "doubling.py"
-    path.write_text(path.read_text() + "# one more\n")
-    assert "1 line added, 0 removed." in course("diff").out
 
 
 def test_reset_asks_nobody_but_needs_yes_and_keeps_a_copy_whose_path_it_prints(course, workspace, write):
@@ -86,6 +88,7 @@ def test_update_replaces_what_was_not_edited_and_puts_the_rest_beside(
     assert (folder / "README.md").read_text().endswith("# newer\n")
     assert (workspace / body["changes"][0]["backup"]).read_bytes() == old_readme
     assert (folder / "doubling.py").read_bytes() == mine
+    assert Path(body["changes"][1]["new"]) == folder / "doubling.py.new"
     assert (folder / "doubling.py.new").read_text().endswith("# newer\n")
     assert 'version = "9.0.0"' in (workspace / "course.toml").read_text()
     done = files_in(folder)
@@ -105,3 +108,76 @@ def test_update_leaves_a_removed_file_removed(course, workspace, newer_content):
     (workspace / "doubling" / "doubling.py").unlink()
     assert course("update", "--json").json["changes"][1]["action"] == "missing"
     assert not (workspace / "doubling" / "doubling.py").exists()
+
+
+def test_the_dashboard_outside_of_a_workspace_says_how_to_begin(course):
+    ran = course()
+    assert ran.code == 0
+    assert "course init" in ran.out
+
+
+def test_the_dashboard_survives_a_damaged_record(course, workspace):
+    (workspace / ".course" / "progress.sqlite").write_bytes(b"not a database, not at all, no" * 10)
+    ran = course()
+    assert ran.code == 0
+    assert "progress.sqlite" in ran.err
+    assert "Next: course doctor" in ran.out
+
+
+def test_init_changes_nothing_in_a_workspace_where_a_file_is_or_where_course_toml_is_damaged(
+    course, workspace
+):
+    before = files_in(workspace)
+    ran = course("init", "inner", "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (2, "nested_workspace")
+    assert not (workspace / "inner").exists()
+    (workspace.parent / "in the way" / "course.toml").mkdir(parents=True)
+    said = course("init", str(workspace.parent / "in the way")).err
+    assert f"in the way{os.sep}course.toml is in the way." in said
+    (workspace.parent / "file").write_text("x")
+    assert course("init", str(workspace.parent / "file")).code == 2
+    assert (workspace.parent / "file").read_text() == "x"
+    assert files_in(workspace) == before
+    marker = workspace / "course.toml"
+    marker.write_text(marker.read_text().replace('"mini"', '"other"'))
+    assert course("init", "--json").json["error"]["code"] == "other_course"
+    marker.write_text("[[[")
+    ran = course("init")
+    assert ran.code == 2
+    assert "course.toml:1" in ran.err
+    assert (workspace / "course.toml").read_text() == "[[["
+
+
+@pytest.mark.skipif(os.name == "nt", reason="names and quotes of another system")
+@pytest.mark.parametrize("name", ["plain", 'ws "x" $HOME', "-dash", "it's"])
+def test_the_way_into_a_new_workspace_can_be_pasted(course, tmp_path, name):
+    said = course("init", "--", name).out
+    (line,) = re.findall("^Go there: (.+)$", said, re.MULTILINE)
+    script = f"{line} && pwd"
+    ran = subprocess.run(["sh", "-c", script], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert ran.stdout == f"{tmp_path / name}\n"
+
+
+def test_start_and_init_never_overwrite_and_start_brings_back_what_was_removed(course, workspace, write):
+    path = write("mine")
+    before = files_in(workspace)
+    ran = course("init")
+    assert ran.code == 0
+    assert "already" in ran.out
+    assert files_in(workspace) == before
+    ran = course("start", "doubling")
+    assert ran.code == 0
+    assert "was not changed" in ran.out
+    assert path.read_bytes() == before[path]
+    path.unlink()
+    assert course("start", "doubling/").code == 0
+    assert path.is_file()
+
+
+@pytest.mark.parametrize(
+    "command", ["start doubling", "go", "check", "hint", "diff", "submit", "progress", "watch", "update"]
+)
+def test_outside_of_a_workspace_a_command_says_how_to_make_one(course, command):
+    ran = course(*command.split())
+    assert ran.code == 5
+    assert "course init" in ran.err

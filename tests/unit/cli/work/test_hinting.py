@@ -1,27 +1,41 @@
-"""Help, as much as has been worked for."""
+"""Help, as much as has been worked for; and a question in prose, answered before the answer is shown."""
 
 from __future__ import annotations
 
+import io
 import json
 
+import pytest
+
+from course.catalog.load import Catalog
 from course.catalog.pack import pack_bytes
+from course.cli.frame.console import Console
+from course.errors import ContentError
 
 
-def test_hints_come_one_per_attempt_and_are_never_counted(course, write):
+@pytest.fixture
+def hint(course, write):
+    """The hint after a check of functions with these bodies; without any, what is answered now."""
+
+    def asked(*bodies, extra="", words=()):
+        if bodies or extra:
+            write(*bodies, extra=extra)
+            course("check")
+        return course("hint", *words, "--json").json
+
+    return asked
+
+
+def test_hints_come_one_per_attempt_and_are_never_counted(course, write, hint):
     write("wrong", "wrong")
     assert "Check your work first" in course("hint").out
-    course("check")
-    first = course("hint", "--json").json
+    first = hint("wrong", "wrong")
     assert first["given"]
     assert first["task"] == "double"
     for extra in ("", "# thinking\n"):  # a comment is no attempt
-        write("wrong", "wrong", extra)
-        course("check")
-        again = course("hint", "--json").json
+        again = hint("wrong", "wrong", extra=extra)
         assert (again["given"], again["reason"], again["hint"]) == (False, "unchanged", first["hint"])
-    write("wrong # a comment does count inside a string", "wrong")
-    course("check")
-    second = course("hint", "--json").json
+    second = hint("wrong # a comment does count inside a string", "wrong")
     assert second["given"]
     assert second["hint"] != first["hint"]
     for reply in (first, again, second):
@@ -30,40 +44,31 @@ def test_hints_come_one_per_attempt_and_are_never_counted(course, write):
         assert " of 3" not in words
 
 
-def test_a_hint_fits_what_the_check_thinks_is_wrong(course, write, students_content):
+def test_a_hint_fits_what_the_check_thinks_is_wrong(hint, students_content):
     hints = students_content / "exercises" / "doubling" / "exercise.toml"
     hints.write_text(hints.read_text().replace("SQUARES_INSTEAD", "NOT_RIGHT"))
-    write("wrong", "RIGHT")
-    course("check")
-    assert course("hint", "--json").json["hint"] == "Try your function on a negative number too."
+    assert hint("wrong", "RIGHT")["hint"] == "Try your function on a negative number too."
     # The same mistake again: what fits has been said, so the mildest that is left comes next.
-    write("wrong again", "RIGHT")
-    course("check")
-    assert course("hint", "--json").json["hint"] == "What is a number added to itself?"
-    assert course("hint", "--json").json["hint"] == "What is a number added to itself?"
+    assert hint("wrong again", "RIGHT")["hint"] == hint()["hint"] == "What is a number added to itself?"
 
 
-def test_a_hint_goes_on_with_the_students_numbers_where_the_check_has_them(course, write, students_content):
+def test_a_hint_goes_on_with_the_students_numbers_where_the_check_has_them(hint, students_content):
     hints = students_content / "exercises" / "doubling" / "exercise.toml"
     sentences = (
         '1 = ["At {x} it is {got}."]\n2 = ["At {x} it is {got}.", "At h = {h} it is {got}, not {expected}."]'
     )
     hints.write_text(hints.read_text().replace("[task.fits]", f"[task.yours]\n{sentences}\n\n[task.fits]"))
-    write("wrong", "RIGHT")
-    course("check")
-    assert course("hint", "--json").json["hint"] == "What is a number added to itself?"
-    write("wrong again", "RIGHT")
-    course("check")
+    assert hint("wrong", "RIGHT")["hint"] == "What is a number added to itself?"
     told = "Try your function on a negative number too. At h = 0.05 it is 1, not 1.00000001."
-    assert course("hint", "--json").json["hint"] == told
-    again = course("hint", "--json").json
+    assert hint("wrong again", "RIGHT")["hint"] == told
+    again = hint()
     assert (again["reason"], again["hint"]) == ("unchanged", told)
 
 
-def test_before_its_start_an_exercise_has_no_hint_and_starting_it_is_next(course, workspace):
-    assert course("hint", "halving", "--json").json["next"]["command"] == "course start halving"
+def test_before_its_start_an_exercise_has_no_hint_and_starting_it_is_next(course, hint):
+    assert hint(words=["halving"])["next"]["command"] == "course start halving"
     course("start", "halving")
-    assert course("hint", "halving", "--json").json["next"]["command"] == "course check halving"
+    assert hint(words=["halving"])["next"]["command"] == "course check halving"
 
 
 def test_an_untouched_stub_earns_no_hint(course, workspace):
@@ -73,53 +78,38 @@ def test_an_untouched_stub_earns_no_hint(course, workspace):
     assert "follows an attempt" in ran.out
 
 
-def test_a_function_that_is_not_begun_has_no_hint_and_another_one_that_fails_goes_first(course, write):
-    write("raise NotImplementedError", "wrong")
-    course("check")
-    reply = course("hint", "--json").json
+def test_a_function_that_is_not_begun_has_no_hint_and_another_one_that_fails_goes_first(course, hint):
+    reply = hint("raise NotImplementedError", "wrong")
     assert (reply["given"], reply["task"]) == (True, "doublings")
-    write("RIGHT", "raise NotImplementedError")
+    reply = hint("RIGHT", "raise NotImplementedError")
+    assert (reply["given"], reply["reason"]) == (False, "unchanged")
     assert course("check", "--json").json["next"]["command"] == "course watch doubling"
-    reply = course("hint", "--json").json
-    assert (reply["given"], reply["reason"], reply["hint"]) == (False, "unchanged", reply["hint"])
-    assert course("hint", "--task", "double", "--json").json["reason"] == "passing"
+    assert hint(words=["--task", "double"])["reason"] == "passing"
 
 
-def test_hints_go_to_the_first_failing_task_or_the_one_asked_for(course, write):
-    write("RIGHT", "wrong")
-    course("check")
-    assert course("hint", "--json").json["task"] == "doublings"
-    write("wrong", "wrong")
-    course("check")
-    assert course("hint", "--task", "doublings", "--json").json["task"] == "doublings"
+def test_hints_go_to_the_first_failing_task_or_the_one_asked_for(course, hint):
+    assert hint("RIGHT", "wrong")["task"] == "doublings"
+    assert hint("wrong", "wrong", words=["--task", "doublings"])["task"] == "doublings"
     ran = course("hint", "--task", "halve")
     assert ran.code == 5
     assert "doublings" in ran.err
 
 
-def test_hints_that_run_out_are_replaced_by_the_lesson(course, write):
-    reply = {"given": True}
-    for attempt in range(20):
-        write(f"wrong {attempt}", "RIGHT")
-        course("check")
-        reply = course("hint", "--json").json
-        if not reply["given"]:
-            break
-    assert reply["reason"] == "exhausted"
-    assert "course lesson twice-as-much" in reply["message"]
+def test_hints_that_run_out_are_replaced_by_the_lesson(hint):
+    replies = [hint(f"wrong {attempt}", "RIGHT") for attempt in range(5)]
+    assert [reply["given"] for reply in replies] == [True, True, True, False, False]
+    assert replies[-1]["reason"] == "exhausted"
+    assert "course lesson twice-as-much" in replies[-1]["message"]
 
 
-def test_nothing_fails_nothing_to_hint_at(course, write):
-    write("RIGHT", "RIGHT")
-    course("check")
-    body = course("hint", "--json").json
-    assert (body["reason"], body["next"]["command"]) == ("passing", "course submit")
-
-
-def test_a_file_that_could_not_run_is_sent_back_to_its_check(course, write):
-    write(extra="UNREADABLE")
-    course("check")
-    assert course("hint", "--json").json["reason"] == "ungradable"
+@pytest.mark.parametrize(
+    ("extra", "reason", "step"),
+    [("", "passing", "course submit"), ("UNREADABLE", "ungradable", "course check doubling")],
+    ids=["nothing fails", "a file that could not run"],
+)
+def test_where_there_is_nothing_to_hint_at_it_is_said_why(hint, extra, reason, step):
+    body = hint("RIGHT", "RIGHT", extra=extra)
+    assert (body["reason"], body["next"]["command"]) == (reason, step)
 
 
 def test_a_checkout_shows_its_solution_after_a_pass_and_not_before(course, write):
@@ -149,3 +139,100 @@ def test_a_pack_in_the_workspace_is_opened_and_without_one_it_is_told_where_one_
     assert body["source"].endswith("week 1.coursepack")
     pack.write_bytes(b"no zip")
     assert course("solution").code == 7, "it is damaged"
+
+
+RUBRIC = """format_version = 1
+question = "When would you double?"
+least_words = 4
+points = ["It names a number.", "It says why."]
+good_answer = "I double two to get four."
+"""
+ANSWER = "Whenever half is too little for me."
+
+
+@pytest.fixture
+def passed(students_content, workspace, write):
+    """A workspace in which doubling passes and has a question."""
+    (students_content / "exercises" / "doubling" / "rubric.toml").write_text(RUBRIC)
+
+
+def check(course, write):
+    write("RIGHT", "RIGHT")
+    assert course("check", "doubling").code == 0
+
+
+def test_the_question_comes_once_the_checks_pass_and_its_answer_once_something_was_written(
+    course, passed, write, workspace
+):
+    ran = course("reflect", "doubling", "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (5, "not_passed_yet")
+    check(course, write)
+    ran = course("reflect", "doubling", "--json")
+    assert ran.code == 0
+    assert (ran.json["answer"], ran.json["good_answer"], ran.json["points"]) == (None, None, [])
+    (workspace / "short.txt").write_text("Dunno.")
+    ran = course("reflect", "doubling", "--answer", "short.txt", "--json")
+    assert (ran.code, ran.json["error"]["code"]) == (2, "too_short")
+    assert course("reflect", "doubling", "--json").json["answer"] is None
+
+
+def test_what_was_written_and_how_it_was_graded_is_kept(course, passed, write, workspace):
+    check(course, write)
+    (workspace / "mine.txt").write_text(ANSWER)
+    ran = course("reflect", "doubling", "--answer", "mine.txt")
+    assert "I double two to get four." in ran.out
+    for wrong in ("yes", "yes,maybe", "yes,no,no"):
+        assert course("reflect", "doubling", "--grades", wrong).code == 2
+    assert course("reflect", "doubling", "--grades", "yes, No").code == 0
+    body = course("reflect", "doubling", "--json").json
+    assert body["answer"] == ANSWER
+    assert [point["grade"] for point in body["points"]] == ["yes", "no"]
+    (workspace / "mine.txt").write_text(ANSWER + " And more.")
+    body = course("reflect", "doubling", "--answer", "mine.txt", "--json").json
+    assert [point["grade"] for point in body["points"]] == [None, None], "another answer, not graded yet"
+
+
+def test_it_changes_no_score_and_is_not_handed_in(course, passed, write, workspace):
+    import zipfile
+
+    check(course, write)
+    before = course("progress", "--json").json["exercises"]
+    (workspace / "mine.txt").write_text(ANSWER)
+    course("reflect", "doubling", "--answer", "mine.txt", "--grades", "no,no")
+    assert course("progress", "--json").json["exercises"] == before
+    course("submit", "-o", "mine.zip")
+    with zipfile.ZipFile(workspace / "mine.zip") as archive:
+        assert not any(ANSWER.encode() in archive.read(name) for name in archive.namelist())
+
+
+def test_in_a_terminal_it_is_typed_and_graded_point_by_point(course, passed, write, monkeypatch):
+    check(course, write)
+    monkeypatch.setattr(Console, "interactive", property(lambda self: not self.json))
+    monkeypatch.setattr("sys.stdin", io.StringIO(f"{ANSWER}\n\nperhaps\ny\npartly\n"))
+    assert course("reflect", "doubling").code == 0
+    body = course("reflect", "doubling", "--json").json
+    assert [point["grade"] for point in body["points"]] == ["yes", "partly"]
+
+
+def test_an_exercise_without_a_question_says_which_have_one(course, passed):
+    ran = course("reflect", "halving")
+    assert ran.code == 5
+    assert "doubling" in ran.err
+
+
+def test_a_rubric_whose_answer_is_too_short_is_refused(students_content):
+    (students_content / "exercises" / "doubling" / "rubric.toml").write_text(
+        RUBRIC.replace("least_words = 4", "least_words = 40")
+    )
+    catalog = Catalog()
+    with pytest.raises(ContentError, match="fewer than 40 words"):
+        catalog.rubric(catalog.exercise("doubling"))
+
+
+@pytest.mark.parametrize("exercise_id", ["engine-comparison", "sim-to-real"])
+def test_the_chapters_exercises_one_and_three_have_a_question(exercise_id):
+    catalog = Catalog()
+    exercise = catalog.exercise(exercise_id)
+    rubric = catalog.rubric(exercise)
+    assert exercise.number in {1, 3}
+    assert len(rubric.points) >= 3

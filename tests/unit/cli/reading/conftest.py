@@ -4,11 +4,22 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from course.catalog.load import Catalog
 from course.cli.reading.screen.app import ReaderApp
+from course.progress.workspace import Workspace
+
+CATALOG = Catalog()
+
+
+@pytest.fixture
+def mine(tmp_path: Path) -> Workspace:
+    """A workspace of the course itself."""
+    return Workspace.create(tmp_path / "mine", CATALOG.course_id, CATALOG.version)
 
 
 def drive(
@@ -21,7 +32,10 @@ def drive(
             await settled(app, pilot)
             await journey(app, pilot)
 
-    asyncio.run(driven())
+    try:
+        asyncio.run(driven())
+    finally:
+        app.page.close()
 
 
 async def settled(app: ReaderApp, pilot: Any) -> None:

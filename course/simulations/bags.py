@@ -26,8 +26,8 @@ The messages hold more than the streams:
 
 Which ROS reads them: the metadata have version 8, which keeps the quality of service as text. Humble fails on
 version 9 ("bad conversion", github.com/ros2/rosbag2/issues/2013), and later releases read what earlier ones
-wrote (github.com/ros2/rosbag2/issues/1895). Storage is SQLite unless asked otherwise, since Humble needs one
-more package to read MCAP. ``/tf_static`` is offered as "transient local", without which RViz refuses it
+wrote (github.com/ros2/rosbag2/issues/1895). Storage is SQLite, since Humble needs one more package to read
+MCAP. ``/tf_static`` is offered as "transient local", without which RViz refuses it
 (github.com/ros2/rviz/issues/916).
 
 Writing the same streams to the same name gives the same bytes. This needs the extra ``ros``.
@@ -313,7 +313,6 @@ def rviz_view(streams: Iterable[Stream]) -> str:
     return "".join(parts) + _TAIL.format(frame=placed.frame)
 
 
-STORAGES = ("sqlite3", "mcap")
 #: The configuration of RViz in the folder of a bag.
 VIEW = "view.rviz"
 #: Stamp of the stream's time 0, s. A stamp of 0 would mean "the latest" to tf2 and "no clock yet" to a node.
@@ -336,13 +335,12 @@ _STATIC = ("/tf_static", "tf2_msgs/msg/TFMessage")
 _FOR_EVER = (9223372036, 854775807)
 
 
-def write_bag(path: Path, streams: Iterable[Stream], *, storage: str = "sqlite3") -> Path:
+def write_bag(path: Path, streams: Iterable[Stream]) -> Path:
     """Write streams as a bag: all of it, or nothing.
 
     Args:
         path: folder of the bag; must not exist. Its name is part of the bag.
         streams: at most one of each type.
-        storage: "sqlite3" or "mcap".
 
     Returns:
         ``path``.
@@ -360,17 +358,12 @@ def write_bag(path: Path, streams: Iterable[Stream], *, storage: str = "sqlite3"
             help="Give an ImuStream, a ScanStream, an OdometryStream, a TruthStream, or several of them.",
             code="bag_streams",
         )
-    if storage not in STORAGES:
-        raise UsageError(
-            f"There is no storage {storage!r}.", help=f"There are {', '.join(STORAGES)}.", code="bag_storage"
-        )
     if path.exists():
         raise UsageError(f"{path} exists already.", help="Name a folder that does not.", code="path_exists")
     path.parent.mkdir(parents=True, exist_ok=True)
-    plugin = rosbag2.StoragePlugin[storage.upper()]
     with tempfile.TemporaryDirectory(dir=path.parent, prefix=".bag-") as scratch:
         written = Path(scratch) / path.name  # the bag's files are called after their folder
-        with rosbag2.Writer(written, version=8, storage_plugin=plugin) as writer:
+        with rosbag2.Writer(written, version=8, storage_plugin=rosbag2.StoragePlugin.SQLITE3) as writer:
             _write(writer, [chosen[kind] for kind in _TOPICS if kind in chosen])
         (written / VIEW).write_text(rviz_view(chosen.values()), encoding="utf-8")
         shutil.move(written, path)

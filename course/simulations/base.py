@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
@@ -117,18 +117,18 @@ class Result:
     """The results of one run.
 
     Attributes:
-        settings: every parameter with the value it had.
         headline: the finding in at most 78 characters, for the head of a figure.
         finding: the finding in a sentence or two.
         columns: for ``--csv``: series of one length, the first one being the axis.
+        simulation, settings: which one, and every parameter with the value it had; ``run`` puts them in.
     """
 
-    simulation: str
-    settings: Mapping[str, Value]
     rows: tuple[Row, ...]
     headline: str
     finding: str
     columns: tuple[Column, ...] = field(repr=False)
+    simulation: str = ""
+    settings: Mapping[str, Value] = field(default_factory=dict)
 
     def column(self, name: str) -> Array:
         return next(column.values for column in self.columns if column.name == name)
@@ -186,7 +186,7 @@ def run(simulation: Simulation, pairs: Sequence[str] = ()) -> Result:
     try:
         # A method beyond its limit overflows; infinity is then the honest answer.
         with np.errstate(over="ignore", invalid="ignore"):
-            return simulation.run(settings)
+            return replace(simulation.run(settings), simulation=simulation.id, settings=settings)
     except ValueError as error:
         raise UsageError(
             f"{simulation.id}: {error}", help=_known(simulation), code="impossible_settings"
@@ -237,12 +237,8 @@ def _value(parameter: Parameter, pair: str, text: str) -> Value:
         return text
     number, unit = _number(parameter, pair, text)
     if unit and unit != parameter.unit:
-        takes = (
-            f"{parameter.name} is in {parameter.unit}"
-            if parameter.unit != "1"
-            else f"{parameter.name} has no unit"
-        )
-        raise _refuse(pair, f"{takes}, not in {unit}.")
+        takes = "has no unit" if parameter.unit == "1" else f"is in {parameter.unit}"
+        raise _refuse(pair, f"{parameter.name} {takes}, not in {unit}.")
     if not math.isfinite(number):
         raise _refuse(pair, f"{parameter.name} must be a finite number.")
     low = number <= parameter.low if parameter.above else number < parameter.low
@@ -279,16 +275,13 @@ def _check_steps(simulation: Simulation, settings: dict[str, Any], pairs: Sequen
     h, length = settings.get("step"), settings.get("duration")
     if h is None or length is None:
         return
-    place = " and ".join(
-        f"--set {pair}" for pair in pairs if pair.partition("=")[0].strip() in ("step", "duration")
-    )
-    place = place or simulation.id
+    meant = [pair for pair in pairs if pair.partition("=")[0].strip() in ("step", "duration")]
+    place = " and ".join(f"--set {pair}" for pair in meant) or simulation.id
     try:
         n = step_count(length, h)
     except ValueError as error:
-        raise UsageError(
-            f"{place}: {error}", help="Change one of the two with --set.", code="step_does_not_divide"
-        ) from error
+        help_ = "Change one of the two with --set."
+        raise UsageError(f"{place}: {error}", help=help_, code="step_does_not_divide") from error
     if n > MAX_STEPS:
         raise UsageError(
             f"{place}: that is {n:,} steps; at most {MAX_STEPS:,} are run.",

@@ -1,4 +1,4 @@
-"""What the sandbox costs on top of pymunk, as ratios within one run; and a GIF in seconds.
+"""What the sandbox costs on top of pymunk, as ratios within one run.
 
     python tests/benchmarks/sandbox.py [--rounds 15] [--json]
 
@@ -16,7 +16,6 @@ import statistics
 import time
 from typing import Any
 
-from course.sandbox.runs.recording import Film
 from course.sandbox.scene.loading import choose
 from course.sandbox.scene.model import Body, Material, Repeat, Scene, layout
 from course.sandbox.world.engine import Space
@@ -106,27 +105,6 @@ def ratios(scene: Scene, rounds: int) -> dict[str, object]:
     return report
 
 
-def film() -> dict[str, float]:
-    """Two hundred frames into a GIF: drawing and encoding, in s of CPU."""
-    scene = choose("billiards-break").scene
-    world, reel = World(scene), Film(scene, width=400)
-    shots = []
-    for _ in range(200):
-        world.step(10)
-        shots.append(world.snapshot())
-    began = time.process_time()
-    for shot in shots:
-        reel.take(world.parts, shot)
-    drawn = time.process_time()
-    size = len(reel.gif())
-    return {
-        "frames": 200,
-        "drawing_s": round(drawn - began, 3),
-        "encoding_s": round(time.process_time() - drawn, 3),
-        "bytes": size,
-    }
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=15)
@@ -135,7 +113,6 @@ def main() -> None:
     result: dict[str, dict[str, Any]] = {
         "a hundred bodies": ratios(pile(), given.rounds),
         "cradle": ratios(choose("newtons-cradle").scene, given.rounds),
-        "gif": film(),
     }
     if given.json:
         print(json.dumps(result))

@@ -194,26 +194,6 @@ def sandbox(browser, tmp_path: Path):
         assert one.close() == 0
 
 
-def test_a_body_is_dragged_and_thrown_with_the_mouse(sandbox) -> None:
-    at = sandbox("head-on")
-    at.page.get_by_role("button", name="Reset").click()
-    at.page.locator("label.speed input").focus()
-    for _ in range(3):
-        at.page.keyboard.press("ArrowLeft")
-    at.until(lambda: at.status["speed"] == 0.1)
-    at.page.mouse.move(*at.pixel(*at.body("left-puck")[:2]))
-    at.page.mouse.down()
-    at.until(lambda: at.frame[6] == 1)
-    at.page.mouse.move(*at.pixel(-1.0, 1.0), steps=4)
-    at.until(lambda: at.body("left-puck")[1] > 0.5)
-    at.page.mouse.move(*at.pixel(1.0, 1.0))
-    at.until(lambda: at.body("left-puck")[3] > 0.5)
-    at.page.mouse.up()
-    at.until(lambda: at.frame[6] == 0)
-    assert at.body("left-puck")[3] > 0.2
-    assert "the hand lets go" in at.page.locator(".events").inner_text()
-
-
 def test_while_time_stands_a_drag_places_and_a_drag_of_the_arrows_tip_aims(sandbox) -> None:
     at = sandbox("restitution-row")
     at.stand_at_the_start()
@@ -233,17 +213,6 @@ def test_while_time_stands_a_drag_places_and_a_drag_of_the_arrows_tip_aims(sandb
         at.page.get_by_role("button", name="Undo").click()
         at.page.wait_for_timeout(200)
     at.until(lambda: at.status["undo"] in {"", "the reset"} and at.body("ball-3")[3] == 0)
-
-
-def test_two_balls_of_the_cradle_are_set_aside_and_let_go(sandbox) -> None:
-    at = sandbox("newtons-cradle")
-    at.stand_at_the_start()
-    for name, place in (("ball-1", (-1.1, 0.3)), ("ball-2", (-0.9, 0.3))):
-        at.drag(at.body(name)[:2], place)
-        at.page.wait_for_timeout(200)
-    at.page.keyboard.press("Space")
-    at.until(lambda: at.body("ball-4")[0] > 0.35 and at.body("ball-5")[0] > 0.55)
-    assert at.body("ball-3")[0] == pytest.approx(0.0, abs=0.02)
 
 
 def test_a_run_is_scrubbed_gone_on_from_the_middle_and_filmed(sandbox) -> None:
@@ -545,59 +514,11 @@ def test_every_scene_is_drawn_dragged_set_and_reloaded(sandbox, scene: str, tmp_
     page.screenshot(path=tmp_path / f"{scene}-reloaded.png")
 
 
-#: Names of everything that can be operated, and contrast of everything that can be read.
-_BASICS = """() => {
-  const wrong = [];
-  for (const e of document.querySelectorAll('button, input, summary, canvas[tabindex], [role=application]')) {
-    const name = e.getAttribute('aria-label') || e.textContent.trim() ||
-      [...(e.labels || [])].map((l) => l.textContent.trim()).join(' ');
-    if (!name) wrong.push('no name: ' + e.outerHTML.slice(0, 80));
-    const box = e.getBoundingClientRect();
-    if (box.width && Math.min(box.width, box.height) < 16) wrong.push('small: ' + e.outerHTML.slice(0, 80));
-  }
-  const ids = [...document.querySelectorAll('[id]')].map((e) => e.id);
-  if (new Set(ids).size !== ids.length) wrong.push('an id is there twice');
-  if (!document.documentElement.lang) wrong.push('no language');
-  if (document.querySelectorAll('h1').length !== 1) wrong.push('not one h1');
-  const linear = (v) => (v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
-  const light = (c) => {
-    const [r, g, b] = c.map((v) => linear(v / 255));
-    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
-  };
-  const rgb = (text) => text.match(/[\\d.]+/g).map(Number);
-  const under = (e) => {
-    for (; e; e = e.parentElement) {
-      const c = rgb(getComputedStyle(e).backgroundColor);
-      if (c.length < 4 || c[3] > 0) return c.slice(0, 3);
-    }
-    return [255, 255, 255];
-  };
-  for (const e of document.querySelectorAll('.sandbox *')) {
-    const text = [...e.childNodes].some((n) => n.nodeType === 3 && n.textContent.trim());
-    if (!text || !e.getBoundingClientRect().width) continue;
-    const [a, b] = [light(rgb(getComputedStyle(e).color).slice(0, 3)), light(under(e))];
-    const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
-    if (ratio < 4.5) wrong.push(`contrast ${ratio.toFixed(2)}: ` + e.outerHTML.slice(0, 80));
-  }
-  return wrong;
-}"""
-
-
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_everything_has_a_name_and_can_be_read(sandbox, scheme: str) -> None:
-    at = sandbox("restitution-row")
-    # Without motion colours change at once, and are not measured half way.
-    at.page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
-    at.page.wait_for_timeout(500)  # what was changing when it was asked for goes on to its end
-    assert at.page.evaluate(_BASICS) == []
-    at.page.keyboard.press("n")
-    at.page.keyboard.press("Enter")
-    assert at.page.evaluate(_BASICS) == []
-    at.page.keyboard.press("Escape")
-    at.guess("1")
-    assert at.page.evaluate(_BASICS) == []
-    paper = at.page.evaluate("getComputedStyle(document.querySelector('.sandbox')).backgroundColor")
-    assert paper == {"light": "rgb(255, 255, 255)", "dark": "rgb(20, 23, 27)"}[scheme]
+#: What can be operated and is too small for a finger, about which axe has no rule that is always on.
+_SMALL = """() => [...document.querySelectorAll('button, input, summary')].filter((e) => {
+  const box = e.getBoundingClientRect();
+  return box.width && Math.min(box.width, box.height) < 16;
+}).map((e) => e.outerHTML.slice(0, 80))"""
 
 
 @pytest.fixture(scope="module")
@@ -622,6 +543,9 @@ def test_axe_finds_nothing_on_any_screen(sandbox, axe: str, width: int, scheme: 
         ]
         assert wrong == [], screen
         assert len(found["passes"]) > 10, "axe looked at something"
+        assert at.page.evaluate(_SMALL) == [], screen
+        paper = at.page.evaluate("getComputedStyle(document.querySelector('.sandbox')).backgroundColor")
+        assert paper == {"light": "rgb(255, 255, 255)", "dark": "rgb(20, 23, 27)"}[scheme]
 
     at.page.locator(".gallery .scene").nth(12).wait_for()
     look("gallery")

@@ -345,7 +345,7 @@ def _desk() -> Desk:
         path = next(path for path in numbered(cwd() / name) if not path.exists())
         return str(here.write(path, data, why="sandbox").path)
 
-    return Desk(keep=_keep, save=save, played=frozenset(played), opened=opened)
+    return Desk(keep=_keep, save=save, played=set(played), opened=opened)
 
 
 def _view(name: str) -> Callable[..., bytes]:

@@ -50,12 +50,6 @@ def checked_parts(chosen: Chosen, target: str) -> tuple[Part, ...]:
     return parts
 
 
-def gravity_of(chosen: Chosen) -> tuple[float, float]:
-    """Gravity in the plane, in m/s², with the setting if there is one."""
-    scene = chosen.scene
-    return scene.pull(chosen.settings.get("gravity", math.hypot(*scene.gravity)))
-
-
 def moment_3d(part: Part) -> tuple[float, float, float]:
     """Moments about x, about the axis out of the plane, and about z; in kg m².
 
@@ -86,51 +80,64 @@ def number(value: float) -> str:
 _RAIL, _ROD = 1e-6, 1e-3
 
 
-@dataclass(frozen=True, slots=True)
-class LightLink:
-    """An auxiliary link: a rail or a rod.
-
-    Attributes:
-        x, z, pitch: of its middle, m and rad.
-        mass, moment: kg, and kg m² about each axis.
-    """
-
-    name: str
-    x: float
-    z: float
-    pitch: float
-    mass: float
-    moment: float
-
-
-@dataclass(frozen=True, slots=True)
-class SdfJoint:
-    """One joint of SDF.
-
-    Attributes:
-        kind: prismatic or revolute.
-        parent, child: links of the model; the parent may be "world".
-        axis: in the model's frame.
-        place: of the joint in the child's frame, (x, z), m.
-        speed: at the start, m/s or rad/s.
-    """
-
-    name: str
-    kind: str
-    parent: str
-    child: str
-    axis: tuple[int, int, int]
-    place: tuple[float, float] = (0.0, 0.0)
-    speed: float = 0.0
-
-
 @dataclass(slots=True)
 class Assembly:
-    """One model: bodies connected by joints, with those joints and their auxiliary links."""
+    """One model: bodies connected by joints, with those joints and their auxiliary links, as elements.
+
+    Attributes:
+        light: the rails and the rods.
+        speeds: of the joints that move at the start, by name, in m/s or rad/s.
+    """
 
     bodies: list[Part] = field(default_factory=list)
-    light: list[LightLink] = field(default_factory=list)
-    held: list[SdfJoint] = field(default_factory=list)
+    light: list[ET.Element] = field(default_factory=list)
+    joints: list[ET.Element] = field(default_factory=list)
+    speeds: dict[str, float] = field(default_factory=dict)
+
+    def prop(self, name: str, place: tuple[float, float, float], mass: float, moment: float) -> None:
+        """Add an auxiliary link.
+
+        Args:
+            place: x, z and pitch of its middle, in m and rad.
+            mass, moment: in kg, and in kg m² about each axis.
+        """
+        link = ET.Element("link", name=name)
+        x, z, pitch = place
+        _text(link, "pose", f"{number(x)} 0 {number(z)} 0 {number(pitch)} 0")
+        _add_inertial(link, mass, (moment,) * 3)
+        self.light.append(link)
+
+    def hold(
+        self,
+        name: str,
+        kind: str,
+        links: tuple[str, str],
+        *,
+        axis: str = "0 -1 0",
+        place: tuple[float, float] = (0.0, 0.0),
+        speed: float,
+    ) -> None:
+        """Add a joint.
+
+        Args:
+            kind: prismatic or revolute.
+            links: parent, which may be "world", and child.
+            axis: in the model's frame.
+            place: of the joint in the child's frame, x and z, in m.
+            speed: at the start, in m/s or rad/s.
+        """
+        joint = ET.Element("joint", name=name, type=kind)
+        _text(joint, "pose", f"{number(place[0])} 0 {number(place[1])} 0 0 0")
+        _text(joint, "parent", links[0])
+        _text(joint, "child", links[1])
+        turning = ET.SubElement(joint, "axis")
+        _text(turning, "xyz", axis).set("expressed_in", "__model__")
+        limit = ET.SubElement(turning, "limit")
+        _text(limit, "lower", "-1e16")  # SDF's own way to say that there is none
+        _text(limit, "upper", "1e16")
+        self.joints.append(joint)
+        if speed:
+            self.speeds[name] = speed
 
 
 def assemblies(parts: Sequence[Part], joints: Sequence[Joint]) -> Iterator[Assembly]:
@@ -193,15 +200,13 @@ def _on_rails(made: Assembly, body: Part) -> None:
     mass = _RAIL * body.mass
     turns = math.isfinite(body.moment)
     names = [f"{body.name}-rail-x", f"{body.name}-rail-z"] if turns else [f"{body.name}-rail-x"]
-    made.light += [LightLink(name, body.x, body.y, 0.0, mass, mass * DEPTH**2) for name in names]
+    for name in names:
+        made.prop(name, (body.x, body.y, 0.0), mass, mass * DEPTH**2)
     chain = ["world", *names, body.name]
-    joints = [("x", "prismatic", (1, 0, 0), body.vx), ("z", "prismatic", (0, 0, 1), body.vy)]
+    made.hold(f"{body.name}-x", "prismatic", (chain[0], chain[1]), axis="1 0 0", speed=body.vx)
+    made.hold(f"{body.name}-z", "prismatic", (chain[1], chain[2]), axis="0 0 1", speed=body.vy)
     if turns:
-        joints.append(("turn", "revolute", (0, -1, 0), body.spin))
-    made.held += [
-        SdfJoint(f"{body.name}-{name}", kind, parent, child, axis, speed=speed)
-        for (name, kind, axis, speed), parent, child in zip(joints, chain, chain[1:], strict=False)
-    ]
+        made.hold(f"{body.name}-turn", "revolute", (chain[2], chain[3]), speed=body.spin)
 
 
 def _hang(made: Assembly, joint: Joint, parts: dict[str, Part], body: Part) -> None:
@@ -211,9 +216,9 @@ def _hang(made: Assembly, joint: Joint, parts: dict[str, Part], body: Part) -> N
     other = parts[joint.b if on_a else joint.a]
     near, far = (joint.anchor_a, joint.anchor_b) if on_a else (joint.anchor_b, joint.anchor_a)
     parent, rate = ("world", 0.0) if other.fixed else (other.name, other.spin)
-    name, turn = f"{other.name}-{body.name}", (0, -1, 0)
+    name = f"{other.name}-{body.name}"
     if joint.kind == "pivot":
-        made.held.append(SdfJoint(name, "revolute", parent, body.name, turn, near, body.spin - rate))
+        made.hold(name, "revolute", (parent, body.name), place=near, speed=body.spin - rate)
         return
     (ax, az), (avx, avz) = _point(other, far)
     (bx, bz), (bvx, bvz) = _point(body, near)
@@ -222,13 +227,9 @@ def _hang(made: Assembly, joint: Joint, parts: dict[str, Part], body: Part) -> N
     swing = (dx * (bvz - avz) - dz * (bvx - avx)) / length**2
     mass = _ROD * body.mass
     rod = f"rod-{name}"
-    made.light.append(
-        LightLink(rod, (ax + bx) / 2, (az + bz) / 2, math.atan2(dx, dz), mass, mass * length**2 / 12)
-    )
-    made.held += [
-        SdfJoint(f"{rod}-top", "revolute", parent, rod, turn, (0.0, -length / 2), swing - rate),
-        SdfJoint(f"{rod}-end", "revolute", rod, body.name, turn, near, body.spin - swing),
-    ]
+    made.prop(rod, ((ax + bx) / 2, (az + bz) / 2, math.atan2(dx, dz)), mass, mass * length**2 / 12)
+    made.hold(f"{rod}-top", "revolute", (parent, rod), place=(0.0, -length / 2), speed=swing - rate)
+    made.hold(f"{rod}-end", "revolute", (rod, body.name), place=near, speed=body.spin - swing)
 
 
 def _point(part: Part, anchor: tuple[float, float]) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -264,17 +265,16 @@ def sdf(chosen: Chosen) -> bytes:
     models = list(assemblies(parts, scene.joint))
     root = ET.Element("sdf", version=VERSION)
     root.append(ET.Comment(_NOTE))
-    if any(_moves(model) for model in models):
+    if any(model.speeds for model in models):
         root.append(ET.Comment(_NOTE_START))
     world = ET.SubElement(root, "world", name=scene.id)
     # Gazebo Sim takes its engine from a plugin, not from this type, which SDF wants to be there.
     physics = ET.SubElement(world, "physics", name="fixed-step", type="ignored")
-    _text(physics, "max_step_size", number(chosen.settings.get("step", scene.step)))
+    _text(physics, "max_step_size", number(chosen.present["step"]))
     _text(physics, "real_time_factor", "1")
     for file, name in _SYSTEMS:
         _plugin(world, file, name)
-    gx, gy = gravity_of(chosen)
-    _text(world, "gravity", f"{number(gx)} 0 {number(gy)}")
+    _text(world, "gravity", _gravity(chosen))
     _add_light(world)
     for part in parts:
         if part.fixed:
@@ -283,9 +283,7 @@ def sdf(chosen: Chosen) -> bytes:
             _add_link(model, chosen, part)
     for assembly in models:
         _add_assembly(world, chosen, assembly)
-    ET.indent(root)
-    data: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
-    return data + b"\n"
+    return _written(root)
 
 
 def start_script(world: bytes) -> bytes | None:
@@ -293,10 +291,6 @@ def start_script(world: bytes) -> bytes | None:
     if START.encode() not in world:
         return None
     return Path(__file__).with_name(START).read_bytes()
-
-
-def _moves(assembly: Assembly) -> bool:
-    return any(held.speed for held in assembly.held)
 
 
 def _plugin(parent: ET.Element, file: str, name: str) -> ET.Element:
@@ -320,25 +314,16 @@ def _add_assembly(world: ET.Element, chosen: Chosen, assembly: Assembly) -> None
     model = ET.SubElement(world, "model", name=assembly.bodies[0].name)
     if len(assembly.bodies) > 1:
         _text(model, "self_collide", "true")
-    for light in assembly.light:
-        _add_light_link(model, light)
+    model.extend(assembly.light)
     for part in assembly.bodies:
         _add_link(model, chosen, part)
-    for held in assembly.held:
-        _add_joint(model, held)
-    if _moves(assembly):
+    model.extend(assembly.joints)
+    if assembly.speeds:
         plugin = _plugin(model, "python-system-loader", "PythonSystemLoader")
         _text(plugin, "module_name", START.removesuffix(".py"))
-        moving = [held for held in assembly.held if held.speed]
-        _text(plugin, "joints", " ".join(held.name for held in moving))
-        for held in moving:
-            _text(plugin, held.name, number(held.speed))
-
-
-def _add_light_link(model: ET.Element, light: LightLink) -> None:
-    link = ET.SubElement(model, "link", name=light.name)
-    _text(link, "pose", f"{number(light.x)} 0 {number(light.z)} 0 {number(light.pitch)} 0")
-    _add_inertial(link, light.mass, (light.moment,) * 3)
+        _text(plugin, "joints", " ".join(assembly.speeds))
+        for name, speed in assembly.speeds.items():
+            _text(plugin, name, number(speed))
 
 
 def _add_inertial(link: ET.Element, mass: float, moments: tuple[float, float, float]) -> None:
@@ -351,32 +336,16 @@ def _add_inertial(link: ET.Element, mass: float, moments: tuple[float, float, fl
         _text(inertia, tag, "0")
 
 
-def _add_joint(model: ET.Element, held: SdfJoint) -> None:
-    joint = ET.SubElement(model, "joint", name=held.name, type=held.kind)
-    _text(joint, "pose", f"{number(held.place[0])} 0 {number(held.place[1])} 0 0 0")
-    _text(joint, "parent", held.parent)
-    _text(joint, "child", held.child)
-    axis = ET.SubElement(joint, "axis")
-    _text(axis, "xyz", " ".join(map(str, held.axis))).set("expressed_in", "__model__")
-    limit = ET.SubElement(axis, "limit")
-    _text(limit, "lower", "-1e16")  # SDF's own way to say that there is none
-    _text(limit, "upper", "1e16")
-
-
 def _text(parent: ET.Element, tag: str, text: str) -> ET.Element:
     element = ET.SubElement(parent, tag)
     element.text = text
     return element
 
 
-def _pose(part: Part) -> str:
-    # Counter-clockwise, seen with x to the right and z up, is a turn about -y.
-    return f"{number(part.x)} 0 {number(part.y)} 0 {number(-part.angle)} 0"
-
-
 def _add_link(model: ET.Element, chosen: Chosen, part: Part) -> None:
     link = ET.SubElement(model, "link", name=part.name)
-    _text(link, "pose", _pose(part))
+    # Counter-clockwise, seen with x to the right and z up, is a turn about -y.
+    _text(link, "pose", f"{number(part.x)} 0 {number(part.y)} 0 {number(-part.angle)} 0")
     if not part.fixed:
         _add_inertial(link, part.mass, moment_3d(part))
     restitution, friction = surface_of(chosen, part)
@@ -451,14 +420,11 @@ def mjcf(chosen: Chosen) -> bytes:
     """
     scene = chosen.scene
     parts = checked_parts(chosen, "MJCF")
-    step = chosen.settings.get("step", scene.step)
-    gx, gy = gravity_of(chosen)
+    step = chosen.present["step"]
     root = ET.Element("mujoco", model=scene.id)
     root.append(ET.Comment(_MJCF_NOTE))
     ET.SubElement(root, "compiler", angle="radian", autolimits="true", inertiafromgeom="false")
-    ET.SubElement(
-        root, "option", timestep=number(step), gravity=f"{number(gx)} 0 {number(gy)}", cone="elliptic"
-    )
+    ET.SubElement(root, "option", timestep=number(step), gravity=_gravity(chosen), cone="elliptic")
     assets = ET.SubElement(root, "asset")
     world = ET.SubElement(root, "worldbody")
     bodies = {part.name: _add_body(world, assets, part) for part in parts}
@@ -467,9 +433,7 @@ def mjcf(chosen: Chosen) -> bytes:
     _add_pairs(root, chosen, parts, step)
     _add_joints(root, bodies, scene.joint)
     _add_start(root, parts)
-    ET.indent(root)
-    data: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
-    return data + b"\n"
+    return _written(root)
 
 
 def damping_ratio(restitution: float) -> float:
@@ -574,6 +538,17 @@ def _add_start(root: ET.Element, parts: tuple[Part, ...]) -> None:
             speeds += [part.vx, part.vy, *([part.spin] if math.isfinite(part.moment) else [])]
     frame = ET.SubElement(ET.SubElement(root, "keyframe"), "key", name="start")
     frame.set("qvel", " ".join(map(number, speeds)))
+
+
+def _gravity(chosen: Chosen) -> str:
+    gx, gy = chosen.scene.pull(chosen.present["gravity"])
+    return f"{number(gx)} 0 {number(gy)}"
+
+
+def _written(root: ET.Element) -> bytes:
+    ET.indent(root)
+    data: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
+    return data + b"\n"
 
 
 def _rgba(colour: str) -> str:

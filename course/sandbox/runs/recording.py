@@ -13,7 +13,7 @@ import platform
 import shutil
 import subprocess
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, assert_never, cast
 
@@ -154,23 +154,14 @@ class Recording:
                 first, began = number, dict(settings)
         return first, began
 
-    def replayed(
-        self,
-        count: int,
-        tick: int,
-        version: int,
-        ready: Callable[[World, Recording], None],
-        halt: Callable[[], float],
-    ) -> Iterator[float]:
-        """Make the moment after ``tick`` steps and the first ``count`` inputs again, in a world of its own.
+    def begun(self, count: int, version: int) -> tuple[World, Recording, list[Input]]:
+        """The run that the first ``count`` inputs end in, in a world of its own before its first step.
 
         Args:
             version: the first for the new world.
-            ready: called with the new world and its recording, before the first step.
-            halt: tells the next step after which it has to yield.
 
-        Yields:
-            how far it is, 0 to 1, every few steps.
+        Returns:
+            the world, its recording, and those of the inputs that belong to this run.
         """
         first, settings = self.run_at(count)
         world = World(self.head.scene, settings)
@@ -179,15 +170,27 @@ class Recording:
         made = Recording(world, self.head.every, before=self)
         made.inputs = self.inputs[:first]
         made.hashes = [one for one in self.hashes if one.tick <= began]
-        ready(world, made)
-        for one in [*self.inputs[first:count], None]:
-            until = tick if one is None else one.tick
-            while world.ticks < until:
-                world.step(int(min(_SLICE, until - world.ticks, max(1, halt() - world.ticks))))
-                yield (world.ticks - began) / max(1, tick - began)
-            if one is not None:
-                act(world, one)
-        yield 1.0
+        return world, made, self.inputs[first:count]
+
+
+def remade(world: World, inputs: Sequence[Input], tick: int, halt: Callable[[], float]) -> Iterator[float]:
+    """Do all of this again, and step on until ``tick``.
+
+    Args:
+        halt: tells the next step after which it has to yield.
+
+    Yields:
+        how far it is, 0 to 1, every few steps.
+    """
+    began = world.ticks
+    for one in [*inputs, None]:
+        until = tick if one is None else one.tick
+        while world.ticks < until:
+            world.step(int(min(_SLICE, until - world.ticks, max(1, halt() - world.ticks))))
+            yield (world.ticks - began) / max(1, tick - began)
+        if one is not None:
+            act(world, one)
+    yield 1.0
 
 
 class Replay(msgspec.Struct, frozen=True, kw_only=True):

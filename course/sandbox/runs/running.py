@@ -15,8 +15,7 @@ from course.sandbox.scene.expression import evaluate
 from course.sandbox.scene.loading import Chosen, Comparison, compare, values_of, with_settings
 from course.sandbox.scene.model import Probe, Scene, layout
 from course.sandbox.scene.rules import matching
-from course.sandbox.world.accounts import Event, Receipt
-from course.sandbox.world.contacts import MINOR
+from course.sandbox.world.accounts import MINOR, Event, Receipt
 from course.sandbox.world.engine import Block, Floats
 from course.sandbox.world.world import Snapshot, World
 
@@ -59,6 +58,18 @@ class Probes:
         state = self._world.state()
         return {probe.name: self._answer(probe, state, events) for probe in self._scene.probe}
 
+    def compared(self, answers: Mapping[str, float], guess: float | None) -> Comparison | None:
+        """The answers beside theory and guess; None if the scene asks for no number."""
+        asked = self._scene.prediction
+        if asked is None:
+            return None
+        # The run may have been told to be shorter or longer than the scene, and ends with a whole step.
+        values = values_of(self._now()) | {"duration": self._world.t}
+        return compare(asked, answers[asked.probe], values, guess)
+
+    def _now(self) -> Chosen:
+        return with_settings(self._chosen, self._world.settings)
+
     def _answer(self, probe: Probe, state: Floats, events: Sequence[Event]) -> float:
         if probe.quantity in {"contacts", "contact_time"}:
             mine = [event for event in events if self._is_contact(probe, event)]
@@ -94,9 +105,7 @@ class Probes:
     def _moments(self) -> dict[str, float]:
         """When probes read, by the settings at the first step: until then they may change."""
         given = {p.name: p.time for p in self._scene.probe if p.time is not None}
-        values: Mapping[str, float] = {}
-        if any(isinstance(time, str) for time in given.values()):
-            values = values_of(with_settings(self._chosen, self._world.settings))
+        values = values_of(self._now()) if any(isinstance(time, str) for time in given.values()) else {}
         return {
             name: evaluate(time, values) if isinstance(time, str) else time for name, time in given.items()
         }
@@ -113,10 +122,8 @@ class Probes:
     def _is_contact(self, probe: Probe, event: Event) -> bool:
         if event.kind != "contact":
             return False
-        mine = self._of[probe.name]
-        if probe.other is None:
-            return event.a in mine or event.b in mine
-        return (event.a in mine and event.b == probe.other) or (event.b in mine and event.a == probe.other)
+        mine, pairs = self._of[probe.name], ((event.a, event.b), (event.b, event.a))
+        return any(one in mine and probe.other in {None, other} for one, other in pairs)
 
     def _take(self, probe: Probe, value: float) -> None:
         if probe.when in {"max", "min"}:
@@ -138,36 +145,27 @@ class Probes:
     def _of_many(self, probe: Probe, mine: Floats, rows: list[int]) -> float:
         parts = [self._world.parts[i] for i in rows]
         mass = np.array([part.mass for part in parts])
+        x, y, _, vx, vy, spin = mine.T
         value: Any = 0.0
         if probe.quantity == "speed":
-            value = np.hypot(mine[0, 3], mine[0, 4])
+            value = np.hypot(vx[0], vy[0])
         elif probe.quantity == "kinetic":
             inertia = np.array([part.moment if math.isfinite(part.moment) else 0.0 for part in parts])
-            value = (mass @ (mine[:, 3] ** 2 + mine[:, 4] ** 2) + inertia @ mine[:, 5] ** 2) / 2
+            value = (mass @ (vx**2 + vy**2) + inertia @ spin**2) / 2
         elif probe.quantity == "momentum_x":
-            value = mass @ mine[:, 3]
+            value = mass @ vx
         elif probe.quantity == "count" and probe.region is not None:
             left, bottom, right, top = probe.region
-            inside = (mine[:, 0] >= left) & (mine[:, 0] < right) & (mine[:, 1] >= bottom) & (mine[:, 1] < top)
-            value = inside.sum()
+            value = ((x >= left) & (x < right) & (y >= bottom) & (y < top)).sum()
         elif probe.quantity == "mean":
-            value = mine[:, 0].mean()
+            value = x.mean()
         elif probe.quantity == "spread":
-            value = mine[:, 0].std()
+            value = x.std()
         return float(value)
 
 
 #: Columns of a table of samples, with their units; a row for each body and sample, totals with each.
-COLUMNS = (
-    "t [s]",
-    "body",
-    "x [m]",
-    "y [m]",
-    "angle [rad]",
-    "vx [m/s]",
-    "vy [m/s]",
-    "spin [rad/s]",
-)
+COLUMNS = ("t [s]", "body", "x [m]", "y [m]", "angle [rad]", "vx [m/s]", "vy [m/s]", "spin [rad/s]")
 #: Rows of a table at most, so that a long run of a large scene gives a file that can be opened.
 _MOST_ROWS = 200_000
 
@@ -231,9 +229,8 @@ def run(
     before = world.momentum
     events: list[Event] = []
     samples: list[tuple[float, tuple[str, ...], Floats]] = []
-    stops = _stops(until, every, fps if on_frame else 0.0, also_at)
     moving = sum(not part.fixed for part in world.parts) or 1
-    for t, is_sample, is_frame in stops:
+    for t, is_sample, is_frame in _stops(until, every, fps if on_frame else 0.0, also_at):
         world.run_until(t)
         events += world.drain_events()
         if is_sample and len(samples) * moving < _MOST_ROWS:
@@ -241,26 +238,7 @@ def run(
             samples.append((world.t, tuple(world.parts[i].name for i in free), world.state()[free]))
         if is_frame and on_frame is not None:
             on_frame(world, world.snapshot())
-    return finish(world, probes, chosen, events, before, guess, tuple(samples))
-
-
-def finish(
-    world: World,
-    probes: Probes,
-    chosen: Chosen,
-    events: list[Event],
-    before: tuple[float, float, float],
-    guess: float | None,
-    samples: tuple[tuple[float, tuple[str, ...], Floats], ...] = (),
-) -> Run:
-    """The results of the run that a world has just made."""
     answers = probes.read(events)
-    asked = chosen.scene.prediction
-    comparison = None
-    if asked is not None:
-        # The run may have been told to be shorter or longer than the scene, and ends with a whole step.
-        values = values_of(chosen) | {"duration": world.t}
-        comparison = compare(asked, answers[asked.probe], values, guess)
     return Run(
         duration=world.t,
         steps=world.steps,
@@ -270,8 +248,8 @@ def finish(
         momentum_before=before,
         momentum_after=world.momentum,
         probes=answers,
-        comparison=comparison,
-        samples=samples,
+        comparison=probes.compared(answers, guess),
+        samples=tuple(samples),
         state_hash=world.state_hash(),
     )
 
@@ -280,21 +258,19 @@ def _stops(
     until: float, every: float, fps: float, also_at: tuple[float, ...]
 ) -> list[tuple[float, bool, bool]]:
     """The times to stop at, in s, and whether for a sample or for a frame."""
-    # Events are fetched at least once a second so that none is dropped for want of room.
-    times: dict[float, list[bool]] = {}
-    for interval, kind in ((1.0, None), (every, 0), (1.0 / fps if fps else 0.0, 1)):
+
+    def often(interval: float) -> set[float]:
         if interval <= 0.0:
-            continue
-        for t in (np.arange(math.floor(until / interval + 1e-9) + 1) * interval).tolist():
-            flags = times.setdefault(round(t, 9), [False, False])
-            if kind is not None:
-                flags[kind] = True
-    for t in also_at:
-        if t <= until:
-            times.setdefault(round(t, 9), [False, False])[1] = True
-    last = times.setdefault(round(until, 9), [False, False])
-    last[0] = last[0] or every > 0.0
-    return [(t, sample, frame) for t, (sample, frame) in sorted(times.items())]
+            return set()
+        times = np.arange(math.floor(until / interval + 1e-9) + 1) * interval
+        return {round(t, 9) for t in times.tolist()}
+
+    end = round(until, 9)
+    samples = often(every) | ({end} if every > 0.0 else set())
+    frames = often(1.0 / fps if fps else 0.0) | {round(t, 9) for t in also_at if t <= until}
+    # Events are fetched at least once a second so that none is dropped for want of room.
+    stops = samples | frames | often(1.0) | {end}
+    return [(t, t in samples, t in frames) for t in sorted(stops)]
 
 
 # ---

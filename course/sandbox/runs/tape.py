@@ -51,15 +51,10 @@ def frame(world: World, pace: float = 1.0, number: int = 0) -> Frame:
     shot, receipt, (px, py, angular) = world.snapshot(), world.receipt, world.momentum
     held = world.held
     row = next((i for i, part in enumerate(world.parts) if part.name == held), -1) if held else -1
+    energies = receipt.kinetic, receipt.potential, receipt.contacts, receipt.friction, receipt.rods
     head = [1.0, shot.version, shot.t, pace, len(shot.x), len(shot.joints), shot.hand is not None]
-    head += [
-        *(shot.hand or (0.0,) * 4),
-        receipt.kinetic,
-        receipt.potential,
-        receipt.contacts,
-        receipt.friction,
-    ]
-    head += [receipt.rods, receipt.residual, px, py, angular, row, number, receipt.start + receipt.given, 0.0]
+    head += [*(shot.hand or (0.0,) * 4), *energies, receipt.residual]
+    head += [px, py, angular, row, number, receipt.start + receipt.given, 0.0]
     bodies = np.stack([shot.x, shot.y, shot.angle, shot.vx, shot.vy], axis=1)
     # What does not fit a float32 becomes infinite, which nobody draws.
     with np.errstate(over="ignore"):
@@ -73,17 +68,7 @@ def shot_of(kept: Frame) -> Snapshot:
     x, y, angle, vx, vy = numbers[HEAD : HEAD + PER_BODY * count].reshape(-1, PER_BODY).T
     ends = numbers[HEAD + PER_BODY * count :][: 4 * joints].reshape(-1, 4)
     hand = (numbers[7], numbers[8], numbers[9], numbers[10]) if kept[6] else None
-    return Snapshot(
-        t=float(kept[2]),
-        version=int(kept[1]),
-        x=x,
-        y=y,
-        angle=angle,
-        vx=vx,
-        vy=vy,
-        joints=ends,
-        hand=hand,
-    )
+    return Snapshot(float(kept[2]), int(kept[1]), x, y, angle, vx, vy, ends, hand)
 
 
 class Tape:

@@ -68,8 +68,13 @@ def evaluate(text: str, values: Mapping[str, float]) -> float:
     Raises:
         UsageError: it is not a formula, names something unknown, or has no value (a division by zero, say).
     """
+    tree, used_names = _read(text)
+    known = _CONSTANTS | {name: float(values[name]) for name in used_names if name in values}
+    for name in sorted(used_names - known.keys()):
+        help_ = f"Known: {', '.join(sorted(values))}."
+        raise _refused(name, "is not a name that this scene knows", help=help_)
     try:
-        return _value(_tree(text), values)
+        return _value(tree, known)
     except (ArithmeticError, ValueError, OverflowError, TypeError) as error:
         raise _refused(text, f"has no value ({error})") from error
 
@@ -80,13 +85,12 @@ def names(text: str) -> frozenset[str]:
     Raises:
         UsageError: it is no formula.
     """
-    found: set[str] = set()
-    _collect(_tree(text), text, found)
-    return frozenset(found - _CONSTANTS.keys())
+    return _read(text)[1] - _CONSTANTS.keys()
 
 
 @lru_cache(maxsize=256)  # reading a scene asks for each of its formulas a dozen times
-def _tree(text: str) -> ast.expr:
+def _read(text: str) -> tuple[ast.expr, frozenset[str]]:
+    """The tree of a formula, in which there is nothing but arithmetic, and the names in it."""
     if len(text) > _MAX_LENGTH:
         raise _refused(text[:40] + "...", f"is longer than {_MAX_LENGTH} letters")
     try:
@@ -95,63 +99,47 @@ def _tree(text: str) -> ast.expr:
             tree = ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise _refused(text, "is not a formula") from None
-    if _depth(tree) > _MAX_DEPTH:
+    return tree, frozenset(_names_in(tree, text))
+
+
+def _names_in(node: ast.expr, text: str, level: int = 1) -> Iterator[str]:
+    """The names in a tree; everything but arithmetic is refused."""
+    if level > _MAX_DEPTH:
         raise _refused(text, "is nested too deeply")
-    return tree
-
-
-def _depth(tree: ast.AST) -> int:
-    level, deepest = [tree], 0
-    while level and deepest <= _MAX_DEPTH:
-        level = [child for node in level for child in ast.iter_child_nodes(node)]
-        deepest += 1
-    return deepest
-
-
-def _collect(node: ast.expr, text: str, found: set[str]) -> None:
-    """Walk the tree, refuse everything but arithmetic, and note the names."""
+    below: list[ast.expr] = []
     match node:
         case ast.Constant(value=bool()):
             raise _refused(text, "may hold numbers, not True or False")
         case ast.Constant(value=int() | float()):
             pass
         case ast.Name(id=name):
-            found.add(name)
+            yield name
         case ast.Attribute(value=ast.Name(id=name), attr=field):
-            found.add(f"{name}.{field}")
+            yield f"{name}.{field}"
         case ast.UnaryOp(op=ast.USub() | ast.UAdd(), operand=inner):
-            _collect(inner, text, found)
+            below = [inner]
         case ast.BinOp(left=left, op=sign, right=right) if type(sign) in _BINARY:
-            _collect(left, text, found)
-            _collect(right, text, found)
-        case ast.Call(func=ast.Name(id=name), args=inner_nodes, keywords=[]) if name in _FUNCTIONS:
-            for inner in inner_nodes:
-                _collect(inner, text, found)
+            below = [left, right]
+        case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]) if name in _FUNCTIONS:
+            below = arguments
         case _:
             raise _refused(text, f"may use + - * / **, numbers, names and {', '.join(sorted(_FUNCTIONS))}")
+    for inner in below:
+        yield from _names_in(inner, text, level + 1)
 
 
 def _value(node: ast.expr, values: Mapping[str, float]) -> float:
+    """The value of a tree that ``_names_in`` let pass."""
     match node:
-        case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
-            return float(number)
-        case ast.Name() | ast.Attribute(value=ast.Name()):
-            return _look_up(ast.unparse(node), values)
-        case ast.UnaryOp(op=sign, operand=inner) if isinstance(sign, ast.USub | ast.UAdd):
+        case ast.Constant(value=number):
+            return float(number)  # type: ignore[arg-type]
+        case ast.UnaryOp(op=sign, operand=inner):
             return _value(inner, values) * (-1 if isinstance(sign, ast.USub) else 1)
-        case ast.BinOp(left=left, op=sign, right=right) if type(sign) in _BINARY:
+        case ast.BinOp(left=left, op=sign, right=right):
             return float(_BINARY[type(sign)](_value(left, values), _value(right, values)))
-        case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]) if name in _FUNCTIONS:
+        case ast.Call(func=ast.Name(id=name), args=arguments):
             return float(_FUNCTIONS[name](*(_value(argument, values) for argument in arguments)))
-    raise _refused(ast.unparse(node), "is not arithmetic")
-
-
-def _look_up(name: str, values: Mapping[str, float]) -> float:
-    if name in values:
-        return float(values[name])
-    if name in _CONSTANTS:
-        return _CONSTANTS[name]
-    raise _refused(name, "is not a name that this scene knows", help=f"Known: {', '.join(sorted(values))}.")
+    return values[ast.unparse(node)]
 
 
 def _refused(text: str, why: str, help: str = "Write plain arithmetic: sqrt(2 * g * drop).") -> UsageError:  # noqa: A002

@@ -16,7 +16,7 @@ from course.errors import ContentError, NotFoundError, UsageError
 from course.printable import meant
 from course.sandbox.scene.expression import evaluate, fill, used
 from course.sandbox.scene.model import Part, Prediction, Scene, layout
-from course.sandbox.scene.rules import FIELDS, SETTINGS, check_scene, checked, number, settings_of
+from course.sandbox.scene.rules import FIELDS, SETTINGS, check_scene, checked, number, settings_of, slot
 
 #: The program's own scenes.
 FOLDER = Path(__file__).parents[1] / "scenes"
@@ -42,6 +42,11 @@ class Chosen(msgspec.Struct, frozen=True, kw_only=True):
     settings: dict[str, float]
     path: Path
     own: bool = False
+
+    @property
+    def present(self) -> dict[str, float]:
+        """The settings in force: those that were given, and the scene's own."""
+        return self.scene.settings | self.settings
 
 
 def scene_ids() -> tuple[str, ...]:
@@ -79,9 +84,8 @@ def read_scene(path: Path) -> Scene:
     """
     document = _read(path)
     if document.value.id != path.stem:
-        document.fail(
-            ("id",), f"the id is {document.value.id}, the file {path.name}.", fix="Make them the same."
-        )
+        problem = f"the id is {document.value.id}, the file {path.name}."
+        document.fail(("id",), problem, fix="Make them the same.")
     return document.value
 
 
@@ -101,31 +105,29 @@ def choose(name: str, settings: Mapping[str, object] | None = None) -> Chosen:
         name = scenes()[int(name) - 1].id
     own = name.endswith(".toml") or "/" in name
     path = Path(name).expanduser() if own else scene_path(name)
-    if own:
-        scene = _read_own(path)
-    elif name in scene_ids():
-        scene = read_scene(path)
-    else:
-        raise _unknown(name)
+    if own and not path.is_file():
+        fix = "`course sandbox list` shows the scenes."
+        raise NotFoundError(f"There is no file {path}.", help=fix, code="scene_not_found")
+    if not own and name not in scene_ids():
+        fix = meant(name, scene_ids(), "`course sandbox list` shows them.")
+        raise NotFoundError(f"There is no scene called {name[:80]!r}.", help=fix, code="scene_not_found")
+    try:
+        scene = _read(path).value if own else read_scene(path)
+    except ContentError as error:
+        if not own:
+            raise
+        raise UsageError(error.message, help=error.help, code="bad_scene") from error
     return _put_in(scene, dict(settings or {}), path, own=own)
 
 
 def values_of(chosen: Chosen) -> dict[str, float]:
     """The names that a formula of the scene may use: its parameters, ``g``, ``step``, fields of bodies."""
-    scene, parts = chosen.scene, layout(chosen.scene)
-    gravity = chosen.settings.get("gravity", math.hypot(*scene.gravity))
+    scene, present = chosen.scene, chosen.present
     values = {name.replace("-", "_"): value for name, value in chosen.parameters.items()}
-    values |= {
-        "g": gravity or (scene.floor.gravity if scene.floor else 0.0),
-        "step": chosen.settings.get("step", scene.step),
-        "iterations": chosen.settings.get("iterations", float(scene.iterations)),
-        "duration": scene.duration,
-    }
-    for part in parts:
-        if part.wheels is not None:
-            values["left"] = chosen.settings.get("left", part.wheels.left)
-            values["right"] = chosen.settings.get("right", part.wheels.right)
-    for part in parts:
+    values |= {key: present[key] for key in scene.settings if key != "gravity"}
+    values["g"] = present["gravity"] or (scene.floor.gravity if scene.floor else 0.0)
+    values["duration"] = scene.duration
+    for part in layout(scene):
         name = part.name.replace("-", "_")
         own = {field: getattr(part, field) for field in FIELDS}
         own["restitution"], own["friction"] = surface_of(chosen, part)
@@ -152,11 +154,8 @@ def unsaid(scene: Scene) -> Iterator[str]:
     if asked is None:
         return
     tried = {parameter.name: (parameter.default, parameter.high) for parameter in scene.parameter}
-    tried |= {
-        name: (setting.low, setting.high)
-        for name, setting in SETTINGS.items()
-        if name not in {"iterations", "walls"} and (name in values_of(usual) or name not in {"left", "right"})
-    }
+    changeable = (one for one in settings_of(scene) if one.name not in {"iterations", "walls", "seed"})
+    tried |= {setting.name: (setting.low, setting.high) for setting in changeable}
     for name, (low, high) in tried.items():
         other = _put_in(scene, {name: low + 0.37 * (high - low)}, usual.path)
         before, now = (compare(asked, 0.0, values_of(one), None) for one in (usual, other))
@@ -213,9 +212,6 @@ def _check_formulas(document: Document[Scene]) -> None:
     if scene.prediction is not None:
         texts |= {("prediction", key): getattr(scene.prediction, key) for key in ("question", "why")}
         texts[_THEORY] = f"{{{scene.prediction.theory}}}"
-    texts = {where: text for where, text in texts.items() if "{" in text}
-    if not texts:
-        return
     asked = [text for where, text in texts.items() if where != _THEORY]
     named = {name.rpartition(".")[2] for text in asked for name in used(text)}
     for settings in _ends(scene, named):
@@ -229,16 +225,14 @@ def _check_formulas(document: Document[Scene]) -> None:
                 continue  # it may end where a range does, and then there is nothing to compare
             try:
                 fill(text, values)
-                if where[-1] == "time" and not settings:
-                    _check_time(document, where, evaluate(text[1:-1], values))
+                time = evaluate(text[1:-1], values) if where[-1] == "time" and not settings else 0.0
             except UsageError as error:
                 there = "".join(f" at {name}={value:g}" for name, value in settings.items())
                 document.fail(where, f"{error.message.rstrip('.')}{there}.", fix=error.help)
-
-
-def _check_time(document: Document[Scene], where: tuple[str | int, ...], time: float) -> None:
-    if not 0.0 <= time <= document.value.duration:
-        document.fail(where, f"that is {time:g} s, which no run sees.", fix="Make it 0 to `duration`.")
+            if not 0.0 <= time <= scene.duration:
+                document.fail(
+                    where, f"that is {time:g} s, which no run sees.", fix="Make it 0 to `duration`."
+                )
 
 
 def _ends(scene: Scene, named: set[str]) -> Iterator[dict[str, float]]:
@@ -251,25 +245,6 @@ def _ends(scene: Scene, named: set[str]) -> Iterator[dict[str, float]]:
         if {"gravity": "g"}.get(name, name) in named:
             yield {name: setting.low}
             yield {name: setting.high}
-
-
-def _read_own(path: Path) -> Scene:
-    try:
-        document = _read(path)
-    except ContentError as error:
-        if not path.is_file():
-            raise NotFoundError(
-                f"There is no file {path}.",
-                help="`course sandbox list` shows the scenes.",
-                code="scene_not_found",
-            ) from error
-        raise UsageError(error.message, help=error.help, code="bad_scene") from error
-    return document.value
-
-
-def _unknown(name: str) -> NotFoundError:
-    fix = meant(name, scene_ids(), "`course sandbox list` shows them.")
-    return NotFoundError(f"There is no scene called {name[:80]!r}.", help=fix, code="scene_not_found")
 
 
 def _put_in(scene: Scene, settings: dict[str, object], path: Path, *, own: bool = False) -> Chosen:
@@ -299,7 +274,9 @@ def _put_in(scene: Scene, settings: dict[str, object], path: Path, *, own: bool 
         values[name] = value
     numbers = {name.replace("-", "_"): value for name, value in values.items()}
     for place, formula in scene.sets.items():
-        _set_in(raw, place, evaluate(formula, numbers))
+        target, key = slot(raw, place)
+        value, kind = evaluate(formula, numbers), type(target[key])
+        target[key] = kind(value) if kind in {int, bool} else value  # whole numbers stay whole
     raw["seed"] = seed
     try:
         ready = msgspec.convert(raw, Scene)
@@ -307,24 +284,6 @@ def _put_in(scene: Scene, settings: dict[str, object], path: Path, *, own: bool 
         raise UsageError(f"The parameters do not fit the scene: {error}.", code="bad_parameter") from error
     checked_rest = {name: checked(name, value) for name, value in rest.items()}
     return Chosen(scene=ready, parameters=values, settings=checked_rest, path=path, own=own)
-
-
-def _set_in(raw: dict[str, Any], place: str, value: float) -> None:
-    """Put a value at ``body.field``, ``body.field.0`` or ``field``; whole numbers stay whole."""
-    steps = place.split(".")
-    target: Any = raw
-    named = {thing["name"]: thing for thing in (*raw["body"], *raw["joint"])}
-    if len(steps) > 1 and steps[0] in named:
-        target, steps = named[steps[0]], steps[1:]
-    for step in steps[:-1]:
-        inside = target[int(step)] if isinstance(target, list) else target[step]
-        if isinstance(inside, tuple):
-            inside = list(inside)
-            target[int(step) if isinstance(target, list) else step] = inside
-        target = inside
-    last: Any = int(steps[-1]) if isinstance(target, list) else steps[-1]
-    kind = type(target[last])
-    target[last] = kind(value) if kind in {int, bool} else value
 
 
 # ---
@@ -383,9 +342,14 @@ def compare(
     Raises:
         UsageError: the formula, or one in the texts, has no value for these parameters.
     """
+
+    def is_near(answer: float) -> bool:
+        most = max(asked.near * abs(answer), asked.near_abs, 1e-12)
+        return guess is not None and abs(guess - answer) <= most
+
     theory = evaluate(asked.theory, values)
     agree = abs(simulation - theory) <= max(asked.agrees * abs(theory), asked.agrees_abs)
-    right = None if guess is None else _near(asked, guess, theory) or _near(asked, guess, simulation)
+    right = None if guess is None else is_near(theory) or is_near(simulation)
     return Comparison(
         question=fill(asked.question, values),
         unit=asked.unit,
@@ -397,10 +361,6 @@ def compare(
         verdict=_verdict(asked, guess, right, theory, simulation, agree),
         why=fill(asked.why, values),
     )
-
-
-def _near(asked: Prediction, guess: float, answer: float) -> bool:
-    return abs(guess - answer) <= max(asked.near * abs(answer), asked.near_abs, 1e-12)
 
 
 def _verdict(

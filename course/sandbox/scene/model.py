@@ -123,14 +123,6 @@ class Body(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     wheels: Wheels | None = None
     colour: Annotated[str, Meta(pattern=r"^#[0-9a-f]{6}$")] | None = None
 
-    @property
-    def copies(self) -> int:
-        """How many bodies this makes."""
-        total = 1
-        for repeat in self.repeat:
-            total *= repeat.count
-        return total
-
 
 class Joint(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A connection of two bodies, or of one body to the world.
@@ -297,6 +289,13 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
         """Materials by name."""
         return {material.name: material for material in self.material}
 
+    @property
+    def settings(self) -> dict[str, float]:
+        """The settings that it begins with; restitution and friction are those of each body."""
+        own = {"gravity": math.hypot(*self.gravity), "step": self.step, "iterations": float(self.iterations)}
+        wheels = next((body.wheels for body in self.body if body.wheels), None)
+        return own | {"left": wheels.left, "right": wheels.right} if wheels else own
+
     def pull(self, size: float) -> tuple[float, float]:
         """Gravity of this size in the scene's direction, in m/s²; downward where the scene has none."""
         gx, gy = self.gravity
@@ -379,31 +378,18 @@ def spawned(name: str, shape: str, size: float, place: Vector, velocity: Vector,
         shape: "circle" or "box".
         size: radius, or half the side, in m.
     """
-
-    box = shape == "box"
-    body = Body(
-        name="spawned",
-        shape="box" if box else "circle",
-        material="spawned",
-        radius=None if box else size,
-        size=(2 * size, 2 * size) if box else None,
-        position=place,
-        velocity=velocity,
-    )
+    if shape == "box":
+        body = Body(
+            name=name, shape="box", material=material.name, size=(2 * size, 2 * size), velocity=velocity
+        )
+    else:
+        body = Body(name=name, shape="circle", material=material.name, radius=size, velocity=velocity)
     return _part(body, material, name, place, PALETTE[sum(map(ord, name)) % len(PALETTE)])
 
 
 def wall(name: str, a: Vector, b: Vector, half: float) -> Part:
     """A wall from ``a`` to ``b``, ``2 half`` m thick, that gives everything back and rubs a little."""
-    body = Body(
-        name="wall",
-        shape="segment",
-        material="wall",
-        points=(a, b),
-        thickness=2 * half,
-        position=(0.0, 0.0),
-        fixed=True,
-    )
+    body = Body(name=name, shape="segment", material="wall", points=(a, b), thickness=2 * half, fixed=True)
     return _part(body, Material(name="wall", restitution=1.0, friction=0.5), name, (0.0, 0.0), FIXED_COLOUR)
 
 

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
+
+import msgspec
 
 from course.catalog.reading import Document
 from course.errors import UsageError
 from course.sandbox.scene import expression
-from course.sandbox.scene.model import Body, Joint, Probe, Scene, Shape, layout, signed_area
+from course.sandbox.scene.model import Body, Probe, Scene, Shape, layout, signed_area
 
 # ---
 # The settings that can be changed in any running world, and their ranges.
@@ -65,8 +68,7 @@ SEED = Setting("seed", "1", "of the places that are drawn at random", 0, 1e9, 1.
 
 def settings_of(scene: Scene) -> tuple[Setting, ...]:
     """The settings that do something in this scene."""
-    drives = any(body.wheels for body in scene.body)
-    found = tuple(s for s in SETTINGS.values() if drives or s.name not in {"left", "right"})
+    found = tuple(s for s in SETTINGS.values() if s.name in scene.settings or s.name not in {"left", "right"})
     return (*found, SEED) if any(body.jitter for body in scene.body) else found
 
 
@@ -164,7 +166,7 @@ def _check_bodies(document: Document[Scene]) -> None:
                 fix=f"Materials: {', '.join(scene.materials)}.",
             )
         _check_shape(document, i, body)
-        total += body.copies
+        total += math.prod(repeat.count for repeat in body.repeat)
     if total > _MOST:
         document.fail(("body",), f"there are {total} bodies.", fix=f"Keep to {_MOST}.")
     names = [part.name for part in layout(scene)]
@@ -269,20 +271,33 @@ def _check_parameters(document: Document[Scene]) -> None:
             )
 
 
+def slot(raw: Any, place: str) -> tuple[Any, Any]:
+    """Where a formula's number goes in a scene made of plain data: what it is in, and its key there.
+
+    Args:
+        place: ``body.field``, ``body.field.0``, the same of a joint, or ``field``.
+
+    Raises:
+        LookupError, TypeError, ValueError: there is no such place.
+    """
+    steps: list[Any] = [int(step) if step.isdigit() else step for step in place.split(".")]
+    named = {thing["name"]: thing for thing in (*raw["body"], *raw["joint"])}
+    if len(steps) > 1 and steps[0] in named:
+        raw, steps = named[steps[0]], steps[1:]
+    for step in steps[:-1]:
+        if isinstance(raw[step], tuple):
+            raw[step] = list(raw[step])
+        raw = raw[step]
+    return raw, steps[-1]
+
+
 def _can_be_set(scene: Scene, place: str) -> bool:
     """Whether a place holds a number."""
-    target: object = scene
-    steps = place.split(".")
-    named: dict[str | None, Body | Joint] = {body.name: body for body in scene.body}
-    named |= {joint.name: joint for joint in scene.joint}
-    if len(steps) > 1 and steps[0] in named:
-        target, steps = named[steps[0]], steps[1:]
-    for step in steps:
-        if step.isdigit() and isinstance(target, tuple) and int(step) < len(target):
-            target = target[int(step)]
-        else:
-            target = getattr(target, step, None)
-    return isinstance(target, int | float)
+    try:
+        target, key = slot(msgspec.to_builtins(scene), place)
+        return isinstance(target[key], int | float)
+    except (LookupError, TypeError, ValueError):
+        return False
 
 
 def _names(document: Document[Scene], where: tuple[str | int, ...], formula: str) -> frozenset[str]:

@@ -12,7 +12,7 @@ from time import perf_counter
 from typing import Any
 
 from course.errors import CourseError, UsageError
-from course.sandbox.runs.recording import Recording
+from course.sandbox.runs.recording import Recording, remade
 from course.sandbox.runs.tape import Filming, Frame, Tape, frame
 from course.sandbox.scene.loading import Chosen, Comparison, choose, own_copy
 from course.sandbox.scene.model import Part
@@ -48,14 +48,20 @@ class Desk:
     Attributes:
         keep: a comparison that has a guess.
         save: writes a file of this name into the user's folder, and says where it is.
-        played: ids of the scenes that were played before.
+        played: ids of the scenes that were played before, or are from now on.
         opened: called with the id of a scene that is opened.
     """
 
     keep: Callable[[Chosen, Comparison], None] | None = None
     save: Callable[[str, bytes], str] | None = None
-    played: frozenset[str] = frozenset()
+    played: set[str] = field(default_factory=set)
     opened: Callable[[str], None] | None = None
+
+    def opens(self, stage: Stage) -> None:
+        """This is played from now on."""
+        self.played.add(stage.chosen.scene.id)
+        if self.opened is not None:
+            self.opened(stage.chosen.scene.id)
 
     def stage(
         self, of: Chosen | str, clock: Callable[[], float] = perf_counter, guess: float | None = None
@@ -111,7 +117,6 @@ class Stage:
         chosen: the scene, with the parameters that go into it.
         guess: an answer to its question that was given elsewhere.
         keep: called with each comparison that has a guess.
-        world: already made, before its first step, with a receipt.
         clock: real time, in s.
 
     Attributes:
@@ -130,10 +135,8 @@ class Stage:
         *,
         guess: float | None = None,
         keep: Callable[[Comparison], None] | None = None,
-        world: World | None = None,
         clock: Callable[[], float] = perf_counter,
     ) -> None:
-        self.chosen = chosen
         self.keep = keep
         self.clock = clock
         self.ghost: Tape | None = None
@@ -148,13 +151,18 @@ class Stage:
         self._undos: list[Moment] = []
         self._redos: list[Moment] = []
         self._last: tuple[str, Any, float] = ("", None, -math.inf)
-        self.world = world or World(chosen.scene, chosen.settings)
-        self.recording = Recording(self.world)
-        self.tape = Tape(self.world, self.recording)
-        self.experiment = Experiment(self.world, chosen, guess, keep)
-        self.narrator = Narrator()
+        self._begin(chosen, guess)
         if chosen.scene.duration < _BLINK:
             self.world.speed = float(f"{chosen.scene.duration / _SEEN:.1g}")
+
+    def _begin(self, chosen: Chosen, guess: float | None, version: int = 1) -> None:
+        self.chosen = chosen
+        self.world = World(chosen.scene, chosen.settings)
+        self.world.version = version
+        self.recording = Recording(self.world)
+        self.tape = Tape(self.world, self.recording)
+        self.experiment = Experiment(self.world, chosen, guess, self.keep)
+        self.narrator = Narrator()
 
     # -- what is shown ---------------------------------------------------------------------------
 
@@ -312,27 +320,20 @@ class Stage:
     def set_parameter(self, name: str, value: float) -> None:
         """The scene from its start with another value of one of its own parameters."""
         self._must_be_now()
+        # The settings that somebody chose, not those that the scene has of its own.
+        inputs = [one.arguments for one in self.recording.inputs if one.what == "set"]
+        given = self.chosen.settings | {str(key): float(value) for key, value in inputs}
         chosen = choose(
             str(self.chosen.path) if self.chosen.own else self.chosen.scene.id,
-            {**self.chosen.parameters, "seed": self.chosen.scene.seed, **self._given(), name: value},
+            {**self.chosen.parameters, "seed": self.chosen.scene.seed, **given, name: value},
         )
         before = self._now(f"{name} {self.chosen.parameters[name]:g}")
         self._remember("parameter", (name,), before)
         self.ghost = self.tape if len(self.tape) > 1 else self.ghost
-        world = World(chosen.scene, chosen.settings)
-        world.paused, world.speed, world.version = self.world.paused, self.world.speed, self.world.version + 1
-        self.chosen, self.world = chosen, world
-        self.recording = Recording(world)
-        self.tape = Tape(world, self.recording)
-        guess = self.experiment.guess
-        self.experiment = Experiment(world, chosen, guess, self.keep)
-        self.narrator.forget()
+        old = self.world
+        self._begin(chosen, self.experiment.guess, old.version + 1)
+        self.world.paused, self.world.speed = old.paused, old.speed
         self.anew += 1
-
-    def _given(self) -> dict[str, float]:
-        """The settings that somebody chose, not those that the scene has of its own."""
-        chosen = [one.arguments for one in self.recording.inputs if one.what == "set"]
-        return {**self.chosen.settings, **{str(key): float(value) for key, value in chosen}}
 
     def film(self, kind: str, width: int) -> Filming:
         """Begin a film of this run, as "gif" or "mp4", or a "png" of what is looked at."""
@@ -460,44 +461,35 @@ class Stage:
         stacks: tuple[list[Moment], list[Moment]] | None = None,
     ) -> None:
         """Begin to make a moment again; ``tick`` goes on with it."""
-        made: dict[str, Any] = {"narrator": Narrator()}
-
-        def ready(world: World, recording: Recording) -> None:
-            experiment = Experiment(world, there.chosen, self.experiment.guess, None)
-            made.update(world=world, recording=recording, tape=Tape(world, recording), experiment=experiment)
-            world.on_input.append(lambda _, what, __: experiment.felt(what))
-
-        known, index = max(
-            (
-                (tape, tape.shared(there.recording, there.count, there.t - _TOLD))
-                for tape in (self.tape, self.ghost)
-                if tape is not None
-            ),
-            key=lambda pair: pair[0].times[pair[1]],
-        )
+        world, recording, inputs = there.recording.begun(there.count, self.world.version + 1)
+        tape, narrator = Tape(world, recording), Narrator()
+        experiment = Experiment(world, there.chosen, self.experiment.guess, None)
+        world.on_input.append(lambda _, what, __: experiment.felt(what))
+        tapes = [self.tape] if self.ghost is None else [self.tape, self.ghost]
+        shared = [(one, one.shared(there.recording, there.count, there.t - _TOLD)) for one in tapes]
+        known, index = max(shared, key=lambda pair: pair[0].times[pair[1]])
         known_until = known.ticks[index] if index else 0
 
         def halt() -> float:
             """Where the comparison is made, and where what is known from a tape ends."""
-            world, left = made["world"], made["experiment"].left()
+            left = experiment.left()
             ends = math.inf if left is None else world.ticks + math.ceil(left / world.settings["step"] - 1e-6)
             return min(ends, known_until if known_until > world.ticks else math.inf)
 
         def steps() -> Iterator[float]:
-            version, skipping, frames = self.world.version + 1, False, 0
-            for share in there.recording.replayed(there.count, there.tick, version, ready, halt):
-                world, tape, experiment = made["world"], made["tape"], made["experiment"]
+            skipping, frames = False, 0
+            for share in remade(world, inputs, there.tick, halt):
                 # Taking in events books the steps, so it is done with the frames, which do that anyway.
                 left = experiment.left()
                 ended = share == 1.0 or world.ticks == known_until or (left is not None and left <= 1e-9)
                 if ended or len(tape) != frames:
-                    made["narrator"].tell(_heard(world, experiment, tape), world.t)
+                    narrator.tell(_heard(world, experiment, tape), world.t)
                     experiment.passed()
                     frames = len(tape)
                 if skipping and world.ticks == known_until:
                     world.resume(known.sums[index])
                     tape.take_over(known, index)
-                    made["narrator"].forget()
+                    narrator.forget()
                     skipping = False
                 elif world.ticks < known_until and not skipping and experiment.left() is None:
                     world.skip()
@@ -506,19 +498,18 @@ class Stage:
                 yield share
 
         def done() -> None:
-            old, world = self.world, made["world"]
             if ghost:
                 self.ghost = self.tape
-            self.chosen, self.world, self.recording = there.chosen, world, made["recording"]
-            self.tape, self.experiment, self.narrator = made["tape"], made["experiment"], made["narrator"]
-            self.experiment.keep = self.keep
-            world.on_input = [made["recording"]._note]
-            world.paused, world.speed = paused, old.speed
+            world.paused, world.speed = paused, self.world.speed
+            self.chosen, self.world, self.recording = there.chosen, world, recording
+            self.tape, self.experiment, self.narrator = tape, experiment, narrator
+            experiment.keep = self.keep
+            world.on_input = [recording._note]
             self.present()
             if world.held:
                 world.release()
                 self.hear()
-            self.tape.take()
+            tape.take()
             self.anew += 1
             self.news.append(f"{says}.")
 

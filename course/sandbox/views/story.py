@@ -10,7 +10,7 @@ import msgspec
 
 from course.errors import UsageError
 from course.sandbox.runs.running import Probes, sentence, worth_telling
-from course.sandbox.scene.loading import Chosen, Comparison, compare, question, values_of, with_settings
+from course.sandbox.scene.loading import Chosen, Comparison, question, with_settings
 from course.sandbox.world.accounts import Event
 from course.sandbox.world.world import World
 
@@ -112,7 +112,6 @@ class Experiment:
         self._comparison: dict[str, Any] | None = None
         self._asked: tuple[dict[str, float] | None, str] = (None, "")
         self.guess = guess
-        self._answered = guess is not None
         #: "none" (nothing is asked), "ask" (nobody guessed), "run" (somebody did), "touched" (not
         #: comparable any more) or "done".
         self.stage = "none"
@@ -120,7 +119,7 @@ class Experiment:
             self._begin()
 
     def _begin(self) -> None:
-        self.stage = "run" if self._answered else "ask"
+        self.stage = "ask" if self.guess is None else "run"
         self._events = []
         self._comparison = None
         self._world.on_block[:] = self._listeners
@@ -129,8 +128,8 @@ class Experiment:
     def answer(self, guess: float | None) -> None:
         """Take the guess, or None for none; it counts for all runs from here on."""
         if self.stage in {"ask", "run"}:
-            self.guess, self._answered = guess, guess is not None
-            self.stage = "run" if self._answered else "ask"
+            self.guess = guess
+            self.stage = "ask" if guess is None else "run"
 
     def again(self) -> None:
         """The world was reset."""
@@ -160,30 +159,24 @@ class Experiment:
         Returns:
             whether it was.
         """
-        asked, probes, left = self._chosen.scene.prediction, self._probes, self.left()
-        if asked is None or probes is None or left is None or left > 1e-9:
+        probes, left = self._probes, self.left()
+        if probes is None or left is None or left > 1e-9:
             return False
-        answer = probes.read(self._events)[asked.probe]
-        values = values_of(self._now()) | {"duration": self._world.t}
-        comparison = compare(asked, answer, values, self.guess)
+        comparison = probes.compared(probes.read(self._events), self.guess)
         self._comparison = msgspec.to_builtins(comparison)
         self.stage = "done"
         self._events = []
         self._world.on_block[:] = self._listeners
-        if self.keep is not None and self.guess is not None:
+        if self.keep is not None and self.guess is not None and comparison is not None:
             self.keep(comparison)
         return True
-
-    def _now(self) -> Chosen:
-        """The scene with the present settings."""
-        return with_settings(self._chosen, self._world.settings)
 
     @property
     def question(self) -> str:
         """The scene's question, with the present settings; "" if it has none."""
         if self._asked[0] != self._world.settings:  # a layout of every body, and pages ask in each frame
             try:
-                text = question(self._now())
+                text = question(with_settings(self._chosen, self._world.settings))
             except UsageError:  # at these settings together; the formula itself is the honest text
                 text = self._chosen.scene.prediction.question if self._chosen.scene.prediction else ""
             self._asked = dict(self._world.settings), text

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
+import pymunk
 
 from course.sandbox.scene.model import Floor, Part, Wheels
 from course.sandbox.world.engine import Block, Floats, Ledger, Recorder, Space
-
-if TYPE_CHECKING:
-    import pymunk
-
 
 # ---
 # Pushes from outside the contacts: a hand that drags, wheels that drive, a floor that rubs.
@@ -161,6 +158,79 @@ class Event(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
         if self.before is None or self.after is None or self.before <= 0.0:
             return None
         return 1.0 - self.after / self.before
+
+
+#: Contacts softer than this, in m/s, belong to resting and rolling.
+MINOR = 0.05
+
+
+def contact_events(block: Block, parts: Sequence[Part], ledger: Ledger) -> list[Event]:
+    """One event for each pair that began to touch in these steps, in a fixed order.
+
+    The numbers of all of them are worked out at once.
+    """
+    contacts = block.contacts
+    found = np.flatnonzero(contacts.first)
+    if not len(found):
+        return []
+    k, a, b = contacts.row[found], contacts.a[found], contacts.b[found]
+    normal, point = contacts.normal[:, found].T, contacts.point[:, found].T
+    swap = np.array([_goes_second(parts[i], parts[j]) for i, j in zip(a.tolist(), b.tolist(), strict=True)])
+    a, b = np.where(swap, b, a), np.where(swap, a, b)
+    normal = np.where(swap[:, None], -normal, normal)
+    rows = np.stack([block.before[k, a], block.before[k, b], block.states[k, a, 3:], block.states[k, b, 3:]])
+    # The engine moves bodies first, so it looks for contacts where they are after the step.
+    arm_a, arm_b = point - block.states[k, a, :2], point - block.states[k, b, :2]
+    came = _relative(rows[0], rows[1], arm_a, arm_b)
+    left = _relative(rows[2], rows[3], arm_a, arm_b)
+    nx, ny = normal.T
+    weights = [np.stack([ledger.mass[i], ledger.mass[i], ledger.inertia[i]], axis=1) / 2 for i in (a, b)]
+    energies = [
+        (weights[0] * rows[i] ** 2).sum(axis=1) + (weights[1] * rows[i + 1] ** 2).sum(axis=1) for i in (0, 2)
+    ]
+    numbers = {
+        "x": point[:, 0],
+        "y": point[:, 1],
+        "nx": nx,
+        "ny": ny,
+        "approach": -(came[:, 0] * nx + came[:, 1] * ny),
+        "leave": left[:, 0] * nx + left[:, 1] * ny,
+        "slip": np.abs(came[:, 1] * nx - came[:, 0] * ny),
+        "impulse": np.hypot(*contacts.impulse[:, found]),
+        "before": energies[0],
+        "after": energies[1],
+    }
+    events = []
+    columns = (column.tolist() for column in (k, a, b, *numbers.values()))
+    for row, one, other, *values in zip(*columns, strict=True):
+        told = dict(zip(numbers, values, strict=True))
+        minor, shared = abs(told["approach"]) < MINOR, not parts[other].fixed
+        t, step = float(block.times[row]), block.first_step + row
+        names = {"a": parts[one].name, "b": parts[other].name}
+        events.append(Event(kind="contact", t=t, step=step, minor=minor, shared=shared, **names, **told))
+    # The engine lists contacts by memory address; names make the order the same in every run.
+    return sorted(events, key=lambda event: (event.step, event.a, event.b))
+
+
+def _goes_second(a: Part, b: Part) -> bool:
+    """Whether a sentence about the two begins with ``b``: a moving body before a fixed one, then by name."""
+    return (a.fixed, a.name) > (b.fixed, b.name)
+
+
+def _relative(row_a: Floats, row_b: Floats, arm_a: Floats, arm_b: Floats) -> Floats:
+    """Velocities of ``b`` against ``a`` at points of contact, (m, 2), in m/s.
+
+    Args:
+        row_a, row_b: vx, vy and spin, (m, 3).
+        arm_a, arm_b: from the centres to the points, (m, 2).
+    """
+    vx = row_b[:, 0] - row_b[:, 2] * arm_b[:, 1] - row_a[:, 0] + row_a[:, 2] * arm_a[:, 1]
+    vy = row_b[:, 1] + row_b[:, 2] * arm_b[:, 0] - row_a[:, 1] - row_a[:, 2] * arm_a[:, 0]
+    return np.column_stack([vx, vy])
+
+
+# ---
+# The accounts themselves.
 
 
 class Receipt(msgspec.Struct, frozen=True, kw_only=True):

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeAlias, assert_never
+from typing import TypeAlias, assert_never
 
 import numpy as np
 import pymunk
 from numpy.typing import NDArray
 from pymunk import batch
 
-from course.errors import InternalError
 from course.sandbox.scene.model import Joint, Part
 
 # ---
@@ -143,13 +142,7 @@ class Ledger:
     # -- of many steps ---------------------------------------------------------------------------
 
     def settle(
-        self,
-        block: Block,
-        step: float,
-        given: Floats | None = None,
-        tied: Ties | None = None,
-        *,
-        resized: bool = False,
+        self, block: Block, step: float, given: Floats | None, tied: Ties | None, *, resized: bool
     ) -> Losses:
         """Book the losses of a block, each from the impulses of its own kind.
 
@@ -200,19 +193,13 @@ class Ledger:
         levers: Floats = (summed[0] + summed[1]).reshape(count, bodies) * (1 + 1e-9)
         return levers
 
-    def energies(self, velocities: Floats) -> Floats:
-        """Kinetic energies of several states, (k,), in J; velocities (k, n, 3)."""
-        energies: Floats = (velocities * velocities).reshape(len(velocities), -1) @ self._weights
-        return energies
-
     def table(self, states: Floats) -> Floats:
         """Kinetic and potential energy, and momentum along x, y and about the origin, of states (k, n, 6)."""
         x, y, vx, vy, spin = (states[:, :, i] for i in (0, 1, 3, 4, 5))
+        energies = (states[:, :, 3:] ** 2).reshape(len(states), -1) @ self._weights
         heights = states[:, :, :2].reshape(len(states), -1) @ self._heights
         angular = (x * vy - y * vx) @ self.mass + spin @ self.inertia
-        return np.column_stack(
-            [self.energies(states[:, :, 3:]), heights, vx @ self.mass, vy @ self.mass, angular]
-        )
+        return np.column_stack([energies, heights, vx @ self.mass, vy @ self.mass, angular])
 
     def work(self, block: Block, impulses: Floats) -> Floats:
         """What impulses gave that acted inside the steps, (k,), in J.
@@ -400,10 +387,13 @@ class Space:
     def remove(self, name: str) -> None:
         """Take a body out, and every joint that held it."""
         _, body, shape = self._bodies.pop(self._by_name.pop(name))
-        held = [joint for joint in self.joints if body in (joint.a, joint.b)]
+        held = self._joints_of(body)
         self.joints = [joint for joint in self.joints if joint not in held]
         self.space.remove(*held, shape, body)
         self._number()
+
+    def _joints_of(self, body: pymunk.Body) -> list[pymunk.Constraint]:
+        return [joint for joint in self.joints if body in (joint.a, joint.b)]
 
     def _insert(self, part: Part) -> None:
         body = (
@@ -438,13 +428,14 @@ class Space:
         self.joints.append(made)
 
     def _number(self) -> None:
-        """Learn the engine's order, and how to get from its ids to indices without a search."""
+        """Learn the engine's order."""
         self._buffer.clear()
         batch.get_space_bodies(self.space, batch.BodyFields.BODY_ID, self._buffer)
         ids = np.frombuffer(self._buffer.int_buf(), dtype=np.uint64).copy()
         self.parts = tuple(self._bodies[int(body_id)][0] for body_id in ids)
         self.index = {part.name: i for i, part in enumerate(self.parts)}
-        self._factor, self._shift, self._table = _perfect_hash(ids)
+        self._order = np.argsort(ids)
+        self._sorted = ids[self._order]
 
     # -- one body --------------------------------------------------------------------------------
 
@@ -472,21 +463,19 @@ class Space:
         part, body, shape = self._bodies[self._by_name[name]]
         match key:
             case "mass":
-                moment = part.moment * value / part.mass
-                body.mass, body.moment = value, moment
-                self._bodies[body.id] = (replace(part, mass=value, moment=moment), body, shape)
+                part = replace(part, mass=value, moment=part.moment * value / part.mass)
+                body.mass, body.moment = part.mass, part.moment
             case "restitution":
-                shape.elasticity = value
-                self._bodies[body.id] = (replace(part, restitution=value), body, shape)
+                part, shape.elasticity = replace(part, restitution=value), value
             case "friction":
-                shape.friction = value
-                self._bodies[body.id] = (replace(part, friction=value), body, shape)
+                part, shape.friction = replace(part, friction=value), value
             case "vx":
                 body.velocity = value, body.velocity.y
             case "vy":
                 body.velocity = body.velocity.x, value
             case "spin":
                 body.angular_velocity = value
+        self._bodies[body.id] = part, body, shape
         self._number()
 
     def place(self, name: str, x: float, y: float) -> bool:
@@ -512,27 +501,16 @@ class Space:
         """Another body like this one, where there is room beside it. Returns whether there was."""
         part, body, old = self._bodies[self._by_name[name]]
         size = max([part.radius, *(math.hypot(*corner) for corner in part.outline)])
-        self._insert(
-            replace(
-                part,
-                name=made,
-                angle=body.angle,
-                vx=body.velocity.x,
-                vy=body.velocity.y,
-                spin=body.angular_velocity,
-                appears=0.0,
-            )
-        )
+        vx, vy = body.velocity
+        spin = body.angular_velocity
+        self._insert(replace(part, name=made, angle=body.angle, vx=vx, vy=vy, spin=spin, appears=0.0))
         _, _, shape = self._bodies[self._by_name[made]]
         shape.elasticity, shape.friction = old.elasticity, old.friction
+        x, y = body.position
         for far in (2.1, 3.2, 4.3):
             for turn in range(8):
                 way = math.tau * turn / 8
-                wanted = (
-                    body.position.x + far * size * math.cos(way),
-                    body.position.y + far * size * math.sin(way),
-                )
-                if self.place(made, *wanted):
+                if self.place(made, x + far * size * math.cos(way), y + far * size * math.sin(way)):
                     self._number()
                     return True
         self.remove(made)
@@ -541,14 +519,11 @@ class Space:
     def _onto_joints(self, body: pymunk.Body) -> float:
         """Move a body to where its joints hold it; how far that was, in m."""
         moved = 0.0
-        for joint in self.joints:
-            if body not in (joint.a, joint.b):
-                continue
-            mine, other = (
-                (joint.anchor_a, joint.anchor_b) if body is joint.a else (joint.anchor_b, joint.anchor_a)
-            )
-            fixed = (joint.b if body is joint.a else joint.a).local_to_world(other)
-            arm = body.local_to_world(mine) - fixed
+        for joint in self._joints_of(body):
+            mine, other, its = joint.anchor_a, joint.b, joint.anchor_b
+            if body is joint.b:
+                mine, other, its = joint.anchor_b, joint.a, joint.anchor_a
+            arm = body.local_to_world(mine) - other.local_to_world(its)
             length = joint.distance if isinstance(joint, pymunk.PinJoint) else 0.0
             size = arm.length
             wanted = arm * (length / size) if size > 0 else pymunk.Vec2d(0.0, -length)
@@ -558,20 +533,14 @@ class Space:
 
     def _out_of_others(self, body: pymunk.Body, shape: pymunk.Shape) -> float:
         """Move a body out of all others; how far that was, in m."""
-        tied = {
-            one
-            for joint in self.joints
-            if not joint.collide_bodies and body in (joint.a, joint.b)
-            for one in (joint.a, joint.b)
-        }
+        apart = [joint for joint in self._joints_of(body) if not joint.collide_bodies]
+        through = {body, *(joint.a for joint in apart), *(joint.b for joint in apart)}
         moved = 0.0
         for hit in self.space.shape_query(shape):
-            if hit.shape is None or hit.shape.body in tied or hit.shape.body is body:
+            if hit.shape is None or hit.shape.body in through:
                 continue
-            depth = (
-                min((point.distance for point in hit.contact_point_set.points), default=0.0)
-                + self.space.collision_slop
-            )
+            nearest = min((point.distance for point in hit.contact_point_set.points), default=0.0)
+            depth = nearest + self.space.collision_slop
             if depth < 0.0:
                 body.position += hit.contact_point_set.normal * depth
                 moved -= depth
@@ -588,23 +557,20 @@ class Space:
 
     def nearest(self, x: float, y: float, reach: float) -> str | None:
         """The movable body closest to a place, if its surface is within ``reach`` of it, in m."""
-        best: tuple[float, str] | None = None
+        near: list[tuple[float, str]] = []
         for hit in self.space.point_query((x, y), reach, pymunk.ShapeFilter()):
-            if hit.shape is None or hit.shape.body is None:
-                continue
-            part = self._bodies[hit.shape.body.id][0]
-            if not part.fixed and (best is None or (hit.distance, part.name) < best):
-                best = (hit.distance, part.name)
-        return best[1] if best else None
+            if hit.shape is not None and hit.shape.body is not None:
+                part = self._bodies[hit.shape.body.id][0]
+                near += [] if part.fixed else [(hit.distance, part.name)]
+        return min(near)[1] if near else None
 
-    def ends_of_joints(self) -> list[tuple[float, float, float, float]]:
-        """Where each joint's two anchors are now, in m."""
-        ends = []
-        for joint in self.joints:
-            a: Any = joint.a.local_to_world(joint.anchor_a)
-            b: Any = joint.b.local_to_world(joint.anchor_b)
-            ends.append((float(a.x), float(a.y), float(b.x), float(b.y)))
-        return ends
+    def ends_of_joints(self) -> Floats:
+        """Where each joint's two anchors are now, (m, 4), in m."""
+        ends = [
+            (*joint.a.local_to_world(joint.anchor_a), *joint.b.local_to_world(joint.anchor_b))
+            for joint in self.joints
+        ]
+        return np.array(ends, dtype=float).reshape(-1, 4)
 
     def ties(self) -> Ties | None:
         """What the joints hold, by the rows of every state; None if there are none."""
@@ -634,9 +600,7 @@ class Space:
 
     def indices(self, ids: Ids) -> Ints:
         """Rows of bodies, from the engine's ids."""
-        places = ids * self._factor
-        places >>= self._shift
-        found: Ints = self._table.take(places.view(np.int64))
+        found: Ints = self._order.take(self._sorted.searchsorted(ids))
         return found
 
 
@@ -693,23 +657,3 @@ class Recorder:
         self._contacts.clear()
         self._ends.clear()
         return states, contacts
-
-
-def _perfect_hash(ids: Ids) -> tuple[np.uint64, np.uint64, Ints]:
-    """A factor and a shift that send every id to a place of its own, and the table of what stands there.
-
-    Ids are addresses, so they may be any distance apart. Factors are tried until no two ids collide, in a
-    table that starts small, since it has to stay in the cache, and is doubled after too many failures.
-    """
-    bits = max(6, math.ceil(math.log2(16 * max(len(ids), 1))))
-    while bits < 40:
-        shift = np.uint64(64 - bits)
-        for attempt in range(60):
-            factor = np.uint64((0x9E3779B97F4A7C15 * (2 * attempt + 1)) % 2**64)
-            places = (ids * factor) >> shift
-            if len(np.unique(places)) == len(ids):
-                table = np.zeros(2**bits, dtype=np.int64)
-                table[places] = np.arange(len(ids))
-                return factor, shift, table
-        bits += 1
-    raise InternalError("No table for the bodies of this scene could be found.")

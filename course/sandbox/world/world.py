@@ -19,8 +19,7 @@ import numpy as np
 from course.errors import UsageError
 from course.sandbox.scene.model import Material, Part, Scene, layout, spawned, wall
 from course.sandbox.scene.rules import SETTINGS, checked, number
-from course.sandbox.world.accounts import Accounts, Clock, Event, Hand, Receipt
-from course.sandbox.world.contacts import contact_events
+from course.sandbox.world.accounts import Accounts, Clock, Event, Hand, Receipt, contact_events
 from course.sandbox.world.engine import Block, Floats, Space
 
 # ---
@@ -157,17 +156,8 @@ class World:
         """Build the scene, with the settings in force."""
         scene = self.scene
         parts = layout(scene)
+        self.settings = scene.settings | dict(settings)
         self._wheeled = [part for part in parts if part.wheels is not None]
-        rims = {"left": 0.0, "right": 0.0}
-        for part in self._wheeled[:1]:
-            if part.wheels is not None:
-                rims = {"left": part.wheels.left, "right": part.wheels.right}
-        own = {
-            "gravity": math.hypot(*scene.gravity),
-            "step": scene.step,
-            "iterations": float(scene.iterations),
-        }
-        self.settings = own | (rims if self._wheeled else {}) | dict(settings)
         ordered = parts[::-1] if scene.reverse else parts
         self._waiting = sorted((part for part in ordered if part.appears > 0.0), key=lambda p: -p.appears)
         self._space = Space(
@@ -220,22 +210,12 @@ class World:
 
     def snapshot(self) -> Snapshot:
         """Where everything is now."""
-        x, y, angle, vx, vy, _ = self._space.state().T
         hand = None
         if self._hand is not None:
             place = self._space.body(self._hand.name).local_to_world(self._hand.anchor)
             hand = (float(place.x), float(place.y), self._hand.x, self._hand.y)
-        return Snapshot(
-            t=self.t,
-            version=self.version,
-            x=x,
-            y=y,
-            angle=angle,
-            vx=vx,
-            vy=vy,
-            joints=np.array(self._space.ends_of_joints()).reshape(-1, 4),
-            hand=hand,
-        )
+        x, y, angle, vx, vy, _ = self._space.state().T
+        return Snapshot(self.t, self.version, x, y, angle, vx, vy, self._space.ends_of_joints(), hand)
 
     def drain_events(self) -> list[Event]:
         """The events since the last call, oldest first."""

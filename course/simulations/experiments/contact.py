@@ -78,8 +78,6 @@ def _run_collision(p: Mapping[str, Any]) -> Result:
         Row("kinetic energy at the end", float(energy[-1]), "J", kept_theory, "what restitution leaves"),
     )
     return Result(
-        simulation="collision",
-        settings=p,
         rows=rows,
         headline=_headline_collision(met, float(energy[0]), float(energy[-1]), end),
         finding=_finding(p, met, float(energy[0]), float(energy[-1])),
@@ -210,8 +208,6 @@ def _run(p: Mapping[str, Any]) -> Result:
         f"high{higher}."
     )
     return Result(
-        simulation="contact-models",
-        settings=p,
         rows=rows,
         headline=f"With e = {e:g} a ball rises to {rises}",
         finding=f"With a floor that looks once a step of {h:g} s the ball rises to {spread}. "
@@ -329,8 +325,6 @@ def _run_solver_iterations(p: Mapping[str, Any]) -> Result:
     done = float(histories[boxes][-1])
     tall, short = heights[-1], heights[0]
     return Result(
-        simulation="solver-iterations",
-        settings=p,
         rows=tuple(rows),
         headline=f"{tall} boxes need {needed[tall]} iterations to reach {percent(tolerance)}, "
         f"{short} need {needed[short]}",
@@ -400,8 +394,6 @@ def _run_substeps(p: Mapping[str, Any]) -> Result:
         why = "for so few links the iterations of one step are enough."
     better = f"{more / less:.2g} times" if less > 0 else "far"
     return Result(
-        simulation="substeps",
-        settings=p,
         rows=rows,
         headline=f"Same work: {names[0]} stretch the chain {better} less than {names[1]} do",
         finding=f"Every variant goes over the chain {work} times a frame. One step with {work} iterations "

@@ -75,8 +75,6 @@ def _run_dynamics(p: Mapping[str, Any]) -> Result:
     )  # fmt: skip
     hand, goal = real.hand(run.q), path.hand(t)[0]
     return Result(
-        simulation="dynamics",
-        settings=p,
         rows=rows,
         headline=_headline_dynamics(p, missed),
         finding=_finding_dynamics(p, missed, torques),
@@ -240,8 +238,6 @@ def _run(p: Mapping[str, Any]) -> Result:
         Row(f"mean energy of the upper bob, {_CROWD} starts, step {2 * h:g} s", fine, "J/kg"),
     )
     return Result(
-        simulation="chaos",
-        settings=p,
         rows=rows,
         headline=_headline(p, large),
         finding=_finding(p, small, large, coarse, fine),
@@ -386,8 +382,6 @@ def _run_environment(p: Mapping[str, Any]) -> Result:
     )
     rows.append(Row("sliding further, friction 10 % lower", wrong, "1", 1 / 0.9 - 1, "1 / 0.9 - 1"))
     return Result(
-        simulation="environment",
-        settings=p,
         rows=tuple(rows),
         headline=f"Friction 10 % off moves the stop by {percent(wrong)}; this step by {percent(numeric)}",
         finding=f"From {p['speed']:g} m/s a block slides {digits(float(stopping[_at(0.6)]))} m at a "
@@ -497,8 +491,6 @@ def _run_integrators(p: Mapping[str, Any]) -> Result:
         for name in STEPPERS
     ]
     return Result(
-        simulation="integrators",
-        settings=p,
         rows=tuple(rows),
         headline=_headline_integrators(worst, w * h),
         finding=_finding_integrators(p, rows, worst),

@@ -44,10 +44,11 @@ def _run_free_fall(p: Mapping[str, Any]) -> Result:
     landed = float(record.ground_time[0])
     due = (speed + math.sqrt(speed**2 + 2 * g * height)) / g
     lands = due <= p["duration"]
+    falls = {method: _fall(p, method) for method in STEPPERS}
     exact = np.where(record.t < due, height + speed * record.t - 0.5 * g * record.t**2, 0.0)
     rows = (
         Row("time to the ground", landed, "s", due if lands else math.nan, "(v₀ + √(v₀² + 2 g h₀)) / g"),
-        *_without_ground(p),
+        *_without_ground(p, falls),
     )
     bias = 0.5 * g * h * p["duration"]
     still = f"still {'rising' if record.velocity[-1, 0, 2] > 0 else 'falling'}"
@@ -57,8 +58,6 @@ def _run_free_fall(p: Mapping[str, Any]) -> Result:
         else f"The ball is {still} after {p['duration']:g} s; it would land after {due:.4g} s."
     )
     return Result(
-        simulation="free-fall",
-        settings=p,
         rows=rows,
         headline=_headline_free_fall(landed, bias, f"{still.capitalize()} at {p['duration']:g} s"),
         finding=f"{when} Under constant gravity Verlet and Runge-Kutta are exact. Semi-implicit Euler moves "
@@ -69,7 +68,7 @@ def _run_free_fall(p: Mapping[str, Any]) -> Result:
             Column.of("t", "s", record.t),
             Column.of("height", "m", record.position[:, 0, 2]),
             Column.of("height_theory", "m", exact),
-            *_errors(p),
+            *(Column.of(f"error_{method}", "m", off) for method, (_, off) in falls.items()),
         ),
     )
 
@@ -88,23 +87,16 @@ def _fall(p: Mapping[str, Any], method: str) -> tuple[np.ndarray, np.ndarray]:
     return path.q[:, 0], path.q[:, 0] - exact
 
 
-def _without_ground(p: Mapping[str, Any]) -> list[Row]:
+def _without_ground(p: Mapping[str, Any], falls: Mapping[str, tuple[Array, Array]]) -> list[Row]:
     t = p["duration"]
     exact = p["height"] + p["speed"] * t - 0.5 * p["gravity"] * t**2
     rows = [
-        Row(f"height at {t:g} s without ground, {METHOD_NAMES[m]}", float(_fall(p, m)[0][-1]), "m", exact,
+        Row(f"height at {t:g} s without ground, {METHOD_NAMES[m]}", float(heights[-1]), "m", exact,
             "h₀ + v₀ t - g t² / 2")
-        for m in STEPPERS
+        for m, (heights, _) in falls.items()
     ]  # fmt: skip
-    bias = float(_fall(p, "semi_implicit_euler")[1][-1])
-    rows.append(
-        Row("bias of semi-implicit Euler", bias, "m", -0.5 * p["gravity"] * p["step"] * t, "-g h t / 2")
-    )
-    return rows
-
-
-def _errors(p: Mapping[str, Any]) -> list[Column]:
-    return [Column.of(f"error_{method}", "m", _fall(p, method)[1]) for method in STEPPERS]
+    bias, theory = float(falls["semi_implicit_euler"][1][-1]), -0.5 * p["gravity"] * p["step"] * t
+    return [*rows, Row("bias of semi-implicit Euler", bias, "m", theory, "-g h t / 2")]
 
 
 FREE_FALL = Simulation(
@@ -156,8 +148,6 @@ def _run(p: Mapping[str, Any]) -> Result:
     t, x, z = record.t, record.position[:, 0, 0], record.position[:, 0, 2]
     flight = np.minimum(t, _flight_time(p))
     return Result(
-        simulation="projectile",
-        settings=p,
         rows=rows,
         headline=_headline(p, rows),
         finding=_finding_projectile(p, rows),
@@ -309,8 +299,6 @@ def _run_rotation(p: Mapping[str, Any]) -> Result:
         Row("times it turned over", flips, "1"),
     )  # fmt: skip
     return Result(
-        simulation="rotation",
-        settings=p,
         rows=rows,
         headline=_headline_rotation(p, flips, float(drifts["explicit_euler"][-1])),
         finding=_finding(p, flips, drifts),

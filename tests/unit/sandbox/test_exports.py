@@ -10,11 +10,12 @@ from typing import ClassVar
 from xml.etree import ElementTree as ET
 
 import pytest
+from msgspec.structs import replace
 
 from course.errors import UsageError
 from course.sandbox.exports.formats import VERSION, damping_ratio, mjcf, sdf, start_script
-from course.sandbox.scene.loading import choose, scene_ids
-from course.sandbox.scene.model import layout
+from course.sandbox.scene.loading import Chosen, choose, scene_ids
+from course.sandbox.scene.model import Body, Joint, layout
 from course.sandbox.world.world import World
 
 EXPORTED = sorted(set(scene_ids()) - {"galton-board", "robot-boxes"})
@@ -104,57 +105,24 @@ def test_the_system_sets_each_velocity_when_it_is_configured_and_again_when_the_
     assert len(done) == 4
 
 
-CHAINS = """format_version = 1
-id = "{id}"
-title = "Chains"
-order = 90
-teaches = "Held together."
-note = "For a test."
-after = "Nothing."
-view = [-1, 0, 1, 2]
-gravity = [0, 0]
-[[material]]
-name = "steel"
-restitution = 0.0
-friction = 0.0
-[[body]]
-name = "hook"
-shape = "circle"
-material = "steel"
-radius = 0.02
-fixed = true
-position = [0, 1]
-[[body]]
-name = "upper"
-shape = "circle"
-material = "steel"
-radius = 0.05
-mass = 1.0
-position = [0.4, 0.7]
-velocity = [0.3, 0.4]
-[[body]]
-name = "lower"
-shape = "circle"
-material = "steel"
-radius = 0.05
-mass = 1.0
-position = [0.4, 0.3]
-velocity = [0.3, 0.4]
-[[joint]]
-kind = "rod"
-a = "hook"
-b = "upper"
-[[joint]]
-kind = "pivot"
-a = "lower"
-b = "upper"
-anchor_a = [0, 0.4]
-"""
+def chained(*more: Joint) -> Chosen:
+    """A body on a rod, and another one held to it by a pivot."""
+    steel = {"shape": "circle", "material": "puck", "mass": 1.0, "radius": 0.05, "velocity": (0.3, 0.4)}
+    bodies = (
+        Body(name="hook", shape="circle", material="puck", radius=0.02, fixed=True, position=(0.0, 1.0)),
+        Body(name="upper", position=(0.4, 0.7), **steel),
+        Body(name="lower", position=(0.4, 0.3), **steel),
+    )
+    joints = (
+        Joint(kind="rod", a="hook", b="upper"),
+        Joint(kind="pivot", a="lower", b="upper", anchor_a=(0.0, 0.4)),
+    )
+    chosen = choose("head-on")
+    return replace(chosen, scene=replace(chosen.scene, body=bodies, joint=(*joints, *more)))
 
 
-def test_bodies_in_a_chain_are_links_of_one_model_whose_joints_move_as_the_bodies_do(tmp_path) -> None:
-    (tmp_path / "chain.toml").write_text(CHAINS.format(id="chain"))
-    model = ET.fromstring(sdf(choose(str(tmp_path / "chain.toml")))).find("world/model[@name='upper']")
+def test_bodies_in_a_chain_are_links_of_one_model_whose_joints_move_as_the_bodies_do() -> None:
+    model = ET.fromstring(sdf(chained())).find("world/model[@name='upper']")
     joints = {joint.get("name"): joint for joint in model.iterfind("joint")}
     assert [(j.findtext("parent"), j.findtext("child")) for j in joints.values()] == [
         ("world", "rod-hook-upper"),
@@ -167,13 +135,11 @@ def test_bodies_in_a_chain_are_links_of_one_model_whose_joints_move_as_the_bodie
     assert float(plugin.findtext("rod-hook-upper-end")) == pytest.approx(-1.0)
 
 
-def test_a_closed_chain_is_refused_with_the_reason(tmp_path) -> None:
-    closed = CHAINS.format(id="closed") + '[[joint]]\nkind = "rod"\na = "hook"\nb = "lower"\n'
-    (tmp_path / "closed.toml").write_text(closed)
-    chosen = choose(str(tmp_path / "closed.toml"))
+def test_a_closed_chain_is_refused_with_the_reason() -> None:
+    closed = chained(Joint(kind="rod", a="hook", b="lower"))
     with pytest.raises(UsageError, match="closes a chain"):
-        sdf(chosen)
-    assert mjcf(chosen)
+        sdf(closed)
+    assert mjcf(closed)
 
 
 def test_gravity_and_settings_reach_the_exports() -> None:

@@ -56,33 +56,6 @@ def terminal(tmp_path: Path, size: tuple[int, int]) -> Iterator[Terminal]:
 CLEAN = "0 0 1"
 
 
-def test_a_scene_is_asked_about_run_compared_placed_and_left(terminal: Terminal):
-    start(terminal, "head-on")
-    terminal.wait("o scenes")
-    assert terminal.state()[0] == "1"
-    terminal.keys("r", "p")
-    terminal.wait("How fast is the right puck")
-    terminal.keys("2", "Enter")
-    terminal.wait("Your guess is right")
-    terminal.keys("r")
-    terminal.wait("From the start")
-    terminal.keys("Space")
-    terminal.wait("paused")
-    # The left puck starts at x = -1 m; put it higher, from the cell in which its letter is.
-    rows = terminal.screen().split("\n")
-    row = next(i for i, line in enumerate(rows) if " l" in line[:48] and "m ─" not in line and i > 1)
-    column = rows[row].index("l")
-    terminal.mouse(0, column + 1, row + 1)
-    terminal.mouse(32, column + 1, row - 2)
-    terminal.mouse(0, column + 1, row - 2, "m")
-    terminal.wait("left-puck stays there")
-    terminal.keys("u")
-    terminal.wait("undone", "Undone", "taken back", "back")
-    terminal.keys("q")
-    terminal.wait("left the scene")
-    assert terminal.state() == CLEAN
-
-
 @pytest.mark.parametrize("how", ["C-c", "INT", "TERM", "HUP"])
 def test_the_terminal_is_left_clean_however_one_leaves(terminal: Terminal, tmp_path: Path, how: str):
     start(terminal, "newtons-cradle")

@@ -278,26 +278,6 @@ def test_a_page_is_told_everything_it_needs_to_draw() -> None:
         assert frame[12] == pytest.approx(receipt.potential, rel=1e-6)
 
 
-def test_what_a_page_asks_for_happens_and_the_answer_is_a_status() -> None:
-    made = session()
-    with (
-        TestClient(make_app(made, PORT, TOKEN), base_url=BASE) as client,
-        client.websocket_connect(SOCKET, headers=OWN) as open_socket,
-    ):
-        open_socket.send_text('{"do": "set", "key": "gravity", "value": 3.5}')
-        for _ in range(20):
-            message = receive(open_socket)
-            if (
-                isinstance(message, dict)
-                and message["type"] == "status"
-                and message["settings"]["gravity"] == 3.5
-            ):
-                break
-        else:
-            pytest.fail("no status with the new gravity")
-        assert made.stage.world.settings["gravity"] == 3.5
-
-
 def test_malformed_requests_are_answered_and_the_socket_stays_open() -> None:
     made = session()
     with (

@@ -80,40 +80,15 @@ def sqlite_messages(bag: Path) -> list[tuple[str, str, int, bytes]]:
     return rows
 
 
-def mcap_messages(path: Path) -> list[tuple[int, bytes]]:
-    """Log time and data of each message of an uncompressed MCAP file, by its specification."""
-    raw, found = path.read_bytes(), []
-    assert raw[:8] == raw[-8:] == b"\x89MCAP0\r\n"
-
-    def walk(data: bytes) -> None:
-        at = 0
-        while at < len(data):
-            code, length = data[at], struct.unpack_from("<Q", data, at + 1)[0]
-            body = data[at + 9 : at + 9 + length]
-            if code == 0x06:  # a chunk: start, end, size, checksum, compression, records
-                name = struct.unpack_from("<I", body, 28)[0]
-                assert name == 0, "compressed"
-                walk(body[40:])
-            elif code == 0x05:  # a message: channel, sequence, log time, publish time, data
-                found.append((struct.unpack_from("<Q", body, 6)[0], body[22:]))
-            at += 9 + length
-
-    walk(raw[8:-8])
-    return found
-
-
 @pytest.fixture(scope="module")
 def written(tmp_path_factory):
-    """A bag of all streams in each storage."""
-    folder = tmp_path_factory.mktemp("written")
-    return {
-        storage: bags.write_bag(folder / storage / "drive", ALL, storage=storage) for storage in bags.STORAGES
-    }
+    """A bag of all streams."""
+    return bags.write_bag(tmp_path_factory.mktemp("written") / "drive", ALL)
 
 
 @needs_rosbags
 def test_an_imu_message_holds_rate_stamp_and_covariances_where_its_definition_says(written):
-    rows = of("/imu/data_raw", sqlite_messages(written["sqlite3"]))
+    rows = of("/imu/data_raw", sqlite_messages(written))
     assert [(name, kind, stamp) for name, kind, stamp, _ in rows] == [
         ("/imu/data_raw", "sensor_msgs/msg/Imu", 10**9 * bags.START_S + stamp)
         for stamp in (0, 100_000_000, 250_000_000)
@@ -131,7 +106,7 @@ def test_an_imu_message_holds_rate_stamp_and_covariances_where_its_definition_sa
 
 @needs_rosbags
 def test_a_scan_message_holds_its_angles_and_infinity_where_nothing_was_hit(written):
-    rows = of("/scan", sqlite_messages(written["sqlite3"]))
+    rows = of("/scan", sqlite_messages(written))
     cdr = Cdr(rows[0][3])
     assert cdr.header() == (bags.START_S, 0, "laser")
     assert cdr.take("f", 7) == pytest.approx((-0.5, 0.5, 0.5, 0.0, 0.1, 0.0, 5.0))
@@ -141,7 +116,7 @@ def test_a_scan_message_holds_its_angles_and_infinity_where_nothing_was_hit(writ
 
 @needs_rosbags
 def test_an_odometry_message_holds_pose_and_twist_in_their_frames(written):
-    rows = sqlite_messages(written["sqlite3"])
+    rows = sqlite_messages(written)
     truth = Cdr(of("/ground_truth", rows)[1][3])
     assert truth.header() == (bags.START_S, 100_000_000, "map")
     assert truth.text() == "base_link_true"
@@ -156,17 +131,15 @@ def test_an_odometry_message_holds_pose_and_twist_in_their_frames(written):
 
 
 @needs_rosbags
-def test_an_mcap_bag_holds_the_same_messages_in_order_of_time(written):
-    lite = sqlite_messages(written["sqlite3"])
-    mcap = mcap_messages(written["mcap"] / "drive.mcap")
-    assert mcap == [(stamp, data) for _, _, stamp, data in lite]
-    assert [stamp for stamp, _ in mcap] == sorted(stamp for stamp, _ in mcap)
-    assert len(mcap) == 11 + 3 + 1 + 6  # the streams, the clock, a frame that stands and two that move
+def test_a_bag_holds_its_messages_in_order_of_time(written):
+    stamps = [stamp for _, _, stamp, _ in sqlite_messages(written)]
+    assert stamps == sorted(stamps)
+    assert len(stamps) == 11 + 3 + 1 + 6  # the streams, the clock, a frame that stands and two that move
 
 
 @needs_rosbags
 def test_the_clock_runs_from_after_zero_through_every_stamp(written):
-    rows = sqlite_messages(written["sqlite3"])
+    rows = sqlite_messages(written)
     clock = [
         (stamp, Cdr(data)) for _, kind, stamp, data in of("/clock", rows) if kind == "rosgraph_msgs/msg/Clock"
     ]
@@ -202,7 +175,7 @@ def test_every_scan_finds_its_way_through_the_frames_to_the_map_at_its_own_time(
 def test_the_metadata_are_of_a_version_that_humble_reads_and_keep_static_frames_for_who_comes_later(written):
     from ruamel.yaml import YAML
 
-    text = (written["sqlite3"] / "metadata.yaml").read_text()
+    text = (written / "metadata.yaml").read_text()
     told = YAML(typ="safe").load(text)["rosbag2_bagfile_information"]
     assert told["version"] == 8
     assert told["storage_identifier"] == "sqlite3"
@@ -236,9 +209,8 @@ def test_the_view_for_rviz_shows_topics_of_the_bag_in_a_frame_of_the_bag(tmp_pat
 
 
 @needs_rosbags
-@pytest.mark.parametrize("storage", bags.STORAGES)
-def test_the_same_streams_under_the_same_name_are_the_same_bytes(written, tmp_path, storage):
-    first, second = written[storage], bags.write_bag(tmp_path / "drive", reversed(ALL), storage=storage)
+def test_the_same_streams_under_the_same_name_are_the_same_bytes(written, tmp_path):
+    first, second = written, bags.write_bag(tmp_path / "drive", reversed(ALL))
     names = sorted(file.name for file in first.iterdir())
     assert names == sorted(file.name for file in second.iterdir())
     for name in names:
@@ -267,12 +239,6 @@ def test_a_write_that_fails_leaves_nothing_behind(tmp_path):
 def test_a_bag_takes_one_stream_of_each_kind(tmp_path, given):
     with pytest.raises(UsageError, match="one stream of each kind"):
         bags.write_bag(tmp_path / "drive", given)
-
-
-@needs_rosbags
-def test_a_storage_that_does_not_exist_is_named(tmp_path):
-    with pytest.raises(UsageError, match="'tape'"):
-        bags.write_bag(tmp_path / "drive", [IMU], storage="tape")
 
 
 def test_without_rosbags_the_error_gives_the_command_that_installs_it(tmp_path, monkeypatch):

@@ -48,8 +48,8 @@ from course.sandbox.world.world import NUMBERS, World
 _FILM_WIDTH = 640
 #: How often numbers and curves are written anew, in s: the eye reads no faster.
 _READ = 0.2
-#: Pictures a second for those who asked for little motion.
-_CALM_FPS = 4.0
+#: Pictures a second, and for those who asked for little motion.
+_FPS, _CALM_FPS = 30.0, 4.0
 _LOWEST = 12
 #: Slowest and fastest, in simulated seconds a second.
 _SLOWEST, _FASTEST = 1 / 1024, 16.0
@@ -63,7 +63,6 @@ class SandboxApp(FullScreenApp):
     Args:
         stage: what is played; None to begin with the gallery.
         desk: what may be asked of the program around this.
-        fps: pictures a second.
         clock: real time, in s.
     """
 
@@ -131,17 +130,14 @@ class SandboxApp(FullScreenApp):
         stage: Stage | None = None,
         desk: Desk | None = None,
         *,
-        fps: float = 30.0,
         clock: Callable[[], float] = perf_counter,
     ) -> None:
         super().__init__(clock)
         self.desk = desk or Desk()
         self._first = self._gallery_first = stage is None
-        self._played = set(self.desk.played)
-        self._budget = 0.5 / max(fps, 1.0)
+        self._budget = 0.5 / _FPS
         self.put_on(stage or self.desk.stage(scenes()[0].id, clock))
         self.calm = self.animation_level != "full"
-        self._fps = fps
         self._last = clock()
         self._film: Filming | None = None
         self._read_at = -1.0
@@ -156,7 +152,6 @@ class SandboxApp(FullScreenApp):
         self.keys = Lines(ink, bar, id="keys")
 
     def put_on(self, stage: Stage) -> None:
-        """Play this from now on, in place."""
         self.stage = stage
         self.sight = Sight(stage, colour=self.in_colour)
         self.pointer = Pointer(stage, self.sight)
@@ -164,19 +159,15 @@ class SandboxApp(FullScreenApp):
         self._anew = stage.anew
         self._compared = ""
         if not self._first:
-            self._played.add(stage.chosen.scene.id)
-            if self.desk.opened is not None:
-                self.desk.opened(stage.chosen.scene.id)
+            self.desk.opens(stage)
         self._first = False
 
     @property
     def world(self) -> World:
-        """What is played."""
         return self.stage.world
 
     @property
     def experiment(self) -> Experiment:
-        """The question of what is played."""
         return self.stage.experiment
 
     # -- coming and going ------------------------------------------------------------------------
@@ -191,19 +182,16 @@ class SandboxApp(FullScreenApp):
         yield self.keys
 
     def on_mount(self) -> None:
-        """Start."""
         self.begin()
 
     def begin(self) -> None:
-        """Start the frames."""
         self._last = self._clock()
-        self.set_interval(1 / self._fps, self.tick)
+        self.set_interval(1 / _FPS, self.tick)
         self.world.paused = self.calm
         if self._gallery_first:
             self.action_scenes()
 
     def on_resize(self, event: Any) -> None:
-        """Give each part its room."""
         self._room = event.size
         self._lay_out()
 
@@ -221,7 +209,6 @@ class SandboxApp(FullScreenApp):
     # -- time ------------------------------------------------------------------------------------
 
     def tick(self) -> None:
-        """One frame."""
         now = self._clock()
         dt, self._last = now - self._last, now
         if len(self.screen_stack) == 1:
@@ -234,7 +221,6 @@ class SandboxApp(FullScreenApp):
             self._write()
 
     def _hear(self, told: list[dict[str, Any]], now: float) -> None:
-        """Take in what happened."""
         stage = self.stage
         if stage.anew != self._anew:
             self._anew, self._lines, told = stage.anew, [], stage.narrator.told()
@@ -279,7 +265,6 @@ class SandboxApp(FullScreenApp):
         return "all out of view: r or Home" if self.sight.empty else ""
 
     def _write(self) -> None:
-        """Numbers, curves, events and keys."""
         if self.panel.display:
             width, height = self.panel.size
             rule = "│ " if width > 2 else ""
@@ -369,10 +354,9 @@ class SandboxApp(FullScreenApp):
 
         if self.stage.at is None:
             self.pointer.drop()
-        current, calm = self.stage.chosen.scene.id, self.calm
-        self.push_screen(
-            Gallery(scenes(), frozenset(self._played), current, colour=self.in_colour, calm=calm), chosen
-        )
+        current, played = self.stage.chosen.scene.id, self.desk.played
+        gallery = Gallery(scenes(), played, current, colour=self.in_colour, calm=self.calm)
+        self.push_screen(gallery, chosen)
 
     def action_change(self) -> None:
         """The scene's own numbers, and those of the body near the pointer."""
@@ -416,21 +400,18 @@ class SandboxApp(FullScreenApp):
         return f"{name}: {value:g}"
 
     def action_help(self) -> None:
-        """All keys."""
         wheels = "left" in self.world.settings
         self.push_screen(
             PageOverlay("Keys, and this scene", help_pages(self.stage.chosen.scene, wheels=wheels))
         )
 
     def action_events(self) -> None:
-        """The list of events."""
         page = self._lines or ["Nothing happened yet."]
         self.push_screen(PageOverlay("What happened", page, at_end=True))
 
     # -- keys ------------------------------------------------------------------------------------
 
     def action_pause(self) -> None:
-        """Run or pause."""
         stage = self.stage
         stage.run(on=stage.world.paused if stage.at is None else not stage.way)
         self.renew()
@@ -445,12 +426,10 @@ class SandboxApp(FullScreenApp):
         self.renew()
 
     def action_jump(self, seconds: float) -> None:
-        """Along the run."""
         self._attempt(lambda: self.stage.look(self.stage.t + seconds))
         self.renew()
 
     def action_backwards(self) -> None:
-        """Play backwards."""
         self._attempt(lambda: self.stage.play_back(-1))
 
     def action_now(self) -> None:
@@ -463,11 +442,9 @@ class SandboxApp(FullScreenApp):
         self.renew()
 
     def action_undo(self) -> None:
-        """Back to before the last thing that was done."""
         self._attempt(self.stage.undo)
 
     def action_redo(self) -> None:
-        """Take back the last undo."""
         self._attempt(self.stage.redo)
 
     def action_reset(self) -> None:
@@ -478,11 +455,9 @@ class SandboxApp(FullScreenApp):
         self.say("From the start.")
 
     def action_aim(self) -> None:
-        """Aim the body near the pointer, or let go."""
         self._attempt(self.pointer.aim_at)
 
     def action_near(self, what: str) -> None:
-        """Copy or take away the body near the pointer."""
         name = self.pointer.near()
         if name is None:
             self.say("No body is near the pointer.")
@@ -490,7 +465,6 @@ class SandboxApp(FullScreenApp):
         self._attempt(lambda: self.stage.act(what, name))
 
     def action_stop(self) -> None:
-        """Let everything stand still."""
         self._attempt(lambda: self.stage.act("stop") or "Everything stands still.")
 
     def action_zoom(self, factor: float) -> None:
@@ -499,17 +473,14 @@ class SandboxApp(FullScreenApp):
         self.renew()
 
     def action_follow(self) -> None:
-        """Follow the body near the pointer, or stand."""
         self.sight.follow = None if self.sight.follow else self.pointer.near()
         self.say(f"The view follows {self.sight.follow}." if self.sight.follow else "The view stands.")
 
     def action_trace(self) -> None:
-        """Draw the path of the body near the pointer, or none."""
         self.sight.trace = None if self.sight.trace else self.pointer.near()
         self.say(f"The path of {self.sight.trace} is drawn." if self.sight.trace else "No path is drawn.")
 
     def action_ghost(self) -> None:
-        """Show the run before as dots, or not."""
         if self.stage.ghost is None:
             self.say("There is no run before this one: start it again first (r).")
             return
@@ -517,19 +488,16 @@ class SandboxApp(FullScreenApp):
         self.say("The run before is shown as dots." if self.sight.ghost else "The run before is gone.")
 
     def action_film(self) -> None:
-        """Save this run as a film."""
         if self._film is not None or self.desk.save is None:
             self.say("One film is being made already." if self._film else "Nothing can be saved from here.")
             return
         self._film = self.stage.film("gif", _FILM_WIDTH)
 
     def action_speed(self, factor: float) -> None:
-        """Slower or faster."""
         self.world.speed = min(_FASTEST, max(_SLOWEST, self.world.speed * factor))
         self.say(f"Time passes at {speed_in_words(self.world.speed)}.")
 
     def action_notch(self, key: str, way: int) -> None:
-        """A setting, one notch up or down."""
         spec = SETTINGS[key]
         if key in {"left", "right"} and key not in self.world.settings:
             self.say("Nothing here has wheels.")
@@ -545,7 +513,6 @@ class SandboxApp(FullScreenApp):
         self.say(f"{KEYS[key][2]}: {setting(key, value)} ({spec.meaning})")
 
     def action_spawn(self, shape: str) -> None:
-        """A new body at the pointer."""
         self._attempt(lambda: self.pointer.spawn(shape))
 
     def action_take(self) -> None:
@@ -568,17 +535,14 @@ class SandboxApp(FullScreenApp):
         self.renew()
 
     def action_names(self) -> None:
-        """Label every body, or only the large ones."""
         self.sight.names = not self.sight.names
         self.say("Names on." if self.sight.names else "Names only where there is room.")
 
     def action_calm(self) -> None:
-        """Switch between little motion and full motion."""
         self.calm = not self.calm
         self.say("Calm: four pictures a second, no flashes." if self.calm else "All pictures, all flashes.")
 
     def action_panel(self) -> None:
-        """Hide or show the panel beside the picture."""
         self._panel_wanted = not self._panel_wanted
         self.renew(layout=True)
 
@@ -601,11 +565,9 @@ class SandboxApp(FullScreenApp):
         self._attempt(lambda: self.pointer.press(*place, aims=event.button != 1))
 
     def on_mouse_scroll_up(self) -> None:
-        """Closer."""
         self.action_zoom(1.1)
 
     def on_mouse_scroll_down(self) -> None:
-        """Farther."""
         self.action_zoom(1 / 1.1)
 
     def on_mouse_move(self, event: Any) -> None:
@@ -618,7 +580,6 @@ class SandboxApp(FullScreenApp):
             self.pointer.at = place
 
     def on_mouse_up(self) -> None:
-        """Let go."""
         if self.pointer.pressed:
             self.canvas.release_mouse()
             self._attempt(self.pointer.lift)

@@ -41,7 +41,6 @@ class QuestionOverlay(Overlay[float]):
         self._question, self._unit, self._calm = question, unit, calm
 
     def compose(self) -> ComposeResult:
-        """The question and a field for the answer."""
         with VerticalScroll(classes="box", can_focus=False) as box:
             box.border_title = "Before it runs: your guess"
             box.border_subtitle = "Enter: run, compare   Escape: back"
@@ -75,7 +74,6 @@ class ChangeOverlay(Overlay[str]):
         self._page = page
 
     def compose(self) -> ComposeResult:
-        """What there is, and a field."""
         with VerticalScroll(classes="box", can_focus=False) as box:
             box.border_title = "Change a number"
             box.border_subtitle = "Enter: change it   Escape: back"
@@ -84,11 +82,9 @@ class ChangeOverlay(Overlay[str]):
             yield Field(placeholder="name and number, for example: angle 45")
 
     def on_mount(self) -> None:
-        """Focus the field."""
         self.query_one(Input).focus()
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Take the line."""
         self.close(event.value.strip() or None)
 
 
@@ -113,7 +109,7 @@ class Gallery(Overlay[str]):
     BINDINGS: ClassVar[list[Any]] = [Binding("q", "app.quit", show=False)]
 
     def __init__(
-        self, found: Sequence[Scene], played: frozenset[str], current: str, *, colour: bool, calm: bool
+        self, found: Sequence[Scene], played: set[str], current: str, *, colour: bool, calm: bool
     ) -> None:
         super().__init__()
         self._found, self._played, self._current = found, played, current
@@ -123,7 +119,6 @@ class Gallery(Overlay[str]):
         self._picture: tuple[str, Camera, Picture] | None = None
 
     def compose(self) -> ComposeResult:
-        """A list, a picture and what it is about."""
         with Container(classes="box") as box:
             box.border_title = "Scenes"
             self._box = box
@@ -170,21 +165,10 @@ class Gallery(Overlay[str]):
         self._number += 1
         x, y, angle = np.nan_to_num(places[at].astype(float), nan=1e6).T
         none = np.zeros(len(parts))
-        shot = Snapshot(
-            t=0.0,
-            version=0,
-            x=x,
-            y=y,
-            angle=angle,
-            vx=none,
-            vy=none,
-            joints=joints[at].astype(float),
-            hand=None,
-        )
+        shot = Snapshot(0.0, 0, x, y, angle, none, none, joints[at].astype(float), None)
         canvas.show(self._picture[2].draw(shot, Drawn()))
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
-        """Play it."""
         self.close(event.option.id)
 
 

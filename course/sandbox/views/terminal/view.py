@@ -10,15 +10,12 @@ from course.sandbox.scene.loading import Chosen
 from course.sandbox.views.stage import Desk
 
 
-def play(
-    chosen: Chosen | None, desk: Desk | None = None, *, fps: float = 30.0, guess: float | None = None
-) -> bytes:
+def play(chosen: Chosen | None, desk: Desk | None = None, *, guess: float | None = None) -> bytes:
     """Play until the user leaves. The terminal is left as it was, whatever happens.
 
     Args:
         chosen: the scene with the parameters that go into it; None to begin with the gallery.
         desk: what may be asked of the program around it.
-        fps: pictures a second.
         guess: an answer to the scene's question.
 
     Returns:
@@ -32,7 +29,7 @@ def play(
 
     desk = desk or Desk()
     stage = None if chosen is None else desk.stage(chosen, guess=guess)
-    app = SandboxApp(stage, desk, fps=fps)
+    app = SandboxApp(stage, desk)
     app.play()
     return app.stage.recording.encode()
 

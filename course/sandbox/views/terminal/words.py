@@ -268,7 +268,7 @@ class Canvas(Widget):
 
     def __init__(self, *, colour: bool, id: str | None = None) -> None:  # noqa: A002
         super().__init__(id=id)
-        #: Rows sent so far; read by measurements.
+        #: Rows sent so far.
         self.sent = 0
         self._colour = colour
         self._cells: Cells | None = None

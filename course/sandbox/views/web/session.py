@@ -23,7 +23,7 @@ from course.errors import CourseError, UsageError
 from course.sandbox.runs.tape import Filming, Frame, preview
 from course.sandbox.scene.loading import choose, scene_ids, scenes
 from course.sandbox.scene.model import Part
-from course.sandbox.scene.rules import SETTINGS
+from course.sandbox.scene.rules import SEED, settings_of
 from course.sandbox.views.stage import BUDGET, Desk, Stage
 from course.sandbox.world.engine import Floats
 from course.sandbox.world.world import NUMBERS
@@ -253,7 +253,7 @@ class Session:
         clock: real time in s.
 
     Attributes:
-        stages: what is played, each with a number of its own in its frames.
+        stage: what is played.
         gallery: pages open with the gallery.
     """
 
@@ -266,13 +266,12 @@ class Session:
     ) -> None:
         self.desk = desk or Desk()
         self.gallery = stage is None
-        self.stages = [stage or self.desk.stage(scenes()[0].id)]
+        self.stage = stage or self.desk.stage(scenes()[0].id)
         self.stage.world.paused = self.gallery
-        if stage is not None and self.desk.opened is not None:
-            self.desk.opened(stage.chosen.scene.id)
+        if stage is not None:
+            self.desk.opens(stage)
         self.pages: list[Page] = []
         self._clock = clock
-        self._played = {*self.desk.played, *([] if stage is None else [stage.chosen.scene.id])}
         self._holder: Page | None = None
         self._wake = asyncio.Event()
         self._seen: tuple[Any, ...] = ()
@@ -286,19 +285,12 @@ class Session:
         self._wanted: deque[tuple[Page, str]] = deque()
         self._film: tuple[Page, Filming] | None = None
 
-    @property
-    def stage(self) -> Stage:
-        """What is played."""
-        return self.stages[0]
-
     def _put_on(self, stage: Stage) -> None:
         """Play this from now on, in place."""
         self._holder = None
         self.gallery = False
-        self.stages[0] = stage
-        self._played.add(stage.chosen.scene.id)
-        if self.desk.opened is not None:
-            self.desk.opened(stage.chosen.scene.id)
+        self.stage = stage
+        self.desk.opens(stage)
         self._ghost, self._cast_of_ghost, self._version, self._seen = False, -1, stage.world.version, ()
         self._anew, self._sent, self._marked = stage.anew, stage.world.t, len(stage.tape.marks)
         for page in self.pages:
@@ -434,18 +426,12 @@ class Session:
         if stage.at is None:
             stage.run(on=False)
         found = scenes()
-        page.tell(
-            _json(
-                {
-                    "type": "scenes",
-                    "scenes": [
-                        {"id": one.id, "title": one.title, "teaches": one.teaches, "view": one.view}
-                        | {"played": one.id in self._played}
-                        for one in found
-                    ],
-                }
-            )
-        )
+        listed = [
+            {"id": one.id, "title": one.title, "teaches": one.teaches, "view": one.view}
+            | {"played": one.id in self.desk.played}
+            for one in found
+        ]
+        page.tell(_json({"type": "scenes", "scenes": listed}))
         self._wanted.extend((page, one.id) for one in found)
 
     def _draw_card(self) -> None:
@@ -619,7 +605,7 @@ class Session:
 
     def _introduction(self) -> dict[str, Any]:
         stage = self.stage
-        scene, world = stage.chosen.scene, stage.world
+        scene = stage.chosen.scene
         asked = scene.prediction
         return {
             "type": "scene",
@@ -634,11 +620,7 @@ class Session:
             "duration": scene.duration,
             "above": scene.floor is not None or not any(scene.gravity),
             "parameters": scene.parameter,
-            "knobs": [
-                setting
-                for key, setting in SETTINGS.items()
-                if key in world.settings or key not in {"left", "right"}
-            ],
+            "knobs": [setting for setting in settings_of(scene) if setting is not SEED],
             "numbers": [
                 {"name": name, "unit": unit, "low": low, "high": high}
                 for name, (unit, low, high) in NUMBERS.items()

@@ -135,4 +135,4 @@ def load(engine_id: str) -> Adapter:
     Raises:
         ImportError: it is not installed, or a library that it needs is not.
     """
-    return cast("Adapter", import_module(f"course.engines.adapters.{get(engine_id).id}").ADAPTER)
+    return cast("Adapter", import_module(f"course.engines.adapters.{get(engine_id).id}").EngineWorld)

@@ -97,7 +97,7 @@ def test_a_process_killed_from_outside_is_a_crash_and_the_next_question_starts_a
 def test_what_an_engine_prints_does_not_get_between_the_replies(tmp_path, monkeypatch):
     (tmp_path / "loud.py").write_text(
         "import os, sys\nprint('build time: today')\nos.write(1, b'from C\\n')\n"
-        "from course.engines.adapters.pymunk import ADAPTER\n"
+        "from course.engines.adapters.pymunk import EngineWorld\n"
     )
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     command = [
@@ -106,7 +106,7 @@ def test_what_an_engine_prints_does_not_get_between_the_replies(tmp_path, monkey
         "-c",
         "import sys, course.engines.registry as r\n"
         "from importlib import import_module\n"
-        "r.load = lambda name: import_module('loud').ADAPTER\n"
+        "r.load = lambda name: import_module('loud').EngineWorld\n"
         "from course.engines.worker import main\nmain(['pymunk'])",
     ]
     with EngineProcess("pymunk", command) as process:

@@ -30,8 +30,8 @@ class Falling:
             x[:] = np.nan
         return Motion(x, 0 * x, 0 * x)
 
-    def contacts(self):
-        return 0, 0.0
+    def overlaps(self):
+        return []
 
 
 class Engine:

@@ -411,7 +411,6 @@ class Scenario:
         digits: decimals worth showing.
         run: measures once, given how to build a scene, the step (s) and whether it should be quick. It may
             raise EngineDivergedError, and NotApplicableError where an engine has no word for the scene.
-        planar: an engine in the plane can do it.
         converges: a curve of its error against the step makes sense, because only the integrator matters.
         better: whether the value nearer the truth is better, or the larger one.
     """
@@ -425,7 +424,6 @@ class Scenario:
     source: str
     digits: int
     run: Callable[[Build, float, bool], Outcome]
-    planar: bool = True
     converges: bool = False
     better: Literal["near", "large"] = "near"
 
@@ -551,7 +549,6 @@ SCENARIOS: dict[str, Scenario] = {
             "Coulomb's cone has no preferred direction",
             3,
             diagonal,
-            planar=False,
         ),
         Scenario(
             "stack",
@@ -606,8 +603,5 @@ SCENARIOS: dict[str, Scenario] = {
 def get(scenario_id: str) -> Scenario:
     if scenario_id in SCENARIOS:
         return SCENARIOS[scenario_id]
-    raise NotFoundError(
-        f"There is no scenario {scenario_id!r}.",
-        help=f"The scenarios are {', '.join(SCENARIOS)}.",
-        code="scenario_not_found",
-    )
+    problem = f"There is no scenario {scenario_id!r}."
+    raise NotFoundError(problem, help=f"The scenarios are {', '.join(SCENARIOS)}.", code="scenario_not_found")

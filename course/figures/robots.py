@@ -162,10 +162,8 @@ def planned() -> Figure:
     for k, pose in enumerate(poses):
         elbow, hand = _ARM.elbow(pose), _ARM.hand(pose)
         strong = k in (0, len(poses) - 1)
-        color = PALETTE["black"] if strong else "#A9A9A9"
-        left.plot(
-            [0, elbow[0], hand[0]], [0, elbow[1], hand[1]], color=color, linewidth=1.6 if strong else 0.9
-        )
+        color, width = (PALETTE["black"], 1.6) if strong else ("#A9A9A9", 0.9)
+        left.plot([0, elbow[0], hand[0]], [0, elbow[1], hand[1]], color=color, linewidth=width)
         left.plot(*hand, marker="o", color=PALETTE["vermillion"])
     left.plot([START[0], END[0]], [START[1], END[1]], color=PALETTE["vermillion"], linewidth=1.0)
     left.plot(0, 0, marker="s", color=PALETTE["black"], markersize=7)
@@ -248,13 +246,8 @@ def wall() -> Figure:
         pose = np.array([-bend / 2, bend])
         back = 2.0 - float(_ARM.hand(pose)[0])
         elbow, hand = _ARM.elbow(pose), _ARM.hand(pose)
-        left.plot(
-            np.array([0, elbow[0], hand[0]]) + back,
-            np.array([0, elbow[1], hand[1]]) + lift,
-            color=PALETTE[color],
-            linestyle=line,
-            marker="o",
-        )
+        x, y = np.array([0, elbow[0], hand[0]]) + back, np.array([0, elbow[1], hand[1]]) + lift
+        left.plot(x, y, color=PALETTE[color], linestyle=line, marker="o")
         left.plot(back, lift, color=PALETTE["black"], marker="s", markersize=7)
         left.text(back, lift + 0.15, f"bent by {degrees}°", fontsize=8.5)
     left.axvspan(2.0, 2.2, color="#C9C9C9")
@@ -317,18 +310,17 @@ def stop(
     return distance
 
 
-def bounce(h: float, *, speed: float = 3.0, tilt: float = 0.0, stiffness: float = 1e5) -> float:
-    """Height that a foot of 1 kg rebounds to, m, by semi-implicit Euler; its contact is a stiff spring.
+def bounce(h: float, *, speed: float = 3.0, tilt: float = 0.0) -> float:
+    """Height that a foot of 1 kg rebounds to, m, by semi-implicit Euler; its contact is a spring of 1e5 N/m.
 
     Args:
         h: step, s.
         speed: at which it lands, m/s.
         tilt: of the floor, rad; turns the rebound by twice as much.
-        stiffness: of the contact, N/m.
     """
     depth, velocity = 0.0, -speed
     while depth < 0.0 or velocity < 0.0:
-        velocity -= h * (_GRAVITY + stiffness * min(depth, 0.0))
+        velocity -= h * (_GRAVITY + 1e5 * min(depth, 0.0))
         depth += h * velocity
     return (velocity * math.cos(2.0 * tilt)) ** 2 / (2.0 * _GRAVITY)
 

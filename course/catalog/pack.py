@@ -103,16 +103,11 @@ def pack_bytes(course_id: str, course_version: str, solutions: Mapping[str, Mapp
     if not entries or len(entries) > MAX_FILES or sum(map(len, entries.values())) > MAX_TOTAL_BYTES:
         problem = f"A pack holds 1 to {MAX_FILES} files and at most {MAX_TOTAL_BYTES} bytes."
         raise UsageError(problem, help="Name at least one exercise, or make several packs.")
-    manifest = Manifest(
-        format=FORMAT,
-        format_version=FORMAT_VERSION,
-        course_id=course_id,
-        course_version=course_version,
-        files=tuple(
-            PackedFile(path, len(entries[path]), hashlib.sha256(entries[path]).hexdigest())
-            for path in sorted(entries)
-        ),
+    files = tuple(
+        PackedFile(path, len(entries[path]), hashlib.sha256(entries[path]).hexdigest())
+        for path in sorted(entries)
     )
+    manifest = Manifest(FORMAT, FORMAT_VERSION, course_id, course_version, files)
     head = msgspec.json.format(msgspec.json.encode(manifest), indent=1) + b"\n"
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as archive:

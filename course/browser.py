@@ -4,8 +4,6 @@ Over ssh, in a container or in a terminal without a display nothing is tried: th
 picture instead, and says how to get there.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import socket

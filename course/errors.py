@@ -13,8 +13,6 @@ An error is raised where the fact is known and rendered once, in ``course.cli``.
 the case, ``help`` what to do about it; neither needs the other to be understood.
 """
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

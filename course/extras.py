@@ -5,8 +5,6 @@ is installed. A command that installs something lists the requirements themselve
 metadata: the course is on no package index.
 """
 
-from __future__ import annotations
-
 import importlib
 import importlib.metadata
 import importlib.util

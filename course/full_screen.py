@@ -1,7 +1,5 @@
 """Shared by the course's full-screen programs: start, leave, show a message."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import os

@@ -4,8 +4,6 @@ An id is what people type and what files are named after: lower-case words joine
 where it enters; past that point the type says that it is safe in a path, a URL and a shell word.
 """
 
-from __future__ import annotations
-
 import re
 from typing import Self
 

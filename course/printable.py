@@ -5,8 +5,6 @@ on one line goes through ``one_line``, so that a submission cannot add lines to 
 sentence through ``quoted``, so that it adds no sentence either.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shlex

@@ -191,8 +191,7 @@ class Prediction:
 
 
 #: Closed on purpose: an unknown label is a typing error, not a new kind.
-CalloutKind = str
-CALLOUTS: tuple[CalloutKind, ...] = ("myth", "fact", "analogy", "answer", "remember", "note")
+CALLOUTS = ("myth", "fact", "analogy", "answer", "remember", "note")
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,7 +199,7 @@ class Callout:
     """A passage with a role of its own: one of CALLOUTS."""
 
     line: int
-    kind: CalloutKind
+    kind: str
     blocks: tuple[Block, ...]
 
 

@@ -4,8 +4,6 @@ Listing ids costs one small file or one folder listing, so that shell completion
 is read once and kept. Facts that a type cannot express are checked in ``course.catalog.load``.
 """
 
-from __future__ import annotations
-
 import math
 import re
 import sys
@@ -55,9 +53,8 @@ def check_syllabus(document: Document[Syllabus]) -> None:
     for index, lesson_id in enumerate(syllabus.lessons):
         document.check_id(("lessons", index), lesson_id, LessonId)
         if lesson_id in syllabus.lessons[:index]:
-            document.fail(
-                ("lessons", index), f"lesson {lesson_id} is listed twice.", fix="Remove one of the two lines."
-            )
+            problem = f"lesson {lesson_id} is listed twice."
+            document.fail(("lessons", index), problem, fix="Remove one of the two lines.")
     for pair in syllabus.split.items():
         for name in set(pair) - set(syllabus.lessons):
             document.fail(("split",), f"{name} is not in `lessons`.", fix="Write an id that is listed there.")
@@ -72,11 +69,8 @@ def check_lesson(document: Document[Lesson]) -> None:
     if lesson.minutes <= 0:
         document.fail(("minutes",), "`minutes` must be more than 0.", fix="Say how long reading it takes.")
     if not lesson.objectives:
-        document.fail(
-            ("objectives",),
-            "`objectives` is empty.",
-            fix="Say what a reader can do afterwards, one line each.",
-        )
+        problem = "`objectives` is empty."
+        document.fail(("objectives",), problem, fix="Say what a reader can do afterwards, one line each.")
     for index, objective in enumerate(lesson.objectives):
         document.check_words(("objectives", index), objective)
     for key, ids in (("before", lesson.before), ("exercises", lesson.exercises)):
@@ -92,11 +86,8 @@ def check_exercise(document: Document[Exercise]) -> None:
     folder = document.path.parent.name
     document.check_id(("id",), exercise.id, ExerciseId)
     if exercise.id != folder:
-        document.fail(
-            ("id",),
-            f"`id` is {exercise.id}, and the folder is called {folder}.",
-            fix=f'Write `id = "{folder}"`, or rename the folder.',
-        )
+        problem = f"`id` is {exercise.id}, and the folder is called {folder}."
+        document.fail(("id",), problem, fix=f'Write `id = "{folder}"`, or rename the folder.')
     document.check_words(("title",), exercise.title)
     document.check_words(("summary",), exercise.summary)
     document.check_id(("lesson",), exercise.lesson, LessonId)
@@ -105,30 +96,18 @@ def check_exercise(document: Document[Exercise]) -> None:
     if exercise.order < 1:
         document.fail(("order",), "`order` must be 1 or more.", fix="Number the exercises from 1.")
     if not 0 < exercise.pass_mark <= 1:
-        document.fail(
-            ("pass_mark",),
-            "`pass_mark` must be a share of the points, above 0 and at most 1.",
-            fix="Write 0.70 for 70 %.",
-        )
+        problem = "`pass_mark` must be a share of the points, above 0 and at most 1."
+        document.fail(("pass_mark",), problem, fix="Write 0.70 for 70 %.")
     if not 1 <= exercise.time <= LONGEST:
-        document.fail(
-            ("time",),
-            f"`time` must be from 1 to {LONGEST:g}.",
-            fix="It says how many times as long as elsewhere checks may take. Leave it out for 1.",
-        )
+        fix = "It says how many times as long as elsewhere checks may take. Leave it out for 1."
+        document.fail(("time",), f"`time` must be from 1 to {LONGEST:g}.", fix=fix)
     for index, name in enumerate(exercise.imports):
         if not name.isidentifier():
-            document.fail(
-                ("imports", index),
-                f"{name!r} is not a top-level package.",
-                fix='Name packages alone: "numpy".',
-            )
+            problem = f"{name!r} is not a top-level package."
+            document.fail(("imports", index), problem, fix='Name packages alone: "numpy".')
         if name in sys.stdlib_module_names:
-            document.fail(
-                ("imports", index),
-                f"{name!r} is part of Python, all of which may be imported anyway.",
-                fix="Take it out.",
-            )
+            problem = f"{name!r} is part of Python, all of which may be imported anyway."
+            document.fail(("imports", index), problem, fix="Take it out.")
     _check_tasks(document)
     _check_hints(document)
 
@@ -139,26 +118,17 @@ def _check_kind(document: Document[Exercise]) -> None:
     lies_there = document.path.parent.parent.name == WARM_UPS
     if exercise.is_warm_up is not lies_there:
         where, kind = ("lies", "exercise") if lies_there else ("does not lie", "warm-up")
-        document.fail(
-            ("kind",),
-            f"`kind` is {kind}, and the folder {where} in {WARM_UPS}.",
-            fix=f'Write `kind = "warm-up"` for what lies in {WARM_UPS}, and for nothing else.',
-        )
+        fix = f'Write `kind = "warm-up"` for what lies in {WARM_UPS}, and for nothing else.'
+        document.fail(("kind",), f"`kind` is {kind}, and the folder {where} in {WARM_UPS}.", fix=fix)
     if exercise.is_warm_up and not 0 < exercise.minutes <= MOST_MINUTES:
-        document.fail(
-            ("minutes",),
-            f"`minutes` of a warm-up lie between 1 and {MOST_MINUTES}.",
-            fix="Say how long it takes; what takes longer is an exercise.",
-        )
+        problem = f"`minutes` of a warm-up lie between 1 and {MOST_MINUTES}."
+        document.fail(("minutes",), problem, fix="Say how long it takes; what takes longer is an exercise.")
 
 
 def _check_module(document: Document[Exercise], module: str) -> None:
     if not _MODULE.fullmatch(module):
-        document.fail(
-            ("module",),
-            f"`module` is {module!r}, which is not a plain Python file name.",
-            fix="Use lower-case letters, digits and underscores, then .py: sim_to_real.py",
-        )
+        fix = "Use lower-case letters, digits and underscores, then .py: sim_to_real.py"
+        document.fail(("module",), f"`module` is {module!r}, which is not a plain Python file name.", fix=fix)
     if module in _TAKEN_MODULES:
         document.fail(("module",), f"{module} already has another role here.", fix="Choose another name.")
 
@@ -169,22 +139,16 @@ def _check_tasks(document: Document[Exercise]) -> None:
         document.fail(("task",), "there is no task.", fix="Add a [[task]] for each function to write.")
     for index, task in enumerate(exercise.task):
         if not task.id.isidentifier():
-            document.fail(
-                ("task", index, "id"),
-                f"{task.id!r} is not a Python name.",
-                fix="The id of a task is the name of the function the student writes.",
-            )
+            fix = "The id of a task is the name of the function the student writes."
+            document.fail(("task", index, "id"), f"{task.id!r} is not a Python name.", fix=fix)
         if any(other.id == task.id for other in exercise.task[:index]):
-            document.fail(
-                ("task", index, "id"), f"task {task.id} is listed twice.", fix="Remove or rename one of them."
-            )
+            problem = f"task {task.id} is listed twice."
+            document.fail(("task", index, "id"), problem, fix="Remove or rename one of them.")
         document.check_words(("task", index, "title"), task.title)
         if not (math.isfinite(task.points) and task.points > 0):
-            document.fail(
-                ("task", index, "points"),
-                f"`points` of {task.id} must be a number above 0.",
-                fix="Give the points of its public and hidden checks together.",
-            )
+            problem = f"`points` of {task.id} must be a number above 0."
+            fix = "Give the points of its public and hidden checks together."
+            document.fail(("task", index, "points"), problem, fix=fix)
     _check_hidden(document)
 
 
@@ -193,11 +157,8 @@ def _check_hidden(document: Document[Exercise]) -> None:
     if exercise.hidden_checks < 0:
         document.fail(("hidden_checks",), "`hidden_checks` is negative.", fix="Count the hidden checks.")
     if not 0 <= exercise.hidden_points <= exercise.max_points:
-        document.fail(
-            ("hidden_points",),
-            "`hidden_points` must lie between 0 and the sum of the tasks' points.",
-            fix="Add up the points of the hidden checks.",
-        )
+        problem = "`hidden_points` must lie between 0 and the sum of the tasks' points."
+        document.fail(("hidden_points",), problem, fix="Add up the points of the hidden checks.")
 
 
 def _check_hints(document: Document[Exercise]) -> None:
@@ -231,11 +192,8 @@ def check_rubric(document: Document[Rubric]) -> None:
     if not rubric.points:
         document.fail(("points",), "there is nothing to grade an answer by.", fix="Add a sentence or more.")
     if len(rubric.good_answer.split()) < max(1, rubric.least_words):
-        document.fail(
-            ("good_answer",),
-            f"the good answer has fewer than {max(1, rubric.least_words)} words.",
-            fix="Make it longer, or `least_words` smaller.",
-        )
+        problem = f"the good answer has fewer than {max(1, rubric.least_words)} words."
+        document.fail(("good_answer",), problem, fix="Make it longer, or `least_words` smaller.")
 
 
 #: A number of an exercise or a lesson has fewer digits than this.
@@ -326,9 +284,8 @@ class Catalog:
     @cached_property
     def _exercise_ids(self) -> tuple[str, ...]:
         if not self.content.exercises.is_dir():
-            raise ContentError(
-                self.content.exercises, None, "the folder is missing.", help="Install the course again."
-            )
+            problem = "the folder is missing."
+            raise ContentError(self.content.exercises, None, problem, help="Install the course again.")
         return _declared_in(self.content.exercises)
 
     def warm_up_ids(self) -> tuple[str, ...]:

@@ -5,8 +5,6 @@ None for them. ``COURSE_CONTENT=DIR`` selects another course altogether, laid ou
 ``DIR/{exercises,lessons,quiz,scenes,solutions,graders}``.
 """
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import json
@@ -120,11 +118,9 @@ def chosen(folder: Path) -> Content:
     with contextlib.suppress(RuntimeError):  # a home of nobody, a link to itself
         folder = folder.expanduser().resolve()
     if not (folder / "exercises").is_dir() or not (folder / "lessons").is_dir():
-        raise UsageError(
-            f"{ENVIRONMENT_VARIABLE} is {folder}, which holds no course.",
-            help="Name a folder with exercises/ and lessons/ in it, or unset the variable.",
-            code="no_such_content",
-        )
+        problem = f"{ENVIRONMENT_VARIABLE} is {folder}, which holds no course."
+        help_ = "Name a folder with exercises/ and lessons/ in it, or unset the variable."
+        raise UsageError(problem, help=help_, code="no_such_content")
     return Content(
         root=folder,
         exercises=folder / "exercises",

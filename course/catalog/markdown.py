@@ -106,9 +106,8 @@ class _Builder:
                 out.append(block)
         for block in out:
             if isinstance(block, b.Diagram) and not block.drawing:
-                raise self._wrong(
-                    block.line, "the diagram has no drawing", "Put a ```drawing fence right after it."
-                )
+                problem = "the diagram has no drawing"
+                raise self._wrong(block.line, problem, "Put a ```drawing fence right after it.")
         return tuple(out)
 
     def _block(self, node: SyntaxTreeNode, before: b.Block | None) -> b.Block | _Completed:  # noqa: PLR0911 - one return per kind
@@ -154,16 +153,14 @@ class _Builder:
         alt = pieces[0].content.strip()
         caption = self._inlines(pieces[1:], line)
         if not target.startswith("figure:"):
-            raise self._wrong(
-                line, f"the picture {target} is not a figure", "Name a figure: ![what is seen](figure:id)."
-            )
+            problem = f"the picture {target} is not a figure"
+            raise self._wrong(line, problem, "Name a figure: ![what is seen](figure:id).")
         if len(alt.split()) < 5:
             problem = "the figure has no alternative text of five words or more"
             raise self._wrong(line, problem, "Say in [ ] what the picture shows.")
         if not b.plain_text(caption).strip():
-            raise self._wrong(
-                line, "the figure has no caption", "State the finding on the line after the picture."
-            )
+            problem = "the figure has no caption"
+            raise self._wrong(line, problem, "State the finding on the line after the picture.")
         return b.Figure(line, target.removeprefix("figure:"), alt, _stripped(caption))
 
     def _list(self, node: SyntaxTreeNode, line: int) -> b.ListBlock | b.Sources:
@@ -179,9 +176,8 @@ class _Builder:
             if len(item) != 1 or not isinstance(item[0], b.Paragraph):
                 raise self._wrong(line, "a source is one paragraph", "Keep each source in one list item.")
             if not YEAR.search(b.plain_text(item[0].inlines)):
-                raise self._wrong(
-                    item[0].line, "a source has no date", "Give the year it was published or read."
-                )
+                problem = "a source has no date"
+                raise self._wrong(item[0].line, problem, "Give the year it was published or read.")
             lines.append(item[0].inlines)
         return b.Sources(line, tuple(lines))
 
@@ -202,9 +198,8 @@ class _Builder:
             case ["output"] if isinstance(before, b.CodeCell) and before.output is None and not before.hidden:
                 return _Completed(b.CodeCell(before.line, before.source, text, output_line=line))
             case ["output"]:
-                raise self._wrong(
-                    line, "output that follows no shown code cell", "Put it right after a ```python fence."
-                )
+                problem = "output that follows no shown code cell"
+                raise self._wrong(line, problem, "Put it right after a ```python fence.")
             case ["text"]:
                 return b.Listing(line, text)
             case ["console"]:
@@ -214,23 +209,18 @@ class _Builder:
             case ["drawing"] if isinstance(before, b.Diagram) and not before.drawing:
                 return _Completed(b.Diagram(before.line, before.mermaid, text, before.description))
             case ["drawing"]:
-                raise self._wrong(
-                    line, "a drawing that follows no diagram", "Put it right after a ```mermaid fence."
-                )
+                problem = "a drawing that follows no diagram"
+                raise self._wrong(line, problem, "Put it right after a ```mermaid fence.")
             case _:
-                raise self._wrong(
-                    line,
-                    f"a fence marked {node.info.strip() or 'nothing'!r}",
-                    "Mark it python, python hidden, output, text, console, mermaid or drawing.",
-                )
+                fix = "Mark it python, python hidden, output, text, console, mermaid or drawing."
+                raise self._wrong(line, f"a fence marked {node.info.strip() or 'nothing'!r}", fix)
 
     def _commands(self, text: str, line: int) -> b.CommandList:
         commands = []
         for offset, row in enumerate(text.splitlines(), start=1):
             if not row.startswith("$ "):
-                raise self._wrong(
-                    line + offset, "a line that is not a command", "Start each line with $ and a space."
-                )
+                problem = "a line that is not a command"
+                raise self._wrong(line + offset, problem, "Start each line with $ and a space.")
             command, _, note = row[2:].partition("  # ")
             commands.append(b.Command(command.strip(), note.strip()))
         return b.CommandList(line, tuple(commands))
@@ -261,9 +251,8 @@ class _Builder:
             return b.Prediction(line, rest)
         if kind not in b.CALLOUTS:
             labels = ", ".join(name.capitalize() for name in (*b.CALLOUTS, "predict"))
-            raise self._wrong(
-                line, "a block quote without a known label", f"Begin it with one in bold: {labels}."
-            )
+            problem = "a block quote without a known label"
+            raise self._wrong(line, problem, f"Begin it with one in bold: {labels}.")
         return b.Callout(line, kind, rest)
 
     # ------------------------------------------------------------ inline
@@ -306,9 +295,8 @@ class _Builder:
             case "image":
                 raise self._wrong(line, "a figure inside a paragraph", "Give it a paragraph of its own.")
             case "html_inline":
-                raise self._wrong(
-                    line, f"HTML has no form in a terminal: {piece.content}", "Say it in Markdown."
-                )
+                problem = f"HTML has no form in a terminal: {piece.content}"
+                raise self._wrong(line, problem, "Say it in Markdown.")
             case other:
                 raise self._wrong(line, f"a line has no {other.replace('_', ' ')}")
 
@@ -318,11 +306,8 @@ class _Builder:
         if target.startswith("="):
             return b.Value(b.plain_text(children), target[1:].strip(), line)
         if not _TARGET.fullmatch(target):
-            raise self._wrong(
-                line,
-                f"a link to {target!r}",
-                "Link to https://…, lesson:ID, exercise:ID, #heading or =EXPRESSION.",
-            )
+            fix = "Link to https://…, lesson:ID, exercise:ID, #heading or =EXPRESSION."
+            raise self._wrong(line, f"a link to {target!r}", fix)
         return b.Link(target, children, line)
 
     def _formula(self, convert: Callable[[str], str], tex: str, line: int, form: str) -> str:

@@ -399,36 +399,28 @@ _CHARACTERS = {
     "'": Atom("letter", "′", "prime"),
 }
 ACCENTS = {"dot": "\u0307", "ddot": "\u0308", "hat": "\u0302", "bar": "\u0304", "vec": "\u20d7"}
+#: What opens a bracket: what closes it, and both as they are shown.
 _PAIRS = {
-    "(": ")",
-    "[": "]",
-    r"\{": r"\}",
-    r"\lvert": r"\rvert",
-    r"\lVert": r"\rVert",
-    "|": "|",
-    r"\|": r"\|",
+    "(": (")", "()"),
+    "[": ("]", "[]"),
+    r"\{": (r"\}", "{}"),
+    r"\lvert": (r"\rvert", "||"),
+    r"\lVert": (r"\rVert", "‖‖"),
+    "|": ("|", "||"),
+    r"\|": (r"\|", "‖‖"),
 }
-_SHOWN = {
-    "(": "()", "[": "[]", r"\{": "{}", r"\lvert": "||", "|": "||", r"\lVert": "‖‖", r"\|": "‖‖",
-}  # fmt: skip
 _TEXT_COMMANDS = {"text", "mathrm", "operatorname"}
 _TOKEN = re.compile(r"\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|\s+|.", re.DOTALL)
 
 
 def read_math(tex: str) -> Node:
     """Read one formula."""
-    tokens = [token for token in _TOKEN.findall(tex.strip()) if not token.isspace()]
-    if any(token in (r"\text", r"\mathrm", r"\operatorname") for token in tokens):
-        tokens = _keep_spaces_in_words(tex.strip())
-    reader = _Reader(tokens)
-    row = reader.row(frozenset())
-    if len(row.items) == 1:
-        return row.items[0]
-    return row
+    row = _Reader(_tokens(tex.strip())).row(frozenset())
+    return row.items[0] if len(row.items) == 1 else row
 
 
-def _keep_spaces_in_words(tex: str) -> list[str]:
-    """Tokens of a formula with ``\\text{…}``: white space counts inside those braces and nowhere else."""
+def _tokens(tex: str) -> list[str]:
+    """White space counts inside the braces of ``\\text{…}`` and nowhere else."""
     tokens: list[str] = []
     in_words = False
     for token in _TOKEN.findall(tex):
@@ -521,13 +513,12 @@ class _Reader:
     def _fence(self, left: str, *, sized: bool) -> Fence:
         if left not in _PAIRS:
             raise MathError(f"{left} does not open a bracket")
+        right, shown = _PAIRS[left]
+        body = self.row(frozenset({r"\right" if sized else right}))
         if sized:
-            body = self.row(frozenset({r"\right"}))
             self._expect(r"\right")
-        else:
-            body = self.row(frozenset({_PAIRS[left]}))
-        self._expect(_PAIRS[left])
-        return Fence(_SHOWN[left][0], _SHOWN[left][1], body)
+        self._expect(right)
+        return Fence(shown[0], shown[1], body)
 
     def _command(self, name: str) -> Node:  # noqa: PLR0911 - one return per kind of command
         if name in _GREEK:

@@ -4,8 +4,6 @@ These are the shapes of the files under ``exercises/`` and ``course/lessons/``; 
 the files into them and says which file and line is wrong when one does not fit.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
@@ -13,7 +11,7 @@ from typing import Literal
 
 import msgspec
 
-from course.ids import WARM_UPS, ExerciseId, LessonId
+from course.ids import WARM_UPS
 
 #: Files that declare a newer format are refused: an older program must not half-understand them.
 FORMAT_VERSION = 1
@@ -137,14 +135,6 @@ class Exercise(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     after: str = ""
     slow: dict[str, float] = {}
     folder: str = ""
-
-    @property
-    def exercise_id(self) -> ExerciseId:
-        return ExerciseId(self.id)
-
-    @property
-    def lesson_id(self) -> LessonId:
-        return LessonId(self.lesson)
 
     def __hash__(self) -> int:
         return hash((self.id, self.folder))  # ``slow`` is a dict

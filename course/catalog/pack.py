@@ -9,8 +9,6 @@ The same content gives the same bytes: entries are stored, sorted and dated alik
 so nothing in it is believed before sizes, names and sums are checked, and nothing is ever unpacked to disk.
 """
 
-from __future__ import annotations
-
 import errno
 import hashlib
 import io
@@ -103,20 +101,13 @@ def pack_bytes(course_id: str, course_version: str, solutions: Mapping[str, Mapp
     for path, content in entries.items():
         _check_entry(path, content)
     if not entries or len(entries) > MAX_FILES or sum(map(len, entries.values())) > MAX_TOTAL_BYTES:
-        raise UsageError(
-            f"A pack holds 1 to {MAX_FILES} files and at most {MAX_TOTAL_BYTES} bytes.",
-            help="Name at least one exercise, or make several packs.",
-        )
-    manifest = Manifest(
-        format=FORMAT,
-        format_version=FORMAT_VERSION,
-        course_id=course_id,
-        course_version=course_version,
-        files=tuple(
-            PackedFile(path, len(entries[path]), hashlib.sha256(entries[path]).hexdigest())
-            for path in sorted(entries)
-        ),
+        problem = f"A pack holds 1 to {MAX_FILES} files and at most {MAX_TOTAL_BYTES} bytes."
+        raise UsageError(problem, help="Name at least one exercise, or make several packs.")
+    files = tuple(
+        PackedFile(path, len(entries[path]), hashlib.sha256(entries[path]).hexdigest())
+        for path in sorted(entries)
     )
+    manifest = Manifest(FORMAT, FORMAT_VERSION, course_id, course_version, files)
     head = msgspec.json.format(msgspec.json.encode(manifest), indent=1) + b"\n"
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_STORED) as archive:
@@ -141,9 +132,8 @@ def read_pack(path: Path) -> Pack:
     except OSError as error:
         if error.errno == errno.EFBIG:
             raise _damaged(path, "it is larger than any pack") from None
-        raise NotFoundError(
-            f"{path} cannot be read: {error.strerror}.", help="Name a file made by `course author pack`."
-        ) from None
+        problem = f"{path} cannot be read: {error.strerror}."
+        raise NotFoundError(problem, help="Name a file made by `course author pack`.") from None
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             return _read_archive(path, archive)

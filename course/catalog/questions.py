@@ -6,8 +6,6 @@ are finite, so every case a student can ever meet can be gone through beforehand
 ``docs/quiz-format.md`` describes the files for authors.
 """
 
-from __future__ import annotations
-
 import ast
 import itertools
 import math
@@ -217,11 +215,8 @@ def read_questions(folder: Path) -> tuple[Document[Question], ...]:
     )
     for one, other in itertools.pairwise(documents):
         if one.value.order == other.value.order:
-            other.fail(
-                ("order",),
-                f"question {one.value.id} has the order {one.value.order} too.",
-                fix="Give each question a place of its own.",
-            )
+            problem = f"question {one.value.id} has the order {one.value.order} too."
+            other.fail(("order",), problem, fix="Give each question a place of its own.")
     return tuple(documents)
 
 
@@ -249,18 +244,13 @@ def _check_variant(document: Document[Question], where: Keys, variant: Variant) 
     document.check_words((*where, "prompt"), variant.prompt)
     document.check_words((*where, "source"), variant.source)
     if len(variant.option) != OPTIONS:
-        document.fail(
-            where,
-            f"variant {variant.id} has {counted(len(variant.option), 'option')}.",
-            fix=f"Give it {OPTIONS}: one that is right and {OPTIONS - 1} that are not.",
-        )
+        fix = f"Give it {OPTIONS}: one that is right and {OPTIONS - 1} that are not."
+        document.fail(where, f"variant {variant.id} has {counted(len(variant.option), 'option')}.", fix=fix)
     right = [index for index, option in enumerate(variant.option) if option.right]
     if len(right) != 1:
-        document.fail(
-            (*where, "option", right[1]) if right else where,
-            f"variant {variant.id} has {len(right)} right options.",
-            fix="Mark exactly one with `right = true`.",
-        )
+        problem = f"variant {variant.id} has {len(right)} right options."
+        fix = "Mark exactly one with `right = true`."
+        document.fail((*where, "option", right[1]) if right else where, problem, fix=fix)
     _check_distinct(document, (*where, "option"), [option.id for option in variant.option], "option")
     for index, option in enumerate(variant.option):
         _check_option(document, (*where, "option", index), option)
@@ -271,25 +261,19 @@ def _check_variant(document: Document[Question], where: Keys, variant: Variant) 
 def _check_option(document: Document[Question], where: Keys, option: Option) -> None:
     _check_slug(document, (*where, "id"), option.id, "option")
     if len(option.id) == 1:
-        document.fail(
-            (*where, "id"),
-            f"`id` is the letter {option.id}.",
-            fix="Use a word: letters name places on screen.",
-        )
+        problem = f"`id` is the letter {option.id}."
+        document.fail((*where, "id"), problem, fix="Use a word: letters name places on screen.")
     document.check_words((*where, "text"), option.text)
     document.check_words((*where, "explanation"), option.explanation)
     known = document.value.misconceptions
     if option.right and option.misconception:
-        document.fail(
-            (*where, "misconception"), "the right option names a misconception.", fix="Remove the line."
-        )
+        problem = "the right option names a misconception."
+        document.fail((*where, "misconception"), problem, fix="Remove the line.")
     if not option.right and option.misconception not in known:
         said = f"{option.misconception!r} is not among them" if option.misconception else "it names none"
-        document.fail(
-            (*where, "misconception") if option.misconception else where,
-            f"a wrong option names one of the [misconceptions], and {said}.",
-            fix=f"Known: {', '.join(known) or 'none; write the table first'}.",
-        )
+        problem = f"a wrong option names one of the [misconceptions], and {said}."
+        fix = f"Known: {', '.join(known) or 'none; write the table first'}."
+        document.fail((*where, "misconception") if option.misconception else where, problem, fix=fix)
 
 
 def _check_numbers(document: Document[Question], where: Keys, variant: Variant) -> None:
@@ -297,32 +281,22 @@ def _check_numbers(document: Document[Question], where: Keys, variant: Variant) 
     for index, number in enumerate(variant.number):
         at = (*where, "number", index)
         if not number.name.isidentifier() or number.name in known:
-            document.fail(
-                (*at, "name"),
-                f"{number.name!r} is not a new, valid name.",
-                fix="Use letters, each name once: t_end",
-            )
+            problem = f"{number.name!r} is not a new, valid name."
+            document.fail((*at, "name"), problem, fix="Use letters, each name once: t_end")
         if bool(number.values) == bool(number.formula):
-            document.fail(
-                at, f"number {number.name} needs either `values` or `formula`.", fix="Keep one of the two."
-            )
+            problem = f"number {number.name} needs either `values` or `formula`."
+            document.fail(at, problem, fix="Keep one of the two.")
         if len(set(number.values)) != len(number.values) or not all(map(math.isfinite, number.values)):
-            document.fail(
-                (*at, "values"),
-                "`values` repeats one or holds nan or inf.",
-                fix="List finite numbers, each once.",
-            )
+            problem = "`values` repeats one or holds nan or inf."
+            document.fail((*at, "values"), problem, fix="List finite numbers, each once.")
         if number.digits not in _DIGITS:
             document.fail((*at, "digits"), "`digits` must lie between 1 and 6.", fix="Write: digits = 3")
         if number.formula:
             _check_formula(document, (*at, "formula"), number.formula, known)
         known.add(number.name)
     if variant.cases > MAX_CASES:
-        document.fail(
-            where,
-            f"variant {variant.id} has {variant.cases} cases.",
-            fix=f"List fewer values: {MAX_CASES} at most.",
-        )
+        problem = f"variant {variant.id} has {variant.cases} cases."
+        document.fail(where, problem, fix=f"List fewer values: {MAX_CASES} at most.")
 
 
 def _check_formula(document: Document[Question], where: Keys, text: str, known: set[str]) -> None:
@@ -332,11 +306,8 @@ def _check_formula(document: Document[Question], where: Keys, text: str, known: 
         document.fail(where, f"`formula` cannot be read: {error}.", fix="Write for example: 2 * sqrt(m / k)")
     unknown = sorted(formula.names - known)
     if unknown:
-        document.fail(
-            where,
-            f"`formula` uses {unknown[0]}, which is not given above it.",
-            fix=f"Given above: {', '.join(sorted(known)) or 'nothing'}.",
-        )
+        problem = f"`formula` uses {unknown[0]}, which is not given above it."
+        document.fail(where, problem, fix=f"Given above: {', '.join(sorted(known)) or 'nothing'}.")
 
 
 def _check_placeholders(document: Document[Question], where: Keys, variant: Variant) -> None:
@@ -348,11 +319,8 @@ def _check_placeholders(document: Document[Question], where: Keys, variant: Vari
     for at, text in texts:
         names = placeholders(text)
         if (stray := next((name for name in names if name not in known), None)) is not None:
-            document.fail(
-                at,
-                f"{{{stray}}} names no number.",
-                fix=f"Numbers here: {', '.join(sorted(known)) or 'none'}.",
-            )
+            problem = f"{{{stray}}} names no number."
+            document.fail(at, problem, fix=f"Numbers here: {', '.join(sorted(known)) or 'none'}.")
         if re.search(r"[{}]", _PLACEHOLDER.sub("", text)):
             document.fail(at, "a brace stands alone.", fix="Braces hold the name of a number: {h}.")
         used.update(names)
@@ -361,20 +329,14 @@ def _check_placeholders(document: Document[Question], where: Keys, variant: Vari
             used |= Formula(number.formula).names
     for index, number in enumerate(variant.number):
         if number.name not in used:
-            document.fail(
-                (*where, "number", index),
-                f"number {number.name} is used nowhere.",
-                fix="Use it in a text or a formula, or remove it.",
-            )
+            fix = "Use it in a text or a formula, or remove it."
+            document.fail((*where, "number", index), f"number {number.name} is used nowhere.", fix=fix)
 
 
 def _check_slug(document: Document[Any], where: Keys, name: str, kind: str) -> None:
     if not SLUG.fullmatch(name):
-        document.fail(
-            where,
-            f"{name!r} is not a valid name of a {kind}.",
-            fix="Use lower-case words joined by hyphens: looks-are-everything",
-        )
+        problem = f"{name!r} is not a valid name of a {kind}."
+        document.fail(where, problem, fix="Use lower-case words joined by hyphens: looks-are-everything")
 
 
 def _check_distinct(document: Document[Any], where: Keys, names: list[str], kind: str) -> None:

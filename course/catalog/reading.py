@@ -201,11 +201,8 @@ class Document(Generic[T]):
         """The file's own id is well formed, and the file is called so."""
         self.check_id(("id",), text, kind)
         if text != self.path.stem:
-            self.fail(
-                ("id",),
-                f"`id` is {text}, and the file is called {self.path.name}.",
-                fix=f'Write `id = "{self.path.stem}"`, or rename the file {text}{self.path.suffix}.',
-            )
+            fix = f'Write `id = "{self.path.stem}"`, or rename the file {text}{self.path.suffix}.'
+            self.fail(("id",), f"`id` is {text}, and the file is called {self.path.name}.", fix=fix)
 
 
 def read_text(path: Path) -> str:
@@ -216,20 +213,17 @@ def read_text(path: Path) -> str:
         raise ContentError(path, None, "the file is missing.", help="Restore it or write it.") from None
     except OSError as error:
         reason = error.strerror or type(error).__name__
-        raise ContentError(
-            path, None, f"the file cannot be read: {reason}.", help="Check that it is a readable file."
-        ) from None
+        problem = f"the file cannot be read: {reason}."
+        raise ContentError(path, None, problem, help="Check that it is a readable file.") from None
     if data.startswith(b"\xef\xbb\xbf"):
-        raise ContentError(
-            path, 1, "the file starts with a byte order mark.", help="Save it as UTF-8 without a mark."
-        )
+        problem = "the file starts with a byte order mark."
+        raise ContentError(path, 1, problem, help="Save it as UTF-8 without a mark.")
     try:
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        raise ContentError(
-            path, line, "the file is not UTF-8 text.", help="Save it with the encoding UTF-8."
-        ) from None
+        problem = "the file is not UTF-8 text."
+        raise ContentError(path, line, problem, help="Save it with the encoding UTF-8.") from None
     return text.replace("\r\n", "\n")
 
 
@@ -312,17 +306,10 @@ def _raise_in_words(raw: Document[Any], text: str, kind: type, reserved: tuple[s
 def _unknown_key(
     raw: Document[Any], steps: tuple[str | int, ...], key: str, kind: type, *, hide: tuple[str, ...]
 ) -> NoReturn:
-    known = [name for name in _keys_at(kind, steps) if steps or name not in hide]
+    names = [field.encode_name for field in getattr(_type_at(kind, steps), "fields", ())]
+    known = [name for name in names if steps or name not in hide]
     fix = meant(key, known, f"Known keys: {', '.join(known)}.")
     raw.fail((*steps, key), f"unknown key `{key}`.", fix=fix)
-
-
-def _keys_at(kind: type, steps: tuple[str | int, ...]) -> list[str]:
-    """The keys that a table at this place may have."""
-    info = _type_at(kind, steps)
-    return (
-        [field.encode_name for field in info.fields] if isinstance(info, msgspec.inspect.StructType) else []
-    )
 
 
 def _lacking(info: Any, value: Any, steps: Keys = ()) -> Iterator[tuple[Keys, list[str]]]:
@@ -434,9 +421,8 @@ def split_front_matter(text: str, file: Path) -> FrontMatter:
     lines = text.splitlines()
     help_ = f"Start the file with {_FENCE}, the TOML keys of a lesson, and {_FENCE} on a line of its own."
     if not lines or lines[0].rstrip() != _FENCE:
-        raise ContentError(
-            file, 1, f"the front matter is missing: the first line is not {_FENCE}", help=help_
-        )
+        problem = f"the front matter is missing: the first line is not {_FENCE}"
+        raise ContentError(file, 1, problem, help=help_)
     end = next((i for i, line in enumerate(lines[1:], start=1) if line.rstrip() == _FENCE), None)
     if end is None:
         raise ContentError(file, 1, f"the front matter has no closing {_FENCE}", help=help_)

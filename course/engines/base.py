@@ -129,8 +129,8 @@ class World(Protocol):
     def motion(self) -> Motion:
         """The state after the steps so far; arrays of its own."""
 
-    def contacts(self) -> tuple[int, float]:
-        """The number of contact points and their deepest overlap in m, in the last step."""
+    def overlaps(self) -> list[float]:
+        """How deep bodies overlap at each point of contact in the last step, m."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,7 +151,8 @@ AS_IT_COMES = Tuning()
 
 
 #: An engine: puts a scene into it. The options are empty for the engine as it comes, otherwise the result of
-#: ``tuning``; it raises NotApplicableError if it cannot express the scene.
+#: ``tuning``; it raises NotApplicableError if it cannot express the scene. The class ``EngineWorld`` of an
+#: adapter's module is one.
 Adapter = Callable[[Scene, Mapping[str, Any]], World]
 
 

@@ -8,7 +8,6 @@ valid even on a busy machine.
 from __future__ import annotations
 
 import contextlib
-import dataclasses
 import datetime
 import json
 import os
@@ -38,7 +37,7 @@ from course.engines.results import (
     Comparison,
     EngineState,
     Row,
-    Setting,
+    Status,
     this_machine,
 )
 from course.engines.scenarios import BOXES, DT, SCENARIOS
@@ -82,57 +81,28 @@ class Request:
     deadline: float = DEADLINE_S
 
 
-@dataclass(frozen=True, slots=True)
-class _Job:
-    """One measurement to be made."""
-
-    engine: EngineInfo
-    version: str
-    scenario: str
-    setting: Setting
-    dt: float
-
-    def row(self, **more: Any) -> Row:
-        return Row(
-            engine=self.engine.id,
-            scenario=self.scenario,
-            setting=self.setting,
-            dt=self.dt,
-            version=self.version,
-            measured=datetime.datetime.now(datetime.UTC).date().isoformat(),
-            **more,
-        )
-
-
 @dataclass(slots=True)
 class _Run:
-    """A comparison in progress."""
+    """A comparison in progress. A measurement to be made is a row that has no value yet."""
 
     request: Request
     cache: Cache
     progress: Progress
     total: int
-    rows: dict[_Job, Row] = field(default_factory=dict)
+    rows: dict[tuple[Any, ...], Row] = field(default_factory=dict)
     lock: threading.Lock = field(default_factory=threading.Lock)
     stop: threading.Event = field(default_factory=threading.Event)
 
-    def key(self, job: _Job) -> dict[str, Any]:
-        return {
-            "engine": job.engine.id,
-            "version": job.version,
-            "scenario": job.scenario,
-            "setting": job.setting,
-            "dt": job.dt,
-            "quick": self.request.quick,
-            "repeat": self.request.repeat,
-        }
+    def key(self, row: Row) -> tuple[Any, ...]:
+        """What a measurement depends on, beside the machine and the code."""
+        return *row.place, row.version, self.request.quick, self.request.repeat
 
-    def keep(self, job: _Job, row: Row) -> None:
+    def keep(self, row: Row) -> None:
         with self.lock:
-            self.rows[job] = row
-            self.progress(len(self.rows), self.total, f"{job.engine.id}: {job.scenario}")
+            self.rows[row.place] = row
+            self.progress(len(self.rows), self.total, f"{row.engine}: {row.scenario}")
         if row.origin == "measured":
-            self.cache.put(self.key(job), row)
+            self.cache.put(self.key(row), row)
 
 
 def state_of(info: EngineInfo, *, probe: bool = False) -> EngineState:
@@ -170,29 +140,26 @@ def compare(request: Request, progress: Progress = lambda _done, _total, _what: 
     infos = [get(name) for name in dict.fromkeys(request.engines or ENGINES)]
     scenarios = [get_scenario(name).id for name in dict.fromkeys(request.scenarios or SCENARIOS)]
     states = {info.id: state_of(info) for info in infos}
+    today = datetime.datetime.now(datetime.UTC).date().isoformat()
     jobs = [
-        _Job(info, states[info.id].version or "", scenario, setting, dt)
-        for info in infos
+        Row(
+            engine=state.id, version=state.version or "", scenario=scenario, setting=setting, dt=dt,
+            measured=today, status="not_installed", message=state.missing,
+        )
+        for state in states.values()
         for scenario in scenarios
         for dt in _steps(request, scenario)
         for setting in (DEFAULT, TUNED)
-    ]
+    ]  # fmt: skip
     machine = this_machine()
-    wanted = [job for job in jobs if states[job.engine.id].usable]
+    wanted = [job for job in jobs if states[job.engine].usable]
     run = _Run(request, Cache(cache_folder("engines"), machine), progress, len(wanted))
     _measure(run, wanted)
-    rows = [
-        run.rows.get(job) or job.row(status="not_installed", message=states[job.engine.id].missing)
-        for job in jobs
-    ]
+    rows = [run.rows.get(job.place, job) for job in jobs]
     # Rows that cannot be measured here are shown from the reference, if it has them.
-    lacking = {
-        (row.engine, row.scenario, row.setting, row.dt)
-        for row in rows
-        if row.status in ("not_installed", "unavailable")
-    }
+    lacking = {row.place for row in rows if row.status in ("not_installed", "unavailable")}
     shipped = reference.load()
-    filled = [row for row in shipped.rows if (row.engine, row.scenario, row.setting, row.dt) in lacking]
+    filled = [row for row in shipped.rows if row.place in lacking]
     return Comparison(
         machine=machine,
         engines=tuple(states.values()),
@@ -210,15 +177,15 @@ def _steps(request: Request, scenario: str) -> tuple[float, ...]:
     return (DT,)
 
 
-def _measure(run: _Run, jobs: Iterable[_Job]) -> None:
+def _measure(run: _Run, jobs: Iterable[Row]) -> None:
     """Measure everything that is not stored: accuracy in parallel, then speed one by one."""
-    left: dict[str, list[_Job]] = {}
+    left: dict[str, list[Row]] = {}
     for job in jobs:
         known = None if run.request.fresh else run.cache.get(run.key(job))
         if known is not None:
-            run.keep(job, known)
+            run.keep(known)
         else:
-            left.setdefault(job.engine.id, []).append(job)
+            left.setdefault(job.engine, []).append(job)
     accuracy = [[job for job in mine if job.scenario != BOXES] for mine in left.values()]
     cores = this_machine().cores
     # Not a `with`: its exit would wait for every engine after an interrupt.
@@ -229,7 +196,7 @@ def _measure(run: _Run, jobs: Iterable[_Job]) -> None:
         for mine in left.values():
             for job in mine:
                 if job.scenario == BOXES:
-                    run.keep(job, _speed(run, job))
+                    run.keep(_speed(run, job))
     except BaseException:
         run.stop.set()
         raise
@@ -237,27 +204,32 @@ def _measure(run: _Run, jobs: Iterable[_Job]) -> None:
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _one_engine(run: _Run, jobs: list[_Job]) -> None:
+def _one_engine(run: _Run, jobs: list[Row]) -> None:
     """All accuracy jobs of one engine, in one process as long as it is alive."""
     unavailable: Row | None = None
-    with EngineProcess(jobs[0].engine.id) as process:
+    with EngineProcess(jobs[0].engine) as process:
         for job in jobs:
             if run.stop.is_set():
                 return
             if unavailable is not None:
-                run.keep(job, job.row(status="unavailable", message=unavailable.message))
+                run.keep(_without(job, unavailable.status, unavailable.message))
                 continue
             row = _untuned(run, process, job) or _accuracy(run, process, job)
             if row.status == "unavailable":
                 unavailable = row
-            run.keep(job, row)
+            run.keep(row)
 
 
-def _untuned(run: _Run, process: EngineProcess, job: _Job) -> Row | None:
+def _without(job: Row, status: Status, message: str) -> Row:
+    """A row that says why it has no value."""
+    return msgspec.structs.replace(job, status=status, message=message)
+
+
+def _untuned(run: _Run, process: EngineProcess, job: Row) -> Row | None:
     """The default row again, where the engine has nothing to set: a second measurement would be the same."""
     if job.setting != TUNED:
         return None
-    twin = run.rows.get(dataclasses.replace(job, setting=DEFAULT))
+    twin = run.rows.get(msgspec.structs.replace(job, setting=DEFAULT).place)
     if twin is None or not twin.ok:
         return None
     question = {"do": "options", "scenario": job.scenario, "setting": TUNED}
@@ -267,7 +239,7 @@ def _untuned(run: _Run, process: EngineProcess, job: _Job) -> Row | None:
     return msgspec.structs.replace(twin, setting=TUNED)
 
 
-def _accuracy(run: _Run, process: EngineProcess, job: _Job) -> Row:
+def _accuracy(run: _Run, process: EngineProcess, job: Row) -> Row:
     message = {
         "do": "measure",
         "scenario": job.scenario,
@@ -279,10 +251,12 @@ def _accuracy(run: _Run, process: EngineProcess, job: _Job) -> Row:
     for _ in range(run.request.repeat):
         reply = process.ask(message, run.request.deadline)
         if reply["status"] != OK:
-            return job.row(status=reply["status"], message=reply.get("message", ""))
+            return _without(job, reply["status"], reply.get("message", ""))
         values.append(reply["value"])
-    return job.row(
+    return msgspec.structs.replace(
+        job,
         status=OK,
+        message="",
         value=statistics.median(values),
         options=reply["options"],
         why=tuple(reply["why"]),
@@ -293,14 +267,14 @@ def _accuracy(run: _Run, process: EngineProcess, job: _Job) -> Row:
     )
 
 
-def _speed(run: _Run, job: _Job) -> Row:
+def _speed(run: _Run, job: Row) -> Row:
     """The rate with a hundred boxes as a multiple of pymunk's, from stretches taken in turn."""
     quick, deadline = run.request.quick, run.request.deadline
     pairs = (_PAIRS_QUICK if quick else _PAIRS) * run.request.repeat
     stretch = _STRETCH_QUICK_S if quick else _STRETCH_S
     build = {"do": "boxes", "scenario": BOXES, "dt": job.dt}
     rates: tuple[list[float], list[float]] = ([], [])
-    with EngineProcess(job.engine.id) as one, EngineProcess(YARDSTICK) as other:
+    with EngineProcess(job.engine) as one, EngineProcess(YARDSTICK) as other:
         if twin := _untuned(run, one, job):
             return twin
         asked = ((one, {**build, "setting": job.setting}), (other, {**build, "setting": "default"}))
@@ -310,18 +284,20 @@ def _speed(run: _Run, job: _Job) -> Row:
             for question in (message, {"do": "chunk", "steps": _TRIAL_STEPS}):
                 reply = process.ask(question, deadline)
                 if reply["status"] != OK:
-                    return job.row(status=reply["status"], message=reply.get("message", ""))
+                    return _without(job, reply["status"], reply.get("message", ""))
                 known = reply if "options" in reply else known
             steps.insert(0, max(5, round(_TRIAL_STEPS * stretch / reply["seconds"])))
         for _ in range(pairs):
             for process, n, found in ((other, steps[1], rates[1]), (one, steps[0], rates[0])):
                 reply = process.ask({"do": "chunk", "steps": n}, deadline)
                 if reply["status"] != OK:
-                    return job.row(status=reply["status"], message=reply.get("message", ""))
+                    return _without(job, reply["status"], reply.get("message", ""))
                 found.append(n / reply["seconds"])
     ratios = [mine / theirs for mine, theirs in zip(*rates, strict=True)]
-    return job.row(
+    return msgspec.structs.replace(
+        job,
         status=OK,
+        message="",
         value=statistics.median(ratios),
         options=known["options"],
         why=tuple(known["why"]),

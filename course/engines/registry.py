@@ -19,7 +19,6 @@ class EngineInfo:
         extra: the course's extra that brings it; empty for what the course needs anyway.
         licence: of the engine itself, an SPDX expression.
         about: the kind of engine, in half a line.
-        planar: it has two dimensions only.
         single: it computes in single precision, so its errors stop shrinking at about 1e-6.
     """
 
@@ -29,16 +28,13 @@ class EngineInfo:
     extra: str
     licence: str
     about: str
-    planar: bool = False
     single: bool = False
 
 
 ENGINES: dict[str, EngineInfo] = {
     one.id: one
     for one in (
-        EngineInfo(
-            "pymunk", "pymunk (2-D)", "pymunk", "", "MIT", "Chipmunk: games in the plane", planar=True
-        ),
+        EngineInfo("pymunk", "pymunk (2-D)", "pymunk", "", "MIT", "Chipmunk: games in the plane"),
         EngineInfo(
             "mujoco", "MuJoCo", "mujoco", "engines", "Apache-2.0", "joint coordinates, soft contacts: control"
         ),
@@ -122,11 +118,8 @@ def availability(info: EngineInfo) -> Availability:
 def get(engine_id: str) -> EngineInfo:
     if engine_id in ENGINES:
         return ENGINES[engine_id]
-    raise NotFoundError(
-        f"There is no engine {engine_id!r}.",
-        help=f"The engines are {', '.join(ENGINES)}.",
-        code="engine_not_found",
-    )
+    problem = f"There is no engine {engine_id!r}."
+    raise NotFoundError(problem, help=f"The engines are {', '.join(ENGINES)}.", code="engine_not_found")
 
 
 def load(engine_id: str) -> Adapter:
@@ -135,4 +128,4 @@ def load(engine_id: str) -> Adapter:
     Raises:
         ImportError: it is not installed, or a library that it needs is not.
     """
-    return cast("Adapter", import_module(f"course.engines.adapters.{get(engine_id).id}").ADAPTER)
+    return cast("Adapter", import_module(f"course.engines.adapters.{get(engine_id).id}").EngineWorld)

@@ -8,7 +8,6 @@ import os
 import platform
 import subprocess
 import tempfile
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal
 
@@ -110,6 +109,11 @@ class Row(msgspec.Struct, frozen=True, kw_only=True):
         return self.status == OK
 
     @property
+    def place(self) -> tuple[str, str, Setting, float]:
+        """Which row of a comparison it is."""
+        return self.engine, self.scenario, self.setting, self.dt
+
+    @property
     def lowest(self) -> float:
         """The least of the samples; the value where there are none."""
         return min(self.samples, default=self.value or 0.0)
@@ -200,7 +204,7 @@ class Cache:
         self._folder = folder
         self._machine = machine
 
-    def get(self, key: Mapping[str, Any]) -> Row | None:
+    def get(self, key: tuple[Any, ...]) -> Row | None:
         """The row stored under a key; None if there is none, or it cannot be read."""
         try:
             row = msgspec.json.decode(self._path(key).read_bytes(), type=Row)
@@ -208,7 +212,7 @@ class Cache:
             return None
         return msgspec.structs.replace(row, origin="cached")
 
-    def put(self, key: Mapping[str, Any], row: Row) -> None:
+    def put(self, key: tuple[Any, ...], row: Row) -> None:
         """Store a row, if it has a value and the folder can be written."""
         if not row.ok:
             return
@@ -219,7 +223,7 @@ class Cache:
                 file.write(msgspec.json.encode(row))
             Path(file.name).replace(path)
 
-    def _path(self, key: Mapping[str, Any]) -> Path:
-        whole = {**key, "code": code_digest(), "machine": str(self._machine)}
-        name = hashlib.sha256(json.dumps(whole, sort_keys=True).encode()).hexdigest()[:32]
+    def _path(self, key: tuple[Any, ...]) -> Path:
+        whole = json.dumps((*key, code_digest(), str(self._machine)))
+        name = hashlib.sha256(whole.encode()).hexdigest()[:32]
         return self._folder / f"{name}.json"

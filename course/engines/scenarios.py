@@ -7,21 +7,33 @@ one. A scene gives the friction and the restitution that must act; the adapter f
 import math
 import statistics
 import time
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from course.engines.base import Body, EngineDivergedError, Motion, Scene, Wall, World, energy, momentum
+from course.engines.base import Array, Body, EngineDivergedError, Motion, Scene, Wall, World, energy, momentum
 from course.errors import NotFoundError
 from course.physics import integrators as ode
 from course.physics.systems import Pendulum
 
-Array = NDArray[np.float64]
 Build = Callable[[Scene], World]
-Measured = tuple[float, dict[str, Any]]
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """The result of one scenario.
+
+    Attributes:
+        details: what else was seen, by name.
+        samples: ``value`` is their mean or median: one for each phase of the step, or each start; empty
+            where there is one run.
+    """
+
+    value: float
+    details: dict[str, Any]
+    samples: Sequence[float] = ()
 
 
 # ---
@@ -45,7 +57,7 @@ STARTS_DEG = (90.0, 92.0, 94.0, 96.0, 98.0)
 KEPT_PERCENT = 10.0
 
 
-def free_fall(build: Build, dt: float, quick: bool) -> Measured:  # noqa: ARG001 - it is quick as it is
+def free_fall(build: Build, dt: float, quick: bool) -> Outcome:  # noqa: ARG001 - it is quick as it is
     """By how many per cent a body falls too far."""
     n = round(FALL_S / dt)
     scene = Scene((Body("ball", 0.1, 1.0, (0.0, 0.0, 0.0)),), dt=dt)
@@ -53,12 +65,12 @@ def free_fall(build: Build, dt: float, quick: bool) -> Measured:  # noqa: ARG001
     world.step(n)
     fallen = -world.motion().checked().x[0, 2]
     true = 0.5 * G * (n * dt) ** 2
-    return 100.0 * (fallen / true - 1.0), {"steps": n, "fallen_m": float(fallen), "true_m": true}
+    return Outcome(100.0 * (fallen / true - 1.0), {"steps": n, "fallen_m": float(fallen), "true_m": true})
 
 
-def _bob(angle: float, mass: float = 1.0, top: tuple[float, float] = (0.0, 0.0)) -> Body:
-    """A ball at the end of a rod of 1 m that hangs at ``angle`` (rad) from the vertical."""
-    return Body("ball", _BOB, mass, (top[0] + math.sin(angle), 0.0, top[1] - math.cos(angle)))
+def _bob(angle: float, top: tuple[float, float] = (0.0, 0.0)) -> Body:
+    """A ball of 1 kg at the end of a rod of 1 m that hangs at ``angle`` (rad) from the vertical."""
+    return Body("ball", _BOB, 1.0, (top[0] + math.sin(angle), 0.0, top[1] - math.cos(angle)))
 
 
 def _path(n: int, dt: float) -> Array:
@@ -73,7 +85,7 @@ def _path(n: int, dt: float) -> Array:
     return np.stack([np.sin(angle), 0.0 * angle, -np.cos(angle)], -1)
 
 
-def pendulum(build: Build, dt: float, quick: bool) -> Measured:  # noqa: ARG001
+def pendulum(build: Build, dt: float, quick: bool) -> Outcome:  # noqa: ARG001
     """How far a swinging ball deviates from its true path, in per cent of the rod."""
     n = round(SWING_S / dt)
     scene = Scene((_bob(math.pi / 2),), pivots=((0.0, 0.0, 0.0),), dt=dt)
@@ -86,10 +98,11 @@ def pendulum(build: Build, dt: float, quick: bool) -> Measured:  # noqa: ARG001
     rest = -G
     start = 0.0 - rest
     left = energy(scene, world.motion()) - rest
-    return 100.0 * float(np.max(off)), {"steps": n, "energy_change_percent": 100.0 * (left / start - 1.0)}
+    changed = 100.0 * (left / start - 1.0)
+    return Outcome(100.0 * float(np.max(off)), {"steps": n, "energy_change_percent": changed})
 
 
-def double_pendulum(build: Build, dt: float, quick: bool) -> Measured:
+def double_pendulum(build: Build, dt: float, quick: bool) -> Outcome:
     """The largest change of energy within ten seconds, per cent; the median over five starts (quick: three).
 
     The change at the end would depend on the phase of the swing at that moment, even in its sign.
@@ -98,10 +111,10 @@ def double_pendulum(build: Build, dt: float, quick: bool) -> Measured:
     runs = [_energy_change(build, dt, math.radians(degrees)) for degrees in starts]
     largest, last = zip(*runs, strict=True)
     details = {"starts_deg": list(starts), "largest_percent": list(largest), "at_the_end_percent": list(last)}
-    return statistics.median(largest), {"samples": list(largest), **details}
+    return Outcome(statistics.median(largest), details, largest)
 
 
-def long_step(build: Build, dt: float, quick: bool) -> Measured:
+def long_step(build: Build, dt: float, quick: bool) -> Outcome:
     """The longest step with which the double pendulum keeps its energy to 10 % for ten seconds, ms.
 
     Steps of 1, 2, 4, 8 and 16 times ``dt`` are tried, up to the first that fails. A run that ends in a value
@@ -109,7 +122,7 @@ def long_step(build: Build, dt: float, quick: bool) -> Measured:
     """
     starts = STARTS_DEG[:3] if quick else STARTS_DEG
     samples = [1000.0 * _longest(build, dt, math.radians(degrees)) for degrees in starts]
-    return min(samples), {"samples": samples, "starts_deg": list(starts), "longest_tried_ms": 16e3 * dt}
+    return Outcome(min(samples), {"starts_deg": list(starts), "longest_tried_ms": 16e3 * dt}, samples)
 
 
 def _longest(build: Build, dt: float, angle: float) -> float:
@@ -168,22 +181,22 @@ def _phases(dt: float, quick: bool) -> Iterator[float]:
     return (dt * (k + 0.5) / count for k in range(count))
 
 
-def _one_of(middle: Callable[[list[float]], float], runs: list[Measured]) -> Measured:
+def _one_of(middle: Callable[[list[float]], float], runs: list[Outcome]) -> Outcome:
     """Several runs as one: the middle of their values, and each; of details the worst, or the first run's."""
-    samples, details = [value for value, _ in runs], [more for _, more in runs]
+    samples = [run.value for run in runs]
     worst = {
-        name: _WORST[name](one[name] for one in details) if name in _WORST else first
-        for name, first in details[0].items()
+        name: _WORST[name](run.details[name] for run in runs) if name in _WORST else first
+        for name, first in runs[0].details.items()
     }
-    return middle(samples), {"samples": samples, **worst}
+    return Outcome(middle(samples), worst, samples)
 
 
-def clash(build: Build, dt: float, quick: bool) -> Measured:
+def clash(build: Build, dt: float, quick: bool) -> Outcome:
     """By how many per cent an elastic collision changes the kinetic energy; the mean over phases."""
     return _one_of(statistics.fmean, [_clash(build, dt, late) for late in _phases(dt, quick)])
 
 
-def _clash(build: Build, dt: float, late: float) -> Measured:
+def _clash(build: Build, dt: float, late: float) -> Outcome:
     light = Body("ball", 0.1, 1.0, (-0.5 - late, 0.0, 1.0), (1.0, 0.0, 0.0))
     heavy = Body("ball", 0.1, 3.0, (0.0, 0.0, 1.0))
     scene = Scene((light, heavy), gravity=(0.0, 0.0, 0.0), restitution=1.0, dt=dt)
@@ -193,27 +206,27 @@ def _clash(build: Build, dt: float, late: float) -> Measured:
     after = world.motion().checked()
     change = 100.0 * (energy(scene, after) / energy(scene, before) - 1.0)
     lost = float(np.linalg.norm(momentum(scene, after) - momentum(scene, before)))
-    return change, {"velocities_m_s": after.v[:, 0].tolist(), "momentum_error_kg_m_s": lost}
+    return Outcome(change, {"velocities_m_s": after.v[:, 0].tolist(), "momentum_error_kg_m_s": lost})
 
 
-def bounce(build: Build, dt: float, quick: bool) -> Measured:
+def bounce(build: Build, dt: float, quick: bool) -> Outcome:
     """How high a ball comes back that falls from 1 m, m; the mean over phases."""
     return _rebounds(build, dt, quick, 1.0, 1.0)
 
 
-def small_drop(build: Build, dt: float, quick: bool) -> Measured:
+def small_drop(build: Build, dt: float, quick: bool) -> Outcome:
     """How high a ball comes back that falls from 2 cm, mm; the mean over phases."""
     return _rebounds(build, dt, quick, 0.02, 1000.0)
 
 
-def _rebounds(build: Build, dt: float, quick: bool, height: float, unit: float) -> Measured:
-    found = [_rebound(build, dt, height, early) for early in _phases(dt, quick)]
-    return _one_of(statistics.fmean, [(unit * value, details) for value, details in found])
+def _rebounds(build: Build, dt: float, quick: bool, height: float, unit: float) -> Outcome:
+    runs = [_rebound(build, dt, height, early, unit) for early in _phases(dt, quick)]
+    return _one_of(statistics.fmean, runs)
 
 
-def _rebound(build: Build, dt: float, height: float, early: float, restitution: float = 0.5) -> Measured:
+def _rebound(build: Build, dt: float, height: float, early: float, unit: float) -> Outcome:
     """One rebound; the ball starts ``early`` seconds down its fall, so its energy is that of ``height``."""
-    radius = 0.1
+    radius, restitution = 0.1, 0.5
     start = (0.0, 0.0, radius + height - 0.5 * G * early**2)
     ball = Body("ball", radius, 1.0, start, (0.0, 0.0, -G * early))
     world = build(Scene((ball,), floor=True, restitution=restitution, dt=dt))
@@ -229,7 +242,7 @@ def _rebound(build: Build, dt: float, height: float, early: float, restitution: 
         rising = rising or (lowest < 0.5 * height and now.v[0, 2] > 0.0)
         if rising:
             highest = max(highest, gap)
-    return highest, {"lowest_m": lowest}
+    return Outcome(unit * highest, {"lowest_m": lowest})
 
 
 def _on_slope(degrees: float, friction: float, dt: float) -> Scene:
@@ -244,7 +257,7 @@ def _on_slope(degrees: float, friction: float, dt: float) -> Scene:
     )
 
 
-def slide(build: Build, dt: float, quick: bool) -> Measured:  # noqa: ARG001
+def slide(build: Build, dt: float, quick: bool) -> Outcome:  # noqa: ARG001
     """By how many per cent a box accelerates too much down a slope."""
     world = build(_on_slope(30.0, 0.3, dt))
     first, second = round(0.25 / dt), round(0.75 / dt)
@@ -255,23 +268,23 @@ def slide(build: Build, dt: float, quick: bool) -> Measured:  # noqa: ARG001
     angle = math.radians(30.0)
     true = G * (math.sin(angle) - 0.3 * math.cos(angle))
     measured = float(v1 - v0) / (second * dt)
-    return 100.0 * (measured / true - 1.0), {"acceleration_m_s2": measured, "true_m_s2": true}
+    return Outcome(100.0 * (measured / true - 1.0), {"acceleration_m_s2": measured, "true_m_s2": true})
 
 
-def stick(build: Build, dt: float, quick: bool) -> Measured:  # noqa: ARG001
+def stick(build: Build, dt: float, quick: bool) -> Outcome:  # noqa: ARG001
     """How far a box creeps that must not move, mm in 2 s, once it has settled for a quarter of a second."""
     world = build(_on_slope(20.0, 0.5, dt))
     world.step(round(0.25 / dt))
     x0 = world.motion().checked().x[0, 0]
     world.step(round(2.0 / dt))
-    return 1000.0 * float(world.motion().checked().x[0, 0] - x0), {}
+    return Outcome(1000.0 * float(world.motion().checked().x[0, 0] - x0), {})
 
 
-def diagonal(build: Build, dt: float, quick: bool) -> Measured:
+def diagonal(build: Build, dt: float, quick: bool) -> Outcome:
     """The least push along the diagonal that makes a box slip, over the least push along an edge."""
     rounds = 8 if quick else 11
     edge, corner = (_slip_force(build, dt, math.radians(degrees), rounds) for degrees in (0.0, 45.0))
-    return corner / edge, {"edge": edge, "corner": corner, "unit": "mu m g"}
+    return Outcome(corner / edge, {"edge": edge, "corner": corner, "unit": "mu m g"})
 
 
 def _slip_force(build: Build, dt: float, direction: float, rounds: int) -> float:
@@ -292,19 +305,20 @@ def _slip_force(build: Build, dt: float, direction: float, rounds: int) -> float
     return 0.5 * (low + high)
 
 
-def _moved(build: Build, scenes: list[Scene], seconds: float) -> Measured:
+def _moved(build: Build, scenes: list[Scene], seconds: float) -> Outcome:
     """The largest movement of any body that should stand still, mm; the median over the starts."""
     return _one_of(statistics.median, [_movement(build, scene, seconds) for scene in scenes])
 
 
-def _movement(build: Build, scene: Scene, seconds: float) -> Measured:
+def _movement(build: Build, scene: Scene, seconds: float) -> Outcome:
     world = build(scene)
     start = world.motion()
     world.step(round(seconds / scene.dt))
     end: Motion = world.motion().checked()
     gone = np.linalg.norm(end.x - start.x, axis=1)
-    points, depth = world.contacts()
-    return 1000.0 * float(np.max(gone)), {"contacts": points, "deepest_overlap_mm": 1000.0 * depth}
+    depths = world.overlaps()
+    details = {"contacts": len(depths), "deepest_overlap_mm": 1000.0 * max(depths, default=0.0)}
+    return Outcome(1000.0 * float(np.max(gone)), details)
 
 
 def _piles(masses: list[float], dt: float, quick: bool) -> list[Scene]:
@@ -323,17 +337,17 @@ def _piles(masses: list[float], dt: float, quick: bool) -> list[Scene]:
     return scenes
 
 
-def stack(build: Build, dt: float, quick: bool) -> Measured:
+def stack(build: Build, dt: float, quick: bool) -> Outcome:
     """How far the boxes of a stack of ten move in 5 s (quick: 2 s), mm."""
     return _moved(build, _piles([1.0] * 10, dt, quick), 2.0 if quick else 5.0)
 
 
-def mass_ratio(build: Build, dt: float, quick: bool) -> Measured:
+def mass_ratio(build: Build, dt: float, quick: bool) -> Outcome:
     """How far two cubes move in 2 s, the upper one a thousand times as heavy, mm."""
     return _moved(build, _piles([1.0, 1000.0], dt, quick), 2.0)
 
 
-def thin_wall(build: Build, dt: float, quick: bool) -> Measured:
+def thin_wall(build: Build, dt: float, quick: bool) -> Outcome:
     """The fastest ball that a wall of 2 cm stops, of those where every slower one was stopped too, m/s."""
     stopped, through = 0.0, None
     phases = [late / dt for late in _phases(dt, quick)]
@@ -342,7 +356,7 @@ def thin_wall(build: Build, dt: float, quick: bool) -> Measured:
             through = speed
             break
         stopped = speed
-    return stopped, {"passed_at_m_s": through, "fastest_tried_m_s": SPEEDS[-1]}
+    return Outcome(stopped, {"passed_at_m_s": through, "fastest_tried_m_s": SPEEDS[-1]})
 
 
 def _stopped(build: Build, dt: float, speed: float, phase: float) -> bool:
@@ -365,7 +379,7 @@ def boxes_scene(dt: float) -> Scene:
     return Scene(cubes, friction=0.5, floor=True, dt=dt)
 
 
-def boxes(build: Build, dt: float, quick: bool) -> Measured:
+def boxes(build: Build, dt: float, quick: bool) -> Outcome:
     """Steps a second of processor time with a hundred boxes, after a quarter of a second to settle."""
     world = build(boxes_scene(dt))
     world.step(round(0.25 / dt))
@@ -374,7 +388,7 @@ def boxes(build: Build, dt: float, quick: bool) -> Measured:
     world.step(n)
     rate = n / max(time.process_time() - started, 1e-6)
     world.motion().checked()
-    return rate, {"contacts": world.contacts()[0]}
+    return Outcome(rate, {"contacts": len(world.overlaps())})
 
 
 #: The default step of comparisons, s.
@@ -383,20 +397,6 @@ DT = 1.0 / 240.0
 BOXES = "boxes"
 #: Scenarios whose value is the mean over phases of a step.
 IMPACTS = ("clash", "bounce", "small-drop")
-
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """The result of one run.
-
-    Attributes:
-        samples: ``value`` is their mean or median: one for each phase of the step, or each start; empty
-            where there is one run.
-    """
-
-    value: float
-    samples: tuple[float, ...] = ()
-    details: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -409,8 +409,8 @@ class Scenario:
         unit: of ``value`` and ``truth``; "%" and "mm" are meant for reading.
         truth: the right value; None where there is none (a speed), inf for "any speed".
         digits: decimals worth showing.
-        measure: given how to build a scene, the step (s) and whether it should be quick, gives an Outcome.
-        planar: an engine in the plane can do it.
+        run: measures once, given how to build a scene, the step (s) and whether it should be quick. It may
+            raise EngineDivergedError, and NotApplicableError where an engine has no word for the scene.
         converges: a curve of its error against the step makes sense, because only the integrator matters.
         better: whether the value nearer the truth is better, or the larger one.
     """
@@ -423,21 +423,9 @@ class Scenario:
     truth: float | None
     source: str
     digits: int
-    measure: Callable[[Build, float, bool], tuple[float, dict[str, Any]]]
-    planar: bool = True
+    run: Callable[[Build, float, bool], Outcome]
     converges: bool = False
     better: Literal["near", "large"] = "near"
-
-    def run(self, build: Build, dt: float, quick: bool = False) -> Outcome:
-        """Measure once.
-
-        Raises:
-            EngineDivergedError: the engine gave something that is not a number.
-            NotApplicableError: the engine has no word for what the scene asks.
-        """
-        value, details = self.measure(build, dt, quick)
-        samples = tuple(details.pop("samples", ()))
-        return Outcome(value, samples, details)
 
     def error(self, value: float) -> float | None:
         """How far a value is from the truth, in the scenario's unit; None if the truth is unknown."""
@@ -561,7 +549,6 @@ SCENARIOS: dict[str, Scenario] = {
             "Coulomb's cone has no preferred direction",
             3,
             diagonal,
-            planar=False,
         ),
         Scenario(
             "stack",
@@ -616,8 +603,5 @@ SCENARIOS: dict[str, Scenario] = {
 def get(scenario_id: str) -> Scenario:
     if scenario_id in SCENARIOS:
         return SCENARIOS[scenario_id]
-    raise NotFoundError(
-        f"There is no scenario {scenario_id!r}.",
-        help=f"The scenarios are {', '.join(SCENARIOS)}.",
-        code="scenario_not_found",
-    )
+    problem = f"There is no scenario {scenario_id!r}."
+    raise NotFoundError(problem, help=f"The scenarios are {', '.join(SCENARIOS)}.", code="scenario_not_found")

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from course.figures.style import METHODS, PALETTE, new_figure, note, title
+from course.figures.style import METHODS, PALETTE, new_figure, note, title, word
 from course.physics.body import Body
 from course.physics.contact import Surface
 from course.physics.contact.models import Constraint, Penalty, SoftConvex, drop, erp_cfm, slide_across
@@ -47,11 +47,11 @@ def pair() -> Figure:
         _two(right, t, x, line)
         right.text(4.95, x[-1, 1] + 0.25, f"e = {e:g}", ha="right", fontsize=8.5)
     right.set_title("Contact: they touch and part")
-    note(left, "through\neach other\nat 2.5 s", (2.5, 0.0), (3.4, -1.0), PALETTE["black"])
-    note(right, "touch at\n2.25 s,\n1 m apart", (2.25, -0.5), (0.2, -1.0), PALETTE["black"])
+    note(left, "through\neach other\nat 2.5 s", (2.5, 0.0), (3.4, -1.0))
+    note(right, "touch at\n2.25 s,\n1 m apart", (2.25, -0.5), (0.2, -1.0))
     for axes in (left, right):
-        axes.text(0.1, -5.9, "ball 1", color=PALETTE["blue"], fontweight="bold", fontsize=8.5)
-        axes.text(0.1, 5.4, "ball 2", color="#B34F00", fontweight="bold", fontsize=8.5)
+        word(axes, 0.1, -5.9, "ball 1", "blue")
+        word(axes, 0.1, 5.4, "ball 2", "vermillion")
         axes.set_xlabel("time (s)")
     left.set(xlim=(0, 5), ylim=(-6.8, 6.8))
     left.set_ylabel("position (m)")
@@ -87,14 +87,11 @@ def tunnelling() -> Figure:
         at = 23.6
         axes.text(at, 100 * passed(at, h) + aside, f"h = {1000 * h:g} ms", ha="right", fontsize=8.5)
     axes.axhline(0.0, color=PALETTE["blue"], linewidth=2.4)
-    axes.text(
-        1.0, -7.5, "time of impact: never misses", color=PALETTE["blue"], fontweight="bold", fontsize=8.5
-    )
+    word(axes, 1.0, -7.5, "time of impact: never misses", "blue")
     limit = (BALL_M + WALL_M) / STEP_S
-    note(axes, f"{limit:g} m/s: one step\nspans wall and ball", (limit, 0.0), (0.6, 32.0), PALETTE["black"])
+    note(axes, f"{limit:g} m/s: one step\nspans wall and ball", (limit, 0.0), (0.6, 32.0))
     axes.set(xlim=(0, 24), ylim=(-12, 100))
-    axes.set_xlabel("speed of the ball (m/s)")
-    axes.set_ylabel("starts that miss the wall (%)")
+    axes.set(xlabel="speed of the ball (m/s)", ylabel="starts that miss the wall (%)")
     title(figure, "A check once a step misses a wall that the ball jumps over")
     return figure
 
@@ -102,25 +99,19 @@ def tunnelling() -> Figure:
 def stacks() -> Figure:
     """The weight that the ground does not carry yet, over the solver's iterations, for four stacks."""
     figure, (axes,) = new_figure(4.0)
-    looks = (
-        (PALETTE["sky"], ":"),
-        (PALETTE["green"], "-."),
-        (PALETTE["orange"], "--"),
-        (PALETTE["blue"], "-"),
-    )
+    looks = (("sky", ":"), ("green", "-."), ("orange", "--"), ("blue", "-"))
     for boxes, (color, line) in zip(STACKS, looks, strict=True):
         needed = iterations_to(boxes)
         carried = stack_impulses(boxes, needed + needed // 3)[:, 0] / boxes
         done = np.arange(1, carried.size)
-        axes.plot(done, 100 * (1 - carried[1:]), color=color, linestyle=line, linewidth=1.8)
+        axes.plot(done, 100 * (1 - carried[1:]), color=PALETTE[color], linestyle=line, linewidth=1.8)
         axes.plot([needed], [1.0], marker="o", color=PALETTE["black"], markersize=5)
-        axes.text(needed * 0.93, 0.72, f"{needed}", ha="right", fontsize=8.5, fontweight="bold")
+        word(axes, needed * 0.93, 0.72, f"{needed}", ha="right")
     for boxes, x, y in ((2, 1.7, 5.6), (5, 6.6, 12.0), (10, 21.0, 18.0), (20, 68.0, 27.0)):
         axes.text(x, y, f"{boxes} boxes", fontsize=8.5)
     axes.axhline(1.0, color=PALETTE["black"], linewidth=0.8)
     axes.set(xscale="log", yscale="log", xlim=(1, 1100), ylim=(0.4, 110))
-    axes.set_xlabel("iterations of the solver (number)")
-    axes.set_ylabel("weight not yet carried by the ground (%)")
+    axes.set(xlabel="iterations of the solver (number)", ylabel="weight not yet carried by the ground (%)")
     title(figure, "Twice as high takes four times as many iterations")
     return figure
 
@@ -149,15 +140,11 @@ def rest() -> Figure:
         gaps, _ = drop(model, 0.0, 0.0, _STEP_S, 40, _G)
         depth = -1000 * gaps
         axes.plot(_STEP_S * np.arange(depth.size), depth, color=PALETTE[color], linestyle=line, linewidth=1.8)
-        axes.text(x, y, name, fontsize=8.5, fontweight="bold", color=_INK.get(color, PALETTE[color]))
+        word(axes, x, y, name, color)
     axes.set(xlim=(0, 0.4), ylim=(1.85, -0.1), xticks=[0.0, 0.1, 0.2, 0.3, 0.4])
-    axes.set_xlabel("time since the ball was laid down (s)")
-    axes.set_ylabel("depth in the floor (mm)")
+    axes.set(xlabel="time since the ball was laid down (s)", ylabel="depth in the floor (mm)")
     title(figure, "How deep a resting ball lies depends on the contact model")
     return figure
-
-
-_INK = {"vermillion": "#B34F00", "green": "#007A58"}  # dark enough for letters
 
 
 def rebounds(model: Constraint, parts: Array = PHASES, h: float = _STEP_S) -> Array:
@@ -179,17 +166,11 @@ def phases() -> Figure:
         broken = np.where(np.abs(np.diff(values, prepend=values[0])) > 0.02, np.nan, values)
         axes.plot(PHASES, broken, color=PALETTE[color], linestyle=line, linewidth=1.8)
     axes.axhline(0.25, color=PALETTE["black"], linewidth=1.2)
-    axes.text(0.99, 0.257, "event-driven: 0.25", ha="right", fontsize=8.5, fontweight="bold")
-    axes.text(
-        0.99, 0.188, "once a step, no correction", ha="right", fontsize=8.5, fontweight="bold",
-        color=PALETTE["blue"],
-    )  # fmt: skip
-    axes.text(
-        0.62, 0.43, "ERP 0.2 in the velocity", fontsize=8.5, fontweight="bold", color=_INK["vermillion"]
-    )
+    word(axes, 0.99, 0.257, "event-driven: 0.25", ha="right")
+    word(axes, 0.99, 0.188, "once a step, no correction", "blue", ha="right")
+    word(axes, 0.62, 0.43, "ERP 0.2 in the velocity", "vermillion")
     axes.set(xlim=(-0.01, 1.0), ylim=(0.16, 0.5))
-    axes.set_xlabel("start, in parts of a step's fall (no unit)")
-    axes.set_ylabel("rebound (share of the height)")
+    axes.set(xlabel="start, in parts of a step's fall (no unit)", ylabel="rebound (share of the height)")
     title(figure, "How high a ball bounces depends on when the engine looks")
     return figure
 
@@ -214,8 +195,7 @@ def cone() -> Figure:
     axes.text(0.70, 0.14, "v² / (2 μ g)", fontsize=8.5, color=PALETTE["grey"])
     axes.set(xlim=(-0.03, 1.15), ylim=(-0.03, 0.74), aspect="equal")
     axes.legend(loc="upper right", handlelength=3.0, title="friction by a")
-    axes.set_xlabel("x, an axis of the pyramid (m)")
-    axes.set_ylabel("y (m)")
+    axes.set(xlabel="x, an axis of the pyramid (m)", ylabel="y (m)")
     title(figure, "Along its diagonal a friction pyramid is too strong or too weak")
     return figure
 
@@ -238,33 +218,28 @@ def corners() -> Figure:
         upright = np.array([low, (high[0], low[1]), high, (low[0], high[1])])
         left.fill(*upright.T, facecolor="none", edgecolor=PALETTE["grey"], linewidth=0.8, linestyle=":")
         shadow = np.array([np.min(shape @ slant), np.max(shape @ slant)])
-        left.plot(
-            *(shadow[:, None] * slant + 1.25 * across).T,
-            color=PALETTE[color],
-            linewidth=4.0,
-            solid_capstyle="butt",
-        )
+        ends = shadow[:, None] * slant + 1.25 * across
+        left.plot(*ends.T, color=PALETTE[color], linewidth=4.0, solid_capstyle="butt")
     gap = (np.max(half @ slant) + np.min(turned @ slant)) / 2 * slant + 1.25 * across
-    note(left, "a gap between\nthe shadows", (float(gap[0]), float(gap[1])), (1.35, -1.45), PALETTE["black"])
+    note(left, "a gap between\nthe shadows", (float(gap[0]), float(gap[1])), (1.35, -1.45))
     left.set(xlim=(-0.9, 3.0), ylim=(-1.7, 1.9), xticks=range(3), yticks=range(-1, 2), aspect="equal")
     left.set_title("Apart in one direction")
     for tile, x in (("tile 1", -5.0), ("tile 2", 0.0)):
         right.fill([x, x + 5, x + 5, x], [-5, -5, 0, 0], facecolor="#E2E2E2", edgecolor=PALETTE["black"])
         right.text(x + 2.5, -4.4, tile, fontsize=8.5, ha="center")
     right.fill([-9, 1, 1, -9], [-2, -2, 9, 9], facecolor="none", edgecolor=PALETTE["blue"], linewidth=1.6)
-    right.text(-4.8, 2.9, "box, moving right", color=PALETTE["blue"], fontsize=8.5, fontweight="bold")
+    word(right, -4.8, 2.9, "box, moving right", "blue")
     for start, end, text, place in (
         ((-2.5, -2.0), (-2.5, 0.9), "up 2 mm", (-2.2, 0.5)),
         ((1.0, -1.0), (-1.4, -1.0), "back 1 mm", (1.2, -1.2)),
     ):
         arrow = {"arrowstyle": "->", "color": PALETTE["vermillion"], "linewidth": 2.0}
         right.annotate("", xy=end, xytext=start, arrowprops=arrow)
-        right.text(*place, text, color="#B34F00", fontsize=8.5, fontweight="bold")
+        word(right, *place, text, "vermillion")
     right.set(xlim=(-5.2, 5.2), ylim=(-5.0, 4.5), xticks=range(-4, 5, 2))
     right.set_title("Over a seam")
     for axes, unit in ((left, "m"), (right, "mm")):
-        axes.set_xlabel(f"x ({unit})")
-        axes.set_ylabel(f"y ({unit})")
+        axes.set(xlabel=f"x ({unit})", ylabel=f"y ({unit})")
     title(figure, "One direction shows that boxes are apart; a seam sends them back")
     return figure
 
@@ -303,14 +278,13 @@ def turning_over() -> Figure:
     for k, (color, line, width) in enumerate(looks):
         above.plot(t, w[:, k], color=color, linestyle=line, linewidth=width)
     above.axhline(0.0, color=PALETTE["black"], linewidth=0.8)
-    above.set_title("No torque, and yet the body flips over")
-    above.set_ylabel("angular velocity (rad/s)")
+    above.set(ylabel="angular velocity (rad/s)", title="No torque, and yet the body flips over")
     above.set(xlim=(0, DURATION_S), ylim=(-7.4, 7.4))
-    above.text(0.25, 5.7, "about the middle axis", color=PALETTE["blue"], fontweight="bold", fontsize=8.5)
+    word(above, 0.25, 5.7, "about the middle axis", "blue")
     flip = int(np.flatnonzero(np.diff(np.sign(w[:, 1])))[0])
-    note(above, "flips over", (float(t[flip]), 0.0), (4.0, 2.9), PALETTE["black"])
+    note(above, "flips over", (float(t[flip]), 0.0), (4.0, 2.9))
     late = flip + 35
-    note(above, "the other two", (float(t[late]), w[late, 0]), (4.0, -2.9), PALETTE["black"])
+    note(above, "the other two", (float(t[late]), w[late, 0]), (4.0, -2.9))
     for method in ("explicit_euler", "rk4", "split"):
         _, spins, _ = free_spin(method)
         gained = 100 * (kinetic_energy(INERTIA, spins) / kinetic_energy(INERTIA, spins[0]) - 1)
@@ -325,7 +299,6 @@ def turning_over() -> Figure:
     )  # fmt: skip
     below.set_title("Only explicit Euler adds energy")
     below.set(ylim=(-3, 34), xticks=range(0, 21, 5))
-    below.set_ylabel("energy gained (%)")
-    below.set_xlabel("time (s)")
+    below.set(xlabel="time (s)", ylabel="energy gained (%)")
     title(figure, "A free body flips over by itself, and explicit Euler adds energy each time")
     return figure

@@ -17,7 +17,7 @@ from course.engines.findings import slope
 from course.engines.registry import ENGINES
 from course.engines.results import DEFAULT, TUNED, Row, Setting
 from course.engines.scenarios import BOXES, SCENARIOS
-from course.figures.style import PALETTE, file_of, new_figure, title
+from course.figures.style import INK, PALETTE, file_of, new_figure, title
 
 _DEFAULT: dict[str, Any] = {
     "marker": "o",
@@ -104,14 +104,14 @@ def _frame(axes: Axes, name: str) -> None:
 
 def _key(left: Axes, middle: Axes, right: Axes) -> None:
     for axes, look, words, ink in (
-        (left, _DEFAULT, "as it comes", "#B34F00"),
-        (middle, _TUNED, "well set", "#0072B2"),
+        (left, _DEFAULT, "as it comes", "vermillion"),
+        (middle, _TUNED, "well set", "blue"),
     ):
         axes.plot(2.0 * FLOOR, -1.15, **look)
-        axes.text(6.0 * FLOOR, -1.15, words, color=ink, fontsize=8.5, va="center")
+        axes.text(6.0 * FLOOR, -1.15, words, color=INK[ink], fontsize=8.5, va="center")
     right.plot([1.2 * FLOOR, 8.0 * FLOOR], [-1.15] * 2, color=PALETTE["blue"], linewidth=1.0)
     right.plot(8.0 * FLOOR, -1.15, marker="|", markersize=6, color=PALETTE["blue"])
-    right.text(14.0 * FLOOR, -1.15, "worst phase", color="#0072B2", fontsize=8.5, va="center")
+    right.text(14.0 * FLOOR, -1.15, "worst phase", color=INK["blue"], fontsize=8.5, va="center")
 
 
 # ---
@@ -120,24 +120,16 @@ def _key(left: Axes, middle: Axes, right: Axes) -> None:
 # ``render`` serves ``course engines compare --plot``; ``speed`` draws the reference, for a lesson.
 
 
-@dataclass(frozen=True, slots=True)
-class _Look:
-    """How one engine is drawn everywhere: its hue, a shade dark enough for letters on white, its marker."""
-
-    color: str
-    ink: str
-    marker: str
-
-
+#: How each engine is drawn everywhere: its colour and its marker.
 _LOOKS = {
-    "pymunk": _Look(PALETTE["grey"], "#4A4A4A", "P"),
-    "mujoco": _Look(PALETTE["purple"], "#9C4478", "D"),
-    "ode": _Look(PALETTE["orange"], "#8F6200", "v"),
-    "bullet": _Look(PALETTE["vermillion"], "#B34F00", "s"),
-    "rapier": _Look(PALETTE["green"], "#007A58", "o"),
-    "physx": _Look(PALETTE["blue"], "#0072B2", "^"),
-    "pybullet": _Look(PALETTE["black"], "#000000", "x"),
-    "dart": _Look(PALETTE["sky"], "#1F6F9F", "*"),
+    "pymunk": ("grey", "P"),
+    "mujoco": ("purple", "D"),
+    "ode": ("orange", "v"),
+    "bullet": ("vermillion", "s"),
+    "rapier": ("green", "o"),
+    "physx": ("blue", "^"),
+    "pybullet": ("black", "x"),
+    "dart": ("sky", "*"),
 }
 #: Below this an error is drawn at the foot of the figure, per cent.
 _FLOOR = 1e-11
@@ -225,17 +217,15 @@ def _curve(axes: Axes, engines: list[str], points: list[tuple[float, float]]) ->
     """One line for a group of engines."""
     dt = np.array([dt for dt, _ in points])
     error = np.maximum([e for _, e in points], _FLOOR)
-    color, _ink, marker = _shared(engines)
+    name, marker = _look(engines)
+    color = PALETTE[name]
     axes.loglog(dt, error, color=color, linewidth=1.4 if len(engines) == 1 else 2.2)
     axes.loglog(dt, error, linestyle="none", marker=marker, color=color, markerfacecolor="white")
 
 
-def _shared(engines: list[str]) -> tuple[str, str, str]:
-    """Colour, ink and marker: an engine's own, or black for several."""
-    if len(engines) > 1:
-        return PALETTE["black"], PALETTE["black"], "o"
-    look = _LOOKS[engines[0]]
-    return look.color, look.ink, look.marker
+def _look(engines: list[str]) -> tuple[str, str]:
+    """Colour and marker: an engine's own, or black for several."""
+    return _LOOKS[engines[0]] if len(engines) == 1 else ("black", "o")
 
 
 def _names(figure: Figure, axes: Axes, groups: list[tuple[list[str], list[tuple[float, float]]]]) -> None:
@@ -258,7 +248,7 @@ def _names(figure: Figure, axes: Axes, groups: list[tuple[list[str], list[tuple[
             names[-1] += f": order {order:.1f}"
         words = _wrapped(names)
         level = math.log10(max(lowest[id(points)], _FLOOR))
-        entry = (words, _shared(engines)[1])
+        entry = (words, INK[_look(engines)[0]])
         if blocks and level > blocks[-1][0] - line * _lines(blocks[-1][1]):
             blocks[-1] = (level, [*blocks[-1][1], entry])
         else:
@@ -288,8 +278,7 @@ def _wrapped(names: list[str]) -> str:
 
 
 def _frame_steps(axes: Axes, name: str, points: list[tuple[float, float]]) -> None:
-    axes.set_title(name)
-    axes.set_xlabel("step (s)")
+    axes.set(xlabel="step (s)", title=name)
     axes.margins(x=0.08, y=0.1)
     # A guide for the eye: an error that halves with the step.
     known = sorted({dt for dt, _ in points})
@@ -337,31 +326,21 @@ def _speed(rows: Sequence[Row]) -> Figure:
     figure.subplots_adjust(left=0.115, top=0.885)
     axes = panels[0]
     for engine, points in _costs(rows).items():
-        look = _LOOKS[engine]
+        color = PALETTE[_LOOKS[engine][0]]
         x, y = np.array([p[1] for p in points]), np.maximum([p[2] for p in points], 1e-4)
         if len(points) == 2 and not np.allclose(y[0], y[1], rtol=0.02):
-            axes.annotate(
-                "",
-                xy=(x[1], y[1]),
-                xytext=(x[0], y[0]),
-                arrowprops={
-                    "arrowstyle": "-|>",
-                    "color": look.color,
-                    "linewidth": 1.3,
-                    "shrinkA": 5,
-                    "shrinkB": 4,
-                },
-            )
-            axes.loglog(x[:1], y[:1], "o", color=look.color, markerfacecolor="white", markeredgewidth=1.4)
-            axes.loglog(x[1:], y[1:], "D", color=look.color, markersize=4.5)
+            arrow = {"arrowstyle": "-|>", "color": color, "linewidth": 1.3, "shrinkA": 5, "shrinkB": 4}
+            axes.annotate("", xy=(x[1], y[1]), xytext=(x[0], y[0]), arrowprops=arrow)
+            axes.loglog(x[:1], y[:1], "o", color=color, markerfacecolor="white", markeredgewidth=1.4)
+            axes.loglog(x[1:], y[1:], "D", color=color, markersize=4.5)
         else:
-            axes.loglog(x[:1], y[:1], "D", color=look.color, markersize=4.5)
+            axes.loglog(x[:1], y[:1], "D", color=color, markersize=4.5)
         axes.annotate(
             ENGINES[engine].name,
             (x[0], y[0]),
             xytext=(7, 4),
             textcoords="offset points",
-            color=look.ink,
+            color=INK[_LOOKS[engine][0]],
             fontsize=8.5,
             # A letter stays readable where an arrow crosses it.
             path_effects=[withStroke(linewidth=2.5, foreground="white")],

@@ -74,14 +74,8 @@ def _dynamics(result: Result) -> Figure:
     left.plot(hand[:, 0], hand[:, 1], color=PALETTE["blue"], linewidth=2.6, label="hand, forward run")
     left.plot(result.column("planned_x"), result.column("planned_y"), color=PALETTE["vermillion"],
               linestyle="--", label="hand, planned")  # fmt: skip
-    left.set(
-        xlabel="x (m)",
-        ylabel="y (m)",
-        title="The hand and the arm",
-        xlim=(-1.6, 2.2),
-        ylim=(-1.9, 1.9),
-        aspect="equal",
-    )
+    left.set(xlabel="x (m)", ylabel="y (m)", title="The hand and the arm")
+    left.set(xlim=(-1.6, 2.2), ylim=(-1.9, 1.9), aspect="equal")
     left.legend(loc="lower left", fontsize=8)
     for k, (color, line) in ((1, _LOOKS[0]), (2, _LOOKS[1])):
         joint = ("shoulder", "elbow")[k - 1]
@@ -122,31 +116,17 @@ def _solver_iterations(result: Result) -> Figure:
     iteration = result.column("iteration")
     for column, (color, line) in zip(stacks, _LOOKS, strict=False):
         boxes = column.name.split("_")[1]
-        needed = int(
-            result.row(
-                next(r.quantity for r in result.rows if r.quantity.endswith(f", {boxes} boxes"))
-            ).simulated
-        )
-        axes.plot(
-            iteration[1:],
-            100 * column.values[1:],
-            color=color,
-            linestyle=line,
-            label=f"{boxes} boxes: {needed}",
-        )
+        needed = int(next(row.simulated for row in result.rows if row.quantity.endswith(f", {boxes} boxes")))
+        label = f"{boxes} boxes: {needed}"
+        axes.plot(iteration[1:], 100 * column.values[1:], color=color, linestyle=line, label=label)
         if needed < iteration.size:
             axes.plot([needed], [100 * column.values[needed]], marker="o", color=color, linestyle="none")
     tolerance = float(result.settings["tolerance"])
     axes.axhline(100 * (1 - tolerance), color=PALETTE["black"], linewidth=0.8)
-    axes.set(
-        xscale="log",
-        xlabel="iterations done (count)",
-        ylabel="share of the weight that\nreaches the ground (%)",
-    )
-    axes.set_ylim(0, 105)
-    axes.legend(
-        loc="center left", bbox_to_anchor=(1.0, 0.5), title=f"iterations to\n{100 * (1 - tolerance):g} %"
-    )
+    axes.set(xscale="log", ylim=(0, 105))
+    axes.set(xlabel="iterations done (count)", ylabel="share of the weight that\nreaches the ground (%)")
+    until = f"iterations to\n{100 * (1 - tolerance):g} %"
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), title=until)
     figure.subplots_adjust(left=0.14, right=0.76)
     return figure
 
@@ -180,10 +160,12 @@ def _contact_models(result: Result) -> Figure:
     figure, (left, right) = new_figure(3.3, 1, 2)
     phase = result.column("phase")
     # Without correction and with split impulse the velocities are the same, unless a bounce is that slow.
-    looks = (("erp", "ERP in the velocity"), ("split", "split impulse"), ("none", "no correction"))
-    for (name, label), (color, line) in zip(
-        looks, (("vermillion", "--"), ("sky", "-"), ("blue", ":")), strict=True
-    ):
+    looks = (
+        ("erp", "ERP in the velocity", "vermillion", "--"),
+        ("split", "split impulse", "sky", "-"),
+        ("none", "no correction", "blue", ":"),
+    )
+    for name, label, color, line in looks:
         style: dict[str, Any] = {"color": PALETTE[color], "linestyle": line, "linewidth": 2.2, "label": label}
         left.plot(phase, result.column(f"rebound_{name}"), **style)
         right.plot(phase, result.column(f"kept_{name}"), **style)
@@ -223,14 +205,8 @@ def _free_fall(result: Result) -> Figure:
     left.legend(loc="lower left")
     for name, look in METHODS.items():
         wide = 3.2 if name == "velocity_verlet" else 1.6  # the dashes of Runge-Kutta lie on top of it
-        right.plot(
-            t,
-            result.column(f"error_{name}"),
-            color=look.color,
-            linestyle=look.line,
-            linewidth=wide,
-            label=look.name,
-        )
+        error = result.column(f"error_{name}")
+        right.plot(t, error, color=look.color, linestyle=look.line, linewidth=wide, label=look.name)
     right.set(xlabel="time (s)", ylabel="height less theory (m)", title="Without ground")
     right.legend(loc="upper left")
     low, high = right.get_ylim()

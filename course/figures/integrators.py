@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from course.figures.style import METHODS, PALETTE, new_figure, note, title
+from course.figures.style import METHODS, PALETTE, new_figure, note, ring, title
 from course.physics.integrators import STEPPERS, State, Trajectory, trajectory
 from course.physics.invariants import energy, jacobian, relative_change, spectral_radius
 from course.physics.systems import Oscillator
@@ -53,15 +53,10 @@ def phase_portraits() -> Figure:
         shown = slice(0, 6 if leaves else None)
         line = "-" if leaves else "none"
         axes.plot(
-            q[shown],
-            p[shown],
-            color=look.color,
-            linestyle=line,
-            linewidth=0.8,
-            marker=look.marker,
-            markersize=3,
-        )
-        axes.plot(q[0], p[0], marker="o", markersize=9, markerfacecolor="none", color=PALETTE["black"])
+            q[shown], p[shown], color=look.color, linestyle=line, linewidth=0.8,
+            marker=look.marker, markersize=3,
+        )  # fmt: skip
+        ring(axes, q[0], p[0])
         axes.set_title(verdict)
         axes.set(xlim=(-2.2, 2.2), ylim=(-2.2, 2.2), aspect="equal", xticks=range(-2, 3), yticks=range(-2, 3))
         if index % 2 == 0:
@@ -70,8 +65,8 @@ def phase_portraits() -> Figure:
             axes.set_xlabel("position (m)")
         if method == "rk4":
             note(axes, f"step {n}", (q[-1], p[-1]), (-0.55, -0.1), look.ink)
-    note(grid[0], "start", (1.0, 0.0), (1.4, 0.75), PALETTE["black"])
-    note(grid[0], "exact", (-0.70, 0.71), (-1.7, 1.5), PALETTE["black"])
+    note(grid[0], "start", (1.0, 0.0), (1.4, 0.75))
+    note(grid[0], "exact", (-0.70, 0.71), (-1.7, 1.5))
     title(figure, "Two methods keep a spring on a closed curve; two do not")
     return figure
 
@@ -103,17 +98,11 @@ def energy_error(z: float = ENERGY_Z, n: int = 3000) -> Figure:
         axes.plot(steps[: worst.size], worst, color=look.color, linestyle=look.line)
         axes.text(*place, look.name, color=look.ink, fontweight="bold")
     met = crossing(z, n)
-    axes.plot([met], [z * z / 4], marker="o", markersize=9, markerfacecolor="none", color="black")
-    note(
-        axes,
-        f"after {met} steps (about 18/z⁴)\nVerlet has the smaller error",
-        (met, z * z / 4),
-        (met * 0.75, 6e-3),
-        PALETTE["black"],
-    )
+    ring(axes, met, z * z / 4)
+    told = f"after {met} steps (about 18/z⁴)\nVerlet has the smaller error"
+    note(axes, told, (met, z * z / 4), (met * 0.75, 6e-3))
     axes.set(xscale="log", yscale="log", xlim=(1, n), ylim=(1e-4, 1e2))
-    axes.set_xlabel(f"steps taken (step × ω = {z:g})")
-    axes.set_ylabel("largest energy error so far (share of E₀)")
+    axes.set(xlabel=f"steps taken (step × ω = {z:g})", ylabel="largest energy error so far (share of E₀)")
     title(figure, "Verlet's energy error stops growing; that of Runge-Kutta never does")
     return figure
 
@@ -133,16 +122,9 @@ def error_against_step() -> Figure:
         hs, errors = _errors_at_end(method, 20 * 2 ** np.arange(doublings), 5.0)
         axes.plot(hs, errors, color=look.color, linestyle=look.line, marker=look.marker)
         axes.text(x, y, f"{look.name}: {slope}", color=look.ink, fontweight="bold")
-    note(
-        axes,
-        "round-off: from here\nsmaller steps do not help",
-        (2.44e-4, 5e-15),
-        (7e-4, 1e-15),
-        PALETTE["black"],
-    )
+    note(axes, "round-off: from here\nsmaller steps do not help", (2.44e-4, 5e-15), (7e-4, 1e-15))
     axes.set(xscale="log", yscale="log", xlim=(1e-4, 0.4), ylim=(3e-16, 2e2))
-    axes.set_xlabel("step h (s), for ω = 2 rad/s")
-    axes.set_ylabel("error of position and velocity at t = 5 s (m)")
+    axes.set(xlabel="step h (s), for ω = 2 rad/s", ylabel="error of position and velocity at t = 5 s (m)")
     title(figure, "Halve the step and the error falls 2, 2, 4 or 16 times, down to round-off")
     return figure
 
@@ -180,8 +162,7 @@ def stability() -> Figure:
     axes.axhspan(1.0, 2.2, color=PALETTE["vermillion"], alpha=0.06, linewidth=0)
     _name_limits(axes)
     axes.set(xlim=(0, 3.2), ylim=(0.4, 2.2))
-    axes.set_xlabel("step × ω (z, no unit)")
-    axes.set_ylabel("growth of the swing per step (factor)")
+    axes.set(xlabel="step × ω (z, no unit)", ylabel="growth of the swing per step (factor)")
     title(figure, "Past its limit a method blows up; explicit Euler has no safe step")
     return figure
 

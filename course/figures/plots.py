@@ -1,7 +1,7 @@
 """Draws figures that are described as data, in the house style."""
 
 import math
-from typing import Any
+from typing import Any, assert_never
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,7 +14,7 @@ from course.figures.style import PALETTE, file_of, new_figure, title
 
 _PANEL_IN = 2.3
 #: Colour, line and marker go together, so that no two curves differ by colour alone.
-_LOOKS = (
+_LOOKS: tuple[tuple[str, Any, str], ...] = (
     (PALETTE["blue"], "-", "o"),
     (PALETTE["vermillion"], "--", "s"),
     (PALETTE["green"], "-.", "^"),
@@ -54,8 +54,7 @@ def _draw_panel(ax: Axes, panel: Panel) -> None:
         ax.set_yscale("log")
     looks = iter(_LOOKS * (1 + len(panel.series) // len(_LOOKS)))
     for series in panel.series:
-        look = (PALETTE["grey"], "-", ".") if series.quiet else next(looks)
-        _DRAW[series.kind](ax, series, look, series.name or None)
+        _draw_series(ax, series, *((PALETTE["grey"], "-", ".") if series.quiet else next(looks)))
     ax.set_xlabel(panel.x_label)
     ax.set_ylabel(panel.y_label)
     if panel.title:
@@ -92,64 +91,31 @@ def _crosses(line: Line2D, box: Bbox) -> bool:
     return bool(path.intersects_bbox(box, filled=False))
 
 
-def _xy(series: Series) -> tuple[Any, Any]:
-    return np.asarray(series.x), np.asarray(series.y, dtype=float)
-
-
-def _line(ax: Axes, series: Series, look: Any, label: str | None) -> None:
-    ax.plot(
-        *_xy(series), color=look[0], linestyle=look[1], linewidth=0.9 if series.quiet else 1.6, label=label
-    )
-
-
-def _steps(ax: Axes, series: Series, look: Any, label: str | None) -> None:
-    ax.step(*_xy(series), where="post", color=look[0], linestyle=look[1], label=label)
-
-
-def _points(ax: Axes, series: Series, look: Any, label: str | None) -> None:
-    ax.plot(*_xy(series), color=look[0], linestyle="none", marker=look[2], label=label)
-
-
-def _band(ax: Axes, series: Series, look: Any, label: str | None) -> None:
-    x, low = _xy(series)
-    ax.fill_between(
-        x, low, np.asarray(series.high, dtype=float), color=look[0], alpha=0.2, linewidth=0, label=label
-    )
-
-
-def _interval(ax: Axes, series: Series, look: Any, label: str | None) -> None:
-    x, y = _xy(series)
+def _draw_series(ax: Axes, series: Series, color: str, line: Any, marker: str) -> None:
+    label = series.name or None
+    x, y = np.asarray(series.x), np.asarray(series.y, dtype=float)
     low = y if series.low is None else np.asarray(series.low, dtype=float)
     high = y if series.high is None else np.asarray(series.high, dtype=float)
-    # The reader should see a value outside its own interval; matplotlib would refuse it.
-    # One broken line, because a legend keeps clear of lines but not of what vlines would draw.
-    ends = np.column_stack([low, high, np.full(len(x), np.nan)]).ravel()
-    ax.plot(np.repeat(x, 3), ends, color=look[0], linewidth=2.2, alpha=0.7)
-    ax.plot(x, y, color=look[0], linestyle="none", marker=look[2], label=label)
-
-
-def _bars(ax: Axes, series: Series, look: Any, label: str | None) -> None:
-    x, y = _xy(series)
-    width = 0.8 * float(np.min(np.diff(x))) if x.dtype.kind in "fiu" and len(x) > 1 else 0.8
-    ax.bar(x, y, width=width, color=look[0], alpha=0.85, label=label)
-
-
-def _level(ax: Axes, series: Series, look: Any, label: str | None) -> None:
-    ax.axhline(
-        float(np.ravel(np.asarray(series.y, dtype=float))[0]),
-        color=look[0],
-        linestyle="--",
-        linewidth=1,
-        label=label,
-    )
-
-
-_DRAW = {
-    "line": _line,
-    "steps": _steps,
-    "points": _points,
-    "band": _band,
-    "interval": _interval,
-    "bars": _bars,
-    "level": _level,
-}
+    match series.kind:
+        case "line":
+            width = 0.9 if series.quiet else 1.6
+            ax.plot(x, y, color=color, linestyle=line, linewidth=width, label=label)
+        case "steps":
+            ax.step(x, y, where="post", color=color, linestyle=line, label=label)
+        case "points":
+            ax.plot(x, y, color=color, linestyle="none", marker=marker, label=label)
+        case "band":
+            ax.fill_between(x, y, high, color=color, alpha=0.2, linewidth=0, label=label)
+        case "interval":
+            # The reader should see a value outside its own interval; matplotlib would refuse it.
+            # One broken line, because a legend keeps clear of lines but not of what vlines would draw.
+            ends = np.column_stack([low, high, np.full(len(x), np.nan)]).ravel()
+            ax.plot(np.repeat(x, 3), ends, color=color, linewidth=2.2, alpha=0.7)
+            ax.plot(x, y, color=color, linestyle="none", marker=marker, label=label)
+        case "bars":
+            width = 0.8 * float(np.min(np.diff(x))) if x.dtype.kind in "fiu" and len(x) > 1 else 0.8
+            ax.bar(x, y, width=width, color=color, alpha=0.85, label=label)
+        case "level":
+            ax.axhline(float(np.ravel(y)[0]), color=color, linestyle="--", linewidth=1, label=label)
+        case _:
+            assert_never(series.kind)

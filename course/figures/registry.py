@@ -69,11 +69,8 @@ def build(figure_id: str) -> Figure:
         NotFoundError: no figure has this id.
     """
     if figure_id not in FIGURES:
-        raise NotFoundError(
-            f"There is no figure {figure_id!r}.",
-            help=f"The figures are {', '.join(figure_ids())}.",
-            code="figure_not_found",
-        )
+        help_ = f"The figures are {', '.join(figure_ids())}."
+        raise NotFoundError(f"There is no figure {figure_id!r}.", help=help_, code="figure_not_found")
     from course.figures.style import house_style
 
     module, function = FIGURES[figure_id]
@@ -97,9 +94,7 @@ def save(figure_id: str, folder: Path) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
         path.write_bytes(picture)
     except OSError as error:
-        raise UsageError(
-            f"The figure cannot be written to {path}: {error.strerror or error}.",
-            help="Name a folder you may write to: --figures DIR.",
-            code="figures_not_writable",
-        ) from error
+        problem = f"The figure cannot be written to {path}: {error.strerror or error}."
+        help_ = "Name a folder you may write to: --figures DIR."
+        raise UsageError(problem, help=help_, code="figures_not_writable") from error
     return path

@@ -15,7 +15,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
-from course.figures.style import PALETTE, new_figure, note, title
+from course.figures.style import PALETTE, new_figure, note, title, word
 from course.physics.dynamics import HandPath, TwoLinkArm
 from course.physics.integrators import RK4, State, trajectory
 
@@ -88,8 +88,7 @@ def standing() -> Figure:
 def _map(axes: Axes, kp: Array, kd: Array, what: NDArray[np.int_], heading: str) -> None:
     colors = ListedColormap(["#F1F1F1", PALETTE["orange"], PALETTE["blue"]])
     axes.pcolormesh(kp, kd, what, cmap=colors, vmin=0, vmax=2, shading="nearest")
-    axes.set_title(heading)
-    axes.set_xlabel("reaction to the lean (N m/rad)")
+    axes.set(xlabel="reaction to the lean (N m/rad)", title=heading)
     axes.set(xlim=(38, 3038), ylim=(12, 1012), xticks=range(500, 3000, 500))
     axes.grid(visible=False)
 
@@ -163,10 +162,8 @@ def planned() -> Figure:
     for k, pose in enumerate(poses):
         elbow, hand = _ARM.elbow(pose), _ARM.hand(pose)
         strong = k in (0, len(poses) - 1)
-        color = PALETTE["black"] if strong else "#A9A9A9"
-        left.plot(
-            [0, elbow[0], hand[0]], [0, elbow[1], hand[1]], color=color, linewidth=1.6 if strong else 0.9
-        )
+        color, width = (PALETTE["black"], 1.6) if strong else ("#A9A9A9", 0.9)
+        left.plot([0, elbow[0], hand[0]], [0, elbow[1], hand[1]], color=color, linewidth=width)
         left.plot(*hand, marker="o", color=PALETTE["vermillion"])
     left.plot([START[0], END[0]], [START[1], END[1]], color=PALETTE["vermillion"], linewidth=1.0)
     left.plot(0, 0, marker="s", color=PALETTE["black"], markersize=7)
@@ -174,21 +171,17 @@ def planned() -> Figure:
     left.text(1.28, -0.9, "start", fontsize=8.5)
     left.text(0.52, 1.3, "end", fontsize=8.5)
     left.set(xlim=(-1.0, 2.0), ylim=(-1.5, 1.6), aspect="equal")
-    left.set_title("The hand: a straight line")
-    left.set_xlabel("x (m)")
-    left.set_ylabel("y (m)")
+    left.set(xlabel="x (m)", ylabel="y (m)", title="The hand: a straight line")
     t = np.linspace(0.0, 1.0, 101)
     q = np.degrees(plan.joints(_ARM, t)[0])
     right.plot(t, q[:, 0], color=PALETTE["blue"])
     right.plot(t, q[:, 1], color=PALETTE["green"], linestyle="--")
-    right.text(0.63, -40.0, "shoulder", color=PALETTE["blue"], fontweight="bold", fontsize=8.5)
-    right.text(0.05, 99.0, "elbow", color="#007A58", fontweight="bold", fontsize=8.5)
+    word(right, 0.63, -40.0, "shoulder", "blue")
+    word(right, 0.05, 99.0, "elbow", "green")
     most = int(np.argmax(q[:, 1]))
-    note(right, "bends, then\nstraightens", (float(t[most]), float(q[most, 1])), (0.44, 62), PALETTE["black"])
+    note(right, "bends, then\nstraightens", (float(t[most]), float(q[most, 1])), (0.44, 62))
     right.set(xlim=(0, 1), ylim=(-90, 145), yticks=range(-90, 136, 45))
-    right.set_title("The joints: curved paths")
-    right.set_xlabel("time (s)")
-    right.set_ylabel("joint angle (degrees)")
+    right.set(xlabel="time (s)", ylabel="joint angle (degrees)", title="The joints: curved paths")
     title(figure, "On a straight line of the hand the joints turn back and forth")
     return figure
 
@@ -202,14 +195,13 @@ def torques() -> Figure:
         q, v, a = path(duration).joints(_ARM, share * duration)
         left.plot(share, _ARM.inverse(q, v, a)[:, 0], color=PALETTE[color], linestyle=line)
     left.plot(share, _ARM.inverse(q, 0 * v, 0 * a)[:, 0], color=PALETTE["black"], linewidth=0.9)
-    left.text(0.5, 76.0, "in 0.5 s", color="#B34F00", fontweight="bold", fontsize=8.5)
-    left.text(0.70, -14.0, "in 1 s", color=PALETTE["blue"], fontweight="bold", fontsize=8.5)
-    left.text(0.02, -1.5, "in 2 s", color="#007A58", fontweight="bold", fontsize=8.5)
-    note(left, "to hold\nits weight", (0.8, 12.9), (0.7, 33), PALETTE["black"])
+    word(left, 0.5, 76.0, "in 0.5 s", "vermillion")
+    word(left, 0.70, -14.0, "in 1 s", "blue")
+    word(left, 0.02, -1.5, "in 2 s", "green")
+    note(left, "to hold\nits weight", (0.8, 12.9), (0.7, 33))
     left.set(xlim=(0, 1), ylim=(-70, 90))
     left.set_title("Inverse: what it takes")
-    left.set_xlabel("share of the duration (1)")
-    left.set_ylabel("shoulder torque (N m)")
+    left.set(xlabel="share of the duration (1)", ylabel="shoulder torque (N m)")
     for load, feedback, line, color, width in (
         (0.0, False, "-", "blue", 3.2),
         (0.01, False, "--", "purple", 1.6),
@@ -221,15 +213,13 @@ def torques() -> Figure:
         right.plot(*hand[-1], marker="o", color=PALETTE[color])
     right.plot(*END, marker="o", markersize=10, markerfacecolor="none", color=PALETTE["black"])
     for x, y, text, color in (
-        (-0.5, 0.1, "bare arm;\n0.1 kg with\nfeedback", PALETTE["blue"]),
-        (1.05, 0.75, "0.01 kg more", "#9C4478"),
-        (1.35, 0.08, "0.1 kg more", "#B34F00"),
+        (-0.5, 0.1, "bare arm;\n0.1 kg with\nfeedback", "blue"),
+        (1.05, 0.75, "0.01 kg more", "purple"),
+        (1.35, 0.08, "0.1 kg more", "vermillion"),
     ):
-        right.text(x, y, text, color=color, fontweight="bold", fontsize=8.5)
+        word(right, x, y, text, color)
     right.set(xlim=(-0.6, 2.4), ylim=(-1.6, 1.6), aspect="equal")
-    right.set_title("Forward: what happens")
-    right.set_xlabel("x of the hand (m)")
-    right.set_ylabel("y of the hand (m)")
+    right.set(xlabel="x of the hand (m)", ylabel="y of the hand (m)", title="Forward: what happens")
     title(figure, "Faster motion needs more torque, and a forgotten load spoils the plan")
     return figure
 
@@ -256,32 +246,23 @@ def wall() -> Figure:
         pose = np.array([-bend / 2, bend])
         back = 2.0 - float(_ARM.hand(pose)[0])
         elbow, hand = _ARM.elbow(pose), _ARM.hand(pose)
-        left.plot(
-            np.array([0, elbow[0], hand[0]]) + back,
-            np.array([0, elbow[1], hand[1]]) + lift,
-            color=PALETTE[color],
-            linestyle=line,
-            marker="o",
-        )
+        x, y = np.array([0, elbow[0], hand[0]]) + back, np.array([0, elbow[1], hand[1]]) + lift
+        left.plot(x, y, color=PALETTE[color], linestyle=line, marker="o")
         left.plot(back, lift, color=PALETTE["black"], marker="s", markersize=7)
         left.text(back, lift + 0.15, f"bent by {degrees}°", fontsize=8.5)
     left.axvspan(2.0, 2.2, color="#C9C9C9")
     left.text(1.97, 1.7, "wall", fontsize=8.5, ha="right")
     left.set(xlim=(-0.4, 2.2), ylim=(-1.4, 2.0))
-    left.set_title("The arm meets a wall")
-    left.set_xlabel("x (m)")
-    left.set_ylabel("y (m)")
+    left.set(xlabel="x (m)", ylabel="y (m)", title="The arm meets a wall")
     bends = np.radians(np.linspace(1.0, 150.0, 400))
     right.plot(np.degrees(bends), felt(bends), color=PALETTE["blue"])
     right.axhline(2.0, color=PALETTE["black"], linewidth=0.9, linestyle=":")
     right.text(147, 2.35, "the arm weighs 2 kg", fontsize=8.5, ha="right")
     ten = float(felt(math.radians(10.0)))
-    note(right, "10 kg\nat 10°", (10.0, ten), (30, 30), PALETTE["black"])
+    note(right, "10 kg\nat 10°", (10.0, ten), (30, 30))
     right.set(yscale="log", xlim=(0, 150), ylim=(0.3, 1500), xticks=range(0, 151, 30))
     right.set_yticks([1, 10, 100, 1000], ["1", "10", "100", "1000"])
-    right.set_title("What the wall feels")
-    right.set_xlabel("bend of the elbow (degrees)")
-    right.set_ylabel("mass felt (kg)")
+    right.set(xlabel="bend of the elbow (degrees)", ylabel="mass felt (kg)", title="What the wall feels")
     title(figure, "A bent arm gives way, a straight one hits with all it is bolted to")
     return figure
 
@@ -329,18 +310,17 @@ def stop(
     return distance
 
 
-def bounce(h: float, *, speed: float = 3.0, tilt: float = 0.0, stiffness: float = 1e5) -> float:
-    """Height that a foot of 1 kg rebounds to, m, by semi-implicit Euler; its contact is a stiff spring.
+def bounce(h: float, *, speed: float = 3.0, tilt: float = 0.0) -> float:
+    """Height that a foot of 1 kg rebounds to, m, by semi-implicit Euler; its contact is a spring of 1e5 N/m.
 
     Args:
         h: step, s.
         speed: at which it lands, m/s.
         tilt: of the floor, rad; turns the rebound by twice as much.
-        stiffness: of the contact, N/m.
     """
     depth, velocity = 0.0, -speed
     while depth < 0.0 or velocity < 0.0:
-        velocity -= h * (_GRAVITY + stiffness * min(depth, 0.0))
+        velocity -= h * (_GRAVITY + 1e5 * min(depth, 0.0))
         depth += h * velocity
     return (velocity * math.cos(2.0 * tilt)) ** 2 / (2.0 * _GRAVITY)
 

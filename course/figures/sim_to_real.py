@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
-from course.figures.style import PALETTE, new_figure, note, title
+from course.figures.style import INK, PALETTE, new_figure, note, ring, title, word
 from course.physics.dynamics import PassiveArm, TwoLinkArm
 from course.physics.integrators import RK4, State, trajectory
 from course.physics.solver import Chain
@@ -68,36 +68,22 @@ def chosen_gains() -> dict[str, float]:
 def settling() -> Figure:
     """Settling time over gain: in a perfect simulation, in randomised ones and on the real joint."""
     figure, (axes,) = new_figure(4.2)
-    looks = {
-        "perfect": (PALETTE["vermillion"], ":", "#B34F00"),
-        "wide": (PALETTE["purple"], "-.", "#9C4478"),
-        "matched": (PALETTE["blue"], "--", "#0072B2"),
-    }
+    looks = {"perfect": ("vermillion", ":"), "wide": ("purple", "-."), "matched": ("blue", "--")}
     real = settles(GAINS, *REAL)[:, 0]
     axes.plot(GAINS, real, color=PALETTE["black"], linewidth=2.0)
-    for world, (color, line, _) in looks.items():
-        axes.plot(GAINS, _mean_time(world), color=color, linestyle=line)
+    for world, (color, line) in looks.items():
+        axes.plot(GAINS, _mean_time(world), color=PALETTE[color], linestyle=line)
     for world, gain in chosen_gains().items():
         if world != "real":
             on_real = float(real[np.flatnonzero(gain == GAINS)[0]])
-            color = looks[world][0]
-            axes.plot(
-                gain,
-                on_real,
-                marker="o",
-                markersize=9,
-                markerfacecolor="none",
-                color=color,
-                markeredgewidth=2,
-            )
-    axes.text(13.3, 0.36, "perfect simulation", color="#B34F00", fontweight="bold")
-    axes.text(5.4, 2.42, "randomised far too wide", color="#9C4478", fontweight="bold")
-    axes.text(6.2, 1.32, "randomised\nas measured", color="#0072B2", fontweight="bold")
-    note(axes, "the real joint", (14.5, 1.33), (15.8, 0.95), PALETTE["black"])
+            ring(axes, gain, on_real, looks[world][0], markeredgewidth=2)
+    axes.text(13.3, 0.36, "perfect simulation", color=INK["vermillion"], fontweight="bold")
+    axes.text(5.4, 2.42, "randomised far too wide", color=INK["purple"], fontweight="bold")
+    axes.text(6.2, 1.32, "randomised\nas measured", color=INK["blue"], fontweight="bold")
+    note(axes, "the real joint", (14.5, 1.33), (15.8, 0.95))
     axes.set(xlim=(0, 20.6), ylim=(0, 3.15), xticks=range(0, 21, 5))
     axes.text(6.1, 0.06, "circles: the gain each world prefers, on the real joint", fontsize=8.5)
-    axes.set_xlabel("gain (1/s)")
-    axes.set_ylabel("time to settle (s); the run ends at 3")
+    axes.set(xlabel="gain (1/s)", ylabel="time to settle (s); the run ends at 3")
     title(figure, "What is best in a perfect simulation is worst on the real joint")
     return figure
 
@@ -166,26 +152,26 @@ def following() -> Figure:
     figure, (upper, lower) = new_figure(5.6, 2, 1, sharex=True)
     figure.subplots_adjust(hspace=0.26)
     looks = (
-        ("model", PALETTE["vermillion"], ":", "#B34F00", "never corrected: digital model", (26, 0.62)),
-        ("state", PALETTE["blue"], "--", "#0072B2", "position corrected: digital shadow", (23, 0.075)),
-        ("learning", PALETTE["green"], "-", "#007A58", "friction corrected too", (27, 0.0011)),
+        ("model", "vermillion", ":", "never corrected: digital model", (26, 0.62)),
+        ("state", "blue", "--", "position corrected: digital shadow", (23, 0.075)),
+        ("learning", "green", "-", "friction corrected too", (27, 0.0011)),
     )
     window = np.ones(20) / 20  # a second, so that the noise of single measurements does not fill the panel
-    for name, color, line, ink, words, place in looks:
+    for name, color, line, words, place in looks:
         size = np.sqrt(np.convolve(run[name] ** 2, window, "valid"))
-        upper.plot(t[19:], size, color=color, linestyle=line)
-        upper.text(*place, words, color=ink, fontweight="bold", fontsize=8.5)
+        upper.plot(t[19:], size, color=PALETTE[color], linestyle=line)
+        word(upper, *place, words, color)
     upper.set(yscale="log", ylim=(8e-4, 40), ylabel="off by (m, mean of 1 s)")
     upper.set_title("Where is the cart?")
     lower.plot(t, speeds["fixed"], color=PALETTE["purple"], linestyle="-.")
     lower.plot(t, speeds["twin"], color=PALETTE["green"])
-    lower.text(36, 0.66, "drive as planned", color="#9C4478", fontweight="bold", fontsize=8.5)
-    lower.text(36, 1.025, "drive set by the twin", color="#007A58", fontweight="bold", fontsize=8.5)
+    word(lower, 36, 0.66, "drive as planned", "purple")
+    word(lower, 36, 1.025, "drive set by the twin", "green")
     lower.set(xlim=(0, 60), ylim=(0.55, 1.12), xlabel="time (s)", ylabel="speed (m/s)")
     lower.set_title("How fast does it go?")
     for axes in (upper, lower):
         axes.axvline(WEAR_AT, color=PALETTE["black"], linewidth=0.8)
-    note(lower, "the wheels start to rub", (WEAR_AT, 0.8), (3, 0.65), PALETTE["black"])
+    note(lower, "the wheels start to rub", (WEAR_AT, 0.8), (3, 0.65))
     title(figure, "Measurements keep a copy close; commands restore the robot's speed")
     return figure
 
@@ -223,14 +209,13 @@ def small_steps() -> Figure:
     for kind, line, marker, color in ((np.float64, "-", "s", "blue"), (np.float32, "--", "o", "vermillion")):
         errors = [_typical_error(float(h), kind) for h in steps]
         axes.plot(steps, errors, color=PALETTE[color], linestyle=line, marker=marker)
-    axes.text(1.3e-4, 3.5e-4, "double precision", color=PALETTE["blue"], fontweight="bold", fontsize=8.5)
-    axes.text(4.4e-6, 3.2e-1, "single precision", color="#B34F00", fontweight="bold", fontsize=8.5)
+    word(axes, 1.3e-4, 3.5e-4, "double precision", "blue")
+    word(axes, 4.4e-6, 3.2e-1, "single precision", "vermillion")
     best = float(min(steps, key=lambda h: _typical_error(float(h), np.float32)))
     lowest = (best, _typical_error(best, np.float32))
-    note(axes, "best step in\nsingle precision", lowest, (2.2e-4, 3e-2), PALETTE["black"])
+    note(axes, "best step in\nsingle precision", lowest, (2.2e-4, 3e-2))
     axes.set(xscale="log", yscale="log", xlim=(3e-6, 0.2), ylim=(2e-5, 3))
-    axes.set_xlabel("step h (s)")
-    axes.set_ylabel("error of the height after 2 s (m)")
+    axes.set(xlabel="step h (s)", ylabel="error of the height after 2 s (m)")
     title(figure, "In single precision a step can be too small: rounding takes over")
     return figure
 
@@ -252,14 +237,11 @@ def substeps() -> Figure:
         places, [100 * stretch for _, _, stretch in rows], color=PALETTE["sky"], edgecolor=PALETTE["blue"]
     )
     for x, (_, _, stretch) in zip(places, rows, strict=True):
-        axes.text(
-            x, 100 * stretch + 0.15, f"{100 * stretch:.1f} %", ha="center", fontsize=8.5, fontweight="bold"
-        )
+        word(axes, x, 100 * stretch + 0.15, f"{100 * stretch:.1f} %", ha="center")
     axes.set_xticks(places, [f"{s} × {i}" for s, i, _ in rows])
     axes.set(ylim=(0, 9.6))
     axes.grid(visible=False, axis="x")
-    axes.set_xlabel("substeps × iterations (number each frame)")
-    axes.set_ylabel("greatest stretch of a link (%)")
+    axes.set(xlabel="substeps × iterations (number each frame)", ylabel="greatest stretch of a link (%)")
     title(figure, "For the same work, many small steps beat many iterations")
     return figure
 
@@ -303,19 +285,16 @@ def chaos() -> Figure:
     for level, text, place in ((1e-3, "a thousandth", (0.4, 3e-2)), (1.0, "1 rad", (4.2, 2.0e1))):
         when = float(t[np.argmax(apart > level)])
         left.plot([when], [level], marker="o", color=PALETTE["black"])
-        note(left, f"{text}\nat {when:.1f} s", (when, level), place, PALETTE["black"])
+        note(left, f"{text}\nat {when:.1f} s", (when, level), place)
     left.set(yscale="log", xlim=(0, 15), ylim=(1e-10, 1e3))
-    left.set_title("Two paths drift apart")
-    left.set_xlabel("time (s)")
-    left.set_ylabel("difference of the angles (rad)")
+    left.set(xlabel="time (s)", ylabel="difference of the angles (rad)", title="Two paths drift apart")
     edges = np.linspace(-180, 180, 19)
     right.stairs(_crowd(0.02), edges, color=PALETTE["vermillion"], linewidth=2.6)
     right.stairs(_crowd(0.01), edges, color=PALETTE["black"], linewidth=1.2, linestyle="--")
-    right.text(-170, 9.4, f"{STARTS} starts, step 0.02 s", color="#B34F00", fontweight="bold", fontsize=8.5)
+    word(right, -170, 9.4, f"{STARTS} starts, step 0.02 s", "vermillion")
     right.text(-170, 8.7, "the same, step 0.01 s (dashed)", fontsize=8.5)
     right.set(xlim=(-180, 180), ylim=(0, 10.4), xticks=(-90, 0, 90))
     right.set_title("Two crowds: equal statistics")
-    right.set_xlabel("lower rod from hanging (degrees)")
-    right.set_ylabel("share of the time (%)")
+    right.set(xlabel="lower rod from hanging (degrees)", ylabel="share of the time (%)")
     title(figure, "In chaos no path can be checked, but statistics can be")
     return figure

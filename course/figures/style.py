@@ -29,6 +29,18 @@ PALETTE = {
     "grey": "#6B6B6B",
 }
 
+#: The same hues, dark enough for letters on white (contrast 4.5 to 1 or more).
+INK = {
+    "black": "#000000",
+    "orange": "#8F6200",
+    "sky": "#1F6F9F",
+    "green": "#007A58",
+    "blue": "#0072B2",
+    "vermillion": "#B34F00",
+    "purple": "#9C4478",
+    "grey": "#4A4A4A",
+}
+
 #: Of a figure of page width, 6.5 in, this makes 1170 pixels.
 _FILE_DPI = 180
 #: Nothing in a file but the picture: no dates, no random ids.
@@ -79,7 +91,7 @@ class MethodLook:
 
     Attributes:
         color: of its curve, from PALETTE.
-        ink: the same hue, dark enough for letters on white (contrast 4.5 to 1 or more).
+        ink: of its name, from INK.
     """
 
     name: str
@@ -90,10 +102,10 @@ class MethodLook:
 
 
 METHODS = {
-    "explicit_euler": MethodLook("explicit Euler", PALETTE["vermillion"], "#B34F00", ":", "v"),
-    "semi_implicit_euler": MethodLook("semi-implicit Euler", PALETTE["blue"], "#0072B2", "--", "o"),
-    "velocity_verlet": MethodLook("velocity Verlet", PALETTE["green"], "#007A58", "-", "s"),
-    "rk4": MethodLook("Runge-Kutta 4", PALETTE["purple"], "#9C4478", "-.", "D"),
+    "explicit_euler": MethodLook("explicit Euler", PALETTE["vermillion"], INK["vermillion"], ":", "v"),
+    "semi_implicit_euler": MethodLook("semi-implicit Euler", PALETTE["blue"], INK["blue"], "--", "o"),
+    "velocity_verlet": MethodLook("velocity Verlet", PALETTE["green"], INK["green"], "-", "s"),
+    "rk4": MethodLook("Runge-Kutta 4", PALETTE["purple"], INK["purple"], "-.", "D"),
 }
 
 
@@ -138,7 +150,19 @@ def title(figure: Figure, finding: str) -> None:
     figure.suptitle(finding, x=0.012, y=top, ha="left", va="top", fontsize=10.5, fontweight="bold")
 
 
-def note(axes: Axes, text: str, at: tuple[float, float], place: tuple[float, float], color: str) -> None:
+def word(axes: Axes, x: float, y: float, text: str, ink: str = "black", **more: Any) -> None:
+    """A name beside what it names, in data coordinates; ``ink`` is one of INK."""
+    axes.text(x, y, text, color=INK[ink], fontsize=8.5, fontweight="bold", **more)
+
+
+def ring(axes: Axes, x: float, y: float, color: str = "black", **more: Any) -> None:
+    """An empty circle round a point; ``color`` is one of PALETTE."""
+    axes.plot(x, y, marker="o", markersize=9, markerfacecolor="none", color=PALETTE[color], **more)
+
+
+def note(
+    axes: Axes, text: str, at: tuple[float, float], place: tuple[float, float], color: str = INK["black"]
+) -> None:
     """A remark with a thin line to its point, both in data coordinates."""
     axes.annotate(
         text,

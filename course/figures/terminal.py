@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from course.errors import CourseError
-from course.figures.described import Plot, plot_of, read_curve
+from course.figures.described import plot_of, read_curve
 from course.figures.plots import draw
 from course.figures.registry import build, png
 from course.figures.style import house_style
@@ -47,6 +47,7 @@ _LEAST_ROWS = 8
 _CONTRAST = 4.5
 _MATHS = re.compile(r"\\mathdefault\{([^}]*)\}|\\(?:mathrm|text)\{([^}]*)\}")
 _RAISED = str.maketrans("0123456789-−+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁻⁺")
+_SIGNS = {"omega": "ω", "mu": "μ", "times": "×", "Delta": "Δ", "pi": "π", "theta": "θ"}
 _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
@@ -78,16 +79,6 @@ class TerminalFigure:
     rows: int
     pixels: np.ndarray[Any, np.dtype[np.uint8]]
     labels: tuple[Label, ...]
-
-
-def terminal_figure(figure_id: str, columns: int, rows: int) -> TerminalFigure:
-    """Draw a figure of a lesson for so many cells."""
-    return in_cells(lambda: build(figure_id), columns, rows)
-
-
-def terminal_plot(plot: Plot, columns: int, rows: int) -> TerminalFigure:
-    """Draw a figure that is described as data for so many cells."""
-    return in_cells(lambda: draw(plot), columns, rows)
 
 
 def in_cells(make: Callable[[], Figure], columns: int, rows: int = 0) -> TerminalFigure:
@@ -241,14 +232,7 @@ def _plain(text: str) -> str:
     text = _MATHS.sub(lambda m: m[1] or m[2] or "", text)
     text = re.sub(r"\^\{([^}]*)\}|\^(\w)", lambda m: (m[1] or m[2]).translate(_RAISED), text)
     text = re.sub(r"_\{([^}]*)\}|_(\w)", lambda m: (m[1] or m[2]).translate(_LOWERED), text)
-    for name, sign in (
-        ("omega", "ω"),
-        ("mu", "μ"),
-        ("times", "×"),
-        ("Delta", "Δ"),
-        ("pi", "π"),
-        ("theta", "θ"),
-    ):
+    for name, sign in _SIGNS.items():
         text = text.replace(f"\\{name}", sign)
     return text.replace("$", "").replace("\\", "").replace("{", "").replace("}", "")
 
@@ -258,9 +242,10 @@ def _answer(request: dict[str, Any]) -> dict[str, Any]:
         return {"png": base64.b64encode(png(request["figure"])).decode("ascii")}
     size = request["columns"], request["rows"]
     if "curve" in request:
-        figure = terminal_plot(plot_of(read_curve(request["curve"])), *size)
+        plot = plot_of(read_curve(request["curve"]))
+        figure = in_cells(lambda: draw(plot), *size)
     else:
-        figure = terminal_figure(request["figure"], *size)
+        figure = in_cells(lambda: build(request["figure"]), *size)
     return {
         "pixels": base64.b64encode(figure.pixels.tobytes()).decode("ascii"),
         "labels": [[one.column, one.row, one.text, one.ink, one.bold] for one in figure.labels],

@@ -1,7 +1,5 @@
 """Which notebooks there are, and how each is generated."""
 
-from __future__ import annotations
-
 import ast
 import posixpath
 import re
@@ -9,7 +7,6 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from course.catalog import blocks as b
@@ -25,9 +22,7 @@ from course.reading.parts import with_tasks
 from course.scoring.judging.session import has_report
 from course.scoring.verdict import in_points
 
-if TYPE_CHECKING:
-    Makers = dict[tuple[str, str], tuple[PurePosixPath, Callable[[], bytes]]]
-
+Makers = dict[tuple[str, str], tuple[PurePosixPath, Callable[[], bytes]]]
 
 # ---
 # Where each notebook lies, and how one links to another.
@@ -267,12 +262,9 @@ def exercise_cells(exercise: Exercise, source: str) -> list[Cell]:
             continue
         cells += map(markdown, above.get(part.task, ()))
         cells.append(markdown(_task_heading(tasks[part.task])))
-        cells.append(code(part.text, role=SOLUTION, exercise=exercise.id, task=part.task))
-        cells.append(
-            code(
-                f"%course_check {exercise.id} {part.task}", role="check", exercise=exercise.id, task=part.task
-            )
-        )
+        of = {"exercise": exercise.id, "task": part.task}
+        cells.append(code(part.text, role=SOLUTION, **of))
+        cells.append(code(f"%course_check {exercise.id} {part.task}", role="check", **of))
     cells += map(markdown, last)
     cells.append(markdown(_LAST))
     cells.append(code(f"%course_check {exercise.id}", role="check", exercise=exercise.id))
@@ -367,11 +359,11 @@ def lesson_notebook(catalog: Catalog, lesson_id: str, layout: Layout) -> bytes:
         ContentError: the lesson's file is wrong.
     """
     lesson = catalog.lesson(lesson_id)
-    cells = lesson_cells(catalog, lesson, layout)
+    cells = _lesson_cells(catalog, lesson, layout)
     return document(cells, kind="lesson", id=lesson.id, version=catalog.version)
 
 
-def lesson_cells(catalog: Catalog, lesson: Lesson, layout: Layout) -> list[Cell]:
+def _lesson_cells(catalog: Catalog, lesson: Lesson, layout: Layout) -> list[Cell]:
     """The cells, in reading order; the text between two code cells is one cell for each section."""
     tasks = {one.id: one for one in catalog.warm_ups(lesson.id)}
     blocks = with_tasks(read_blocks(catalog.content.lessons / f"{lesson.id}.md"), tuple(tasks.values()))
@@ -449,6 +441,6 @@ def _described(alt: str) -> str:
 
 def _collapsed(cell: Cell) -> Cell:
     """Code that only makes numbers or pictures starts folded; it still runs."""
-    if cell.metadata.get("course", {}).get("role") not in {"hidden", "figure", "setup"}:
+    if cell.tags.get("role") not in {"hidden", "figure", "setup"}:
         return cell
     return Cell(cell.kind, cell.source, {**cell.metadata, "jupyter": {"source_hidden": True}})

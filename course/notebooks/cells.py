@@ -7,8 +7,6 @@ validation silently replaces duplicates; so ids are made here, and a cell that r
 repetition into its id.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import re

@@ -50,39 +50,36 @@ _STYLE = (
 )
 
 
+@dataclass
 class CheckTable:
     """Checks and what they found; Jupyter shows it as a table, a plain terminal as lines.
 
-    Args:
+    Attributes:
         verdict: on all public checks.
         task: show those of this function only; None shows all.
         note: another sentence to show.
         printed: what the code printed while it was loaded.
         scored: points are shown; a warm-up has none.
         curves: by id of a failed check, the student's curve and the right one; the first is drawn.
-
-    Attributes:
         report: what the code does on public data, shown below; None if there is none.
     """
 
-    def __init__(
-        self,
-        verdict: Verdict,
-        task: str | None,
-        note: str = "",
-        *,
-        printed: str = "",
-        scored: bool = True,
-        curves: Mapping[str, Curve] | None = None,
-    ) -> None:
-        self.report: ReportPage | None = None
-        self._printed = _first_lines(printed)
-        self._scored = scored
-        self.verdict = verdict
-        self.note = note
-        self.checks = tuple(check for check in verdict.checks if task in (None, check.task))
-        self._task = task
-        self._curve = next((curves[check.id] for check in self.checks if curves and check.id in curves), None)
+    verdict: Verdict
+    task: str | None
+    note: str
+    printed: str
+    scored: bool
+    curves: Mapping[str, Curve]
+    report: ReportPage | None = None
+
+    @property
+    def checks(self) -> tuple[CheckResult, ...]:
+        """Those that are shown."""
+        return tuple(check for check in self.verdict.checks if self.task in (None, check.task))
+
+    @property
+    def _curve(self) -> Curve | None:
+        return next((self.curves[check.id] for check in self.checks if check.id in self.curves), None)
 
     @property
     def passed(self) -> bool:
@@ -98,8 +95,8 @@ class CheckTable:
         passing = sum(check.status == "pass" for check in self.checks)
         points = sum(check.points for check in self.checks)
         most = sum(check.max_points for check in self.checks)
-        of = f" of {self._task}" if self._task else ""
-        score = f": {format_points(points)} of {in_points(most)}" if self._scored else ""
+        of = f" of {self.task}" if self.task else ""
+        score = f": {format_points(points)} of {in_points(most)}" if self.scored else ""
         if len(self.checks) == 1:
             return f"The one public check{of} {'passes' if self.passed else 'fails'}{score}."
         if self.passed:
@@ -108,9 +105,9 @@ class CheckTable:
         return f"{passing} of {counted(len(self.checks), 'public check')}{of} {pass_}{score}."
 
     def __repr__(self) -> str:
-        lines = [*self._printed]
-        curve = self._curve.description if self._curve is not None else ""
-        report = repr(self.report) if self.report is not None else ""
+        lines = _first_lines(self.printed)
+        curve = self._curve.description if self._curve else ""
+        report = repr(self.report) if self.report else ""
         below = [text for text in (curve, *self.verdict.warnings, self.note, report) if text]
         for check in self.checks:
             lines.append(f"{_MARKS.get(check.status, '✗')} {check.title}: {check.status}")
@@ -118,21 +115,23 @@ class CheckTable:
         return "\n".join([*lines, self.summary, *below])
 
     def _repr_html_(self) -> str:
-        rows = "".join(_row(check, scored=self._scored) for check in self.checks)
+        rows = "".join(_row(check, scored=self.scored) for check in self.checks)
         table = f'<table class="course-checks">{rows}</table>' if rows else ""
         notes = [note for note in (*self.verdict.warnings, self.note) if note]
         note = "".join(f"<p>{_coded(text)}</p>" for text in notes)
-        printed = f"<pre>{escape(chr(10).join(self._printed))}</pre>" if self._printed else ""
+        lines = "\n".join(_first_lines(self.printed))
+        printed = f"<pre>{escape(lines)}</pre>" if lines else ""
         report = self.report._repr_html_() if self.report is not None else ""
         return f"{_STYLE}{printed}{table}<p><b>{escape(self.summary)}</b></p>{self._drawn()}{note}{report}"
 
     def _drawn(self) -> str:
         """The first curve, and where it leaves the right one."""
-        if self._curve is None:
+        curve = self._curve
+        if curve is None:
             return ""
         # The words stand below the picture; a screen reader must not read them twice.
-        image = image_of(replace(plot_of(self._curve), description="Your curve over the right one."))
-        return f"{image}<p><small>{escape(self._curve.description)}</small></p>"
+        image = image_of(replace(plot_of(curve), description="Your curve over the right one."))
+        return f"{image}<p><small>{escape(curve.description)}</small></p>"
 
 
 def _row(check: CheckResult, *, scored: bool) -> str:
@@ -395,7 +394,9 @@ def _names(cell: CodeCell) -> set[str]:
     }
 
 
-def check(exercise_id: str, task: str | None, source: Source | None, shell: Any = None) -> CheckTable:
+def check(
+    exercise_id: str, task: str | None = None, source: Source | None = None, *, shell: Any = None
+) -> CheckTable:
     """Run the public checks, record the attempt, and show those of one function, or all.
 
     Args:
@@ -410,9 +411,8 @@ def check(exercise_id: str, task: str | None, source: Source | None, shell: Any 
     exercise = catalog.exercise(exercise_id)
     known = [one.id for one in exercise.task]
     if task is not None and task not in known:
-        raise NotFoundError(
-            f"{exercise.id} has no function {task}.", help=f"It has: {', '.join(known)}.", code="no_such_task"
-        )
+        problem = f"{exercise.id} has no function {task}."
+        raise NotFoundError(problem, help=f"It has: {', '.join(known)}.", code="no_such_task")
     if source is None:
         submission = at_hand(shell if shell is not None else _shell(), exercise).submission(exercise)
     else:
@@ -425,7 +425,7 @@ def check(exercise_id: str, task: str | None, source: Source | None, shell: Any 
     return CheckTable(
         made.verdict,
         task,
-        "" if fingerprint(made.source) == fingerprint(stub) else _recorded(catalog, made),
+        note="" if fingerprint(made.source) == fingerprint(stub) else _recorded(catalog, made),
         # A cell that was run has shown what it printed.
         printed=made.printed if source is not None else "",
         scored=not exercise.is_warm_up,
@@ -451,11 +451,9 @@ def _shell() -> Any:
     found = sys.modules.get("IPython")
     shell = found.get_ipython() if found is not None else None
     if shell is None:
-        raise UsageError(
-            "There is no IPython here that knows which cells were run.",
-            help="Say what to check: source=[your_function, ...], source=Path('file.py'), or a text.",
-            code="no_source",
-        )
+        problem = "There is no IPython here that knows which cells were run."
+        fix = "Say what to check: source=[your_function, ...], source=Path('file.py'), or a text."
+        raise UsageError(problem, help=fix, code="no_source")
     return shell
 
 
@@ -488,11 +486,9 @@ def _source(piece: Any) -> str:
     try:
         return textwrap.dedent(inspect.getsource(piece)).strip("\n")
     except (OSError, TypeError) as error:
-        raise UsageError(
-            f"The source of {piece!r:.80} cannot be found.",
-            help="source takes functions and classes that stand in a file or a cell, and texts.",
-            code="no_source",
-        ) from error
+        problem = f"The source of {piece!r:.80} cannot be found."
+        fix = "source takes functions and classes that stand in a file or a cell, and texts."
+        raise UsageError(problem, help=fix, code="no_source") from error
 
 
 # -- the record ------------------------------------------------------------------------------------------

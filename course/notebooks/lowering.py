@@ -4,8 +4,6 @@ JupyterLab itself draws mermaid, mathematics, tables and quotes, offline. Everyt
 turned into one of these.
 """
 
-from __future__ import annotations
-
 import html
 import re
 from collections.abc import Callable

@@ -6,8 +6,6 @@ run again in a process of their own, so a check means the same here, in a termin
 a workspace the attempt is recorded as `course check` records it.
 """
 
-from __future__ import annotations
-
 import ast
 import os
 import re
@@ -21,9 +19,8 @@ from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.errors import CourseError
 from course.handed_in.notebook import SOLUTION
-from course.notebooks import checking
 from course.notebooks.cells import Cell, document
-from course.notebooks.checking import CheckTable, Runs, at_hand
+from course.notebooks.checking import CheckTable, Runs, at_hand, check
 from course.notebooks.show import ReportPage
 from course.scoring.judging.session import check_files, has_report, report_of
 from course.scoring.judging.submission import Submission
@@ -39,7 +36,9 @@ def register(shell: Any) -> None:
         """Run the public checks: %course_check EXERCISE [FUNCTION]; with %% on the cell as a file."""
         words = line.split()
         usage = "" if 1 <= len(words) <= 2 else "Write: %course_check EXERCISE [FUNCTION]"
-        return _told(usage, lambda: check(shell, *words) if cell is None else check_cell(f"{cell}\n", *words))
+        if cell is None:
+            return _told(usage, lambda: check(*words, shell=shell))
+        return _told(usage, lambda: check_cell(f"{cell}\n", *words))
 
     def course_report(line: str) -> ReportPage | None:
         """Show what your functions do on public data: %course_report EXERCISE"""
@@ -107,26 +106,13 @@ def report(shell: Any, exercise_id: str) -> ReportPage:
     return ReportPage(report_of(exercise, catalog, at_hand(shell, exercise).submission(exercise)))
 
 
-def check(shell: Any, exercise_id: str, task: str | None = None) -> CheckTable:
-    """The public checks of an exercise, or of one of its functions, on a notebook.
-
-    Args:
-        shell: of IPython, that runs it.
-
-    Raises:
-        NotFoundError: there is no such exercise or function.
-        UngradableError: there is nothing to check yet.
-    """
-    return checking.check(exercise_id, task, None, shell)
-
-
 def check_cell(text: str, exercise_id: str, task: str | None = None) -> CheckTable:
     """The public checks on a text; where all pass and there is a report, that is shown, too.
 
     Raises:
         NotFoundError: there is no such exercise or function.
     """
-    table = checking.check(exercise_id, task, text)
+    table = check(exercise_id, task, text)
     catalog = Catalog()
     exercise = catalog.exercise(exercise_id)
     if table.passed and has_report(exercise):
@@ -177,7 +163,7 @@ def points(exercise_id: str, task: str) -> float:
     import IPython.display
     from IPython.core.getipython import get_ipython
 
-    table = check(get_ipython(), exercise_id, task)
+    table = check(exercise_id, task, shell=get_ipython())
     show: Callable[..., object] = IPython.display.display  # typed or not, whether it is installed or not
     show(table)
     return float(sum(one.points for one in table.checks))
@@ -202,22 +188,19 @@ def _marked(cell: Cell, worth: Mapping[str, float]) -> Cell:
     role, task = cell.tags.get("role"), cell.tags.get("task", "")
     if role == SOLUTION:
         source = _with_region(cell.source)
-        if source is None:
-            return cell
-        return _with(Cell(cell.kind, source, cell.metadata), f"solution-{task}", solution=True)
+        return cell if source is None else _with(cell, source, f"solution-{task}", solution=True)
     if role == "check" and task in worth:
         source = _CHECK.format(exercise=cell.tags["exercise"], task=task)
-        held = Cell(cell.kind, source, cell.metadata)
-        return _with(held, f"check-{task}", grade=True, locked=True, points=worth[task])
+        return _with(cell, source, f"check-{task}", grade=True, locked=True, points=worth[task])
     if role == "tools":
-        return _with(cell, "tools", locked=True)
+        return _with(cell, cell.source, "tools", locked=True)
     return cell
 
 
-def _with(cell: Cell, grade_id: str, **flags: Any) -> Cell:
+def _with(cell: Cell, source: str, grade_id: str, **flags: Any) -> Cell:
     held = {"grade": False, "solution": False, "locked": False, "task": False, **flags}
     entry = {"schema_version": SCHEMA_VERSION, "grade_id": re.sub(r"[^\w-]", "-", grade_id), **held}
-    return Cell(cell.kind, cell.source, {**cell.metadata, "nbgrader": entry})
+    return Cell(cell.kind, source, {**cell.metadata, "nbgrader": entry})
 
 
 def _with_region(source: str) -> str | None:

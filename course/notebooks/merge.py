@@ -7,8 +7,6 @@ stands above the student's, but for a function or an answer: there the student's
 is not safe, nothing is merged, and the reason is given.
 """
 
-from __future__ import annotations
-
 import ast
 import json
 from dataclasses import dataclass
@@ -104,10 +102,9 @@ def _woven(old: list[_Held], new: list[_Held]) -> list[RawCell]:
             anchor = cell.slot
         elif not cell.slot or cell.edited or cell.slot in kept:
             own.setdefault(anchor, []).append(cell)
-    _must_be_in_order(
-        [slot for slot, cell in kept.items() if cell.is_code],
-        [cell.slot for cell in new if cell.slot in kept and kept[cell.slot].is_code],
-    )
+    before = [slot for slot, cell in kept.items() if cell.is_code]
+    if before != [cell.slot for cell in new if cell.slot in kept and kept[cell.slot].is_code]:
+        raise CannotMergeError("its cells stand in another order")
     cells = [cell.cell for cell in own.get("", [])]
     for cell in new:
         cells += _either(kept.get(cell.slot), cell)
@@ -145,11 +142,6 @@ def _parameters(cell: _Held) -> list[str] | None:
             given = node.args
             return [one.arg for one in (*given.posonlyargs, *given.args, *given.kwonlyargs)]
     return None
-
-
-def _must_be_in_order(old: list[str], new: list[str]) -> None:
-    if old != new:
-        raise CannotMergeError("its cells stand in another order")
 
 
 def _with_own_ids(cells: list[RawCell]) -> list[RawCell]:

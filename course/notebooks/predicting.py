@@ -99,11 +99,9 @@ class LessonPrediction(_Opened):
         super().__init__(lesson_id)
         found = [one for one in self._script.questions if one.number == number]
         if not found:
-            raise NotFoundError(
-                f"{lesson_id} has no prediction {number}.",
-                help=f"It has {len(self._script.questions)}.",
-                code="no_such_prediction",
-            )
+            problem = f"{lesson_id} has no prediction {number}."
+            help_ = f"It has {len(self._script.questions)}."
+            raise NotFoundError(problem, help=help_, code="no_such_prediction")
         self.question: Question = found[0]
         self._answer = answer_of(self._catalog, self._lesson, self._script, self.question)
 

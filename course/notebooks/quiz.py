@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from html import escape
 
 from course.catalog.load import Catalog
@@ -34,14 +35,14 @@ The same questions in one of their variants, without a record. Write the letter 
 quotation marks, run every cell, and run the last one to see which were right and why."""
 
 
-def quiz_notebook(catalog: Catalog, seed: int = SEED) -> bytes:
-    """The notebook file of the quiz, with the questions that ``seed`` draws.
+def quiz_notebook(catalog: Catalog) -> bytes:
+    """The notebook file of the quiz.
 
     Raises:
         NotFoundError: the course has no quiz.
         ContentError: a question is wrong.
     """
-    posed = Bank.of(catalog).pose(seed)
+    posed = Bank.of(catalog).pose(SEED)
     cells = [
         opening(_HEAD.format(mark=mark_sentence(len(posed)))),
         code("from course.notebooks.predicting import take\n\ntake()", role="quiz-take"),
@@ -51,10 +52,9 @@ def quiz_notebook(catalog: Catalog, seed: int = SEED) -> bytes:
     for number, question in enumerate(posed, 1):
         cells += _question(number, len(posed), question)
     cells.append(markdown("## Marks"))
-    cells.append(
-        code(f"from course.notebooks.quiz import marked\n\nmarked({seed}, answers)", role="quiz-marks")
-    )
-    return document(cells, kind="quiz", id="quiz", version=catalog.version, seed=seed)
+    marks = f"from course.notebooks.quiz import marked\n\nmarked({SEED}, answers)"
+    cells.append(code(marks, role="quiz-marks"))
+    return document(cells, kind="quiz", id="quiz", version=catalog.version, seed=SEED)
 
 
 def _question(number: int, total: int, posed: PosedQuestion) -> list[Cell]:
@@ -82,11 +82,11 @@ def marked(seed: int, answers: Mapping[str, str]) -> Marks | None:
     return Marks(mark(posed, {key: str(value).strip() for key, value in answers.items()}))
 
 
+@dataclass(frozen=True)
 class Marks:
     """A scored attempt as Jupyter shows it: each missed question, with every option explained."""
 
-    def __init__(self, result: Result) -> None:
-        self.result = result
+    result: Result
 
     @property
     def summary(self) -> str:

@@ -1,7 +1,5 @@
 """JupyterLab on a folder, for one person at this machine."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import os

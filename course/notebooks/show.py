@@ -1,7 +1,5 @@
 """Functions that the cells of a generated notebook call to show something; none of them needs Jupyter."""
 
-from __future__ import annotations
-
 import base64
 from dataclasses import dataclass
 from html import escape
@@ -59,11 +57,11 @@ def figure(name: str, lesson: str = "") -> Picture:
 # An exercise's report as a notebook shows it: words, tables and figures.
 
 
+@dataclass(frozen=True)
 class ReportPage:
     """A report: a page in Jupyter, lines in a plain terminal."""
 
-    def __init__(self, report: Report) -> None:
-        self.report = report
+    report: Report
 
     def __repr__(self) -> str:
         lines = [self.report.title]
@@ -74,8 +72,7 @@ class ReportPage:
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
-        parts = [f"<h3>{escape(self.report.title)}</h3>", *map(_section, self.report.sections)]
-        return "".join(parts)
+        return "".join((f"<h3>{escape(self.report.title)}</h3>", *map(_section, self.report.sections)))
 
 
 def _section(section: Section) -> str:

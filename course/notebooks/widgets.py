@@ -1,7 +1,5 @@
 """What lives in a cell: forms, each with a place below it for the reply, and the sandbox."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import re

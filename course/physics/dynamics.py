@@ -25,8 +25,6 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
-__all__ = ["HandPath", "PassiveArm", "TwoLinkArm", "smooth_share"]
-
 
 _STRAIGHT = 1e-3  # sine of the elbow angle below which the hand cannot move along the arm
 

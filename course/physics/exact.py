@@ -10,24 +10,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from course.physics.systems import DampedOscillator, ForcedOscillator, FreeFall, Oscillator, System
+from course.physics.systems import DampedOscillator, ForcedOscillator, Oscillator, System
 
 Array = NDArray[np.float64]
 
-__all__ = ["damped_oscillator", "forced_oscillator", "free_fall", "oscillator", "reference", "solution"]
-
 _COLUMNS = 10  # extrapolation columns; past ten, round-off wins
 _MAX_HALVINGS = 8
-
-
-def free_fall(system: FreeFall, q0: ArrayLike, v0: ArrayLike, t: float) -> tuple[Array, Array]:
-    """Position (m) and velocity (m/s) after t (s) of free fall; shapes (d,)."""
-    q = np.array(q0, dtype=float)
-    v = np.array(v0, dtype=float)
-    q += v * t
-    q[-1] -= 0.5 * system.g * t * t
-    v[-1] -= system.g * t
-    return q, v
 
 
 def oscillator(system: Oscillator, q0: ArrayLike, v0: ArrayLike, t: float) -> tuple[Array, Array]:

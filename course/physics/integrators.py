@@ -34,21 +34,6 @@ from course.physics.systems import System
 
 Array = NDArray[np.float64]
 
-__all__ = [
-    "RK4",
-    "STEPPERS",
-    "ExplicitEuler",
-    "SemiImplicitEuler",
-    "State",
-    "Stepper",
-    "Trajectory",
-    "VelocityVerlet",
-    "falling_root",
-    "first_crossing",
-    "hermite",
-    "trajectory",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class State:
@@ -77,8 +62,6 @@ class Stepper(Protocol):
     """A method that advances a state by one step; new states never share memory with old ones."""
 
     order: ClassVar[int]
-    symplectic: ClassVar[bool]
-    evaluations: ClassVar[int]
 
     def advance(self, system: System, state: State, h: float) -> State:
         """The state h (s) after ``state``."""
@@ -90,8 +73,6 @@ class ExplicitEuler:
     """Order 1, not symplectic: follow the tangent. On a spring the energy grows by 1 + (h omega)² a step."""
 
     order: ClassVar[int] = 1
-    symplectic: ClassVar[bool] = False
-    evaluations: ClassVar[int] = 1
 
     def advance(self, system: System, state: State, h: float) -> State:
         return state.shifted(h, h * state.v, h * system(state.t, state.q, state.v))
@@ -109,8 +90,6 @@ class SemiImplicitEuler:
     position_first: bool = False
 
     order: ClassVar[int] = 1
-    symplectic: ClassVar[bool] = True
-    evaluations: ClassVar[int] = 1
 
     def advance(self, system: System, state: State, h: float) -> State:
         if self.position_first:
@@ -131,8 +110,6 @@ class VelocityVerlet:
     drift_first: bool = False
 
     order: ClassVar[int] = 2
-    symplectic: ClassVar[bool] = True
-    evaluations: ClassVar[int] = 2
 
     def advance(self, system: System, state: State, h: float) -> State:
         half = 0.5 * h
@@ -150,8 +127,6 @@ class RK4:
     """Order 4, not symplectic: four slopes a step, weighted as Simpson's rule weights them."""
 
     order: ClassVar[int] = 4
-    symplectic: ClassVar[bool] = False
-    evaluations: ClassVar[int] = 4
 
     def advance(self, system: System, state: State, h: float) -> State:
         def slopes(stage: State) -> tuple[Array, Array]:

@@ -13,17 +13,6 @@ from course.physics.systems import FreeFall, Kepler, Oscillator, Pendulum, Syste
 
 Array = NDArray[np.float64]
 
-__all__ = [
-    "angular_momentum",
-    "convergence_order",
-    "energy",
-    "jacobian",
-    "jacobian_of_many",
-    "relative_change",
-    "spectral_radius",
-    "symplecticity_defect",
-]
-
 
 def energy(system: System, q: ArrayLike, v: ArrayLike) -> Array:
     """Kinetic and potential energy per unit mass.

@@ -10,32 +10,12 @@ gyroscopic one, is why a body spun about its middle axis flips over and over (Dz
 Source: Goldstein, Poole, Safko, Classical Mechanics, 3rd edition, 2001, chapters 4 and 5.
 """
 
-from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
-
-__all__ = [
-    "ROTATION_STEPPERS",
-    "ByMomentum",
-    "ByQuaternion",
-    "ExplicitEulerRotation",
-    "RK4Rotation",
-    "RotationStepper",
-    "Spin",
-    "SplitRotation",
-    "Turning",
-    "angular_momentum",
-    "cross",
-    "kinetic_energy",
-    "product",
-    "quaternion",
-    "turn",
-    "turn_back",
-]
 
 
 def cross(a: Array, b: Array) -> Array:
@@ -117,7 +97,6 @@ def _pure(vector: Array) -> Array:
     return np.concatenate([np.zeros_like(vector[..., :1]), vector], axis=-1)
 
 
-@dataclass(frozen=True, slots=True)
 class ExplicitEulerRotation:
     """Order 1, and wrong twice: the energy grows, and the quaternion leaves the unit sphere.
 
@@ -129,7 +108,6 @@ class ExplicitEulerRotation:
         return Spin(spin.orientation + h * dq, spin.angular_velocity + h * dw)
 
 
-@dataclass(frozen=True, slots=True)
 class RK4Rotation:
     """Order 4, not symplectic: four slopes a step; the quaternion is divided by its length at the end."""
 
@@ -147,7 +125,6 @@ class RK4Rotation:
         return Spin(q / np.linalg.norm(q, axis=-1, keepdims=True), w)
 
 
-@dataclass(frozen=True, slots=True)
 class SplitRotation:
     """Order 2, symplectic, reversible: half a kick, five exact rotations about the body's axes, half a kick.
 
@@ -188,45 +165,29 @@ def _about(axis: int, angle: Array, q: Array, momentum: Array) -> tuple[Array, A
     return turned, seen
 
 
-class Turning(Protocol):
+class ByMomentum:
     """A rotation in the form of a position and a velocity, which any method for ``x'' = a`` can advance.
+
+    The velocity is the angular momentum in the world's axes, which changes by the torque alone. So the
+    momentum has the order of the method, and without a torque it is constant. The body turns freely with the
+    mean momentum of the motion (``SplitRotation``), which makes the orientation of order 2 or, about a fixed
+    axis, of the method's order.
 
     Args:
         inertia: principal moments, shape (..., 3), kg m².
         start: the rotation at the beginning of the motion.
     """
 
-    def __init__(self, inertia: Array, start: Spin) -> None: ...
-
-    def state(self) -> tuple[Array, Array]:
-        """Position and velocity at the start."""
-        ...
-
-    def spin(self, after: float | Array, x: Array, v: Array) -> Spin:
-        """The rotation that belongs to a position and velocity, ``after`` seconds from the start."""
-        ...
-
-    def rate(self, torque: Array, x: Array, v: Array) -> Array:
-        """The acceleration of the position under a torque in the world's axes, shape (..., 3), N m."""
-        ...
-
-
-class ByMomentum(Turning):
-    """The velocity is the angular momentum in the world's axes, which changes by the torque alone.
-
-    So the momentum has the order of the method, and without a torque it is constant. The body turns freely
-    with the mean momentum of the motion (``SplitRotation``), which makes the orientation of order 2 or, about
-    a fixed axis, of the method's order.
-    """
-
     def __init__(self, inertia: Array, start: Spin) -> None:
         self._inertia, self._start = inertia, start
 
     def state(self) -> tuple[Array, Array]:
+        """Position and velocity at the start."""
         momentum = angular_momentum(self._inertia, *self._start)
         return np.zeros_like(momentum), momentum
 
     def spin(self, after: float | Array, x: Array, v: Array) -> Spin:
+        """The rotation that belongs to a position and velocity, ``after`` seconds from the start."""
         q = self._start.orientation
         span = np.asarray(after, dtype=float)
         if np.any(span):
@@ -235,13 +196,15 @@ class ByMomentum(Turning):
         return Spin(q, turn_back(q, v) / self._inertia)
 
     def rate(self, torque: Array, x: Array, v: Array) -> Array:  # noqa: ARG002
+        """The acceleration of the position under a torque in the world's axes, shape (..., 3), N m."""
         return torque
 
 
-class ByQuaternion(Turning):
-    """The position is the quaternion, the velocity its derivative: of the method's order about any axis.
+class ByQuaternion:
+    """The same with the quaternion as position and its derivative as velocity.
 
-    The length of the quaternion is that of a rotation to the method's order only, and divided out.
+    It is of the method's order about any axis. The length of the quaternion is that of a rotation to the
+    method's order only, and divided out.
     """
 
     def __init__(self, inertia: Array, start: Spin) -> None:

@@ -29,7 +29,7 @@ from course.physics.contact import Plane, Surface
 from course.physics.contact.impulses import Impulses, Motion, normal_speed, solve
 from course.physics.contact.pairs import Pairs, in_any_run
 from course.physics.integrators import State, Stepper, VelocityVerlet
-from course.physics.rotation import ByMomentum, ByQuaternion, Spin, Turning, kinetic_energy, turn, turn_back
+from course.physics.rotation import ByMomentum, ByQuaternion, Spin, kinetic_energy, turn, turn_back
 from course.physics.state import RigidBodyState
 
 Array = NDArray[np.float64]
@@ -80,8 +80,6 @@ class Recording:
                 total += kinetic_energy(self.inertia[i], self.angular_velocity[:, i])
         return total
 
-
-__all__ = ["Recording", "Simulator", "step_count"]
 
 # A step goes back to this many instants at which surfaces meet; what meets after that overlaps a little.
 _INSTANTS = 8
@@ -445,7 +443,7 @@ class _Flight:
             q, w = (np.array([self._spins[i][part] for i in self._turns]) for part in (0, 1))
             # What any law twists is of the method's order; what turns freely keeps its momentum.
             form = ByQuaternion if engine.laws and engine.stepper.order > 2 else ByMomentum
-            self._turning: Turning = form(engine._inertia, Spin(q, w))
+            self._turning: ByMomentum | ByQuaternion = form(engine._inertia, Spin(q, w))
 
     def start(self) -> State:
         """Where the motion begins; q and v have shape (B, ..., 3) or, with rotations, (B, ..., 6 or 7)."""

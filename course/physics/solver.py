@@ -17,8 +17,6 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-__all__ = ["Chain", "iterations_to", "stack_impulses"]
-
 
 def stack_impulses(boxes: int, iterations: int) -> Array:
     """Sequential impulses in a stack at rest, starting from zero, over one step.

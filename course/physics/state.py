@@ -25,8 +25,6 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
-__all__ = ["IDENTITY", "RigidBodyState"]
-
 #: The orientation of a body that was not turned.
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
 _LENGTHS = {"position": 3, "velocity": 3, "orientation": 4, "angular_velocity": 3}

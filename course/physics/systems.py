@@ -28,21 +28,6 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-__all__ = [
-    "SYSTEMS",
-    "AveragePolynomial",
-    "DampedOscillator",
-    "DrivenPendulum",
-    "ForcedOscillator",
-    "FreeFall",
-    "Kepler",
-    "LinearStep",
-    "Oscillator",
-    "Pendulum",
-    "System",
-    "VanDerPol",
-]
-
 
 class System(Protocol):
     """An object that returns an acceleration and knows its own parameters."""

@@ -14,16 +14,13 @@ import datetime
 import math
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import msgspec
 
 from course.engines import reference
 from course.engines.compare import Request, compare
+from course.engines.results import Comparison
 from course.engines.scenarios import BOXES
-
-if TYPE_CHECKING:
-    from course.engines.results import Comparison
 
 FILE = Path(__file__).parents[2] / "course" / "engines" / "reference.json"
 
@@ -59,10 +56,10 @@ def main() -> int:
 
 
 def _differences(comparison: Comparison) -> int:
-    known = {(r.engine, r.scenario, r.setting, r.dt): r.value for r in reference.load().rows}
+    known = {row.place: row.value for row in reference.load().rows}
     differing = 0
     for row in comparison.rows:
-        old = known.get((row.engine, row.scenario, row.setting, row.dt))
+        old = known.get(row.place)
         if not row.ok or row.scenario == BOXES or row.value is None or old is None:
             continue
         if not math.isclose(row.value, old, rel_tol=1e-9, abs_tol=1e-12):

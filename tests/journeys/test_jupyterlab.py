@@ -5,12 +5,10 @@ What a student takes hold of runs with every test; the rest is for soak.
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
@@ -18,7 +16,7 @@ from typing import Any
 
 import pytest
 
-from course.notebooks.server import RUN_MODULE
+from course.notebooks.server import started
 from course.sandbox.scene.loading import choose
 from course.sandbox.world.world import World
 from tests import browsers
@@ -60,56 +58,33 @@ def _build(folder: Path, *words: str) -> None:
 
 
 @pytest.fixture(scope="module")
-def address(notebooks: Path) -> Iterator[str]:
-    """JupyterLab on these notebooks, with settings and state of its own."""
+def lab(notebooks: Path) -> Iterator[tuple[str, str]]:
+    """The address and the token of JupyterLab on these notebooks, with settings and state of its own."""
     home = notebooks.parent
-    settings = home / "settings" / "@jupyterlab" / "notebook-extension"
-    settings.mkdir(parents=True)
-    # Cells out of sight are in the page too, where the test can look at them.
-    (settings / "tracker.jupyterlab-settings").write_text('{"windowingMode": "none"}')
-    news = home / "settings" / "@jupyterlab" / "apputils-extension"
-    news.mkdir()
-    # Whether JupyterLab could be built anew, or would have other extensions, it asks node and the network.
-    pages = home / ".jupyter" / "labconfig"
-    pages.mkdir(parents=True)
-    (pages / "page_config.json").write_text(
-        '{"buildCheck": false, "disabledExtensions": {"@jupyterlab/extensionmanager-extension": true}}'
-    )
-    (news / "notification.jupyterlab-settings").write_text('{"checkForUpdates": false, "fetchNews": "false"}')
-    environment = os.environ | {
-        "HOME": str(home),
-        "PYTHONPATH": str(ROOT),
-        "JUPYTER_RUNTIME_DIR": str(home / "runtime"),
-        "JUPYTERLAB_SETTINGS_DIR": str(home / "settings"),
-        "JUPYTERLAB_WORKSPACES_DIR": str(home / "workspaces"),
-    }
-    command = [sys.executable, "-c", RUN_MODULE, "jupyterlab", "--no-browser", "--allow-root"]
-    command += [
-        "--ip=127.0.0.1",
-        "--port=0",
-        "--IdentityProvider.token=",
-        f"--ServerApp.root_dir={notebooks}",
-    ]
-    log = (home / "server.log").open("wb")
-    server = subprocess.Popen(command, env=environment, cwd=home, stdout=log, stderr=log)
-    try:
-        yield _started(home / "runtime", server)
-    finally:
-        server.terminate()
-        server.wait(60)
-        log.close()
-
-
-def _started(runtime: Path, server: subprocess.Popen[bytes]) -> str:
-    deadline = time.monotonic() + PATIENCE / 1000
-    while time.monotonic() < deadline and server.poll() is None:
-        for file in runtime.glob("jpserver-*.json"):
-            try:
-                return str(json.loads(file.read_text())["url"]).rstrip("/")
-            except ValueError:
-                pass  # still being written
-        time.sleep(0.2)
-    pytest.fail(f"JupyterLab did not start: {(runtime.parent / 'server.log').read_text()[-2000:]}")
+    settings = home / "settings" / "@jupyterlab"
+    for path, text in (
+        # Cells out of sight are in the page too, where the test can look at them.
+        (settings / "notebook-extension" / "tracker.jupyterlab-settings", '{"windowingMode": "none"}'),
+        (
+            settings / "apputils-extension" / "notification.jupyterlab-settings",
+            '{"checkForUpdates": false, "fetchNews": "false"}',
+        ),
+        # Node and the network are asked whether it could be built anew, or have other extensions.
+        (
+            home / ".jupyter" / "labconfig" / "page_config.json",
+            '{"buildCheck": false, "disabledExtensions": {"@jupyterlab/extensionmanager-extension": true}}',
+        ),
+    ):
+        path.parent.mkdir(parents=True)
+        path.write_text(text)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("HOME", str(home))
+        patch.setenv("JUPYTER_RUNTIME_DIR", str(home / "runtime"))
+        patch.setenv("JUPYTERLAB_SETTINGS_DIR", str(home / "settings"))
+        patch.setenv("JUPYTERLAB_WORKSPACES_DIR", str(home / "workspaces"))
+        with started(notebooks) as running:
+            address, _, token = running.address.partition("/lab?token=")
+            yield address.replace("localhost", "127.0.0.1"), token
 
 
 @pytest.fixture(scope="module")
@@ -123,15 +98,16 @@ def browser() -> Iterator[Any]:
 
 
 @pytest.fixture
-def open_notebook(browser: Any, address: str, tmp_path: Path) -> Iterator[Any]:
+def open_notebook(browser: Any, lab: tuple[str, str], tmp_path: Path) -> Iterator[Any]:
     """Opens a notebook in a page of its own; pictures of the pages go to COURSE_SCREENSHOTS if it is set."""
     pages = []
+    address, token = lab
 
     def open_(path: str) -> Any:
         page = browser.new_page(viewport={"width": 1300, "height": 1000})
         page.set_default_timeout(PATIENCE)
         pages.append(page)
-        page.goto(f"{address}/lab/workspaces/w{len(pages)}-{tmp_path.name}/tree/{path}")
+        page.goto(f"{address}/lab/workspaces/w{len(pages)}-{tmp_path.name}/tree/{path}?token={token}")
         page.wait_for_selector(".jp-Notebook .jp-Cell")
         _wait_for_kernel(page, address, path)
         return page

@@ -270,14 +270,15 @@ def _draw(console: Console, before: _Motion, after: _Motion) -> None:
     if not console.draws:
         return
     from course.cli.frame.pictures import half_blocks
-    from course.figures.terminal import terminal_plot
+    from course.figures.plots import draw
+    from course.figures.terminal import in_cells
 
     wide = console.width >= _WIDE
     columns, rows = console.width, _PANEL_ROWS * (1 if wide else 2)
     if console.interactive:  # otherwise the output is a file, or the picture of a page
         rows = max(_PANEL_ROWS // 2, min(rows, console.height - _WORDS))
     with console.working("Drawing"):
-        drawn = terminal_plot(_plot(before, after, wide=wide), columns, rows)
+        drawn = in_cells(lambda: draw(_plot(before, after, wide=wide)), columns, rows)
     labels = [[one.column, one.row, one.text, one.ink, one.bold] for one in drawn.labels]
     for line in half_blocks(drawn.pixels.tobytes(), columns, rows, labels):
         console.rich().print(line)

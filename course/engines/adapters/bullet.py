@@ -19,7 +19,7 @@ from course.engines.base import Body, Motion, Scene
 _ITERATIONS = 10
 
 
-class BulletWorld:
+class EngineWorld:
     """A scene as a Bullet world."""
 
     def __init__(self, scene: Scene, options: Mapping[str, Any]) -> None:
@@ -99,14 +99,10 @@ class BulletWorld:
         w = [tuple(node.getAngularVelocity()) for node in self.bodies]
         return Motion(np.array(x, dtype=float), np.array(v, dtype=float), np.array(w, dtype=float))
 
-    def contacts(self) -> tuple[int, float]:
-        depths = [
+    def overlaps(self) -> list[float]:
+        return [
             -point.getDistance()
             for manifold in self.world.getManifolds()
             for point in manifold.getManifoldPoints()
             if point.getDistance() <= 0.0
         ]
-        return len(depths), max(depths, default=0.0)
-
-
-ADAPTER = BulletWorld

@@ -14,7 +14,7 @@ import numpy as np
 from course.engines.base import Body, Motion, Scene
 
 
-class DartWorld:
+class EngineWorld:
     """A scene as a DART world of skeletons."""
 
     def __init__(self, scene: Scene, options: Mapping[str, Any]) -> None:
@@ -104,14 +104,10 @@ class DartWorld:
         w = np.array([node.getAngularVelocity() for node in self.bodies]).reshape(-1, 3)
         return Motion(x, v, w)
 
-    def contacts(self) -> tuple[int, float]:
+    def overlaps(self) -> list[float]:
         found = self.world.getLastCollisionResult().getContacts()
-        depths = [contact.penetrationDepth for contact in found]
-        return len(depths), max(depths, default=0.0)
+        return [contact.penetrationDepth for contact in found]
 
 
 def _inertia(body: Body) -> Any:
     return dart.dynamics.Inertia(body.mass, np.zeros(3), np.eye(3) * body.inertia)
-
-
-ADAPTER = DartWorld

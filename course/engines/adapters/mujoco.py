@@ -16,7 +16,7 @@ import numpy as np
 from course.engines.base import Motion, Scene
 
 
-class MujocoWorld:
+class EngineWorld:
     """A scene as a MuJoCo model and its data."""
 
     def __init__(self, scene: Scene, options: Mapping[str, Any]) -> None:
@@ -41,9 +41,8 @@ class MujocoWorld:
             mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_BODY, index + 1, twist[index], 0)
         return Motion(data.xipos[1:].copy(), twist[:, 3:], twist[:, :3])
 
-    def contacts(self) -> tuple[int, float]:
-        depths = [-float(contact.dist) for contact in self.data.contact if contact.dist <= 0.0]
-        return len(depths), max(depths, default=0.0)
+    def overlaps(self) -> list[float]:
+        return [-float(contact.dist) for contact in self.data.contact if contact.dist <= 0.0]
 
 
 def _xml(scene: Scene, options: Mapping[str, Any]) -> str:
@@ -125,6 +124,3 @@ def _given_back(ratio: float) -> float:
 
 def _join(values: Any) -> str:
     return " ".join(repr(float(value)) for value in values)
-
-
-ADAPTER = MujocoWorld

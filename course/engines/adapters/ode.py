@@ -20,7 +20,7 @@ from course.engines.base import Body, Motion, Scene
 _POINTS = 8
 
 
-class OdeWorld:
+class EngineWorld:
     """A scene as an ODE world with a collision space."""
 
     def __init__(self, scene: Scene, options: Mapping[str, Any]) -> None:
@@ -100,7 +100,7 @@ class OdeWorld:
         )
         return Motion(x, v, w)
 
-    def contacts(self) -> tuple[int, float]:
+    def overlaps(self) -> list[float]:
         """See ``World``; searched again, at the present positions."""
         depths: list[float] = []
 
@@ -109,7 +109,4 @@ class OdeWorld:
             depths.extend(found.getContactGeom(i).getDepth() for i in range(found.getNumContacts()))
 
         self.space.collide(None, look)
-        return len(depths), max(depths, default=0.0)
-
-
-ADAPTER = OdeWorld
+        return depths

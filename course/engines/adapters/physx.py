@@ -19,7 +19,7 @@ with warnings.catch_warnings():
 from collections.abc import Mapping
 
 
-class PhysxWorld:
+class EngineWorld:
     """A scene in a PhysX system; nothing that draws is made."""
 
     def __init__(self, scene: Scene, options: Mapping[str, Any]) -> None:
@@ -123,18 +123,14 @@ class PhysxWorld:
         w = np.array([body.angular_velocity for body in self.bodies], dtype=float)
         return Motion(x, v, w)
 
-    def contacts(self) -> tuple[int, float]:
-        depths = [
+    def overlaps(self) -> list[float]:
+        return [
             -point.separation
             for contact in self.system.get_contacts()
             for point in contact.points
             if point.separation <= 0.0
         ]
-        return len(depths), max(depths, default=0.0)
 
 
 #: A plane's normal is its own x axis: turned up.
 _FLOOR = sapien.Pose(q=[0.7071067811865476, 0.0, -0.7071067811865476, 0.0])
-
-
-ADAPTER = PhysxWorld

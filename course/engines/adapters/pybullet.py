@@ -16,7 +16,7 @@ import pybullet as p
 from course.engines.base import Body, Motion, Scene
 
 
-class PybulletWorld:
+class EngineWorld:
     """A scene in its own physics server, without a window."""
 
     def __init__(self, scene: Scene, options: Mapping[str, Any]) -> None:
@@ -137,14 +137,10 @@ class PybulletWorld:
             w.append(angular)
         return Motion(np.array(x), np.array(v), np.array(w))
 
-    def contacts(self) -> tuple[int, float]:
+    def overlaps(self) -> list[float]:
         points = p.getContactPoints(physicsClientId=self._server) or ()
-        depths = [-point[8] for point in points if point[8] <= 0.0]
-        return len(depths), max(depths, default=0.0)
+        return [-point[8] for point in points if point[8] <= 0.0]
 
     def __del__(self) -> None:
         if p is not None and p.isConnected(self._server):
             p.disconnect(self._server)
-
-
-ADAPTER = PybulletWorld

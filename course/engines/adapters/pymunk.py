@@ -14,7 +14,7 @@ import pymunk
 from course.engines.base import Body, Motion, NotApplicableError, Scene, Wall
 
 
-class PymunkWorld:
+class EngineWorld:
     """A scene as a pymunk space."""
 
     def __init__(self, scene: Scene, options: Mapping[str, Any]) -> None:
@@ -78,7 +78,7 @@ class PymunkWorld:
         w = np.array([(0.0, -b.angular_velocity, 0.0) for b in self.bodies])
         return Motion(x, v, w)
 
-    def contacts(self) -> tuple[int, float]:
+    def overlaps(self) -> list[float]:
         points: dict[Any, float] = {}
 
         def note(arbiter: pymunk.Arbiter) -> None:
@@ -87,8 +87,4 @@ class PymunkWorld:
 
         for body in self.bodies:
             body.each_arbiter(note)
-        touching = [-distance for distance in points.values() if distance <= 0.0]
-        return len(touching), max(touching, default=0.0)
-
-
-ADAPTER = PymunkWorld
+        return [-distance for distance in points.values() if distance <= 0.0]

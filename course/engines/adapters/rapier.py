@@ -12,7 +12,7 @@ import rapier3d as rapier
 from course.engines.base import Body, Motion, Scene
 
 
-class RapierWorld:
+class EngineWorld:
     """A scene as a Rapier world."""
 
     def __init__(self, scene: Scene, options: Mapping[str, Any]) -> None:
@@ -94,15 +94,11 @@ class RapierWorld:
         )
         return Motion(x, v, w)
 
-    def contacts(self) -> tuple[int, float]:
-        depths = [
+    def overlaps(self) -> list[float]:
+        return [
             -point.dist
             for pair in self.world.narrow_phase.contact_pairs()
             for manifold in pair.manifolds
             for point in manifold.points
             if point.dist <= 0.0
         ]
-        return len(depths), max(depths, default=0.0)
-
-
-ADAPTER = RapierWorld

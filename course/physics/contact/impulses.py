@@ -31,8 +31,6 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-__all__ = ["Impulses", "Motion", "normal_speed", "solve"]
-
 _DONE = 1e-6  # the last sweep changes no velocity by more than this fraction of the target
 _SWEEPS = 500  # then the step uses what it has, as every engine does; the next one starts from it
 

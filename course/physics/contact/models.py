@@ -21,8 +21,6 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-__all__ = ["Constraint", "ContactModel", "Penalty", "SoftConvex", "drop", "erp_cfm", "slide_across"]
-
 
 class ContactModel(Protocol):
     """How a floor treats a ball."""

@@ -24,7 +24,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT)]
 
-from course.authoring.exercises.mutants import caught_by  # noqa: E402
+from course.authoring.exercises.proofs import caught_by  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.physics.invariants import convergence_order  # noqa: E402
 from course.scoring import kit  # noqa: E402

@@ -17,13 +17,10 @@ import json
 import subprocess
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from course.engines import reference
 from course.engines.registry import ENGINES
-
-if TYPE_CHECKING:
-    from course.engines.results import Row
+from course.engines.results import Row
 
 HERE = Path(__file__).parent
 RESULTS = HERE / "results.json"

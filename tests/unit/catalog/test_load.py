@@ -1,4 +1,4 @@
-"""Reading course files, and what is said when one is wrong."""
+"""Reading course files, where they are found, and what is said when one is wrong."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from course.catalog import locate
 from course.catalog.load import Catalog
-from course.errors import ContentError, NotFoundError
+from course.catalog.models import Task
+from course.errors import ContentError, InternalError, NotFoundError, UsageError
 
 EXERCISE = "exercises/doubling/exercise.toml"
 LESSON = "lessons/half-as-much.md"
@@ -238,3 +240,93 @@ def test_windows_line_ends_are_read(mini: Path) -> None:
 def test_a_folder_without_an_exercise_is_not_one(mini: Path) -> None:
     (mini / "exercises" / "__pycache__").mkdir()
     assert Catalog().exercise_ids() == ("doubling", "halving")
+
+
+def _package(root: Path) -> Path:
+    (root / "course" / "lessons").mkdir(parents=True)
+    return root / "course"
+
+
+def test_an_unpacked_source_archive_is_a_students(tmp_path: Path) -> None:
+    package = _package(tmp_path)
+    (tmp_path / "pyproject.toml").touch()
+    (tmp_path / "exercises").mkdir()
+    found = locate._installed(package)
+    assert not found.is_checkout
+    assert found.solutions is None
+
+
+def test_a_wheel_reads_the_content_inside_the_package(tmp_path: Path) -> None:
+    package = _package(tmp_path)
+    (package / "content" / "exercises").mkdir(parents=True)
+    # What another package has put beside it is not ours.
+    (tmp_path / "exercises").mkdir()
+    (tmp_path / "solutions").mkdir()
+    (tmp_path / "pyproject.toml").touch()
+    found = locate._installed(package)
+    assert found.exercises == package / "content" / "exercises"
+    assert found.quiz == package / "content" / "quiz"
+    assert found.solutions is None
+    assert found.graders is None
+
+
+def test_an_installation_without_content_says_so(tmp_path: Path) -> None:
+    with pytest.raises(InternalError, match="exercises are missing"):
+        locate._installed(_package(tmp_path))
+
+
+@pytest.mark.parametrize("missing", ["exercises", "lessons"])
+def test_a_selected_folder_that_is_no_course_is_refused(mini: Path, missing: str) -> None:
+    (mini / missing).rename(mini / "gone")
+    with pytest.raises(UsageError, match="holds no course") as caught:
+        locate.content()
+    assert caught.value.code == "no_such_content"
+
+
+TASK = Task(
+    id="throw",
+    title="Throw",
+    points=1.0,
+    hints=("Look up.", "Count.", "Square it."),
+    fits={"2": ("ONE_SHORT",), "3": ("NOT_SQUARED",)},
+    yours={
+        "any": ("It is {got}.",),
+        "3": ("At t = {t s} it is {got}, {ratio} times as far.", "It is {got}, not {expected}."),
+    },
+)
+FAR = {"t s": "2", "got": "4", "expected": "8", "ratio": "0.5"}
+NEAR = {"got": "3", "expected": "9"}
+
+
+@pytest.mark.parametrize(
+    ("index", "failed", "words"),
+    [
+        (0, [("", FAR)], "Look up. It is 4."),
+        (1, [("", {}), ("", NEAR)], "Count. It is 3."),
+        (1, [("", FAR), ("ONE_SHORT", NEAR)], "Count. It is 3."),
+        (2, [("NOT_SQUARED", FAR)], "Square it. At t = 2 it is 4, 0.5 times as far."),
+        (2, [("NOT_SQUARED", NEAR)], "Square it. It is 3, not 9."),
+        (2, [("NOT_SQUARED", {"got": "3"})], "Square it."),
+        (2, [], "Square it."),
+    ],
+)
+def test_a_hint_says_the_first_sentence_whose_fields_the_failed_check_has(index, failed, words):
+    assert TASK.said(index, failed) == words
+
+
+def test_braces_in_a_students_value_stay_as_they_are():
+    assert TASK.said(0, [("", {"got": "{expected}"})]) == "Look up. It is {expected}."
+
+
+@pytest.mark.parametrize(
+    ("diagnoses", "given", "following"),
+    [
+        ((), (), 0),
+        (("NOT_SQUARED",), (), 2),
+        (("NOT_SQUARED",), (2,), 0),
+        (("OTHER",), (0, 1), 2),
+        ((), (0, 1, 2), None),
+    ],
+)
+def test_the_hint_that_fits_comes_before_the_mildest(diagnoses, given, following):
+    assert TASK.following(diagnoses, given) == following

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 import functools
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from course.errors import InternalError
 from course.figures import experiments as simulations
 from course.figures.style import METHODS, house_style
 from course.simulations.base import Result, run
 from course.simulations.registry import get
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 
 @functools.cache

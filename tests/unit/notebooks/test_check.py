@@ -15,9 +15,9 @@ from course.catalog.load import Catalog
 from course.cli.frame import app
 from course.errors import NotFoundError, UsageError
 from course.handed_in.notebook import notebook_source
-from course.notebooks import check, magic
+from course.notebooks import check, checking, magic
 from course.notebooks.build import exercise_notebook
-from course.notebooks.checking import module_of
+from course.notebooks.checking import CheckTable, module_of
 from course.progress.history import fingerprint
 from course.progress.workspace import Workspace
 
@@ -49,6 +49,11 @@ def here(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Workspace:
     return Workspace.find(Path.cwd())
 
 
+def check_in(texts: list[str], task: str | None = None) -> CheckTable:
+    """A check in the kernel of a notebook, after these cells were run."""
+    return checking.check("doubling", task, shell=Shell(texts))
+
+
 def attempts(workspace: Workspace) -> list[dict[str, Any]]:
     """What was recorded, without what differs from run to run."""
     found = [dict(event.data) for event in workspace.store.events("check", "doubling")]
@@ -76,9 +81,7 @@ def test_an_interrupted_check_is_one_sentence(monkeypatch: pytest.MonkeyPatch, c
 def test_a_check_in_a_notebook_is_recorded_as_the_same_check_in_a_terminal(
     here: Workspace, second: str
 ) -> None:
-    table = magic.check(
-        Shell(["%load_ext course.notebooks", DOUBLE, second, "x = 1", second]), "doubling", "double"
-    )
+    table = check_in(["%load_ext course.notebooks", DOUBLE, second, "x = 1", second], "double")
     assert table.passed
     assert table.note == ""
     Path("doubling.py").write_text(f'"""Doubling."""\n\n\n{DOUBLE}\n\n\n{second}\n')
@@ -90,19 +93,19 @@ def test_a_check_in_a_notebook_is_recorded_as_the_same_check_in_a_terminal(
 
 
 def test_a_function_checked_before_the_others_were_run_is_an_attempt_at_it_alone(here: Workspace) -> None:
-    table = magic.check(Shell([DOUBLE]), "doubling", "double")
+    table = check_in([DOUBLE], "double")
     assert table.passed
     assert table.summary == "The one public check of double passes: 2 of 2 points."
     (attempt,) = attempts(here)
     assert attempt["only"] == "double"
     assert (attempt["score"], attempt["max_score"], attempt["passed"]) == (2.0, 2.0, True)
     assert [check["task"] for check in attempt["checks"]] == ["double"]
-    wrong = magic.check(Shell([DOUBLE.replace("x + x", "x + x + x")]), "doubling", "double")
+    wrong = check_in([DOUBLE.replace("x + x", "x + x + x")], "double")
     assert wrong.summary == "The one public check of double fails: 0 of 2 points."
 
 
 def test_code_that_cannot_be_run_is_recorded_as_that(here: Workspace) -> None:
-    table = magic.check(Shell(["def double(x:\n    return 1"]), "doubling", "double")
+    table = check_in(["def double(x:\n    return 1"], "double")
     assert not table.passed
     assert "In [1], line 1" in table.summary
     assert [attempt["state"] for attempt in attempts(here)] == ["ungradable"]
@@ -118,7 +121,7 @@ def test_outside_of_a_workspace_nothing_is_recorded_and_nothing_said(
 ) -> None:
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path / "elsewhere")
-    table = magic.check(Shell([DOUBLE, DOUBLINGS]), "doubling")
+    table = check_in([DOUBLE, DOUBLINGS])
     assert table.passed
     assert table.note == ""
     assert attempts(here) == []
@@ -138,7 +141,7 @@ def test_where_nothing_can_be_recorded_the_check_is_shown_and_says_so(
     here: Workspace, spoil: Callable[[Workspace], None]
 ) -> None:
     spoil(here)
-    table = magic.check(Shell([DOUBLE, DOUBLINGS]), "doubling")
+    table = check_in([DOUBLE, DOUBLINGS])
     assert table.passed
     assert "not recorded" in table.note
     assert table.note in repr(table)
@@ -156,8 +159,8 @@ def test_a_stub_is_one_attempt_in_every_form(catalog: Catalog) -> None:
 
 def test_the_newest_version_of_a_cell_counts(here: Workspace) -> None:
     wrong = DOUBLE.replace("x + x", "x")
-    assert not magic.check(Shell([DOUBLE, DOUBLINGS, wrong]), "doubling", "double").passed
-    assert magic.check(Shell([wrong, DOUBLINGS, DOUBLE]), "doubling", "double").passed
+    assert not check_in([DOUBLE, DOUBLINGS, wrong], "double").passed
+    assert check_in([wrong, DOUBLINGS, DOUBLE], "double").passed
 
 
 def double(x: float) -> float:

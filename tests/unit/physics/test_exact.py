@@ -13,32 +13,6 @@ TIMES = [0.6, 1.1, 2.9, 5.0]
 Q0, V0 = [0.8, -0.3], [-0.4, 1.1]
 
 
-@pytest.mark.parametrize(
-    ("system", "closed"),
-    [
-        (systems.FreeFall(9.81), exact.free_fall),
-        (systems.Oscillator(2.3), exact.oscillator),
-        (systems.DampedOscillator(2.3, 0.7), exact.damped_oscillator),
-    ],
-    ids=lambda value: getattr(value, "__name__", type(value).__name__),
-)
-def test_the_reference_agrees_with_the_closed_form(system, closed):
-    q, v = exact.reference(system, Q0, V0, TIMES)
-    for row, t in enumerate(TIMES):
-        q_true, v_true = closed(system, Q0, V0, t)
-        assert q[row] == pytest.approx(q_true, rel=1e-11, abs=1e-11)
-        assert v[row] == pytest.approx(v_true, rel=1e-11, abs=1e-11)
-
-
-def test_the_reference_agrees_with_the_driven_spring_from_a_late_start():
-    system, t0 = systems.ForcedOscillator(2.3, 1.5, 3.1), 0.7
-    q, v = exact.reference(system, Q0, V0, [2.0, 3.3], t0)
-    for row, t in enumerate([2.0, 3.3]):
-        q_true, v_true = exact.forced_oscillator(system, Q0, V0, t, t0)
-        assert q[row] == pytest.approx(q_true, abs=1e-11)
-        assert v[row] == pytest.approx(v_true, abs=1e-11)
-
-
 def test_the_reference_brings_an_eccentric_orbit_back_after_one_period():
     e = 0.6
     q0, v0 = [1 - e, 0.0], [0.0, math.sqrt((1 + e) / (1 - e))]

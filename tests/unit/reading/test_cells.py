@@ -115,7 +115,7 @@ def test_an_earlier_cell_that_fails_is_named(runner, sources):
 def test_no_more_of_the_course_than_is_imported_is_handed_over():
     book = textbook_for(["from course.physics.body import Body"])
     names = set(zipfile.ZipFile(io.BytesIO(book.data)).namelist())
-    assert {"course/physics/body.py", "course/physics/rotation.py"} <= names
+    assert {"course/physics/body.py", "course/physics/state.py"} <= names
     assert not {name for name in names if not name.startswith(("course/physics/", "course/__init__"))}
     assert book.absent == ()
     assert textbook_for(["from course.figures import sim_to_real"]).absent == ("matplotlib",)

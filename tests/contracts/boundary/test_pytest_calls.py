@@ -387,7 +387,7 @@ def test_nothing_is_written_beside_the_checks(collect: Any, tmp_path: Path) -> N
         ("x = 1", "no check in it"),
         ("def test_a():\n    pass", "no docstring"),
         ("def test_a():\n    '''Title'''", "lacks a mark"),
-        ("import pytest\n\n@pytest.mark.pionts(1)\ndef test_a():\n    '''Title'''", "cannot be imported"),
+        ("import pytest\n\n@pytest.mark.pionts(1)\ndef test_a():\n    '''Title'''", "'pionts' not found"),
     ],
 )
 def test_a_file_that_is_wrong_is_named(source: str, problem: str, collect: Any) -> None:

@@ -111,7 +111,7 @@ def protection(exercise_id: str, rounds: int) -> None:
         with pinned_to(guarded._processor):  # as in a session that grades
             worker_start(guarded, work["solution"], exercise.module)
             callbacks(guarded)
-        per_pytest(guarded, exercise.module, work["solution"], "one_pytest.py")
+        per_pytest(guarded, exercise.module, work["solution"])
     guarded.close()
     bare.close()
 
@@ -206,13 +206,13 @@ def trivial() -> None:
     exercise = catalog.exercise("doubling")
     with GradingSession(exercise, catalog, scope="full", processor=0) as session:
         source = (root / "solutions" / "doubling" / exercise.module).read_bytes()
-        per_pytest(session, exercise.module, source, "one_pytest.py")
+        per_pytest(session, exercise.module, source)
     del os.environ["COURSE_CONTENT"]
 
 
-def per_pytest(session: GradingSession, module: str, source: bytes, driver_name: str) -> None:
+def per_pytest(session: GradingSession, module: str, source: bytes) -> None:
     """One `pytest` process per submission with the same checks, against the protected session."""
-    driver = Path(__file__).with_name(driver_name)
+    driver = Path(__file__).with_name("one_pytest.py")
     ratios = []
     bare = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
     with tempfile.TemporaryDirectory() as folder:

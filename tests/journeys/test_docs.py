@@ -270,10 +270,3 @@ def test_what_a_page_prints_does_what_it_says(story: list[Printed], typing: Call
                 typing(line, one.rule["run"])
         except AssertionError as error:
             pytest.fail(f"{one}\n{error}")
-
-
-def test_a_command_that_ends_otherwise_is_seen(typing: Callable[..., None]) -> None:
-    wrong = Printed("README.md", 1, "course lesson 99", 1)
-    assert refused(wrong) == ""
-    with pytest.raises(pytest.fail.Exception, match=r"README\.md:1: course lesson 99"):
-        test_what_a_page_prints_does_what_it_says([wrong], typing)

@@ -37,13 +37,6 @@ def test_a_wrong_module_holds_neither_the_right_definition_nor_the_comment(mende
             assert path.read_text().splitlines()[0] not in text, path
 
 
-@pytest.mark.parametrize(("name", "least"), [("mistakes", 11), ("afresh", 12)])
-def test_there_are_enough_mistakes_for_each_exercise(name, least):
-    counts = [len(list(folder.glob("*.py"))) for folder in (FOLDER / name).iterdir() if folder.is_dir()]
-    assert len(counts) == 6
-    assert min(counts) >= least
-
-
 def test_what_misled_once_is_there_and_its_answer_is_kept(mended):
     rows = tomllib.loads(mended.ROWS.read_text(encoding="utf-8"))["row"]
     kept = mended.ROWS.with_name("told.md").read_text(encoding="utf-8")

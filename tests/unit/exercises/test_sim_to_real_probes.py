@@ -77,6 +77,23 @@ def test_the_grid_that_a_student_is_told_of_is_fine_enough_by_itself(i):
     assert reference.other_success(12, i, kp[best], (kp * ratio)[best]) >= judge.PASS
 
 
+@pytest.mark.parametrize(
+    ("word", "name", "low", "high"),
+    [
+        *(
+            (word, name, 0.0, words.NEEDED[name])
+            for word in ("chirp", "prbs")
+            for name in (*cart.NAMES, "lag")
+        ),
+        ("rest", "noise", 0.0309, 0.0311),
+        ("slow_sine", "lag", words.SHOWN["lag"], math.inf),  # the narrowest interval alone is within 10 %
+        *((word, "lag", 0.0, words.SHOWN["lag"]) for word in ("multisine", "prbs")),
+    ],
+)
+def test_twenty_seconds_on_the_bench_show_what_students_are_told(word, name, low, high):
+    assert low < bench.reach(word, name, 20.0, cart.PUBLIC_TYPES, (0, 5)) <= high
+
+
 def test_what_is_exactly_at_a_limit_is_within_it():
     value = 1.1253945078486802
     entry = {"m": (value, value * 0.97, value * 1.03)}

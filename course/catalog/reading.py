@@ -6,6 +6,7 @@ the rest; msgspec's errors are put into plain words here.
 
 from __future__ import annotations
 
+import contextlib
 import re
 import tomllib
 from bisect import bisect_left
@@ -296,11 +297,44 @@ def _raise_in_words(raw: Document[Any], text: str, kind: type, reserved: tuple[s
         fix = f"Write one of {choices}."
         raw.fail(steps, f"{_named(steps)} cannot be {match['given']}.", fix=fix)
     if match := _EXPECTED.search(words):
+        _as_toml_writes_it(raw, steps, _type_at(kind, steps))
         wanted = _in_words(match["wanted"]) + (match["more"] or "")
+        if "regex" in wanted:
+            wanted = _described(_type_at(kind, steps)) or wanted
         given = f", and is {_in_words(match['given'])}" if match["given"] else ""
         given = f", and has {match['count']}" if match["count"] else given
         raw.fail(steps, f"{_named(steps)} must be {wanted}{given}.", fix=f"Write {wanted}.")
     raw.fail(steps, f"{_named(steps)}: {words}.", fix="Compare it with a file of the same kind.")
+
+
+def _as_toml_writes_it(raw: Document[Any], steps: Keys, info: Any) -> None:
+    """Refuse what is TOML, and another thing than it looks like: one bracket for two, a key with points."""
+    value: Any = raw.value
+    with contextlib.suppress(LookupError, TypeError):
+        for step in steps:
+            value = value[step]
+    if not isinstance(value, dict):
+        return
+    items = getattr(info, "item_type", None)
+    if isinstance(items, msgspec.inspect.StructType):
+        name = ".".join(str(step) for step in steps if isinstance(step, str))
+        fix = f"Write [[{name}]], with two brackets, at the head of each."
+        raw.fail(steps, f"{_named(steps)} is one table, and there may be several.", fix=fix)
+    if isinstance(info, msgspec.inspect.DictType):
+        for first in value:
+            path, inner = [first], value[first]
+            while isinstance(inner, dict) and inner:
+                path.append(next(iter(inner)))
+                inner = inner[path[-1]]
+            if len(path) > 1 and not isinstance(info.value_type, msgspec.inspect.StructType):
+                key = ".".join(path)
+                fix = f'Write "{key}" = ..., with quotes around the key.'
+                raw.fail((*steps, *path), f"the key {key} has points, which divide it.", fix=fix)
+
+
+def _described(info: Any) -> str:
+    """What the type of a text says of itself; "" if it says nothing."""
+    return str((getattr(info, "extra_json_schema", None) or {}).get("description", ""))
 
 
 def _unknown_key(

@@ -137,7 +137,8 @@ def _printed(cell: b.CodeCell, namespace: dict[str, Any], path: Path) -> str | N
     except Exception as error:
         frames = [f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == str(path)]
         where = frames[-1] if frames else getattr(error, "lineno", None)
-        problem = f"the code cell raises {type(error).__name__}: {error}"
+        said = error.msg if isinstance(error, SyntaxError) else error  # which names file and line once more
+        problem = f"the code cell raises {type(error).__name__}: {said}"
         raise ContentError(
             path, where or cell.line, problem, help="Correct the cell; the lesson runs it."
         ) from error

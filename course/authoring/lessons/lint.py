@@ -216,7 +216,11 @@ def _unproduced_numbers(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
 def _constants(block: b.Block) -> Iterator[float]:
     if not isinstance(block, b.CodeCell):
         return
-    for node in ast.walk(ast.parse(block.source)):
+    try:
+        tree = ast.parse(block.source)
+    except (SyntaxError, ValueError):
+        return  # said where the cell is run
+    for node in ast.walk(tree):
         if isinstance(node, ast.Constant) and isinstance(node.value, int | float):
             yield float(node.value)
 

@@ -125,7 +125,11 @@ class Loading:
             body = statements.parsed(self._source)  # and the compiler will say it of one of them
         except SyntaxError:
             found = statements.pieces(self._source)
-            faults = [Fault("syntax", it.error, it.line, it.names) for it in found if it.error is not None]
+            faults = [
+                Fault("syntax", it.error, _said_on(it.error, it.line), it.names)
+                for it in found
+                if it.error is not None
+            ]
             body = [node for piece in found for node in piece.body]
         except statements.UNREADABLE:
             body = []
@@ -154,7 +158,7 @@ class Loading:
             try:
                 code = compile(ast.Module([node], []), self._main, "exec", flags, dont_inherit=True)
             except statements.UNREADABLE as error:
-                self._fault("syntax", error, _first_line(node), statements.bound(node))
+                self._fault("syntax", error, _said_on(error, _first_line(node)), statements.bound(node))
                 continue
             for _ in range(2):
                 try:
@@ -176,6 +180,12 @@ class Loading:
     def _fault(self, stage: str, error: BaseException, line: int, names: Any) -> None:
         if len(self.faults) < _MOST_FAULTS:
             self.faults.append(Fault(stage, error, line, names))
+
+
+def _said_on(error: BaseException, first: int) -> int:
+    """The line on which Python stopped reading a statement that begins on another; it names none for some."""
+    line = error.lineno if isinstance(error, SyntaxError) else None
+    return max(line or 0, first)
 
 
 def _first_line(node: ast.stmt) -> int:

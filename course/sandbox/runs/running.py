@@ -322,7 +322,7 @@ def sentences(events: Iterable[Event], most: int = 40) -> Iterator[str]:
         told += 1
         yield sentence(event)
     if left:
-        yield f"{counted(left, 'more event')} happened; --csv and --json have every one."
+        yield f"{counted(left, 'more event')} happened; --json has every one."
 
 
 def worth_telling(contact: Event, last: dict[tuple[str, str], float]) -> bool:

@@ -14,7 +14,7 @@ from course.catalog.locate import content
 from course.catalog.reading import BLANK, Document, read_document, read_text
 from course.errors import ContentError, NotFoundError, UsageError
 from course.printable import meant
-from course.sandbox.scene.expression import evaluate, fill, used
+from course.sandbox.scene.expression import evaluate, fill, names, used
 from course.sandbox.scene.model import Part, Prediction, Scene, layout
 from course.sandbox.scene.rules import FIELDS, SETTINGS, check_scene, checked, number, settings_of, slot
 
@@ -217,6 +217,8 @@ def _check_formulas(document: Document[Scene]) -> None:
     for settings in _ends(scene, named):
         try:
             chosen = _put_in(scene, dict(settings), document.path)
+        except MisfitError as error:
+            document.fail(("sets", error.place), error.message, fix=error.help)
         except UsageError:
             continue  # that end is out of reach; a user who asks for it is told so
         values = values_of(chosen)
@@ -281,9 +283,41 @@ def _put_in(scene: Scene, settings: dict[str, object], path: Path, *, own: bool 
     try:
         ready = msgspec.convert(raw, Scene)
     except msgspec.ValidationError as error:
-        raise UsageError(f"The parameters do not fit the scene: {error}.", code="bad_parameter") from error
+        raise _misfit(scene, numbers, str(error)) from error
     checked_rest = {name: checked(name, value) for name, value in rest.items()}
     return Chosen(scene=ready, parameters=values, settings=checked_rest, path=path, own=own)
+
+
+class MisfitError(UsageError):
+    """A formula of ``[sets]`` gives a value that its place does not take.
+
+    Attributes:
+        place: which, as it stands there.
+    """
+
+    def __init__(self, place: str, message: str, help_: str) -> None:
+        super().__init__(message, help=help_, code="bad_parameter")
+        self.place = place
+
+
+def _misfit(scene: Scene, numbers: Mapping[str, float], error: str) -> MisfitError:
+    """Which of the formulas gave what does not fit: the first that does not by itself."""
+    for place, formula in scene.sets.items():
+        raw: dict[str, Any] = msgspec.to_builtins(scene)
+        target, key = slot(raw, place)
+        value, kind = evaluate(formula, numbers), type(target[key])
+        target[key] = kind(value) if kind in {int, bool} else value
+        try:
+            msgspec.convert(raw, Scene)
+        except msgspec.ValidationError as alone:
+            allowed = str(alone).partition(" - at ")[0].partition("` ")[2] or "of another kind"
+            given = ", ".join(f"{name}={numbers[name]:g}" for name in sorted(names(formula)))
+            return MisfitError(
+                place,
+                f"With {given}, {place} is {value:g}, and must be {allowed}.",
+                f"Choose other values, or correct its formula, {formula}.",
+            )
+    return MisfitError("", f"The parameters do not fit the scene: {error}.", "Choose other values.")
 
 
 # ---

@@ -27,9 +27,18 @@ Fraction = Annotated[float, Meta(ge=0, le=1)]
 Coefficient = Annotated[float, Meta(ge=0, le=10)]
 Count = Annotated[int, Meta(ge=1, le=2000)]
 Text = Annotated[str, Meta(min_length=1, max_length=2000)]
-Name = Annotated[str, Meta(pattern=r"^[a-z][a-z0-9]*(-[a-z0-9]+)*$", max_length=40)]
+_A_COLOUR = 'a colour in six hexadecimal digits, with small letters, such as "#1f77b4"'
+_A_NAME = 'a name of small letters and digits with hyphens between, such as "left-puck"'
+Name = Annotated[str, Meta(pattern=r"^[a-z][a-z0-9]*(-[a-z0-9]+)*$", max_length=40, description=_A_NAME)]
 #: Names a body, or several with ``*`` at the end: ``ball-*``.
-Pattern = Annotated[str, Meta(pattern=r"^(\*|[a-z][a-z0-9]*(-[a-z0-9]+)*(-?\*)?)$", max_length=41)]
+Pattern = Annotated[
+    str,
+    Meta(
+        pattern=r"^(\*|[a-z][a-z0-9]*(-[a-z0-9]+)*(-?\*)?)$",
+        max_length=41,
+        description=f"{_A_NAME}, or the beginning of one and *",
+    ),
+]
 
 Point = tuple[Coordinate, Coordinate]
 #: The shape of a body as a scene says it, and as the engine and all views know it: a box has four corners.
@@ -121,11 +130,11 @@ class Body(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     turn_deg: Annotated[float, Meta(ge=-3600, le=3600)] = 0.0
     about: Point = (0.0, 0.0)
     wheels: Wheels | None = None
-    colour: Annotated[str, Meta(pattern=r"^#[0-9a-f]{6}$")] | None = None
+    colour: Annotated[str, Meta(pattern=r"^#[0-9a-f]{6}$", description=_A_COLOUR)] | None = None
 
 
 class Joint(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A connection of two bodies, or of one body to the world.
+    """A connection of two bodies.
 
     Attributes:
         kind: a rod keeps the distance of its two anchors, a pivot keeps them together.

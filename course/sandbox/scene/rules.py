@@ -240,7 +240,7 @@ def _check_joints(document: Document[Scene]) -> None:
                 document.fail(("joint", i, side), f"there is no body called {name}.", fix=_known(names))
         if joint.a == joint.b:
             document.fail(
-                ("joint", i), "a joint needs two bodies.", fix="Leave `a` out to join it to the world."
+                ("joint", i), "a joint needs two bodies.", fix="To hang it up, join it to a fixed body."
             )
         if joint.b in fixed and joint.a in fixed:
             document.fail(
@@ -259,6 +259,7 @@ def _check_parameters(document: Document[Scene]) -> None:
         if not parameter.low <= parameter.default <= parameter.high:
             document.fail((*where, "default"), "the default is outside low to high.", fix="Widen the range.")
     known = {parameter.name.replace("-", "_") for parameter in scene.parameter}
+    moved: set[str] = set()
     for place, formula in scene.sets.items():
         if not _can_be_set(scene, place):
             document.fail(
@@ -268,6 +269,17 @@ def _check_parameters(document: Document[Scene]) -> None:
         if not used <= known:
             document.fail(
                 ("sets", place), f"the formula uses {min(used - known)}.", fix="It may use parameters only."
+            )
+        moved |= used
+    for i, probe in enumerate(scene.probe):
+        if isinstance(probe.time, str):
+            moved |= _names(document, ("probe", i, "time"), probe.time)
+    for i, parameter in enumerate(scene.parameter):
+        if parameter.name.replace("-", "_") not in moved:
+            document.fail(
+                ("parameter", i),
+                f"nothing in the run depends on {parameter.name}.",
+                fix="Use it in a formula of [sets], or take it out.",
             )
 
 

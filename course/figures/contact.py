@@ -5,9 +5,8 @@ import math
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
-from course.figures.style import METHODS, PALETTE, new_figure, note, title, word
+from course.figures.style import METHODS, PALETTE, Array, new_figure, note, title, word
 from course.physics.body import Body
 from course.physics.contact import Surface
 from course.physics.contact.models import Constraint, Penalty, SoftConvex, drop, erp_cfm, slide_across
@@ -15,9 +14,6 @@ from course.physics.rotation import ROTATION_STEPPERS, Spin, kinetic_energy
 from course.physics.simulator import Simulator
 from course.physics.solver import iterations_to, stack_impulses
 from course.physics.state import RigidBodyState
-
-Array = NDArray[np.float64]
-
 
 #: What the figures show and the captions quote: diameter of the ball, thickness of the wall (m), step (s).
 BALL_M, WALL_M, STEP_S = 0.02, 0.02, 0.01

@@ -11,14 +11,10 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from course.errors import InternalError
-from course.figures.style import METHODS, PALETTE, file_of, new_figure, title
+from course.figures.style import METHODS, PALETTE, Array, file_of, new_figure, title
 from course.simulations.base import Result
-
-Array = NDArray[np.float64]
-
 
 # ---
 # Each draws the result of one simulation.

@@ -12,12 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from course.figures.style import METHODS, PALETTE, new_figure, note, ring, title
+from course.figures.style import METHODS, PALETTE, Array, new_figure, note, ring, title
 from course.physics.integrators import STEPPERS, State, Trajectory, trajectory
 from course.physics.invariants import energy, jacobian, relative_change, spectral_radius
 from course.physics.systems import Oscillator
-
-Array = NDArray[np.float64]
 
 #: What the figures show and their captions quote.
 PHASE_Z, PHASE_STEPS = 0.85, 120

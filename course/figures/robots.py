@@ -15,12 +15,9 @@ from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
-from course.figures.style import PALETTE, new_figure, note, title, word
+from course.figures.style import PALETTE, Array, new_figure, note, title, word
 from course.physics.dynamics import HandPath, TwoLinkArm
 from course.physics.integrators import RK4, State, trajectory
-
-Array = NDArray[np.float64]
-
 
 #: What the figure shows and its caption quotes: tries a side, and the delay of the real robot.
 TRIES, DELAY_S = 40, 0.1

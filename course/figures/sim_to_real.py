@@ -5,15 +5,12 @@ from functools import cache
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from course.figures.style import INK, PALETTE, new_figure, note, ring, title, word
+from course.figures.style import INK, PALETTE, Array, new_figure, note, ring, title, word
 from course.physics.dynamics import PassiveArm, TwoLinkArm
 from course.physics.integrators import RK4, State, trajectory
 from course.physics.solver import Chain
-
-Array = NDArray[np.float64]
-
 
 _H, _STEPS = 0.005, 600  # s; 3 s altogether
 

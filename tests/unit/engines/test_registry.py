@@ -32,6 +32,10 @@ def metadata(monkeypatch):
     return lines
 
 
+def nothing(name):
+    raise importlib.metadata.PackageNotFoundError(name)
+
+
 def test_the_command_lists_the_requirement_itself(metadata):
     assert requirement_of("mujoco").command == "pip install 'mujoco>=4.0'"
     assert requirement_of("panda3d") == Requirement("panda3d", ">=1.10.16", "engines")
@@ -39,9 +43,6 @@ def test_the_command_lists_the_requirement_itself(metadata):
 
 
 def test_a_wheel_that_this_machine_has_not_is_said_instead_of_a_command(metadata, monkeypatch):
-    def nothing(name):
-        raise importlib.metadata.PackageNotFoundError(name)
-
     monkeypatch.setattr(importlib.metadata, "version", nothing)
     pybullet = availability(get("pybullet"))
     assert not pybullet.installed
@@ -53,9 +54,6 @@ def test_a_wheel_that_this_machine_has_not_is_said_instead_of_a_command(metadata
 
 
 def test_a_checkout_that_was_never_installed_reads_its_own_file(monkeypatch):
-    def nothing(name):
-        raise importlib.metadata.PackageNotFoundError(name)
-
     monkeypatch.setattr(importlib.metadata, "requires", nothing)
     assert requirement_of("rapier3d").text.startswith("rapier3d>=")
 

@@ -28,6 +28,7 @@ from course.notebooks.quiz import SEED, marked
 from course.quizzing.bank import Bank
 
 ROOT = Path(__file__).resolve().parents[3]
+STRAY = (":::", "{mermaid}", "](lesson:", "](exercise:", "figure:", "](=", "% text:", "{eq}")
 
 
 @pytest.fixture(scope="module")
@@ -96,16 +97,7 @@ def test_nothing_is_left_that_jupyter_would_show_as_stray_text(everything: list[
     for one in everything:
         for cell in cells(one.data, "markdown"):
             outside = text(cell).split("```")[::2]
-            for stray in (
-                ":::",
-                "{mermaid}",
-                "](lesson:",
-                "](exercise:",
-                "figure:",
-                "](=",
-                "% text:",
-                "{eq}",
-            ):
+            for stray in STRAY:
                 assert not any(stray in part for part in outside), (one.path, stray)
 
 

@@ -292,7 +292,7 @@ def test_going_on_compares_the_same_moment_as_the_run_that_was_seen(name: str) -
 
 
 def test_a_step_is_a_picture_the_next_contact_or_the_solvers() -> None:
-    stage = make("newtons-cradle")
+    stage = make("newtons-cradle", clock=lambda: 0.0)  # however busy the machine is, it is looked for
     stage.step()
     assert stage.world.t == pytest.approx(1 / 60, abs=1e-3)
     stage.step("solver")

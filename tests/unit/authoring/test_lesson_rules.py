@@ -194,6 +194,10 @@ def test_what_is_missing_or_wrong_is_found(old: str, new: str, problem: str) -> 
     assert [finding.problem for finding in lint(GOOD.replace(old, new))] == [problem]
 
 
+def test_a_cell_that_is_no_python_is_left_to_where_it_is_run() -> None:
+    assert lint(GOOD.replace("x = 29.5", "x = 29.5 if")) == lint(GOOD.replace("x = 29.5", "x = 0"))
+
+
 def test_a_run_needs_a_prediction_and_a_cell_that_shows_nothing_does_not() -> None:
     text = "## One\n\n```python\nprint(4)\n```\n\n```output\n4\n```\n"
     assert "a run without a prediction" in [finding.problem for finding in lint(text)]

@@ -171,6 +171,7 @@ REFUSED = {
     "> **Mith.** x": "without a known label",
     "```\nx\n```": "a fence marked 'nothing'",
     "```rust\nx\n```": "a fence marked 'rust'",
+    "```text\nx\n\nand the rest of the lesson": "a fence that is never closed",
     "```output\n4\n```": "follows no shown code cell",
     "```python hidden\nx\n```\n\n```output\n4\n```": "follows no shown code cell",
     "```drawing\nx\n```": "follows no diagram",

@@ -55,6 +55,11 @@ why = "It falls."
 agrees_abs = 1.0
 agrees_because = "A test."
 """
+#: A parameter, and a formula with it: at one end of its range, which is 0.1, no scene takes a radius of -0.9.
+DEEP = (
+    '\n[[parameter]]\nname = "deep"\nmeaning = "How deep."\nunit = "m"\ndefault = 2\nlow = 0.1\nhigh = 5'
+    '\n[sets]\n{} = "{}"'
+)
 
 
 def write(folder: Path, text: str) -> Path:
@@ -98,6 +103,13 @@ def test_every_scene_teaches_asks_and_shows_what_it_holds(scene) -> None:
         ("radius = 0.1", "radius = 0.1\nbounciness = 1", 27, "unknown key `bounciness`"),
         ("agrees_abs = 1.0\n", "", 34, "how far may theory be off"),
         ("restitution = 0.5", "restitution = 1.5", 13, "restitution"),
+        ("[[probe]]", "[probe]", 29, "`probe` is one table"),
+        ("radius = 0.1", 'radius = 0.1\ncolour = "#FF0000"', 27, "six hexadecimal digits"),
+        ('name = "ball"', 'name = "The ball"', 23, "small letters and digits"),
+        ('A test."', 'A test."' + DEEP.format("ball.position.1", "deep"), 50, "has points"),
+        ('A test."', 'A test."' + DEEP.format('"ball.radius"', "deep - 1"), 50, "-0.9"),
+        ('A test."', 'A test."' + DEEP.format("duration", "2"), 42, "depends on deep"),
+        ('A test."', 'A test."\n[[joint]]\nkind = "rod"\na = "ball"\nb = "ball"', 42, "two"),
     ],
 )
 def test_a_wrong_scene_is_refused_with_its_line(
@@ -166,6 +178,16 @@ def test_an_unknown_scene_is_not_found_and_a_close_one_suggested() -> None:
 def test_parameters_out_of_range_or_unknown_are_refused(settings: dict[str, float]) -> None:
     with pytest.raises(UsageError):
         choose("incline", settings)
+
+
+def test_the_note_on_the_cradle_is_so() -> None:
+    def last(**settings: float) -> float:
+        return run(choose("newtons-cradle", settings), duration=1.0).probes["last-fastest"]
+
+    pressed = {"gap": -1e-4}
+    assert last(gap=0.0) == pytest.approx(last(), rel=1e-4)
+    assert last(**pressed) < 0.5 * last()
+    assert last(**pressed, iterations=1) > 2 * last(**pressed, iterations=1, backwards=1)
 
 
 def test_the_seed_alone_decides_the_jitter() -> None:

@@ -441,10 +441,11 @@ def test_a_report_on_a_notebook_names_its_cells(course, notebook):
     cells = json.loads(notebook.read_text("utf-8"))["cells"]
     number = next(n for n, cell in enumerate(cells, 1) if "x / 0" in "".join(cell["source"]))
     assert f"in cell {number}, line 2 of your notebook" in ran.out
-    write_into(notebook, "def double(x:")
+    write_into(notebook, "def double(x):\n    'RIGHT'\n    if x > 0\n        return x")
     ran = course("report", "doubling", "--plain")
     assert ran.code == 0
     assert "Python cannot read `double` in cell " in ran.out
+    assert ", line 3 of your notebook: expected ':'" in ran.out
 
 
 def test_a_watch_of_a_notebook_grades_each_save(course, notebook):

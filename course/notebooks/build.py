@@ -250,7 +250,7 @@ def exercise_cells(exercise: Exercise, source: str) -> list[Cell]:
     """
     tasks = {task.id: task for task in exercise.task}
     about, parts = pieces(source, tasks)
-    readme = _LINK.sub(_as_command, exercise.readme_path.read_text(encoding="utf-8"))
+    readme = _LINK.sub(_as_command, _in_notebook(exercise))
     first, above, last = _placed(_sections(readme), list(tasks))
     cells = [opening(first), *map(markdown, above.pop("", ()))]
     file = exercise.stub_path.with_suffix(".ipynb").name
@@ -274,6 +274,13 @@ def exercise_cells(exercise: Exercise, source: str) -> list[Cell]:
     cells.append(markdown(_HAND_IN))
     cells.append(code(f"# %course_submit {exercise.id}", role="hand-in", exercise=exercise.id))
     return cells
+
+
+def _in_notebook(exercise: Exercise) -> str:
+    """The README as it is true here: the functions stand in the notebook, so nothing has to import them."""
+    readme = exercise.readme_path.read_text(encoding="utf-8")
+    imports = re.compile(rf"^from {re.escape(exercise.stub_path.stem)} import .*\n+", re.MULTILINE)
+    return imports.sub("", readme).replace(f"`{exercise.module}`", "this notebook")
 
 
 def _as_command(link: re.Match[str]) -> str:

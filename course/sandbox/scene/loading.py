@@ -110,6 +110,8 @@ def choose(name: str, settings: Mapping[str, object] | None = None) -> Chosen:
         raise NotFoundError(f"There is no file {path}.", help=fix, code="scene_not_found")
     if not own and name not in scene_ids():
         fix = meant(name, scene_ids(), "`course sandbox list` shows them.")
+        if Path(f"{name}.toml").is_file():
+            fix = f"Your own is a file: {name}.toml."
         raise NotFoundError(f"There is no scene called {name[:80]!r}.", help=fix, code="scene_not_found")
     try:
         scene = _read(path).value if own else read_scene(path)

@@ -168,6 +168,7 @@ def test_a_students_scene_is_played_and_a_wrong_one_refused_with_its_line(tmp_pa
     source = (SCENES / "head-on.toml").read_text()
     (tmp_path / "mine.toml").write_text(source)
     assert "simulation: 2 m/s" in sandbox("play", "mine.toml", cwd=tmp_path).stdout
+    assert "Your own is a file: mine.toml." in sandbox("play", "mine", cwd=tmp_path, code=5).stderr
     (tmp_path / "mine.toml").write_text(source.replace("radius = 0.2", "radius = 0", 1))
     assert "mine.toml:" in sandbox("play", "mine.toml", cwd=tmp_path, code=2).stderr
     assert "radius` must be a number > 0.0." in sandbox("list", "mine.toml", cwd=tmp_path, code=2).stderr

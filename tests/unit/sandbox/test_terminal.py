@@ -281,6 +281,9 @@ async def test_a_line_changes_a_parameter_a_setting_or_a_body_and_makes_the_scen
     assert app.world.number_of("left-puck", "mass") == 3
     for wrong in ("speed", "speed fast", "warp 9", "speed 1e9"):
         await say(wrong)
+        assert app.screen.query_one(Input).value == wrong, "what was typed stays"
+        await pilot.press("escape")
+        app.frames(1)
     assert app.stage.chosen.parameters["speed"] == 5
     await pilot.press("ctrl+s")
     app._film.wait(60)

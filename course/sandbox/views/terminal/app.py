@@ -373,13 +373,13 @@ class SandboxApp(FullScreenApp):
             ]
         page += ["", "mine: the scene as a file of your own.", ""]
 
-        def changed(line: str | None) -> None:
-            if line:
-                self._attempt(lambda: self._change(line, near))
+        self.push_screen(ChangeOverlay(page, lambda line: self._change(line, near)), self._changed)
 
-        self.push_screen(ChangeOverlay(page), changed)
+    def _changed(self, says: str | None) -> None:
+        if says:
+            self.say(says)
 
-    def _change(self, line: str, near: str | None) -> str | None:
+    def _change(self, line: str, near: str | None) -> str:
         name, _, text = line.replace("=", " ").strip().rpartition(" ")
         name = name.strip()
         if line == "mine":
@@ -388,7 +388,8 @@ class SandboxApp(FullScreenApp):
             return says
         value = guess_of(text, "")
         if value is None:
-            raise UsageError("A name and a number, please: angle 45.")
+            said = f"{text[:30]} is not a number: type" if name else "Type"
+            raise UsageError(f"{said} a name and a number, for example angle 45.")
         if name in self.stage.chosen.parameters:
             self.stage.set_parameter(name, value)
         elif name in SETTINGS:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -15,6 +15,7 @@ from textual.events import Resize
 from textual.widgets import Input, OptionList, Static
 from textual.widgets.option_list import Option
 
+from course.errors import CourseError
 from course.full_screen import Field, Overlay, TextOverlay
 from course.sandbox.runs.tape import preview
 from course.sandbox.scene.loading import NO_GUESS, guess_of, unchanged
@@ -67,11 +68,17 @@ class QuestionOverlay(Overlay[float]):
 
 
 class ChangeOverlay(Overlay[str]):
-    """Numbers to change, and a line to type one in. Dismissed with the line."""
+    """Numbers to change, and a line to type one in, which stays while it cannot be done.
 
-    def __init__(self, page: Page) -> None:
+    Dismissed with what is to be said of the change.
+
+    Args:
+        change: does what a line asks for; raises a CourseError if that cannot be done.
+    """
+
+    def __init__(self, page: Page, change: Callable[[str], str]) -> None:
         super().__init__()
-        self._page = page
+        self._page, self._change = page, change
 
     def compose(self) -> ComposeResult:
         with VerticalScroll(classes="box", can_focus=False) as box:
@@ -80,12 +87,18 @@ class ChangeOverlay(Overlay[str]):
             for piece in self._page:
                 yield Static(_shaped(piece))
             yield Field(placeholder="name and number, for example: angle 45")
+            yield Static("", id="wrong", markup=False)
 
     def on_mount(self) -> None:
         self.query_one(Input).focus()
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        self.close(event.value.strip() or None)
+        """Do it and close, or say why not; an empty line means no change."""
+        line = event.value.strip()
+        try:
+            self.close(self._change(line) if line else None)
+        except CourseError as error:
+            self.query_one("#wrong", Static).update(clean(error.message))
 
 
 class Gallery(Overlay[str]):

@@ -341,16 +341,16 @@ def worth_telling(contact: Event, last: dict[tuple[str, str], float]) -> bool:
 def account(receipt: Receipt) -> list[str]:
     """The energy account in sentences."""
     had = receipt.start + receipt.given
+    scale = max(abs(had), abs(receipt.kinetic), abs(receipt.contacts), abs(receipt.friction), 1e-12)
+    kinetic, contacts, friction, rods = (
+        part if abs(part) > 1e-9 * scale else 0.0
+        for part in (receipt.kinetic, receipt.contacts, receipt.friction, receipt.rods)
+    )
     lines = [
         f"Energy at the start {_joule(receipt.start)}"
         + (f", given since {_joule(receipt.given)}" if abs(receipt.given) > 1e-9 else "")
-        + f"; now {_joule(receipt.kinetic)} of motion and {_joule(receipt.potential)} of height.",
+        + f"; now {_joule(kinetic)} of motion and {_joule(receipt.potential)} of height.",
     ]
-    scale = max(abs(had), abs(receipt.kinetic), abs(receipt.contacts), abs(receipt.friction), 1e-12)
-    contacts, friction, rods = (
-        part if abs(part) > 1e-9 * scale else 0.0
-        for part in (receipt.contacts, receipt.friction, receipt.rods)
-    )
     in_rods = f", lost in rods {_joule(rods)}" if rods else ""
     lines.append(f"Lost in contacts {_joule(contacts)}, lost to friction {_joule(friction)}{in_rods}.")
     share = abs(receipt.residual) / scale
@@ -365,9 +365,10 @@ def account(receipt: Receipt) -> list[str]:
 def momentum(done: Run) -> list[str]:
     """The change of momentum, in a sentence."""
     (px, py, _), (qx, qy, _) = done.momentum_before, done.momentum_after
-    size = max(abs(px), abs(py), abs(qx), abs(qy), 1e-12)
-    now = f"({qx if abs(qx) > 1e-9 * size else 0.0:.4g}, {qy if abs(qy) > 1e-9 * size else 0.0:.4g}) kg m/s"
-    if abs(qx - px) <= 1e-9 * size and abs(qy - py) <= 1e-9 * size:
+    # Rounding: of sums of momenta their billionth, of bodies at rest what is far below all in a scene.
+    near = max(1e-9 * max(abs(px), abs(py), abs(qx), abs(qy)), 1e-12)
+    now = f"({qx if abs(qx) > near else 0.0:.4g}, {qy if abs(qy) > near else 0.0:.4g}) kg m/s"
+    if abs(qx - px) <= near and abs(qy - py) <= near:
         return [f"Momentum is kept: {now}."]
     was = f"({px:.4g}, {py:.4g})"
     return [f"Momentum went from {was} to {now}: something outside took part."]

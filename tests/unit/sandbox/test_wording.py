@@ -29,7 +29,7 @@ FIXED = {
     "billiards-break": {"0.17"},  # kg
     "box-stack": {"10", "0.95"},  # cm, m
     "bullet-wall": {"2", "6"},  # cm
-    "dominoes": {"4", "0.04", "90"},  # cm, m, degrees
+    "dominoes": {"4", "0.04", "90", "0.24"},  # cm, m, degrees; the pitch from which each falls flat, m
     "free-fall": {"0", "2"},  # where it starts, g t²/2
     "galton-board": {"100", "56", "70", "256", "71"},
     "head-on": {"1"},  # the right puck's speed, and the restitution of which a general sentence speaks

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import time
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -122,6 +123,7 @@ def audit(
     catalog: Catalog,
     only: str | None = None,
     *,
+    without: Collection[str] = (),
     on_progress: Progress | None = None,
     grade: GradeSources = grade_sources,
     refused: Refused | None = None,
@@ -132,6 +134,7 @@ def audit(
     Args:
         catalog: the course; it needs its solutions and hidden graders.
         only: id of a lesson, an exercise, a question or a scene; None for everything.
+        without: ids of lessons and exercises to leave out, where each is checked by itself.
         on_progress: called at the start and after each submission with the number graded and the total.
         grade: gives the verdicts on submissions. It may leave some out: they are not counted, and fields
             that hints name are not looked for.
@@ -147,6 +150,9 @@ def audit(
     findings = Findings(catalog.content.root)
     try:
         lessons, exercises = _chosen(catalog, only)
+        lessons, exercises = (
+            tuple(each for each in ids if each not in without) for ids in (lessons, exercises)
+        )
         if only is None:
             audit_syllabus(catalog, findings)
             if is_command is not None:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from course.physics.rotation import angular_momentum, kinetic_energy
 from course.physics.state import RigidBodyState
 
 Array = NDArray[np.float64]
@@ -74,3 +75,20 @@ class Body:
     def acceleration(self) -> Array:
         """Newton's second law: the acceleration by the forces so far, m/s², shape (..., 3)."""
         return self.force / self.mass
+
+    def momentum(self) -> Array:
+        """Mass times velocity, kg m/s, shape (..., 3)."""
+        return self.mass * self.state.velocity
+
+    def angular_momentum(self) -> Array:
+        """About the centre of mass, in the world's axes, kg m²/s; 0 for a body that never turns."""
+        if not self.spins:
+            return np.zeros_like(self.state.angular_velocity)
+        return angular_momentum(self.inertia, self.state.orientation, self.state.angular_velocity)
+
+    def kinetic_energy(self) -> Array:
+        """Of the motion and of the rotation together, J, shape (...)."""
+        linear = 0.5 * self.mass * np.sum(self.state.velocity**2, axis=-1)
+        if not self.spins:
+            return np.asarray(linear)
+        return np.asarray(linear + kinetic_energy(self.inertia, self.state.angular_velocity))

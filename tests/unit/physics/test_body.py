@@ -81,3 +81,16 @@ def test_forces_and_torques_add_up_until_they_are_cleared() -> None:
 def test_a_body_that_cannot_be_is_refused(options: dict[str, Any], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         Body(**{"mass": 1.0, "state": RigidBodyState.of(np.zeros(3)), **options})
+
+
+def test_a_point_mass_never_turns_and_has_no_energy_of_rotation() -> None:
+    body = Body(2.0, RigidBodyState.of(np.zeros(3), [3.0, 0.0, 0.0], angular_velocity=[1.0, 0.0, 0.0]))
+    assert body.kinetic_energy() == pytest.approx(0.5 * 2.0 * 9.0)
+    assert not body.angular_momentum().any()
+
+
+def test_a_rolling_ball_carries_two_sevenths_of_its_energy_in_its_spin() -> None:
+    rolling = RigidBodyState.of(np.zeros(3), [1.0, 0.0, 0.0], angular_velocity=[0.0, 2.0, 0.0])
+    ball = Body.sphere(1.0, 0.5, rolling)
+    still = Body.sphere(1.0, 0.5, RigidBodyState.of(np.zeros(3), angular_velocity=[0.0, 2.0, 0.0]))
+    assert still.kinetic_energy() / ball.kinetic_energy() == pytest.approx(2 / 7)

@@ -95,6 +95,7 @@ SUMS = [
         (None, "sync", [("0.05), 5.0)", "0.3), 0.9)")]),  # where a friction stops at a limit is asked for
         (None, "sync", [("- 0.15", "- 0.5")]),
         ("FRICTION_SHARE_TOO_LARGE", "sync", [("- 0.15", "- 3.0")]),
+        ("FRICTION_LEARNS_SLOWLY", "sync", [("- 0.15", "- 0.02")]),
     ],
 )
 def test_a_program_is_told_no_other_mistake_of_the_same_effect(code, task, changes):

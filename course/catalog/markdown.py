@@ -190,7 +190,8 @@ class _Builder:
 
     def _fence(self, node: SyntaxTreeNode, line: int, before: b.Block | None) -> b.Block | _Completed:  # noqa: PLR0911 - one return per kind
         text = node.content.rstrip("\n")
-        if node.map and node.map[1] - node.map[0] < node.content.count("\n") + 2:
+        rows = node.content.removesuffix("\n").count("\n") + bool(node.content)
+        if node.map and node.map[1] - node.map[0] < rows + 2:
             raise self._wrong(line, "a fence that is never closed", "End it with ``` on a line of its own.")
         match node.info.split():
             case ["python"]:

@@ -329,7 +329,8 @@ def _as_toml_writes_it(raw: Document[Any], steps: Keys, info: Any) -> None:
             if len(path) > 1 and not isinstance(info.value_type, msgspec.inspect.StructType):
                 key = ".".join(path)
                 fix = f'Write "{key}" = ..., with quotes around the key.'
-                raw.fail((*steps, *path), f"the key {key} has points, which divide it.", fix=fix)
+                problem = f"{_named((*steps, first))} is a table: the points in {key} divide it."
+                raw.fail((*steps, *path), problem, fix=fix)
 
 
 def _described(info: Any) -> str:

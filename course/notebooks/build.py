@@ -279,7 +279,8 @@ def exercise_cells(exercise: Exercise, source: str) -> list[Cell]:
 def _in_notebook(exercise: Exercise) -> str:
     """The README as it is true here: the functions stand in the notebook, so nothing has to import them."""
     readme = exercise.readme_path.read_text(encoding="utf-8")
-    imports = re.compile(rf"^from {re.escape(exercise.stub_path.stem)} import .*\n+", re.MULTILINE)
+    own = rf"from {re.escape(exercise.stub_path.stem)} import .*\n"
+    imports = re.compile(rf"(?<=```python\n){own}\n?|^{own}", re.MULTILINE)
     return imports.sub("", readme).replace(f"`{exercise.module}`", "this notebook")
 
 

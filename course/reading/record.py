@@ -7,6 +7,8 @@ reached). They are written by a thread of their own: a slow disk must not hold u
 
 from __future__ import annotations
 
+import queue
+import threading
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -203,10 +205,9 @@ class Writer:
     """Adds events to a record, one after the other, in a thread of its own."""
 
     def __init__(self, store: Store | None) -> None:
-        from concurrent.futures import ThreadPoolExecutor  # who only counts predictions need not load it
-
         self._record = Recorder(store)
-        self._thread = ThreadPoolExecutor(1, "record")
+        self._queue: queue.Queue[tuple[str, str, Mapping[str, Any]] | None] = queue.Queue()
+        self._thread: threading.Thread | None = None
 
     @property
     def trouble(self) -> str:
@@ -215,11 +216,23 @@ class Writer:
 
     def __call__(self, kind: str, subject: str, data: Mapping[str, Any]) -> None:
         """Add an event, soon."""
-        self._thread.submit(self._record, kind, subject, data)
+        if self._record.store is None:
+            return
+        if self._thread is None:
+            self._thread = threading.Thread(target=self._work, name="record", daemon=True)
+            self._thread.start()
+        self._queue.put((kind, subject, data))
 
     def close(self) -> None:
         """Wait until everything is written."""
-        self._thread.shutdown()
+        if self._thread is not None:
+            self._queue.put(None)
+            self._thread.join()
+            self._thread = None
+
+    def _work(self) -> None:
+        while (event := self._queue.get()) is not None:
+            self._record(*event)
 
 
 class InProgress:

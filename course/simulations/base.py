@@ -120,7 +120,8 @@ class Result:
         headline: the finding in at most 78 characters, for the head of a figure.
         finding: the finding in a sentence or two.
         columns: for ``--csv``: series of one length, the first one being the axis.
-        simulation, settings: which one, and every parameter with the value it had; ``run`` puts them in.
+        simulation, settings: which one, and every parameter with the value it had; the function ``run`` below
+            puts them in, a ``Simulation.run`` by itself does not.
     """
 
     rows: tuple[Row, ...]

@@ -432,6 +432,9 @@ def _tried(
         for task, codes, function in chosen:
             session.program = task, function
             own_checks = [check.id for check in session.checks if check.task == task]
+            if not own_checks:  # which would mean all of them
+                yield task, codes, "survives"
+                continue
             with warnings.catch_warnings():  # a program only warns, whatever this process makes of warnings
                 warnings.simplefilter("ignore")
                 verdict = session.grade(Submission({exercise.module: source.encode()}), only=own_checks)

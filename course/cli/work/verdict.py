@@ -364,6 +364,8 @@ FORMATS = ("text", "github", "lines")
 
 #: How a student's frame begins in a traceback, as ``StudentFailure`` has it.
 _FRAME = re.compile(r"^\S+\.py:(\d+) in ", re.MULTILINE)
+#: How a function that Python cannot read is told of in a file, by ``course.scoring.failures``.
+_UNREAD = re.compile(r"Python cannot read `\w+` on line (\d+) of your file")
 
 
 def annotate(console: Console, here: Here, work: StudentWork, verdict: Verdict, form: str) -> None:
@@ -437,14 +439,17 @@ def unread_line(source: bytes | str) -> int:
 
 
 def line_of(text: str, check: CheckResult, *, traced: bool = True) -> int:
-    """The line where the student's code raised; else where the function begins, even in a notebook's JSON.
+    """The line where the student's code raised, or Python stopped reading it; else where the function begins.
 
     Args:
         text: the file.
-        traced: the lines of a traceback are lines of this file.
+        traced: the lines of a traceback are lines of this file; those of a notebook's cells are none of its
+            JSON.
     """
     if traced and (frames := _FRAME.findall(check.traceback or "")):
         return int(frames[-1])
+    if traced and (unread := _UNREAD.match(check.message)):
+        return int(unread[1])
     defined = re.compile(rf"""^[\s"]*def\s+{re.escape(check.task)}\s*\(""", re.MULTILINE)
     # The last definition of a name is the one that counts.
     found = [match.end() for match in defined.finditer(text)]

@@ -11,6 +11,7 @@ import __future__
 import ast
 import builtins
 import importlib.machinery
+import re
 import sys
 import types
 from typing import TYPE_CHECKING, Any
@@ -125,10 +126,12 @@ class Loading:
             body = statements.parsed(self._source)  # and the compiler will say it of one of them
         except SyntaxError:
             found = statements.pieces(self._source)
+            lines = self._source.split("\n")
             faults = [
-                Fault("syntax", it.error, _said_on(it.error, it.line), it.names)
+                # Of a mark that a merge left the line is the mark's, whatever Python stumbles over behind it.
+                Fault("syntax", it.error, it.line if _MARK.match(lines[it.line - 1]) else line, it.names)
                 for it in found
-                if it.error is not None
+                if it.error is not None and (line := _said_on(it.error, it.line))
             ]
             body = [node for piece in found for node in piece.body]
         except statements.UNREADABLE:
@@ -180,6 +183,10 @@ class Loading:
     def _fault(self, stage: str, error: BaseException, line: int, names: Any) -> None:
         if len(self.faults) < _MOST_FAULTS:
             self.faults.append(Fault(stage, error, line, names))
+
+
+#: What a merge leaves at the beginning of a line.
+_MARK = re.compile(r"<{7}|={7}|>{7}")
 
 
 def _said_on(error: BaseException, first: int) -> int:

@@ -342,10 +342,11 @@ def account(receipt: Receipt) -> list[str]:
     """The energy account in sentences."""
     had = receipt.start + receipt.given
     scale = max(abs(had), abs(receipt.kinetic), abs(receipt.contacts), abs(receipt.friction), 1e-12)
-    kinetic, contacts, friction, rods = (
+    contacts, friction, rods = (
         part if abs(part) > 1e-9 * scale else 0.0
-        for part in (receipt.kinetic, receipt.contacts, receipt.friction, receipt.rods)
+        for part in (receipt.contacts, receipt.friction, receipt.rods)
     )
+    kinetic = receipt.kinetic if receipt.kinetic > 1e-12 * scale else 0.0
     lines = [
         f"Energy at the start {_joule(receipt.start)}"
         + (f", given since {_joule(receipt.given)}" if abs(receipt.given) > 1e-9 else "")

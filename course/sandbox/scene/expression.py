@@ -76,7 +76,9 @@ def evaluate(text: str, values: Mapping[str, float]) -> float:
     try:
         return _value(tree, known)
     except (ArithmeticError, ValueError, OverflowError, TypeError) as error:
-        raise _refused(text, f"has no value ({error})", help="Choose other numbers.") from error
+        raise _refused(
+            text, f"has no value ({error})", help="Choose other numbers, or correct it."
+        ) from error
 
 
 def names(text: str) -> frozenset[str]:

@@ -105,7 +105,7 @@ def choose(name: str, settings: Mapping[str, object] | None = None) -> Chosen:
         name = scenes()[int(name) - 1].id
     own = name.endswith(".toml") or "/" in name
     path = Path(name).expanduser() if own else scene_path(name)
-    if own and not path.is_file():
+    if own and not path.exists():  # a pipe is no file, and can be read
         fix = "`course sandbox list` shows the scenes."
         raise NotFoundError(f"There is no file {path}.", help=fix, code="scene_not_found")
     if not own and name not in scene_ids():
@@ -278,9 +278,7 @@ def _put_in(scene: Scene, settings: dict[str, object], path: Path, *, own: bool 
         values[name] = value
     numbers = {name.replace("-", "_"): value for name, value in values.items()}
     for place, formula in scene.sets.items():
-        target, key = slot(raw, place)
-        value, kind = evaluate(formula, numbers), type(target[key])
-        target[key] = kind(value) if kind in {int, bool} else value  # whole numbers stay whole
+        _set(raw, place, evaluate(formula, numbers))
     raw["seed"] = seed
     try:
         ready = msgspec.convert(raw, Scene)
@@ -288,6 +286,12 @@ def _put_in(scene: Scene, settings: dict[str, object], path: Path, *, own: bool 
         raise _misfit(scene, numbers, str(error)) from error
     checked_rest = {name: checked(name, value) for name, value in rest.items()}
     return Chosen(scene=ready, parameters=values, settings=checked_rest, path=path, own=own)
+
+
+def _set(raw: dict[str, Any], place: str, value: float) -> None:
+    target, key = slot(raw, place)
+    kind = type(target[key])
+    target[key] = kind(value) if kind in {int, bool} else value  # whole numbers stay whole
 
 
 class MisfitError(UsageError):
@@ -306,9 +310,8 @@ def _misfit(scene: Scene, numbers: Mapping[str, float], error: str) -> MisfitErr
     """Which of the formulas gave what does not fit: the first that does not by itself."""
     for place, formula in scene.sets.items():
         raw: dict[str, Any] = msgspec.to_builtins(scene)
-        target, key = slot(raw, place)
-        value, kind = evaluate(formula, numbers), type(target[key])
-        target[key] = kind(value) if kind in {int, bool} else value
+        value = evaluate(formula, numbers)
+        _set(raw, place, value)
         try:
             msgspec.convert(raw, Scene)
         except msgspec.ValidationError as alone:

@@ -10,7 +10,6 @@ import msgspec
 
 from course.catalog.models import Exercise
 from course.isolation.failures import StudentFailure
-from course.isolation.inside import statements
 from course.isolation.session import LOOP, LoadFault, LoadRefusedError
 from course.printable import ended
 from course.scoring.checks.collected import Check
@@ -246,17 +245,28 @@ def untouched(exercise: Exercise, submission: Submission) -> frozenset[str]:
     A stub's function may run and return something: a measurement of nothing, a program to mend.
     """
     try:
-        stub, mine = ast.parse(exercise.stub_path.read_bytes()), ast.parse(submission.files[exercise.module])
-        return frozenset(task.id for task in exercise.task if _used(stub, task.id) == _used(mine, task.id))
-    except (OSError, SyntaxError, ValueError, RecursionError):
+        stub = _definitions(exercise.stub_path.read_bytes())
+        mine = _definitions(submission.files[exercise.module])
+    except (OSError, KeyError, SyntaxError, ValueError, RecursionError):
         return frozenset()
+    changed = {name for name in {*stub, *mine} if stub.get(name) != mine.get(name)}
+    while more := {name for name, (_, uses) in mine.items() if name not in changed and uses & changed}:
+        changed |= more
+    return frozenset(task.id for task in exercise.task) - changed
 
 
-def _used(module: ast.Module, task: str) -> list[str]:
-    """The statements that a function needs, but for imports; of definitions of one name the last."""
-    needed = (module.body[index] for index in statements.needed(module.body, [task]))
-    bare = (node for node in needed if not isinstance(node, ast.Import | ast.ImportFrom))
-    return list({getattr(node, "name", node): ast.dump(node) for node in bare}.values())
+def _definitions(source: bytes) -> dict[str, tuple[str, frozenset[str]]]:
+    """The functions, classes and constants of a module: the tree of each, and the names that it uses."""
+    found: dict[str, tuple[str, frozenset[str]]] = {}
+    for node in ast.parse(source).body:
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            names = [node.name]
+        else:
+            targets = node.targets if isinstance(node, ast.Assign) else []
+            names = [target.id for target in targets if isinstance(target, ast.Name)]
+        uses = frozenset(part.id for part in ast.walk(node) if isinstance(part, ast.Name))
+        found |= {name: (ast.dump(node), uses) for name in names}
+    return found
 
 
 def to_do(results: Iterable[CheckResult], tasks: Collection[str]) -> list[CheckResult]:

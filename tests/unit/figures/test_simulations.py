@@ -111,4 +111,4 @@ def test_the_times_at_which_two_pendulums_part_are_marked_on_the_curve() -> None
 
 def test_a_simulation_without_a_figure_is_our_fault() -> None:
     with pytest.raises(InternalError, match="has no figure"):
-        simulations.draw(Result("nothing", {}, (), "", "", ()))
+        simulations.draw(Result((), "", "", (), simulation="nothing"))

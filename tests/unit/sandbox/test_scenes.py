@@ -106,7 +106,7 @@ def test_every_scene_teaches_asks_and_shows_what_it_holds(scene) -> None:
         ("[[probe]]", "[probe]", 29, "`probe` is one table"),
         ("radius = 0.1", 'radius = 0.1\ncolour = "#FF0000"', 27, "six hexadecimal digits"),
         ('name = "ball"', 'name = "The ball"', 23, "small letters and digits"),
-        ('A test."', 'A test."' + DEEP.format("ball.position.1", "deep"), 50, "has points"),
+        ('A test."', 'A test."' + DEEP.format("ball.position.1", "deep"), 50, "divide it"),
         ('A test."', 'A test."' + DEEP.format('"ball.radius"', "deep - 1"), 50, "-0.9"),
         ('A test."', 'A test."' + DEEP.format("duration", "2"), 42, "depends on deep"),
         ('A test."', 'A test."\n[[joint]]\nkind = "rod"\na = "ball"\nb = "ball"', 42, "two"),

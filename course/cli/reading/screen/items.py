@@ -47,10 +47,10 @@ class LinkItem(Item):
                 page.app.copy_to_clipboard(self.target)
             page.reader.say(f"Opened {self.target}" if shown else f"Copied: {self.target}")
             return
+        # Where a warm-up or an exercise is done: in the lesson that leads to it.
+        lesson = page.catalog.exercise(name).lesson if kind == "exercise" else ""
         page.leave_trail()
-        if kind == "exercise":
-            # Where a warm-up or an exercise is done: in the lesson that leads to it.
-            lesson = page.catalog.exercise(name).lesson
+        if lesson:
             page.open(lesson, Place(page.in_progress(lesson).script.task(name)))
         else:
             page.open(name or page.progress.script.lesson.id, section=slug or self.target.partition("#")[2])

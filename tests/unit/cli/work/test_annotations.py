@@ -130,6 +130,18 @@ def test_a_line_in_a_notebook_is_that_of_its_text():
     assert line_of(text, SimpleNamespace(task="doublings", traceback=None), traced=False) == 1
 
 
+def test_a_function_that_is_no_python_is_marked_where_python_stops(tmp_path):
+    for words in (["init"], ["start", "integrators"]):
+        assert in_process(*words, cwd=tmp_path).returncode == 0
+    file = tmp_path / "integrators" / "integrators.py"
+    text = file.read_text().replace("    raise NotImplementedError", "    if h > 0\n        return q, v", 1)
+    file.write_text(text)
+    line = 1 + text[: text.index("    if h > 0")].count("\n")
+    told = in_process("-C", tmp_path, "check", "integrators", "--format", "lines").stdout
+    assert f"integrators.py:{line}: error: " in told
+    assert f"on line {line} of your file" in told
+
+
 # -- course init --with ------------------------------------------------------------------------------------
 
 

@@ -11,7 +11,6 @@ import __future__
 import ast
 import builtins
 import importlib.machinery
-import re
 import sys
 import types
 from typing import TYPE_CHECKING, Any
@@ -127,12 +126,12 @@ class Loading:
         except SyntaxError:
             found = statements.pieces(self._source)
             lines = self._source.split("\n")
-            faults = [
-                # Of a mark that a merge left the line is the mark's, whatever Python stumbles over behind it.
-                Fault("syntax", it.error, it.line if _MARK.match(lines[it.line - 1]) else line, it.names)
-                for it in found
-                if it.error is not None and (line := _said_on(it.error, it.line))
-            ]
+            for piece in found:
+                if piece.error is not None:
+                    # Python may stumble only behind the mark of a merge, and the mark is what has to go.
+                    marked = lines[piece.line - 1].startswith(statements.MERGE)
+                    line = piece.line if marked else _said_on(piece.error, piece.line)
+                    faults.append(Fault("syntax", piece.error, line, piece.names))
             body = [node for piece in found for node in piece.body]
         except statements.UNREADABLE:
             body = []
@@ -183,10 +182,6 @@ class Loading:
     def _fault(self, stage: str, error: BaseException, line: int, names: Any) -> None:
         if len(self.faults) < _MOST_FAULTS:
             self.faults.append(Fault(stage, error, line, names))
-
-
-#: What a merge leaves at the beginning of a line.
-_MARK = re.compile(r"<{7}|={7}|>{7}")
 
 
 def _said_on(error: BaseException, first: int) -> int:

@@ -28,6 +28,10 @@ _WITHIN = re.compile(r" \(detected at line \d+\)| on line \d+")
 _DEFINES = re.compile(r"^(?:async[ \t]+)?def[ \t]+(\w+)|^class[ \t]+(\w+)|^(\w+)[ \t]*=(?!=)", re.MULTILINE)
 
 
+#: What ``git merge`` leaves where both sides changed the same lines.
+MERGE = ("<<<<<<<", "=======", ">>>>>>>")
+
+
 class Piece(NamedTuple):
     """Some lines of a module that belong together.
 

@@ -10,6 +10,7 @@ import msgspec
 
 from course.catalog.models import Exercise
 from course.isolation.failures import StudentFailure
+from course.isolation.inside import statements
 from course.isolation.session import LOOP, LoadFault, LoadRefusedError
 from course.printable import ended
 from course.scoring.checks.collected import Check
@@ -24,8 +25,6 @@ from course.scoring.verdict import CheckResult, Finding, Places, Problem, Status
 #: Diagnosis of a check that broke on a student's value and not on the model solution's.
 NOT_JUDGED = "NOT_JUDGED"
 _MOST_NOTES = 5
-#: What ``git merge`` leaves where both sides changed the same lines.
-_MERGE = ("<<<<<<<", "=======", ">>>>>>>")
 
 
 def result(check: Check, status: Status, **fields: Any) -> CheckResult:
@@ -180,7 +179,7 @@ def _reason(fault: LoadFault, faults: Sequence[LoadFault], places: Places) -> st
     failure = fault.failure
     brief = failure.message.partition("\\n")[0].rstrip(" .:")  # of several lines the first
     said = f": {brief}" if failure.message else ""
-    if fault.stage == "syntax" and fault.code.startswith(_MERGE):
+    if fault.stage == "syntax" and fault.code.startswith(statements.MERGE):
         return ". It is the mark of a merge: keep one of the two versions, and delete the marks."
     if fault.stage == "syntax":
         return ended(f", since Python cannot read it{said}") + _after(newer(failure, fault.code))

@@ -25,7 +25,7 @@ from course.cli.grade.options import (
     points,
     show_roster,
 )
-from course.cli.grade.running import checks_gave
+from course.cli.grade.running import checks_gave, show_unjudged
 from course.errors import UsageError
 from course.grading.exports.grades import grade_line, utc
 from course.grading.gradebook.records import Decision, Run, SubmittedAt
@@ -45,6 +45,7 @@ from course.grading.running import assign as assigning
 from course.grading.running import batch
 from course.grading.running.assign import Assigned, Unsettled
 from course.grading.running.folder import open_results, previewed
+from course.grading.running.run import broken_checks, unjudged
 from course.printable import command, counted, one_line, quoted, some
 from course.scoring.verdict import format_points, in_points
 
@@ -322,6 +323,7 @@ class GradeAssign(Envelope, tag="course.grade-assign/1", frozen=True, kw_only=Tr
     dry_run: bool
     assigned: tuple[AssignedOne, ...]
     unsettled: tuple[UnsettledOne, ...]
+    unjudged: tuple[str, ...] = ()
 
 
 def assign(
@@ -376,11 +378,13 @@ def assign(
                 return done, assigning.unsettled(results)
 
         done, left = agreed(console, assigned, yes=yes)
+    broke = unjudged(one for item in done for one in broken_checks(item.after))
     if console.json:
         shown = tuple(map(_assigned_one, done)), tuple(map(_unsettled_one, left))
-        console.emit(GradeAssign(dry_run=dry_run, assigned=shown[0], unsettled=shown[1]))
+        console.emit(GradeAssign(dry_run=dry_run, assigned=shown[0], unsettled=shown[1], unjudged=broke))
     else:
         _show_assigned(console, done, dry_run=dry_run)
+        show_unjudged(console, broke)
         _show_unsettled(console, left, out, "would be left to settle" if done and dry_run else "to settle")
         if waiting:
             console.note(f"Not graded yet: {counted(waiting, 'student')}. The run goes on with --resume.")
@@ -477,7 +481,7 @@ def log(
         about = one_line(" ".join(part for part in (decision.student, decision.exercise) if part))
         words = f"{decision.at}, {decision.who}, {about or 'the class'}: {decision.reason}"
         console.item(decision.kind, one_line(words), width=10)
-        before, after = in_words(decision.before), in_words(decision.after)
+        before, after = (in_words(one, student, exercise) for one in (decision.before, decision.after))
         if decision.kind == "lift":  # what is kept has no score: the graders' counts, whatever it is then
             after = "the graders' score"
         if before != after:

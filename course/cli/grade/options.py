@@ -189,8 +189,12 @@ class _Counted(msgspec.Struct):
     file: str = ""
 
 
-def in_words(text: str) -> str:
-    """What counted, as a decision keeps it, for a person: a score, and why there was none."""
+def in_words(text: str, student: str | None = None, exercise: str | None = None) -> str:
+    """What counted, as a decision keeps it, for a person: a score, and why there was none.
+
+    Args:
+        student, exercise: of a decision about the class, show these alone.
+    """
     with suppress(msgspec.MsgspecError, RecursionError):
         kept = msgspec.json.decode(text, type=_Counted)
         why = kept.reason or (kept.state if kept.score is None else "")
@@ -198,6 +202,10 @@ def in_words(text: str) -> str:
         return one_line(", ".join(filter(None, words)))
     with suppress(msgspec.MsgspecError, RecursionError):
         rows = msgspec.json.decode(text, type=list[tuple[str, str, float | None]])
-        shown = [f"{student} {exercise} {points(score)}" for student, exercise, score in rows[:_FEW]]
-        return one_line("; ".join(shown + ["..."] * (len(rows) > _FEW)))
+        shown = [
+            f"{who} {what} {points(score)}"
+            for who, what, score in rows
+            if student in {None, who} and exercise in {None, what}
+        ]
+        return one_line("; ".join(shown[:_FEW] + ["..."] * (len(shown) > _FEW)))
     return one_line(text[:_SHOWN])

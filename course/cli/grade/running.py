@@ -172,7 +172,9 @@ def _show_edited(console: Console, summary: Summary, tried: Regraded | None, out
     if len(changes) > _MOST_TROUBLED:
         console.line(f"and {len(changes) - _MOST_TROUBLED} more.", indent=2)
     show_faults(console, tried, out)
-    console.note(f"`course grade rerun {out}` gives these scores; until then the run's own graders count.")
+    if changes:
+        again = command("grade", "rerun", out)
+        console.note(f"{again} gives these scores; until then the run's own graders count.")
 
 
 def _only_one_way(jobs: int, local_cluster: int | None, scheduler: str | None) -> None:
@@ -232,6 +234,7 @@ class GradeRerun(Envelope, tag="course.grade-rerun/1", frozen=True, kw_only=True
     grader_error: int
     changes: tuple[Change, ...]
     graders: str = ""
+    unjudged: tuple[str, ...] = ()
 
 
 def rerun(
@@ -282,6 +285,7 @@ def _show_rerun(console: Console, done: Regraded, out: Path, *, dry_run: bool) -
     if done.kept:
         console.note(f"Without a submission in the gradebook, and unchanged: {done.kept}.")
     show_faults(console, done, out)
+    show_unjudged(console, done.unjudged)
     if dry_run and done.changes:
         console.note(
             "Nothing was changed. Without --dry-run the scores change, and the old results are kept."
@@ -364,7 +368,6 @@ def _show_summary(
                 isolation=dict(summary.levels),
                 elapsed_s=round(summary.elapsed_s, 3),
                 out=str(out),
-                unjudged=tuple(_unjudged(summary)),
                 would_change=tried.changes if tried else (),
             )
         )
@@ -387,7 +390,7 @@ def _show_summary(
         console.note(f"{assign} lists the files of those that could not be graded, and how to settle each.")
     _show_people(console, summary)
     show_roster(console, options.roster.file if options.roster else "", summary.moved, summary.dropped)
-    _show_unjudged(console, list(_unjudged(summary)))
+    show_unjudged(console, summary.unjudged)
     _show_edited(console, summary, tried, out)
     if summary.already:
         console.note(f"{summary.already} had been graded before.")
@@ -441,16 +444,12 @@ def _mark(summary: Summary) -> str:
     return f" (pass mark: {shares[0]:.0%}{highest} of the points)"
 
 
-def _show_unjudged(console: Console, sentences: list[str]) -> None:
+def show_unjudged(console: Console, sentences: Sequence[str]) -> None:
+    """The checks whose own code broke on a submission, which is a reason to look at the check."""
     if sentences:
         console.line(("Checks whose own code broke on a submission (its result stands):", "bold"))
     for sentence in sentences[:_MOST_TROUBLED]:
         console.line(sentence, indent=2)
-
-
-def _unjudged(summary: Summary) -> Iterator[str]:
-    for (exercise, check, where), count in summary.unjudged.most_common():
-        yield f"{exercise} {check}, {count} of the results: {where}"
 
 
 def _show_result(

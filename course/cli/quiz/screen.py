@@ -416,7 +416,8 @@ class Desk:
         try:
             self.history = quiz_history(self.here.workspace.store.events())
         except CourseError as error:
-            self.here.warnings.append(f"{error.message} {error.help}")
+            if (told := f"{error.message} {error.help}") not in self.here.warnings:
+                self.here.warnings.append(told)
 
     def reviews(self) -> tuple[Due, ...]:
         """The questions under review, from the record as it is now."""

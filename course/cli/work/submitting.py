@@ -76,7 +76,7 @@ def submit(
         console.line(f"There was a file of that name; it is kept at {here.workspace.shown(Path(backup))}.")
     console.line((f"Wrote {target}.", "bold"))
     console.note("Hand in that file. Hidden checks run when it is graded.")
-    here.warnings[:0] = notes
+    here.warnings = [*notes, *here.warnings]  # of the work first, then of the record
     return here.answer(
         Submit(
             course=here.course,

@@ -77,18 +77,18 @@ CREATE TABLE results (
     UNIQUE (student, exercise, submission_sha256, grader_version, seed, run)
 );
 """
-#: Since formats 4 and 5: the graders of each run as one zip; files that are not a submission yet; who changed
+#: After format 3: the graders of each run as one zip; files that are not a submission yet; who changed
 #: a grade, when, why, and what it was before; and students whose work a run has still to look at.
 _SINCE_3 = """
-CREATE TABLE IF NOT EXISTS snapshots (
+CREATE TABLE snapshots (
     sha256 TEXT PRIMARY KEY, packed BLOB NOT NULL, row_sha256 TEXT
 ) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS found (
+CREATE TABLE found (
     student TEXT NOT NULL, exercise TEXT NOT NULL, listed TEXT NOT NULL, row_sha256 TEXT,
     PRIMARY KEY (student, exercise)
 ) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS waiting (student TEXT PRIMARY KEY, row_sha256 TEXT) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS journal (
+CREATE TABLE waiting (student TEXT PRIMARY KEY, row_sha256 TEXT) WITHOUT ROWID;
+CREATE TABLE journal (
     number INTEGER PRIMARY KEY, at TEXT NOT NULL, who TEXT NOT NULL, kind TEXT NOT NULL,
     student TEXT NOT NULL, exercise TEXT NOT NULL, reason TEXT NOT NULL, before TEXT NOT NULL,
     after TEXT NOT NULL, row_sha256 TEXT
@@ -113,7 +113,7 @@ TABLES = {
     "waiting": ("student",),
 }  # fmt: skip
 _OLD = ("meta", "runs", "exercises", "students", "submissions", "times", "overrides", "results")
-_TO_4 = "".join(
+_DIGESTS = "".join(
     f"ALTER TABLE {name} ADD COLUMN row_sha256 TEXT;"
     f"UPDATE {name} SET row_sha256 = row_digest('{name}', {', '.join(TABLES[name])});"
     for name in _OLD
@@ -129,13 +129,13 @@ _SEALED = (
     "SELECT number, run, student, exercise, submission_sha256, grader_version, seed, graded_at,"
     " verdict_sha256 FROM results ORDER BY number",
 )
-_SEALED_SINCE_4 = (
+_SEALED_NOW = (
     *_SEALED,
     "SELECT sha256 FROM snapshots ORDER BY sha256",
     "SELECT * FROM found ORDER BY student, exercise",
     "SELECT * FROM journal ORDER BY number",
+    "SELECT * FROM waiting ORDER BY student",
 )
-_SEALED_NOW = (*_SEALED_SINCE_4, "SELECT * FROM waiting ORDER BY student")
 #: Format 1 had results alone, and in them a lateness that was never filled in.
 _FROM_1 = f"""
 ALTER TABLE results RENAME TO results_1;
@@ -246,7 +246,7 @@ def create(path: Path) -> None:
         with explained(path), contextlib.closing(sqlite3.connect(draft)) as db:
             _know_digests(db)
             db.executescript(
-                f"BEGIN EXCLUSIVE; {_TABLES} {_RESULTS} {_TO_4} {_SINCE_3}"
+                f"BEGIN EXCLUSIVE; {_TABLES} {_RESULTS} {_DIGESTS} {_SINCE_3}"
                 f"PRAGMA user_version = {FORMAT_VERSION}; PRAGMA application_id = {_APPLICATION_ID}; COMMIT;"
             )
         _publish(draft, path)
@@ -328,24 +328,19 @@ def _prepare(db: sqlite3.Connection, path: Path, *, writing: bool) -> None:
         db.execute("PRAGMA locking_mode = NORMAL")
         db.execute("SELECT count(*) FROM meta").fetchone()
     kept = db.execute("SELECT value FROM meta WHERE key = ?", (SEAL,)).fetchone()
-    sealed = _SEALED if version < 4 else _SEALED_SINCE_4 if version < 5 else _SEALED_NOW
-    if kept is not None and kept[0] != _digest(db, sealed):
+    if kept is not None and kept[0] != _digest(db, _SEALED if version < FORMAT_VERSION else _SEALED_NOW):
         raise IntegrityError(
             f"{path} is damaged: its content is not what the course wrote.", help=rescue(path)
         )
     if version < FORMAT_VERSION and writing:
         _keep(db, path, version)
-        digests = _TO_4 if version < 4 else ""
         db.executescript(
-            f"BEGIN EXCLUSIVE; {digests} {_SINCE_3} PRAGMA user_version = {FORMAT_VERSION}; COMMIT;"
+            f"BEGIN EXCLUSIVE; {_DIGESTS} {_SINCE_3} PRAGMA user_version = {FORMAT_VERSION}; COMMIT;"
         )
         if kept is not None:
             seal(db)
     elif version < FORMAT_VERSION:  # unchanged; missing tables count as empty
-        made = {name for (name,) in db.execute("SELECT name FROM sqlite_schema WHERE type = 'table'")}
-        for statement in filter(str.strip, _SINCE_3.split(";")):
-            if statement.split("EXISTS ")[1].split()[0] not in made:
-                db.execute(statement.replace("CREATE TABLE", "CREATE TEMP TABLE"))
+        db.executescript(_SINCE_3.replace("CREATE TABLE", "CREATE TEMP TABLE"))
     db.set_progress_handler(None, 0)  # what is in it has an end: it was all read for its digest
 
 

@@ -384,7 +384,8 @@ def _lost(found: dict[str, dict[Row, Row]]) -> Iterator[str]:
         if gone and name != "results":
             yield f"{len(gone)} {words}"
     graded = {(row[2], row[3]) for row in found["results"].values()}
-    known = {(row[0], row[1]) for row in found["times"].values()} - graded
+    # A list of times may name work that was never handed in; every other time came with a submission.
+    known = {(row[0], row[1]) for row in found["times"].values() if row[3] != "list"} - graded
     yield from (f"the result of {student!s} for {exercise!s}" for student, exercise in sorted(known, key=str))
     files = {key[0] for key in found["submissions"]}
     for row in found["results"].values():

@@ -459,6 +459,11 @@ class Reader:
             self._left_s, self._streamed = STUDENT_S, MAX_STREAMED
             self._fatal.clear()
 
+    @property
+    def spent(self) -> bool:
+        """Whether a student's files have used up the time there is for them."""
+        return self._left_s <= 0
+
     def notebook(self, content: bytes, exercise: Exercise, name: str) -> tuple[bytes, bytes]:
         """The module that a notebook makes up, and the record of its cells."""
         told = self._ask(_Request("notebook", quoted(name), content=content, exercise=exercise))
@@ -500,7 +505,7 @@ class Reader:
         return json.loads(told.content)
 
     def _ask(self, ask: _Request) -> _Reply:
-        if self._left_s <= 0:
+        if self.spent:
             raise RefusedError(
                 "unreadable",
                 f"{ask.name} was not read: what was handed in with it took all the time for reading.",

@@ -453,32 +453,40 @@ def _within(content: bytes, shown: str, limit: int) -> bytes:
     return content
 
 
-def read_quiz(student: Student) -> tuple[Any, Path | None]:
+def read_quiz(student: Student, *, alone: bool = False) -> tuple[Any, Path | None]:
     """A student's quiz attempts, as in the JSON, and the file they came in; an empty list if none.
 
     An archive that cannot be read gives none: the exercises in it report what is wrong with it.
 
+    Args:
+        alone: no exercise is read that could.
+
     Raises:
-        UngradableError: several files hold different attempts.
+        UngradableError: several files hold different attempts, or a file that may hold some was not read.
     """
     found: list[tuple[Any, Path]] = []
+    unread: Problem | None = None
     place = student.place
     reader.turn_to(student)
     with contextlib.suppress(OSError):
         if place.files is None and place.root.is_symlink():
             return [], None
         for path in (*place.archives(), *place.find(MANIFEST, ".")):
-            with contextlib.suppress(RefusedError):
+            try:
                 packed = path.suffix.lower() == ".zip"
                 loose = b"" if packed else _read_regular(path, place.shown(path), MAX_FILE)
                 record = reader.quiz_in(path, loose)
                 found += [(record, path)] if record else []
+            except RefusedError as refused:
+                unread = refused.problem if alone or reader.spent else unread
     # A damaged record takes nothing from one that can be read.
     found = [one for one in found if not isinstance(one[0], str)] or found
     if any(record != found[0][0] for record, _ in found):
         raise UngradableError(
             "Several files hold quiz attempts.", help="Keep the one that counts.", code="ambiguous_files"
         )
+    if unread and not found:
+        raise UngradableError(unread.message, help=unread.help, code=unread.code)
     return found[0] if found else ([], None)
 
 

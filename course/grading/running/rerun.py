@@ -21,7 +21,14 @@ from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version
 from course.grading.results.effective import Effective, Results, counted
 from course.grading.running.batch import grade_all
-from course.grading.running.run import QUIZ_RECORD, GradeAll, Ungraded, graded_exercises
+from course.grading.running.run import (
+    QUIZ_RECORD,
+    GradeAll,
+    Ungraded,
+    broken_checks,
+    graded_exercises,
+    unjudged,
+)
 from course.grading.running.snapshot import Snapshot, Unpacked, fresh, frozen, kept
 from course.quizzing.bank import Bank
 from course.scoring.judging.submission import Submission, Terms
@@ -91,6 +98,7 @@ class Regraded(msgspec.Struct, frozen=True):
         faults: submissions that a fault of ours kept from being graded; what counted before counts on.
         troubled: these.
         graders: digest of the snapshot that judged.
+        unjudged: checks whose own code broke on a submission, a sentence each.
     """
 
     regraded: int
@@ -100,6 +108,7 @@ class Regraded(msgspec.Struct, frozen=True):
     changes: tuple[Change, ...]
     graders: str = ""
     troubled: tuple[Ungraded, ...] = ()
+    unjudged: tuple[str, ...] = ()
 
 
 def rerun(
@@ -122,11 +131,13 @@ def rerun(
     snapshot, recorded = _graders(results, catalog, options)
     changes: list[Change] = []
     troubled: list[Ungraded] = []
+    broken: list[tuple[str, str, str]] = []
     regraded = 0
     with frozen(snapshot) as graders:
         task = _Rerun(results, graders, recorded, options)
         for before, after in task.pairs(grade):
             regraded += 1
+            broken += broken_checks(after)
             change, error = _change(before, after), after.verdict.error
             if after.verdict.state == "grader_error" and error is not None:
                 troubled.append(
@@ -134,8 +145,16 @@ def rerun(
                 )
             elif change is not None:
                 changes.append(change)
-    found = tuple(changes), snapshot.sha256, tuple(troubled)
-    return Regraded(regraded, task.up_to_date, task.kept, len(troubled), *found)
+    return Regraded(
+        regraded=regraded,
+        up_to_date=task.up_to_date,
+        kept=task.kept,
+        faults=len(troubled),
+        changes=tuple(changes),
+        graders=snapshot.sha256,
+        troubled=tuple(troubled),
+        unjudged=unjudged(broken),
+    )
 
 
 def _graders(results: Results, catalog: Catalog, options: RerunOptions) -> tuple[Snapshot, dict[str, Any]]:

@@ -78,7 +78,7 @@ class Summary:
         unrecognised: files in the class folder with an unknown owner, one sentence each.
         moved: scores that a second roster changed.
         dropped: students of the earlier roster that it does not have.
-        unjudged: how often a check broke on a submission's result: (exercise, check, where).
+        unjudged: checks whose own code broke on a submission, a sentence each.
         graders: digest of the snapshot that judged.
         pass_marks: of the exercises with results: the points that pass, and all points.
         unsettled: entries that could not be graded and have no score by hand.
@@ -99,7 +99,7 @@ class Summary:
     unrecognised: list[str] = field(default_factory=list)
     moved: list[ScoreChange] = field(default_factory=list)
     dropped: list[str] = field(default_factory=list)
-    unjudged: Counter[tuple[str, str, str]] = field(default_factory=Counter)
+    unjudged: tuple[str, ...] = ()
     graders: str = ""
     pass_marks: list[tuple[float, float]] = field(default_factory=list)
     unsettled: int = 0
@@ -131,6 +131,7 @@ class Summary:
         self.strangers = results.unmatched(results.students())
         if results.roster is not None and self.strangers:
             self.compared = results.roster.compared(self.strangers, results.downloads)
+        broken: list[tuple[str, str, str]] = []
         for effective in results.all():
             verdict = effective.verdict
             if effective.missing or effective.waiting:
@@ -141,14 +142,27 @@ class Summary:
             self.unsettled += effective.unsettled
             if verdict.isolation:
                 self.levels[verdict.isolation] += 1
-            for check in verdict.checks:
-                if (check.traceback or "").startswith(OURS):
-                    self.unjudged[effective.exercise, check.id, str(check.traceback)] += 1
+            broken += broken_checks(effective)
             if verdict.error is not None and not settled:
                 error = verdict.error
                 self.troubled.append(
                     Ungraded(effective.student, effective.exercise, verdict.state, error.code, error.message)
                 )
+        self.unjudged = unjudged(broken)
+
+
+def broken_checks(result: Effective) -> list[tuple[str, str, str]]:
+    """The checks whose own code broke on a submission: exercise, check, and where."""
+    told = ((result.exercise, check.id, check.traceback or "") for check in result.verdict.checks)
+    return [one for one in told if one[-1].startswith(OURS)]
+
+
+def unjudged(broken: Iterable[tuple[str, str, str]]) -> tuple[str, ...]:
+    """A sentence about each of these checks, the most frequent first."""
+    found = Counter(broken).most_common()
+    return tuple(
+        f"{exercise} {check}, {count} of the results: {where}" for (exercise, check, where), count in found
+    )
 
 
 #: The name of a quiz record among the submissions in a gradebook.
@@ -348,6 +362,10 @@ class _Run:
     def _left_to_do(self) -> Iterator[Entry]:
         for student in self._students:
             self._open[student.name] += 1
+            if self._with_quiz or self._quiz_known:
+                self._score_quiz(
+                    student
+                )  # first: what is handed in with it may take all the time for reading
             required = bool(self._options.exercises)
             for entry in read_student(student, self._exercises, required=required, others=self._others):
                 if entry.unread:
@@ -367,8 +385,6 @@ class _Run:
                     continue
                 self._open[student.name] += 1
                 yield entry
-            if self._with_quiz or self._quiz_known:
-                self._score_quiz(student)
             self.one_less(student.name)
 
     def _stays(self, entry: Entry) -> bool:
@@ -448,7 +464,7 @@ class _Run:
         """Score the quiz attempts that came with a submission; no student's code is involved."""
         path = None
         try:
-            record, path = read_quiz(student)
+            record, path = read_quiz(student, alone=not self._exercises)
         except UngradableError as error:
             record = error.message.rstrip(".")  # no list of attempts, which the scoring says of it
         if not self._with_quiz:

@@ -217,7 +217,8 @@ def run(
         duration: in s; the scene's own if None.
         guess: the student's number, if one was asked for.
         every: keep a sample of all bodies this often, in s; 0 keeps none.
-        on_frame: called ``fps`` times per simulated second, at the start and at the end.
+        on_frame: called with the world and what it shows, for each frame.
+        fps: frames per simulated second, beside those at the start and at the end.
         also_at: times of further frames, in s; those after the end are left out.
         watch: called with the world before it starts.
     """

@@ -229,11 +229,11 @@ def _check_formulas(document: Document[Scene]) -> None:
                 continue  # it may end where a range does, and then there is nothing to compare
             try:
                 fill(text, values)
-                time = evaluate(text[1:-1], values) if where[-1] == "time" and not settings else 0.0
+                time = evaluate(text[1:-1], values) if where[-1] == "time" and not settings else None
             except UsageError as error:
                 there = "".join(f" at {name}={value:g}" for name, value in settings.items())
                 document.fail(where, f"{error.message.rstrip('.')}{there}.", fix=error.help)
-            if not 0.0 <= time <= scene.duration:
+            if time is not None and not 0.0 <= time <= scene.duration:
                 document.fail(
                     where, f"that is {time:g} s, which no run sees.", fix="Make it 0 to `duration`."
                 )

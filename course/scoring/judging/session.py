@@ -368,7 +368,8 @@ class GradingSession:
     def _verdict(
         self, state: str, results: Sequence[CheckResult] = (), error: Problem | None = None
     ) -> Verdict:
-        score, graded = sum((result.points for result in results), 0.0), state == "graded"
+        graded = state == "graded"
+        score = sum((result.points for result in results), 0.0)
         most = sum(result.max_points for result in results) if graded else sum(c.points for c in self.checks)
         verdict = Verdict(
             exercise=self.exercise.id,

@@ -15,6 +15,7 @@ from course.catalog.load import Catalog
 from course.catalog.questions import read_questions
 from course.cli.frame.console import Console
 from course.cli.quiz import screen
+from course.errors import IntegrityError
 from course.quizzing.bank import Bank, mark
 
 SEED = 7
@@ -453,3 +454,17 @@ def test_the_quiz_is_part_of_progress_and_of_the_dashboard(quiz, bank, types, co
     types(*key(bank, (), later).values())
     quiz("take", "--seed", str(later))
     assert course("--json").json["quiz"] == {"attempts": 2, "best": 5, "total": TOTAL, "passed": True}
+
+
+def test_a_record_that_cannot_be_read_is_warned_about_once(quiz, monkeypatch):
+    """Before each answer what another terminal did is looked up, and each time the warning was added."""
+    desk = screen.Desk.load()
+    attempt = desk.begin(SEED)
+
+    def damaged(*_, **__):
+        raise IntegrityError("The record is damaged.", help="Restore it.")
+
+    monkeypatch.setattr(type(desk.here.workspace.store), "events", damaged)
+    desk.catch_up(attempt)
+    desk.catch_up(attempt)
+    assert desk.here.warnings == ["The record is damaged. Restore it."]

@@ -8,6 +8,7 @@ import tarfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from course.grading.gradebook.book import Gradebook
@@ -15,9 +16,9 @@ from course.grading.intake.students import Entry
 from course.grading.running import batch
 from course.grading.running.batch import Graded
 from course.scoring.judging.submission import Terms
-from course.scoring.verdict import Problem
+from course.scoring.verdict import OURS, Problem, Status
 from tests.unit.grading.conftest import MINI
-from tests.unit.grading.made import read_csv, verdict, zipped
+from tests.unit.grading.made import check, read_csv, verdict, zipped
 from tests.unit.grading.running.test_run import right
 
 pytestmark = pytest.mark.usefixtures("unpacked")
@@ -203,6 +204,10 @@ def test_a_preview_of_a_score_or_a_policy_changes_nothing(course, here: Path) ->
         "late", "the rules", '[["ada","doubling",10.0]]',
     )  # fmt: skip
     assert "ada doubling 10 -> ada doubling 9" in course("grade", "log", "out").out
+    assert "ada doubling 10" in course("grade", "log", "out", "ada", "doubling").out
+    assert "ada doubling" not in course("grade", "log", "out", "bob").out, (
+        "a class's change was told of others"
+    )
 
 
 def test_resuming_after_an_edit_says_who_would_change_and_changes_nobody(
@@ -213,7 +218,9 @@ def test_resuming_after_an_edit_says_who_would_change_and_changes_nobody(
     words = ("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--resume")
     told = json.loads(course(*words, "--json").out.splitlines()[-1])
     assert (told["edited"], told["already_graded"], told["would_change"]) == (["doubling"], 3, [])
-    assert "No score was changed by that." in course(*words).out
+    told = course(*words).out
+    assert "No score was changed by that. With the present graders, 0 would change." in told
+    assert "gives these scores" not in told
     runs = course("grade", "log", "out", "--json").json["runs"]
     assert [run["kind"] for run in runs] == ["run"]
     assert course("grade", "rerun", "out", "--against", "1", "--dry-run").code == 0
@@ -231,6 +238,27 @@ def test_resuming_after_an_edit_says_who_would_change_and_changes_nobody(
     assert course("grade", "explain", "out", "ada", "doubling", "--json").json["score"] == 10.0
 
 
+def test_a_check_that_breaks_on_a_submission_is_told_by_each_command_that_grades(
+    course, here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Only a run told it: after a regrading a student had lost points, and nothing said by whose fault."""
+    odd = msgspec.structs.replace(
+        check("shown", Status.FAIL), traceback=f"{OURS}KeyError: 3 (checks.py, line 9)"
+    )
+    monkeypatch.setattr(
+        batch, "grade_all", lambda entries, *_, **__: [Graded(one, verdict(odd)) for one in entries]
+    )
+    where = "doubling shown, 1 of the results: In the check's own code: KeyError: 3 (checks.py, line 9)"
+    for words in (
+        ("grade", "assign", "out", "--accept-names", "--dry-run"),
+        ("grade", "rerun", "out", "--all"),
+        ("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--resume"),
+    ):
+        told = " ".join(course(*words).out.split())
+        assert f"(its result stands): {where}" in told, words
+        assert json.loads(course(*words, "--json").out.splitlines()[-1])["unjudged"] == [where]
+
+
 def test_a_damaged_gradebook_is_salvaged_into_a_new_folder(course, here: Path) -> None:
     assert course("grade", "override", "out", "ada", "doubling", "--score", "3", "--reason", "x").code == 0
     damaged = bytes(4096) + book(here)[4096:]
@@ -239,6 +267,13 @@ def test_a_damaged_gradebook_is_salvaged_into_a_new_folder(course, here: Path) -
     tried = course("grade", "salvage", "out", "--to", "new", "--dry-run", "--json")
     assert (tried.code, tried.json["rows"]["overrides"], tried.json["lost"]) == (0, 1, [])
     assert not (here / "new").exists()
+    listed = "student,exercise,submitted_at\nnobody,doubling,2026-01-01T12:00:00Z\n"
+    (here / "times.csv").write_text(listed)
+    shutil.copytree(here / "out", here / "whole")
+    shutil.copyfile(here / "out" / "gradebook.backup-1.sqlite", here / "whole" / "gradebook.sqlite")
+    assert course("grade", "late", "whole", "--times", "times.csv").code == 0
+    told = course("grade", "salvage", "whole", "--to", "other", "--json")
+    assert (told.code, told.json["lost"]) == (0, []), "a time in a list was told to be a lost result"
     assert course("grade", "salvage", "out", "--to", "new").code == 0
     assert book(here) == damaged
     found = course("grade", "explain", "new", "ada", "doubling", "--json").json

@@ -19,6 +19,7 @@ from course.catalog.models import Exercise
 from course.errors import InternalError, MissingCapabilityError, UsageError
 from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import Result
+from course.grading.intake import archives
 from course.grading.intake.students import Entry
 from course.grading.results.effective import Effective
 from course.grading.running import batch
@@ -451,3 +452,46 @@ def test_a_download_with_several_exercises_is_graded_and_its_times_are_kept(
         assert [item.title for item in results.exercises()] == ["Doubling", "Halving"]
         sha256 = found["ada_1", "halving"].result.key.submission_sha256
         assert results.book.submission(sha256) == {"halving.py": b"ada_1_11_halving.py"}
+
+
+@pytest.mark.parametrize(("seconds", "state"), [(60.0, "graded"), (0.0, "ungradable")])
+def test_a_quiz_is_read_before_what_takes_all_the_time_and_listed_if_it_was_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seconds: float, state: str
+) -> None:
+    """Once the time for a student's files was used up, the quiz was nowhere, and nobody was told."""
+    monkeypatch.delenv("COURSE_CONTENT", raising=False)
+    monkeypatch.setattr(archives, "STUDENT_S", seconds)
+    module_in = archives.Reader.module_in
+
+    def slow(reader: archives.Reader, path: Path, exercise: Exercise) -> archives.ArchiveContent | None:
+        reader._left_s = 0.0
+        return module_in(reader, path, exercise)
+
+    monkeypatch.setattr(archives.Reader, "module_in", slow)
+    catalog = Catalog()
+    answers = {one.question: one.key.id for one in Bank.of(catalog).pose(5)}
+    attempt = {
+        "seed": 5, "version": "1", "finished_at": "2026", "questions": list(answers), "answers": answers,
+        "score": len(answers),
+    }  # fmt: skip
+    manifest = json.dumps({"format_version": 1, "files": {}, "quiz": [attempt]})
+    put(tmp_path / "class" / "ada" / "a.zip", zipped({"submission.json": manifest}))
+    summary = graded_class(tmp_path, catalog, RunOptions(exercises=("quiz", "integrators")), grade=right)
+    with open_results(tmp_path / "out") as results:
+        found = {item.exercise: item.verdict for item in results.all()}
+    assert (found["quiz"].state, found["integrators"].state) == (state, "ungradable")
+    told = [row.message for row in summary.troubled if row.exercise == "quiz"]
+    assert all("took all the time for reading" in one for one in told)
+    assert len(told) == (state != "graded")
+
+
+def test_a_zip_that_cannot_be_read_is_told_where_the_quiz_alone_is_graded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The exercises in it say so; where none is asked for, its student had handed in nothing."""
+    monkeypatch.delenv("COURSE_CONTENT", raising=False)
+    put(tmp_path / "class" / "ada" / "a.zip", b"PK\3\4 and no more")
+    summary = graded_class(tmp_path, Catalog(), RunOptions(exercises=("quiz",)))
+    (trouble,) = summary.troubled
+    assert (trouble.student, trouble.exercise) == ("ada", "quiz")
+    assert "'a.zip': it cannot be read" in trouble.message

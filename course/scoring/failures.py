@@ -22,7 +22,7 @@ from course.figures.described import Plot
 from course.isolation.failures import StudentFailure
 from course.isolation.session import LOOP
 from course.printable import ended, one_line
-from course.scoring.elsewhere import absent, cure, lacking, newer, numpys
+from course.scoring.elsewhere import absent, cure, lacking, numpys, unread
 from course.scoring.explain.story import Diagnosis
 from course.scoring.verdict import NO_VALUE, Finding, Places, Status
 
@@ -139,7 +139,7 @@ def _left_out(failure: StudentFailure, why: StudentFailure) -> Finding:
     said = f": {one_line(why.message, _SAID).rstrip(' .')}" if why.message else ""
     if "SyntaxError" in why.bases:
         message = ended(f"Python cannot read `{failure.type}`{where}{said}")
-        advice = newer(why) or "Look at that line and the one above it: a bracket, a colon, the indentation?"
+        advice = unread(why) or "Look at that line and the one above it: a bracket, a colon, the indentation?"
     else:
         message = ended(f"`{failure.type}` could not be made: {why.type}{where}{said}")
         advice = lacking(why) or "Make that line work when the file is loaded, before any function is called."

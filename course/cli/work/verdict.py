@@ -18,6 +18,7 @@ from course.cli.frame.console import STATUS_STYLE, Console
 from course.cli.frame.here import Here, cwd
 from course.cli.work.chosen import StudentWork
 from course.errors import CourseError
+from course.isolation.inside.statements import line_of_bytes
 from course.printable import counted, steady, unheeded
 from course.scoring.verdict import CheckResult, Verdict, format_points, in_points, numbers_of
 
@@ -431,10 +432,9 @@ def unread_line(source: bytes | str) -> int:
     try:
         text = decode_source(source) if isinstance(source, bytes) else source
         compile(text, "", "exec", dont_inherit=True)
-    except UnicodeDecodeError as problem:
-        return problem.object.count(b"\n", 0, problem.start) + 1
     except (SyntaxError, ValueError, LookupError) as problem:  # the last: a codec of no text
-        return getattr(problem, "lineno", None) or 1
+        source = source if isinstance(source, bytes) else source.encode(errors="replace")
+        return getattr(problem, "lineno", None) or line_of_bytes(source, problem) or 1
     return 1
 
 

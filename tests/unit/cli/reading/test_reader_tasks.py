@@ -92,7 +92,7 @@ def test_what_is_typed_into_its_file_is_kept_however_the_editor_or_the_reader_is
     async def journey(app: ReaderApp, pilot: Any) -> None:
         await pilot.press("e")
         await pilot.pause(0.2)
-        assert "Ctrl-R: keep and check" in app.screen.query_one(".box").border_subtitle
+        assert "Ctrl-R: keep, check" in app.screen.query_one(".box").border_subtitle
         await pilot.press("#")
         if how.startswith("SIG"):
             signal.raise_signal(getattr(signal, how))

@@ -291,7 +291,7 @@ def finding_for(failure: StudentFailure | CheckFailed) -> Finding:
     finding = finding_of(failure, shown=True)
     functions = _FRAME.findall(failure.traceback)
     if failure.is_a("NotImplementedError") and functions:
-        message = f"`{functions[-1]}` is not written yet: it still raises NotImplementedError."
+        message = f"`{functions[-1]}` is not written yet."
         return Finding(message=message, help=finding.help, diagnosis=finding.diagnosis)
     return finding
 

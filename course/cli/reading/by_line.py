@@ -347,7 +347,7 @@ class LineReader:
         for hit in hits:
             self._say(f"Page {bisect.bisect_right(self._starts, hit.block)}: {hit.excerpt}")
         if not hits:
-            self._say("Nothing.")
+            self._say("Not in this lesson.")
 
     def _help(self, _rest: str, _number: int) -> None:
         for word, what in _WORDS:

@@ -63,7 +63,6 @@ _BESIDE = _DETAIL_INDENT + _LABEL_WIDTH + 2
 _SHORT = 2
 #: Columns of a usual window.
 _USUAL = 80
-_UNWRITTEN = "NOT_IMPLEMENTED"
 
 
 def show_verdict(
@@ -242,7 +241,7 @@ class _Page:
             )
         of: dict[str, dict[str, None]] = {}
         for check in every:
-            if check.diagnosis == _UNWRITTEN:
+            if check.unwritten:
                 of.setdefault(check.help, {})[check.task] = None
         common = max(of, key=lambda advice: len(of[advice]))
         for advice, named in of.items():
@@ -341,7 +340,7 @@ class _Page:
 def is_unwritten(checks: Sequence[CheckResult]) -> bool:
     """True if the task's function is as the stub has it."""
     ran = [check for check in checks if check.status != "skip"]
-    return bool(ran) and all(check.diagnosis == _UNWRITTEN for check in ran)
+    return bool(ran) and all(check.unwritten for check in ran)
 
 
 def _all_alike(checks: Sequence[CheckResult]) -> bool:

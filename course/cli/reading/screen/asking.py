@@ -150,7 +150,7 @@ class Find(_Chooser):
         chooser.clear_options()
         chooser.display = True
         if not hits:
-            chooser.add_option(Option("Nothing.", disabled=True))
+            chooser.add_option(Option("In no lesson.", disabled=True))
             return
         chooser.add_options([Option(Text(words), id=key) for key, words in hits])
         chooser.highlighted = 0

@@ -14,7 +14,7 @@ from rich.text import Text
 from textual.app import App, ComposeResult
 from textual.binding import Binding
 from textual.containers import VerticalScroll
-from textual.events import Key
+from textual.events import Key, Resize
 from textual.screen import ModalScreen
 from textual.widgets import Input, Static
 
@@ -25,6 +25,8 @@ else:
 
 #: How long a message stays in the last line, in s.
 _MESSAGE = 4.0
+#: Between two keys of a line of them.
+_BETWEEN = "   "
 
 Answer = TypeVar("Answer")
 
@@ -104,8 +106,10 @@ class FullScreenApp(App[None]):
         return words if self._clock() - since < _MESSAGE else ""
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Keys do nothing to what something is laid over."""
+        """Keys do nothing to what something is laid over, nor to a screen that is about to go."""
         del parameters
+        if self._exit:
+            return False
         return action in self.ALWAYS or len(self.screen_stack) == 1 or not hasattr(self, f"action_{action}")
 
     async def action_quit(self) -> None:
@@ -129,6 +133,16 @@ class Overlay(ModalScreen[Answer | None]):
     Overlay Input { width: 100%; }
     """
     BINDINGS: ClassVar[list[Any]] = [Binding("escape", "leave", show=False)]
+    #: Below the box: its keys, or a message.
+    below = "Escape: back"
+
+    def on_resize(self, event: Resize) -> None:
+        del event
+        self.fit_below()
+
+    def fit_below(self) -> None:
+        """Say below the box what there is room for."""
+        self.query_one(".box").border_subtitle = fitting(self.below, min(self.size.width, 84) - 6)
 
     def close(self, answer: Answer | None) -> None:
         """Dismiss it, once: a second key that closes it may be on its way already."""
@@ -182,13 +196,13 @@ class TextOverlay(Overlay[str]):
         at_end: bool = False,
     ) -> None:
         super().__init__()
-        self._title, self._keys, self._hint, self._at_end = title, tuple(keys), hint, at_end
+        self._title, self._keys, self.below, self._at_end = title, tuple(keys), hint, at_end
         self._shown = [Text(one) if isinstance(one, str) else one for one in shown]
 
     def compose(self) -> ComposeResult:
         """The page, scrolled with arrows and the wheel."""
         with VerticalScroll(classes="box") as box:
-            box.border_title, box.border_subtitle = self._title, self._hint
+            box.border_title = self._title
             for piece in self._shown:
                 yield Static(piece)
 
@@ -204,3 +218,26 @@ class TextOverlay(Overlay[str]):
         if event.character in self._keys:
             event.stop()
             self.close(event.character)
+
+
+def fitting(keys: str, width: int, *, more: str = "") -> str:
+    """The keys that fit: of a line that is too long, the first ones.
+
+    Args:
+        keys: each with what it does, three blanks between them.
+        more: the key that shows all; it stays at the end.
+    """
+    parts = keys.split(_BETWEEN)
+    if len(keys) <= width or len(parts) == 1:
+        return shortened(keys, width)
+    last = (more,) if more else ()
+    kept = [part for part in parts if part != more]
+    while len(kept) > 1 and len(_BETWEEN.join((*kept, *last))) > width:
+        kept.pop()
+    whole = _BETWEEN.join((*kept, *last))
+    return whole if len(whole) <= width else shortened(kept[0], width)
+
+
+def shortened(text: str, width: int) -> str:
+    """As much of a text as fits, with a sign where it was cut."""
+    return text if len(text) <= width else text[: max(1, width - 1)].rstrip() + "…"

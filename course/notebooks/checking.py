@@ -108,21 +108,28 @@ class CheckTable:
         lines = _first_lines(self.printed)
         curve = self._curve.description if self._curve else ""
         report = repr(self.report) if self.report else ""
-        below = [text for text in (curve, *self.verdict.warnings, self.note, report) if text]
+        notes = *self._to_write, *self.verdict.warnings, self.note
+        below = [text for text in (curve, *notes, report) if text]
         for check in self.checks:
-            lines.append(f"{_MARKS.get(check.status, '✗')} {check.title}: {check.status}")
+            mark, state = _state(check)
+            lines.append(f"{mark} {check.title}: {state}")
             lines += [f"    {text}" for text in _words(check)]
         return "\n".join([*lines, self.summary, *below])
 
     def _repr_html_(self) -> str:
         rows = "".join(_row(check, scored=self.scored) for check in self.checks)
         table = f'<table class="course-checks">{rows}</table>' if rows else ""
-        notes = [note for note in (*self.verdict.warnings, self.note) if note]
+        notes = [note for note in (*self._to_write, *self.verdict.warnings, self.note) if note]
         note = "".join(f"<p>{_coded(text)}</p>" for text in notes)
         lines = "\n".join(_first_lines(self.printed))
         printed = f"<pre>{escape(lines)}</pre>" if lines else ""
         report = self.report._repr_html_() if self.report is not None else ""
         return f"{_STYLE}{printed}{table}<p><b>{escape(self.summary)}</b></p>{self._drawn()}{note}{report}"
+
+    @property
+    def _to_write(self) -> Iterable[str]:
+        """What to do about functions that are not written yet, once each."""
+        return dict.fromkeys(check.help for check in self.checks if check.unwritten)
 
     def _drawn(self) -> str:
         """The first curve, and where it leaves the right one."""
@@ -134,17 +141,19 @@ class CheckTable:
         return f"{image}<p><small>{escape(curve.description)}</small></p>"
 
 
+def _state(check: CheckResult) -> tuple[str, str]:
+    """A mark and a word; what is not written yet is no mistake."""
+    return ("–", "to do") if check.unwritten else (_MARKS.get(check.status, "✗"), str(check.status))
+
+
 def _row(check: CheckResult, *, scored: bool) -> str:
-    mark = _MARKS.get(check.status, "✗")
+    mark, state = _state(check)
     words = "".join(
         f"<br>{_coded(text)}" if index < 2 else f"<br><small>{escape(text)}</small>"
         for index, text in enumerate(_words(check))
     )
     points = f"<td>{format_points(check.points)}/{format_points(check.max_points)}</td>" if scored else ""
-    return (
-        f"<tr><td>{mark} {escape(str(check.status))}</td>"
-        f"<td><b>{escape(check.title)}</b>{words}</td>{points}</tr>"
-    )
+    return f"<tr><td>{mark} {escape(state)}</td><td><b>{escape(check.title)}</b>{words}</td>{points}</tr>"
 
 
 def _coded(text: str) -> str:
@@ -154,7 +163,7 @@ def _coded(text: str) -> str:
 
 def _words(check: CheckResult) -> list[str]:
     """Message, advice, then numbers, where there are any."""
-    if check.status == "pass":
+    if check.status == "pass" or check.unwritten:
         return []
     lines = [text for text in (check.message, check.help) if text]
     lines += [f"{label}: {text}" for label, text in numbers_of(check)]

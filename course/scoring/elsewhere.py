@@ -195,6 +195,25 @@ def newer(failure: StudentFailure, code: str = "") -> str:
     return ""
 
 
+#: What Python says of a line that it cannot read -> what to do about it.
+_UNREAD = (
+    (
+        r"^invalid (?:non-printable )?character",
+        "It came with a text that was pasted: delete that character and type it yourself.",
+    ),
+    (
+        r"^invalid (?:decimal|imaginary|hexadecimal) literal",
+        "A letter follows a number. Is a `*` missing between them?",
+    ),
+)
+
+
+def unread(failure: StudentFailure, code: str = "") -> str:
+    """What to do about a line that Python cannot read, as a sentence or two; "" where nothing fits."""
+    found = (advice for said, advice in _UNREAD if re.search(said, failure.message))
+    return newer(failure, code) or next(found, "")
+
+
 # ---
 # Python's commonest errors, each with its own cure.
 
@@ -272,6 +291,7 @@ _CURES: tuple[tuple[str, str], ...] = (
         "Keep the stub's arguments in the `def`, all of them.",
     ),
     (r"missing \d+ required positional", "Pass every argument that the `def` names."),
+    (r"'bitwise_xor'|for \^", "`^` is no power in Python: write `**`."),
     (r"RecursionError", "The function calls itself without an end. When should it stop?"),
     (
         r"ValueError: (?:too many|not enough) values to unpack",

@@ -22,7 +22,7 @@ from course.figures.described import Plot
 from course.isolation.failures import StudentFailure
 from course.isolation.session import LOOP
 from course.printable import ended, one_line
-from course.scoring.elsewhere import absent, cure, lacking, newer, numpys
+from course.scoring.elsewhere import absent, cure, lacking, numpys, unread
 from course.scoring.explain.story import Diagnosis
 from course.scoring.verdict import NO_VALUE, Finding, Places, Status
 
@@ -139,7 +139,7 @@ def _left_out(failure: StudentFailure, why: StudentFailure) -> Finding:
     said = f": {one_line(why.message, _SAID).rstrip(' .')}" if why.message else ""
     if "SyntaxError" in why.bases:
         message = ended(f"Python cannot read `{failure.type}`{where}{said}")
-        advice = newer(why) or "Look at that line and the one above it: a bracket, a colon, the indentation?"
+        advice = unread(why) or "Look at that line and the one above it: a bracket, a colon, the indentation?"
     else:
         message = ended(f"`{failure.type}` could not be made: {why.type}{where}{said}")
         advice = lacking(why) or "Make that line work when the file is loaded, before any function is called."
@@ -291,7 +291,7 @@ def finding_for(failure: StudentFailure | CheckFailed) -> Finding:
     finding = finding_of(failure, shown=True)
     functions = _FRAME.findall(failure.traceback)
     if failure.is_a("NotImplementedError") and functions:
-        message = f"`{functions[-1]}` is not written yet: it still raises NotImplementedError."
+        message = f"`{functions[-1]}` is not written yet."
         return Finding(message=message, help=finding.help, diagnosis=finding.diagnosis)
     return finding
 

@@ -101,6 +101,11 @@ class CheckResult(msgspec.Struct, frozen=True, kw_only=True):
     blocked_by: str | None = None
     duration_ms: float = 0.0
 
+    @property
+    def unwritten(self) -> bool:
+        """It found its function as it was handed out."""
+        return self.diagnosis == "NOT_IMPLEMENTED"
+
 
 class Problem(msgspec.Struct, frozen=True):
     """Why a submission has no verdict: a stable code, a sentence, and the fix."""

@@ -212,7 +212,7 @@ def test_an_exercise_is_edited_until_its_check_passes(open_notebook: Any, notebo
     _build(notebooks, "integrators")
     page = open_notebook("exercises/integrators.ipynb")
     _run_all(page)
-    _wait_for_check(page, "not written yet")
+    _wait_for_check(page, "to do")
     shot(page, "exercise-unwritten", ".course-checks")
     _write(page, WRONG)
     _wait_for_check(page, "All 2 public checks", absent=True)

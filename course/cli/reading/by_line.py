@@ -29,12 +29,12 @@ from course.reading.cells import CellOutput
 from course.reading.parts import Cell, Question, read_script
 from course.reading.record import JUDGEMENTS, InProgress, Place, find
 
-_STOP = ("q", "quit", "n", "no")
+_ON_WORDS, _STOP = ("", "y", "yes", "n", "next"), ("q", "quit", "no")
 _ON = "Enter goes on"
 #: After this time a running cell is announced, in s.
 _PATIENCE = 1.0
 _WORDS = (
-    ("Enter", "the next page"),
+    ("Enter, n", "the next page"),
     ("b", "the page before"),
     ("t", "contents, with the page of each section; g and a number goes to a page"),
     ("/ and words", "where they are in this lesson"),
@@ -136,7 +136,7 @@ class LineReader:
             return number + 1
         ask = f"Page {number + 1} of {len(self._pages)}. {_ON}, q stops: "
         while (typed := self._console.ask(ask)) is not None and typed.lower() not in _STOP:
-            if typed.lower() in {"", "y", "yes"}:
+            if typed.lower() in _ON_WORDS:
                 return number + 1
             leads = self._do(typed, number)
             if leads is not None:
@@ -347,7 +347,7 @@ class LineReader:
         for hit in hits:
             self._say(f"Page {bisect.bisect_right(self._starts, hit.block)}: {hit.excerpt}")
         if not hits:
-            self._say("Nothing.")
+            self._say("Not in this lesson.")
 
     def _help(self, _rest: str, _number: int) -> None:
         for word, what in _WORDS:

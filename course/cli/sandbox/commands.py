@@ -105,14 +105,16 @@ def play(
     web: Annotated[bool, option("--web", "In a browser, on this machine only.")] = False,
     headless: Annotated[bool, option("--headless", "Show no picture; run as fast as possible.")] = False,
     describe: Annotated[bool, option("--describe", "Describe the run in sentences.")] = False,
-    guess: Annotated[float | None, option("--guess NUMBER", "Your answer to the scene's question.")] = None,
+    guess: Annotated[str | None, option("--guess NUMBER", "Your answer to the scene's question.")] = None,
     duration: Annotated[
         float | None, option("--duration S", "Simulated seconds; the scene's own if left out.")
     ] = None,
     csv: Annotated[
         Path | None, option("--csv FILE", "Write positions and velocities over time, as a table.")
     ] = None,
-    every: Annotated[float, option("--every S", "Seconds between the samples of --csv.")] = 0.05,
+    every: Annotated[
+        float | None, option("--every S", "Seconds between the samples of --csv; 0.05 if left out.")
+    ] = None,
     gif: Annotated[Path | None, option("--gif FILE", "Write a film.")] = None,
     mp4: Annotated[Path | None, option("--mp4 FILE", "Write a film; needs ffmpeg.")] = None,
     png: Annotated[Path | None, option("--png FILE", "Write one picture.")] = None,

@@ -197,6 +197,8 @@ def table(run: Run) -> bytes:
 #: Frames per simulated second of a film.
 _FPS = 25.0
 _LONGEST = 86_400.0
+#: Between two samples of a table, in s, where nothing else is asked for.
+_EVERY = 0.05
 
 
 @dataclass(frozen=True)
@@ -208,10 +210,10 @@ class PlayOptions:
     web: bool
     headless: bool
     describe: bool
-    guess: float | None
+    guess: str | None
     duration: float | None
     csv: Path | None
-    every: float
+    every: float | None
     gif: Path | None
     mp4: Path | None
     png: Path | None
@@ -252,15 +254,14 @@ def play(console: Console, options: PlayOptions) -> int:
             help=f"Take a time up to {end:g}, or a longer --duration.",
             code="bad_parameter",
         )
+    given = _given_guess(picked, options)
     if lines := unwritten(picked.path):
         left = f"and {len(lines) - 1} more below are" if len(lines) > 1 else "is"
         console.note(f"{picked.path}:{lines[0]}: this line {left} still to be written.")
     if not options.web and (options.unseen or not console.interactive or not console.fancy):
-        return _run_unseen(console, picked, options, targets, _guess(console, picked, options))
+        return _run_unseen(console, picked, options, targets, _guess(console, picked, given))
     browser = not options.no_browser
-    recorded = open_view(
-        console, picked, web=options.web, port=options.port, browser=browser, guess=options.guess
-    )
+    recorded = open_view(console, picked, web=options.web, port=options.port, browser=browser, guess=given)
     if "record" in targets:
         write(targets["record"], recorded, "record")
     console.note(("After playing: ", "bold"), picked.scene.after)
@@ -274,17 +275,30 @@ def _check(options: PlayOptions) -> None:
         low = 0.0 if option == "--at" else 1e-4
         if value is not None and not low <= value <= _LONGEST:
             raise UsageError(f"{option} must be from {low:g} to {_LONGEST:g} s.", code="bad_parameter")
-    if options.guess is not None and not math.isfinite(options.guess):
-        raise UsageError("--guess must be a finite number.", code="bad_parameter")
     if options.at is not None and options.png is None:
         raise UsageError("--at says when the picture of --png is taken.", help="Add --png FILE.")
+    if options.every is not None and options.csv is None:
+        raise UsageError("--every says how far apart the samples of --csv are.", help="Add --csv FILE.")
+    if options.port and not options.web:
+        raise UsageError("--port says where the page of --web is.", help="Add --web.")
 
 
-def _guess(console: Console, chosen: Chosen, options: PlayOptions) -> float | None:
+def _given_guess(chosen: Chosen, options: PlayOptions) -> float | None:
+    """The guess of the command line, with comma or point, with its unit or without."""
+    if options.guess is None:
+        return None
+    asked = chosen.scene.prediction
+    guess = guess_of(options.guess, asked.unit if asked is not None else "")
+    if guess is None:
+        raise UsageError(f"--guess {options.guess}: {NO_GUESS}", code="bad_parameter")
+    return guess
+
+
+def _guess(console: Console, chosen: Chosen, given: float | None) -> float | None:
     """The student's guess: from the command line, or asked for in a terminal."""
     asked = chosen.scene.prediction
-    if asked is None or options.guess is not None:
-        return options.guess
+    if asked is None or given is not None:
+        return given
     if not console.interactive or console.quiet:
         return None
     console.line((question(chosen), "bold"))
@@ -370,7 +384,7 @@ def _run_unseen(
             chosen,
             duration=options.duration,
             guess=guess,
-            every=options.every if options.csv else 0.0,
+            every=(options.every or _EVERY) if options.csv else 0.0,
             on_frame=None if film is None else _taker(film, options, made, filming=filming),
             fps=_FPS if filming else 1.0,
             also_at=(end if options.at is None else options.at,) if "png" in targets else (),

@@ -18,6 +18,7 @@ from course.cli.frame.console import STATUS_STYLE, Console
 from course.cli.frame.here import Here, cwd
 from course.cli.work.chosen import StudentWork
 from course.errors import CourseError
+from course.isolation.inside.statements import line_of_bytes
 from course.printable import counted, steady, unheeded
 from course.scoring.verdict import CheckResult, Verdict, format_points, in_points, numbers_of
 
@@ -62,7 +63,6 @@ _BESIDE = _DETAIL_INDENT + _LABEL_WIDTH + 2
 _SHORT = 2
 #: Columns of a usual window.
 _USUAL = 80
-_UNWRITTEN = "NOT_IMPLEMENTED"
 
 
 def show_verdict(
@@ -241,7 +241,7 @@ class _Page:
             )
         of: dict[str, dict[str, None]] = {}
         for check in every:
-            if check.diagnosis == _UNWRITTEN:
+            if check.unwritten:
                 of.setdefault(check.help, {})[check.task] = None
         common = max(of, key=lambda advice: len(of[advice]))
         for advice, named in of.items():
@@ -340,7 +340,7 @@ class _Page:
 def is_unwritten(checks: Sequence[CheckResult]) -> bool:
     """True if the task's function is as the stub has it."""
     ran = [check for check in checks if check.status != "skip"]
-    return bool(ran) and all(check.diagnosis == _UNWRITTEN for check in ran)
+    return bool(ran) and all(check.unwritten for check in ran)
 
 
 def _all_alike(checks: Sequence[CheckResult]) -> bool:
@@ -431,10 +431,9 @@ def unread_line(source: bytes | str) -> int:
     try:
         text = decode_source(source) if isinstance(source, bytes) else source
         compile(text, "", "exec", dont_inherit=True)
-    except UnicodeDecodeError as problem:
-        return problem.object.count(b"\n", 0, problem.start) + 1
     except (SyntaxError, ValueError, LookupError) as problem:  # the last: a codec of no text
-        return getattr(problem, "lineno", None) or 1
+        source = source if isinstance(source, bytes) else source.encode(errors="replace")
+        return getattr(problem, "lineno", None) or line_of_bytes(source, problem) or 1
     return 1
 
 

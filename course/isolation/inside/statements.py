@@ -28,6 +28,20 @@ _WITHIN = re.compile(r" \(detected at line \d+\)| on line \d+")
 _DEFINES = re.compile(r"^(?:async[ \t]+)?def[ \t]+(\w+)|^class[ \t]+(\w+)|^(\w+)[ \t]*=(?!=)", re.MULTILINE)
 
 
+def line_of_bytes(source: bytes, error: BaseException) -> int:
+    """The line with the bytes that are no text; 0 where no line has any.
+
+    Python names none where they stand before a declaration of the encoding could end.
+    """
+    at = getattr(error, "start", -1)
+    if at < 0:
+        try:
+            at = source.decode("utf-8").encode().find(b"\0")
+        except UnicodeDecodeError as bad:
+            at = bad.start
+    return len(source[: at + 1].splitlines())
+
+
 #: What ``git merge`` leaves where both sides changed the same lines.
 MERGE = ("<<<<<<<", "=======", ">>>>>>>")
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import socket
 
 from ...physics import systems
-from . import declared, loading, loops, wire
+from . import declared, loading, loops, statements, wire
 
 Kind = wire.Kind
 
@@ -211,8 +211,8 @@ class Worker:
             if isinstance(error, LookupError):  # rot13, hex, zlib: codecs, and not of text
                 error = SyntaxError("the encoding that its first lines declare is none of text")
             refused = {"stage": "syntax", **_described(error)}
-            if isinstance(error, UnicodeDecodeError):
-                refused["line"] = error.object.count(b"\n", 0, error.start) + 1
+            if line := statements.line_of_bytes(files[main], error):
+                refused["line"] = line
             self._send(Kind.REFUSED, refused)
             return
         module = loading.Loading(source, main, imports, needed)

@@ -327,16 +327,19 @@ def sentences(events: Iterable[Event], most: int = 40) -> Iterator[str]:
 
 
 def worth_telling(contact: Event, last: dict[tuple[str, str], float]) -> bool:
-    """Whether a contact is hard enough, and its pair did not touch a moment ago.
+    """Whether a contact is hard enough, and its pair did not meet as hard a moment ago.
 
     Args:
-        last: when each pair touched last, in s; this contact is noted in it.
+        last: when each pair met last, in s; this contact is noted in it, unless it is soft: balls of a chain
+            touch softly just before they are hit.
     """
+    if contact.minor:
+        return False
     pair = (contact.a, contact.b)
     since = contact.t - last.get(pair, -1.0)
     last[pair] = contact.t
     # Time that runs backwards is a world that was reset.
-    return not (contact.minor or 0.0 <= since < _PATIENCE)
+    return not 0.0 <= since < _PATIENCE
 
 
 def account(receipt: Receipt) -> list[str]:

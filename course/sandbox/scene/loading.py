@@ -330,7 +330,7 @@ def _misfit(scene: Scene, numbers: Mapping[str, float], error: str) -> MisfitErr
 
 
 #: What is said of a text that holds none.
-NO_GUESS = "Not a number: try something like 2.5 or -1e3, in the unit of the question."
+NO_GUESS = "Not a number: try something like 2.5 (or 2,5) or -1e3, in the unit of the question."
 
 
 class Comparison(msgspec.Struct, frozen=True, kw_only=True):

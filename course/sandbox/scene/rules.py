@@ -89,7 +89,8 @@ def checked(key: str, value: object) -> float:
     if not setting.low <= amount <= setting.high or (setting.whole and amount != round(amount)):
         kind = "a whole number" if setting.whole else "a number"
         raise UsageError(
-            f"{key} must be {kind} from {setting.low:g} to {setting.high:g}, and {amount:g} is not.",
+            f"{key} must be {kind} from {setting.low:,.10g} to {setting.high:,.10g}, "
+            f"and {amount:,.10g} is not.",
             help=f"{key}: {setting.meaning}.",
             code="bad_parameter",
         )

@@ -14,7 +14,7 @@ from course.isolation.inside import statements
 from course.isolation.session import LOOP, LoadFault, LoadRefusedError
 from course.printable import ended
 from course.scoring.checks.collected import Check
-from course.scoring.elsewhere import absent, lacking, newer
+from course.scoring.elsewhere import absent, lacking, unread
 from course.scoring.explain.likeness import likeness, names_of, return_in_a_loop, why_none
 from course.scoring.explain.story import NOT_FINITE, said_once
 from course.scoring.judging.submission import Submission
@@ -182,7 +182,7 @@ def _reason(fault: LoadFault, faults: Sequence[LoadFault], places: Places) -> st
     if fault.stage == "syntax" and fault.code.startswith(statements.MERGE):
         return ". It is the mark of a merge: keep one of the two versions, and delete the marks."
     if fault.stage == "syntax":
-        return ended(f", since Python cannot read it{said}") + _after(newer(failure, fault.code))
+        return ended(f", since Python cannot read it{said}") + _after(unread(failure, fault.code))
     if (line := _line_needed(failure, faults)) is not None:
         return f", since it needs what was left out {places.phrase(line)}."
     lacks = lacking(failure, fault.code)
@@ -223,7 +223,7 @@ def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
         "triple-quoted" in failure.message
     ):  # the line is where the last quotes stand, not where they are missing
         return message, "Three quotes are missing there or further up. Look at what you changed last."
-    return message, newer(failure, refused.code) or "Look at that line and the one above it."
+    return message, unread(failure, refused.code) or "Look at that line and the one above it."
 
 
 def no_functions(exercise: Exercise) -> Problem:

@@ -56,7 +56,8 @@ def test_a_piped_play_runs_unseen_and_compares_and_needs_no_word_play(tmp_path: 
     assert "your guess: 1.5 m/s" in out
     assert "simulation: 2 m/s" in out
     assert "25 % too low" in out
-    assert sandbox("head-on", "--guess", "1.5", cwd=tmp_path).stdout == out
+    for guess in "1.5", "1,5", "1.5 m/s":
+        assert sandbox("head-on", "--guess", guess, cwd=tmp_path).stdout == out
     assert "Did you mean: course sandbox play head-on?" in sandbox("heda-on", cwd=tmp_path, code=2).stderr
     assert "No such command 'plai'" in sandbox("plai", cwd=tmp_path, code=2).stderr
 
@@ -194,6 +195,9 @@ def test_a_students_scene_is_played_and_a_wrong_one_refused_with_its_line(tmp_pa
         (["play", "head-on", "--duration", "-1"], 2),
         (["play", "head-on", "--gif", "a.png"], 2),
         (["play", "head-on", "--at", "1"], 2),
+        (["play", "head-on", "--every", "1"], 2),
+        (["play", "head-on", "--port", "8000"], 2),
+        (["play", "head-on", "--guess", "1.6, 2"], 2),
         (["play", "head-on", "--at", "2.1", "--png", "a.png"], 2),
         (["play", "galton-board", "--set", "seed=1.5"], 2),
         (["play", "head-on", "--web", "--describe"], 2),

@@ -189,7 +189,7 @@ def test_each_way_of_ending_has_its_status_and_spares_the_other_task(
         (b"raise KeyboardInterrupt", "import_error", "", "Make that line work when the file is loaded"),
         (b"\x00\x01\xff\xfe\x80 random", "syntax_error", "is not Python source: ", "course reset"),
         (b"PK\x03\x04\x00\x00", "syntax_error", "is not Python source: ", "course reset"),
-        (b"# \xe9\nx = 1\n", "syntax_error", "another encoding than UTF-8", "Save it as UTF-8"),
+        (b"# \xe9\nx = 1\n", "syntax_error", "line 1: this is not Python source: it is", "Save it as UTF-8"),
         (
             b"x = 1\n\ny = 2  # \xe9\n",
             "syntax_error",

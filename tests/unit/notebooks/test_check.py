@@ -220,6 +220,11 @@ def test_a_cell_is_checked_as_a_file_and_does_not_run_here(
     table = magic.check_cell(source, "doubling")
     assert repr(table).startswith("loaded\n")
     assert [check.status.value for check in table.checks] == ["pass", "error"]
+    for shown in repr(table), table._repr_html_():
+        assert "– " in shown
+        assert "to do" in shown
+        assert shown.count("the docstring above it says") == 1
+        assert "NotImplementedError" not in shown, "what is not written yet is no error"
     assert "loaded" not in capsys.readouterr().out
     assert [attempt["only"] for attempt in attempts(here)] == [""]
 

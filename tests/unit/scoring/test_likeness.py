@@ -233,6 +233,8 @@ def test_none_as_the_right_answer_is_shown_and_nothing_said_is_not() -> None:
         ("[1.0].mean()", "Only arrays have `mean`; this is a list"),
         ("None + 1.0", "is None"),
         ("2.0 * 3.0(1.0)", "Is a `*` missing"),
+        ("2.0 ^ 2", "write `**`"),
+        ("__import__('numpy').ones(2) ^ 2", "write `**`"),
         ("[1.0][1]", "0 to n - 1"),
         ("[1.0][0.5]", "An index is an int"),
         ("[[1.0]][0, 0]", "indexed twice"),
@@ -252,6 +254,24 @@ def test_pythons_commonest_errors_have_their_own_cure(code: str, advice: str) ->
     failure = StudentFailure(kind="error", type=type(raised.value).__name__, message=str(raised.value))
     assert advice in cure(failure)
     assert bool(advice) == bool(cure(failure))
+
+
+@pytest.mark.parametrize(
+    ("line", "advice"),
+    [
+        ("a = 2 \N{MINUS SIGN} 1", "pasted"),
+        ("\N{NO-BREAK SPACE}a = 2", "pasted"),
+        ("a = 2h", "Is a `*` missing"),
+        ("a = (2", "the one above"),
+    ],
+)
+def test_a_line_that_python_cannot_read_has_the_advice_that_fits_it(line: str, advice: str) -> None:
+    with pytest.raises(SyntaxError) as raised:
+        compile(line, "", "exec")
+    why = StudentFailure("error", type="SyntaxError", message=raised.value.msg, bases=("SyntaxError",))
+    failure = StudentFailure("missing", type="f")
+    failure.why = why
+    assert advice in finding_of(failure).help
 
 
 def test_of_an_exception_in_several_lines_the_first_is_repeated_where_the_advice_is_known() -> None:

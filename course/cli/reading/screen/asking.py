@@ -19,8 +19,8 @@ from course.full_screen import Field, InOrder, Overlay
 
 #: Said below code that is changed.
 _DROP = "Ctrl-D again: drop the changes   Escape: keep"
-_LEAVE = "Nothing is selected   Ctrl-C again or Escape: keep"
-_COPIED = "Copied, if your terminal allows it   Escape: keep"
+_LEAVE = "Ctrl-C again or Escape: keep   Nothing is selected"
+_COPIED = "Copied if your terminal allows it   Escape: keep"
 
 _HELP = (
     ("Space, PgDn", "next screen; at the end of the lesson: what is next"),
@@ -60,6 +60,8 @@ def keys_table(width: int) -> Table:
 class Predict(Overlay[str]):
     """The question, and a field for the prediction. Dismissed with it, or None."""
 
+    below = "Enter: keep it and open the answer   Escape: not yet"
+
     def __init__(self, question: str) -> None:
         super().__init__()
         self._question = question
@@ -67,7 +69,6 @@ class Predict(Overlay[str]):
     def compose(self) -> ComposeResult:
         with VerticalScroll(classes="box", can_focus=False) as box:
             box.border_title = "Predict first"
-            box.border_subtitle = "Enter: keep it and open the answer   Escape: not yet"
             yield Static(Text(self._question))
             yield Static("")
             entry = Field(placeholder="a number with its unit, a choice, a sentence")
@@ -92,6 +93,7 @@ class _Chooser(Overlay[str]):
 class Choice(_Chooser):
     """A list, with the place in it where the reader is; an option without a key is a heading."""
 
+    below = "Enter: go there   Escape: back"
     BINDINGS: ClassVar[list[Any]] = [
         Binding("q,t", "leave", show=False),
         Binding("j", "focused.cursor_down", show=False),
@@ -104,7 +106,7 @@ class Choice(_Chooser):
 
     def compose(self) -> ComposeResult:
         with Vertical(classes="box") as box:
-            box.border_title, box.border_subtitle = self._title, "Enter: go there   Escape: back"
+            box.border_title = self._title
             yield OptionList(
                 *(Option(Text(words), id=key or None, disabled=not key) for key, words in self._options)
             )
@@ -124,6 +126,8 @@ class Find(_Chooser):
         search: (key, what to show) of each hit for some words.
     """
 
+    below = "Enter: look   Escape: back"
+
     def __init__(self, search: Callable[[str], list[tuple[str, str]]]) -> None:
         super().__init__()
         self._search = search
@@ -131,7 +135,6 @@ class Find(_Chooser):
     def compose(self) -> ComposeResult:
         with Vertical(classes="box") as box:
             box.border_title = "Search"
-            box.border_subtitle = "Enter: look   Escape: back"
             entry = Field(placeholder="words, in this lesson and in all")
             entry.cursor_blink = False
             yield entry
@@ -147,7 +150,7 @@ class Find(_Chooser):
         chooser.clear_options()
         chooser.display = True
         if not hits:
-            chooser.add_option(Option("Nothing.", disabled=True))
+            chooser.add_option(Option("In no lesson.", disabled=True))
             return
         chooser.add_options([Option(Text(words), id=key) for key, words in hits])
         chooser.highlighted = 0
@@ -209,12 +212,11 @@ class Edit(Overlay[bool]):
         self._title, self._source, self._keep, self._act, self._line = title, source, keep, act, line
         self._area = _Code(source, tab_behavior="indent", show_line_numbers=True)
         self._area.cursor_blink = False
-        self._told = ""  # below the code, in place of the keys
+        self.below = self._keys
 
     def compose(self) -> ComposeResult:
         with Vertical(classes="box") as box:
             box.border_title = self._title
-            box.border_subtitle = self._keys
             yield self._area
 
     def on_mount(self) -> None:
@@ -245,7 +247,7 @@ class Edit(Overlay[bool]):
 
     def action_drop(self) -> None:
         """As it was; where something was changed, at the second press."""
-        if self._told == _DROP or self._area.text == self._source:
+        if self.below == _DROP or self._area.text == self._source:
             self.close(None)
         else:
             self._tell(_DROP)
@@ -260,20 +262,20 @@ class Edit(Overlay[bool]):
 
     def leave(self) -> None:
         """What Ctrl-C does where nothing is selected: keep the code and close, at the second press."""
-        if self._told == _LEAVE:
+        if self.below == _LEAVE:
             self.action_keep()
         else:
             self._tell(_LEAVE)
 
     def on_text_area_changed(self) -> None:
         """Who goes on typing does not drop anything."""
-        if self._told:
-            self._tell("")
+        if self.below != self._keys:
+            self._tell(self._keys)
 
     def _tell(self, words: str) -> None:
-        self._told = words
-        self.query_one(".box").border_subtitle = words or self._keys
+        self.below = words
+        self.fit_below()
 
     @property
     def _keys(self) -> str:
-        return f"Ctrl-R: keep and {self._act}   Escape: keep   Ctrl-D: drop the changes"
+        return f"Ctrl-R: keep, {self._act}   Escape: keep   Ctrl-D: drop the changes"

@@ -24,7 +24,7 @@ from course.catalog.load import Catalog
 from course.cli.reading.screen.printing import BlockRows, ScreenPrinter
 from course.cli.reading.screen.running import Bench, Drawer, Practice
 from course.errors import CourseError
-from course.full_screen import FullScreenApp
+from course.full_screen import FullScreenApp, fitting, shortened
 from course.progress.history import lesson_events
 from course.progress.store import Event
 from course.progress.workspace import Workspace
@@ -46,8 +46,7 @@ _SETTLED = 1.0
 #: The rest of a lesson is laid out this long after its first screen, in s.
 _REST = 0.02
 _SAID = 2  # rows of what stands below a lesson: a rule, and that it was read
-_SHORT_OF = "…"
-_BETWEEN, _ALL_KEYS = "   ", "? keys"
+_ALL_KEYS = "? keys"
 #: The keys where nothing else is at hand.
 KEYS = "Space on   t contents   / search   ? keys   q leave"
 
@@ -515,7 +514,9 @@ class Page(Widget):
         room = self._width - 2
         self._told = self.reader.message
         self._head = shortened(head, room)
-        self._keys = shortened(self._told, room) if self._told else fitting(self._keys_of(self), room)
+        self._keys = (
+            shortened(self._told, room) if self._told else fitting(self._keys_of(self), room, more=_ALL_KEYS)
+        )
         self._position = self._where(book) if book.whole else ""
         self._share = self.end() / max(1, len(book.layout)) if book.whole else 0.0
         self.refresh()
@@ -578,24 +579,3 @@ def _link(style: Style | None) -> int:
 
 def _bar(text: str, width: int) -> Strip:
     return Strip([Segment(set_cell_size(f" {text}", width), _BAR)], width)
-
-
-def fitting(keys: str, width: int) -> str:
-    """The keys that fit: of a line that is too long, the first ones, and how to see all.
-
-    Args:
-        keys: each with what it does, three blanks between them.
-    """
-    parts = keys.split(_BETWEEN)
-    if len(keys) <= width or len(parts) == 1:
-        return shortened(keys, width)
-    kept = [part for part in parts if part != _ALL_KEYS]
-    while len(kept) > 1 and len(_BETWEEN.join((*kept, _ALL_KEYS))) > width:
-        kept.pop()
-    whole = _BETWEEN.join((*kept, _ALL_KEYS))
-    return whole if len(whole) <= width else shortened(kept[0], width)
-
-
-def shortened(text: str, width: int) -> str:
-    """As much of a text as fits, with a sign where it was cut."""
-    return text if len(text) <= width else text[: max(1, width - 1)].rstrip() + _SHORT_OF

@@ -378,9 +378,10 @@ def line_to_mend(now: Standing, source: str) -> int:
 
 
 def _checks(reply: dict[str, Any]) -> tuple[tuple[CheckResult, ...], CheckResult | None]:
-    """The checks of a reply, and the first that did not pass."""
+    """The checks of a reply, and the first that did not pass; what is not written yet is the last of them."""
     checks = msgspec.convert(reply.get("checks", ()), tuple[CheckResult, ...])
-    return checks, next((check for check in checks if check.status != "pass"), None)
+    left = sorted((check for check in checks if check.status != "pass"), key=lambda one: one.unwritten)
+    return checks, left[0] if left else None
 
 
 def _said(reply: dict[str, Any], offer: str) -> Iterator[Text]:
@@ -396,10 +397,12 @@ def _said(reply: dict[str, Any], offer: str) -> Iterator[Text]:
         if step.startswith("course report"):
             yield Text.assemble(("$ ", "dim"), (step, "bold cyan"), "   shows what has changed")
         return
-    word = str(first.status).upper()
-    yield Text.assemble((f"{word}: ", STATUS_STYLE.get(str(first.status), "red")), (first.title, "bold"))
+    word, style = str(first.status).upper(), STATUS_STYLE.get(str(first.status), "red")
+    if first.unwritten:
+        word, style = "to do", "yellow"
+    yield Text.assemble((f"{word}: ", style), (first.title, "bold"))
     for text in (first.message, first.help):
-        if text:
+        if text and not (first.unwritten and text is first.message):
             yield Text(text)
     for label, text in numbers_of(first):
         yield Text(f"{label}: {text}", style="dim")

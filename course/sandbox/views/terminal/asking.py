@@ -37,6 +37,8 @@ class QuestionOverlay(Overlay[float]):
     Dismissed with the guess, or None to run without one.
     """
 
+    below = "Enter: run, compare   Escape: back"
+
     def __init__(self, question: str, unit: str, *, calm: bool) -> None:
         super().__init__()
         self._question, self._unit, self._calm = question, unit, calm
@@ -44,7 +46,6 @@ class QuestionOverlay(Overlay[float]):
     def compose(self) -> ComposeResult:
         with VerticalScroll(classes="box", can_focus=False) as box:
             box.border_title = "Before it runs: your guess"
-            box.border_subtitle = "Enter: run, compare   Escape: back"
             yield Static(Text(clean(self._question), style="bold"))
             entry = Field(placeholder=f"a number in {clean(self._unit)}", id="guess")
             entry.cursor_blink = not self._calm
@@ -76,6 +77,8 @@ class ChangeOverlay(Overlay[str]):
         change: does what a line asks for; raises a CourseError if that cannot be done.
     """
 
+    below = "Enter: change it   Escape: back"
+
     def __init__(self, page: Page, change: Callable[[str], str]) -> None:
         super().__init__()
         self._page, self._change = page, change
@@ -83,7 +86,6 @@ class ChangeOverlay(Overlay[str]):
     def compose(self) -> ComposeResult:
         with VerticalScroll(classes="box", can_focus=False) as box:
             box.border_title = "Change a number"
-            box.border_subtitle = "Enter: change it   Escape: back"
             for piece in self._page:
                 yield Static(_shaped(piece))
             yield Field(placeholder="name and number, for example: angle 45")
@@ -120,6 +122,7 @@ class Gallery(Overlay[str]):
     Gallery.narrow .beside { width: 100%; height: 1fr; }
     """
     BINDINGS: ClassVar[list[Any]] = [Binding("q", "app.quit", show=False)]
+    below = "Enter: play   Escape: back   q: leave"
 
     def __init__(
         self, found: Sequence[Scene], played: set[str], current: str, *, colour: bool, calm: bool
@@ -134,7 +137,6 @@ class Gallery(Overlay[str]):
     def compose(self) -> ComposeResult:
         with Container(classes="box") as box:
             box.border_title = "Scenes"
-            self._box = box
             with Horizontal():
                 options = (
                     Option(f"{'✓' if one.id in self._played else ' '} {clean(one.title)}", id=one.id)
@@ -154,9 +156,7 @@ class Gallery(Overlay[str]):
 
     def on_resize(self, event: Resize) -> None:
         """Where there is no room beside the list, what it is about goes below."""
-        narrow = event.size.width < NARROW
-        self.set_class(narrow, "narrow")
-        self._box.border_subtitle = f"Enter: play   Escape: back{'' if narrow else '   q: leave'}"
+        self.set_class(event.size.width < NARROW, "narrow")
 
     def move(self) -> None:
         """The next picture of the scene under the cursor."""

@@ -120,13 +120,14 @@ def test_no_way_leads_past_an_open_prediction(workspace: Workspace) -> None:
 
 
 def test_contents_search_and_an_unknown_word(workspace: Workspace) -> None:
-    typed = Typed(lines("t", "/ shadow hamiltonian", "/ compass", "dance", "?", "q"))
+    typed = Typed(lines("t", "/ shadow hamiltonian", "/ compass", "dance", "?", "n", "q"))
     typed.read(LESSON, Here.load())
     assert ": Fingerprints\n" in typed.said
-    assert "Nothing.\n" in typed.said
+    assert "Not in this lesson.\n" in typed.said
     assert "compass" in typed.said
     assert "'dance' does nothing here, and this is not the shell; ? lists what does." in typed.said
     assert "q or Ctrl-C: stop" in typed.said
+    assert any(question.startswith("Page 2 ") for question in typed.asked), "n goes on"
 
 
 def test_a_cell_runs_is_changed_in_a_file_and_put_back(workspace: Workspace) -> None:

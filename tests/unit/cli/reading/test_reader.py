@@ -19,7 +19,7 @@ from course.cli.reading.screen import page as paging
 from course.cli.reading.screen.app import ReaderApp
 from course.cli.reading.screen.asking import Edit
 from course.cli.reading.screen.items import CellItem, FigureItem, keys_of
-from course.cli.reading.screen.page import fitting
+from course.full_screen import fitting
 from course.progress.workspace import Workspace
 from course.reading.parts import Cell
 from course.reading.record import Place
@@ -310,6 +310,27 @@ def test_keys_that_come_in_a_burst_act_in_their_order():
     reading(journey)
 
 
+@pytest.mark.parametrize("key", ["question_mark", "t", "slash"])
+def test_a_key_after_the_one_that_leaves_opens_nothing(key):
+    async def journey(app, pilot):
+        for one in ("q", key):
+            app.post_message(Key(one, one if len(one) == 1 else None))
+        await pilot.pause(0.2)
+
+    assert reading(journey).failure is None
+
+
+def test_a_low_edge_that_is_too_short_names_the_first_keys_whole():
+    async def journey(app, pilot):
+        await editing(app, pilot)
+        assert below(app) == "Ctrl-R: keep, run   Escape: keep"
+        await pilot.resize_terminal(80, 24)
+        await pilot.pause()
+        assert below(app) == "Ctrl-R: keep, run   Escape: keep   Ctrl-D: drop the changes"
+
+    reading(journey, size=(40, 24))
+
+
 def test_the_editor_copies_indents_and_goes_to_both_ends_and_ctrl_c_never_loses_what_was_typed():
     async def journey(app, pilot):
         cell = await editing(app, pilot)
@@ -559,9 +580,10 @@ def test_a_block_that_is_laid_out_again_below_leaves_the_screen_as_it_was_cut() 
 def test_a_line_of_keys_that_is_too_long_ends_with_how_to_see_all() -> None:
     keys = "r run   e change   u undo   c copy   w write   Space on   ? keys"
     assert fitting(keys, 100) == keys
-    assert fitting(keys, 38) == "r run   e change   u undo   ? keys"
+    assert fitting(keys, 38, more="? keys") == "r run   e change   u undo   ? keys"
+    assert fitting(keys, 38) == "r run   e change   u undo   c copy"
     judge = "1 right, 2 nearly, 3 wrong   "
-    assert fitting(judge + keys, 38) == f"{judge}? keys"
+    assert fitting(judge + keys, 38, more="? keys") == f"{judge}? keys"
     assert (
         fitting("were you 1 right, 2 nearly, 3 wrong   Space on", 38) == "were you 1 right, 2 nearly, 3 wrong"
     )

@@ -13,6 +13,7 @@ import pytest
 from course.authoring.exercises.grading import solution_path
 from course.catalog import blocks as b
 from course.cli.reading.screen.app import ReaderApp
+from course.cli.reading.screen.printing import _said
 from course.cli.reading.screen.running import Drawer
 from course.errors import MissingCapabilityError
 from course.progress.workspace import Workspace
@@ -92,7 +93,7 @@ def test_what_is_typed_into_its_file_is_kept_however_the_editor_or_the_reader_is
     async def journey(app: ReaderApp, pilot: Any) -> None:
         await pilot.press("e")
         await pilot.pause(0.2)
-        assert "Ctrl-R: keep and check" in app.screen.query_one(".box").border_subtitle
+        assert "Ctrl-R: keep, check" in app.screen.query_one(".box").border_subtitle
         await pilot.press("#")
         if how.startswith("SIG"):
             signal.raise_signal(getattr(signal, how))
@@ -223,6 +224,12 @@ def test_one_is_started_checked_hinted_at_mended_and_done_in_its_place_and_is_so
     passed = [event.data["all_pass"] for event in mine.store.events("check", TASK)]
     assert passed == [False, False, True]
     assert [event.subject for event in mine.store.events("start")] == [TASK]
+
+
+def test_what_is_not_written_yet_is_no_error_and_stands_behind_what_fails() -> None:
+    stub = {**CHECK, "status": "error", "diagnosis": "NOT_IMPLEMENTED", "help": "Replace it."}
+    assert [str(line) for line in _said({"checks": [stub]}, "")] == ["to do: It grows", "Replace it."]
+    assert str(next(_said({"checks": [stub, CHECK]}, ""))) == "FAIL: It grows"
 
 
 def test_the_curve_of_a_failed_check_stands_above_its_finding(mine: Workspace) -> None:

@@ -252,3 +252,5 @@ def test_a_workflow_obeys_nothing_that_strangers_say(monkeypatch):
 def test_the_line_that_cannot_be_read_is_that_of_a_letter_in_another_encoding_too():
     sources = b"x = 1\n", b"x = 1\nx x\n", b"x = 1\n# \xe9\n", "x = 1\nx x\n"
     assert [unread_line(source) for source in sources] == [1, 2, 2, 2]
+    without_a_line = b"# x\n# \xe9\n", b"x = 1\r\xe9", b"x = 1\nx\0\n", b"# coding: ascii\n# \xc3\xa9"
+    assert [unread_line(source) for source in without_a_line] == [2, 2, 2, 2]

@@ -101,7 +101,7 @@ def test_what_is_meant_beyond_doubt_is_taken_and_said(tmp_path: Path, doubling: 
 def test_a_name_in_a_zip_that_ends_with_a_backslash_ends_no_process(
     tmp_path: Path, doubling: Exercise
 ) -> None:
-    """It was looked for among the files of code and not found there, and the reader ended with a traceback."""
+    """It was looked for among the files of code, was none of them, and the reader ended with a traceback."""
     lay(tmp_path, **{"all.zip": zipped({"doubling.py\\": SOURCE})})
     assert read(tmp_path, doubling).submission is not None
     many = zipped({f"f{number}.py\\": b"#" * 1_000_000 for number in range(6)})

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import contextlib
+import functools
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from time import monotonic, sleep
@@ -451,19 +452,21 @@ class Connection:
 
     def _fault(self, value: dict[str, Any]) -> LoadFault:
         failure = self._raised(value)
-        line = claimed_line(value.get("at"), self._lines())
+        line = claimed_line(value.get("at"), self._lines)
         failure.line = line or failure.line
         said = value.get("stage")
         stage = said if said in ("syntax", "magic", "absent") else "import"
         names = frozenset(claimed_names(value.get("names")))
-        code = self._lines()[failure.line - 1] if failure.line else ""
+        code = self._lines[failure.line - 1] if failure.line else ""
         return LoadFault(stage, failure, names, claimed_text(value.get("text")), claimed_text(code, 200))
 
+    @functools.cached_property
     def _lines(self) -> list[str]:
+        """Of its file; a million of them are told apart once, and not for each claim about one."""
         return self._files[self._main].decode("utf-8", "replace").splitlines()
 
     def _raised(self, value: Any) -> StudentFailure:
-        return raised(value, self._main, self._lines()) or self._breach("an exception in another form")
+        return raised(value, self._main, self._lines) or self._breach("an exception in another form")
 
     # -- frames ---------------------------------------------------------------------------------------
 

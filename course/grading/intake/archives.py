@@ -270,8 +270,8 @@ def _tried(path: Path, read: Callable[[], T]) -> T | RefusedError:
 def _held(path: Path) -> _Held | RefusedError:
     """An archive, read once for all questions about it (``_serve`` forgets it with the next student)."""
 
-    def is_work(_plain: str, raw: str) -> bool:
-        return downloads.may_be_code(raw) and not raw.endswith(MANIFEST)
+    def is_work(plain: str, _raw: str) -> bool:
+        return downloads.may_be_code(plain) and not plain.endswith(MANIFEST)
 
     return _tried(path, lambda: _read(path, is_work))
 
@@ -317,7 +317,8 @@ def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
     files = [info for info in infos if not info.is_dir() and not unwanted(info.filename.replace("\\", "/"))]
     if len(files) > MAX_FILES:
         raise _refused(path, f"it holds more than {MAX_FILES} files")
-    if sum(info.file_size for info in files if downloads.may_be_code(info.filename)) > MAX_UNPACKED:
+    code = (info for info in files if downloads.may_be_code(info.filename.replace("\\", "/")))
+    if sum(info.file_size for info in code) > MAX_UNPACKED:
         raise _refused(path, f"its files unpack to more than {MAX_UNPACKED >> 20} MB")
     members: Members = {}
     for info in files:

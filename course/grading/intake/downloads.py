@@ -495,7 +495,7 @@ def may_be_code(name: str) -> bool:
 
 def kind_of(name: str, content: bytes) -> str:
     """What a file is, as a noun with its article; "" where it is what its name says: code or a notebook."""
-    suffix = PurePosixPath(name).suffix.casefold()
+    suffix = PurePosixPath(name).suffix.rstrip().casefold()
     head = content[:512]
     found = next((kind for begins, kind in _BEGINS if head.startswith(begins)), "")
     if found == "a zip archive" and suffix in _OFFICE:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ast
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -312,8 +312,10 @@ RETURN_IN_LOOP = "RETURN_IN_LOOP"
 def return_in_a_loop(source: bytes, task: str, places: Places) -> Diagnosis | None:
     """A ``for`` loop of the task's function, or of a helper of it, that cannot have a second pass."""
     for function in functions_of(source, task):
-        for loop in ast.walk(function):
-            if isinstance(loop, ast.For) and isinstance(loop.body[-1], ast.Return) and not _goes_on(loop):
+        parts = list(ast.walk(function))
+        goes_on = _around(parts, [part for part in parts if isinstance(part, ast.Continue)])
+        for loop in parts:
+            if isinstance(loop, ast.For) and isinstance(loop.body[-1], ast.Return) and loop not in goes_on:
                 line = places.phrase(loop.body[-1].lineno)
                 return Diagnosis(
                     RETURN_IN_LOOP,
@@ -323,9 +325,16 @@ def return_in_a_loop(source: bytes, task: str, places: Places) -> Diagnosis | No
     return None
 
 
-def _goes_on(loop: ast.For) -> bool:
-    """Whether a ``continue`` of its own takes the loop past its last line."""
-    return any(isinstance(part, ast.Continue) for part in ast.walk(loop))
+def _around(parts: Sequence[ast.AST], inner: Collection[ast.AST]) -> set[ast.AST]:
+    """Those of some parts, each before what is in it, that are, or have in them, one of the inner ones.
+
+    In one pass: to search each of thousands would hold the grader, which has no deadline, for minutes.
+    """
+    found = set(inner)
+    for part in reversed(parts):
+        if not found.isdisjoint(ast.iter_child_nodes(part)):
+            found.add(part)
+    return found
 
 
 def why_none(source: bytes, task: str, places: Places, name: str = "") -> str:
@@ -342,9 +351,8 @@ def why_none(source: bytes, task: str, places: Places, name: str = "") -> str:
     if several := _several([part.value for part in given], name):
         return f"{several}, and `{name}` is None. Which line should have set it?"
     if given:
-        tests = [
-            part for part in own if isinstance(part, ast.If) and any(one in ast.walk(part) for one in given)
-        ]
+        around = _around(own, given)
+        tests = [part for part in own if isinstance(part, ast.If) and part in around]
         if not tests or function.body[-1] in given:  # it does not end without a `return`
             what = f"`{name}`" if name.isidentifier() else "what it gives"
             return f"There is a `return`, and {what} is None here. Which line should have set it?"
@@ -371,8 +379,7 @@ def _several(returned: list[ast.expr | None], name: str) -> str:
 def _own(function: ast.FunctionDef) -> Iterator[ast.AST]:
     """The parts of a function that belong to no function inside it."""
     left: list[ast.AST] = list(function.body)
-    while left:
-        part = left.pop(0)
+    for part in left:  # it grows meanwhile
         yield part
         if not isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda | ast.ClassDef):
             left += ast.iter_child_nodes(part)

@@ -16,6 +16,7 @@ import uuid
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from time import process_time
 from typing import Any
 
 import msgspec
@@ -238,6 +239,7 @@ def _source(name: str, attack: Attack, arena: Arena) -> str:
         "ROOT": ROOT,
         "SOLUTION": ARENA / "solutions" / "arena",
         "SITE": Path(np.__file__).parents[1],
+        "RETURNS": "return 1\n    if values: 0\n    " * 1500,
     }
     text = (CORPUS / f"{name}.py").read_text("utf-8")
     text = text.replace("from frames import *\n", (ARENA / "frames.py").read_text("utf-8"))
@@ -263,9 +265,9 @@ def _listed(value: str | list[str]) -> list[str]:
 
 
 def _cpu_s() -> float:
-    """CPU seconds of the processes below this one so far, those that ended included."""
+    """CPU seconds of this process, the grader, and of those below it so far, those that ended included."""
     ended = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return ended.ru_utime + ended.ru_stime + descendants_cpu(os.getpid())
+    return process_time() + ended.ru_utime + ended.ru_stime + descendants_cpu(os.getpid())
 
 
 def _expect_silence(verdict: Verdict, never: list[str]) -> None:

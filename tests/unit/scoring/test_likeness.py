@@ -15,6 +15,7 @@ from course.scoring.explain.likeness import likeness, names_of, return_in_a_loop
 from course.scoring.failures import CheckFailed, finding_of
 from course.scoring.judging.outcomes import told_more
 from course.scoring.verdict import CheckResult, Places, Status, Visibility
+from tests.growth import LIMIT, growth
 
 PLACES = Places(module="work.py")
 
@@ -184,6 +185,32 @@ def test_a_function_that_gives_none_is_told_the_condition_or_the_print_and_not_a
     assert "condition on line 2" in why_none(pair, "after", PLACES, "The result")
     nothing = judged(diagnosis="RETURNS_NOTHING", task="after", help="Is a `return` missing?")
     assert "condition" in told_more(nothing, bounce, PLACES).help
+
+
+def _returns_and_ifs(n: int) -> bytes:
+    return b"def total(e):\n    return None\n" + n * 20 * b"    return 1\n    if e: 0\n"
+
+
+def _loops_in_loops(n: int) -> bytes:
+    inside = [b" " * at + b"for x in e:\n" for at in range(1, n + 1)]
+    after = [b" " * at + b"return x\n" for at in range(n, 0, -1)]
+    deepest = b" " * (n + 1) + n * 200 * b"e;" + b"continue\n"
+    return b"def total(e):\n" + b"".join(inside) + deepest + b"".join(after)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize(
+    ("look", "text"), [(why_none, _returns_and_ifs), (return_in_a_loop, _loops_in_loops)]
+)
+def test_the_text_of_a_function_is_looked_through_in_time_that_grows_with_it(look: Any, text: Any) -> None:
+    """18 kB of such text held the grader, which has no deadline, for 43 s of CPU."""
+
+    def make(n: int) -> Any:
+        source = text(n)
+        names_of(source, "total")  # parsed
+        return lambda: look(source, "total", PLACES)
+
+    assert growth(make, 11) < LIMIT
 
 
 def test_the_call_that_raised_is_shown_with_its_arguments() -> None:

@@ -52,6 +52,7 @@ TAKEN: dict[str, tuple[dict[str, bytes], str]] = {
     "a browser's number": ({"doubling (2).py": SOURCE}, "'doubling (2).py' was taken for doubling.py."),
     "without a space": ({"doubling(2).py": SOURCE}, "'doubling(2).py' was taken for doubling.py."),
     "with a dash": ({"doubling-1.py": SOURCE}, "'doubling-1.py' was taken for doubling.py."),
+    "a space at its end": ({"doubling.py ": SOURCE}, "'doubling.py ' was taken for doubling.py."),
     "a notebook's": ({"Doubling (1).ipynb": NOTEBOOK}, "'Doubling (1).ipynb' was taken for doubling.py."),
     "two copies": (
         {"doubling.py": SOURCE, "doubling (1).py": SOURCE},
@@ -95,6 +96,19 @@ def test_what_is_meant_beyond_doubt_is_taken_and_said(tmp_path: Path, doubling: 
     assert entry.submission is not None, entry.problem
     assert entry.submission.files["doubling.py"].strip() == SOURCE.strip()
     assert list(entry.notes) == ([said] if said else [])
+
+
+def test_a_name_in_a_zip_that_ends_with_a_backslash_ends_no_process(
+    tmp_path: Path, doubling: Exercise
+) -> None:
+    """It was looked for among the files of code, was none of them, and the reader ended with a traceback."""
+    lay(tmp_path, **{"all.zip": zipped({"doubling.py\\": SOURCE})})
+    assert read(tmp_path, doubling).submission is not None
+    many = zipped({f"f{number}.py\\": b"#" * 1_000_000 for number in range(6)})
+    lay(tmp_path, **{"all.zip": many})
+    problem = read(tmp_path, doubling).problem
+    assert problem is not None
+    assert "more than 5 MB" in problem.message
 
 
 #: What is asked about -> the code, and the one match there is.

@@ -21,10 +21,6 @@ import numpy as np
 Answers = list[Any]
 #: Weighted sums of a fingerprint.
 SUMS = 2
-#: How much the sums of equal programs may differ: right programs in other styles differed by 1e-7, from
-#: rounding in simulations of several hundred steps; sums are stored with seven decimals. At 3e-5, RK4 in
-#: two half steps was the same as RK4 with two stages at wrong times.
-SAME = 1e-6
 
 _NONE, _TRUE, _FALSE, _TEXT, _NAN, _INFINITE, _RAISED, _OTHER = 0.7071, 1.1, -1.1, 2.3, 31.4, 27.2, 51.7, 43.1
 _MOST = 20_000

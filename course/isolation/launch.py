@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import importlib.metadata
 import json
 import os
 import secrets
@@ -270,6 +269,8 @@ def _mapped_library_folders() -> set[Path]:
 
 def _entries(name: str) -> list[Path]:
     """The entries of site-packages that make up an importable package: itself and its bundled libraries."""
+    import importlib.metadata  # takes long, and who only cleans up does without
+
     try:
         distributions = [importlib.metadata.distribution(name)]  # the common case, and cheap to look up
     except importlib.metadata.PackageNotFoundError:

@@ -219,9 +219,12 @@ def _keeps(node: ast.stmt, inside: list[ast.AST], handed_on: set[str]) -> bool:
 
 def _handed_on(inside: list[ast.AST]) -> set[str]:
     """Names whose values a statement may change, or hand to what may: all that it does not merely read."""
-    read = {id(part) for child in inside for part in _merely_read(child)}
+    read = {id(part) for child in inside if isinstance(child, _READING) for part in _merely_read(child)}
     names = (child for child in inside if isinstance(child, ast.Name) and isinstance(child.ctx, ast.Load))
     return {name.id for name in names if id(name) not in read}
+
+
+_READING = (ast.Subscript, ast.Call, ast.For, ast.comprehension, ast.Compare, ast.BinOp)
 
 
 def _merely_read(node: ast.AST) -> list[ast.expr]:

@@ -6,7 +6,6 @@ metadata: the course is on no package index.
 """
 
 import importlib
-import importlib.metadata
 import importlib.util
 import platform
 import re
@@ -171,6 +170,8 @@ def _missing(packages: tuple[str, ...]) -> list[str]:
 
 def _lines() -> list[str]:
     """As the metadata has them; a checkout that was never installed has its project file."""
+    import importlib.metadata  # takes long, and hardly any command needs it
+
     try:
         found = importlib.metadata.requires(_DISTRIBUTION)
     except importlib.metadata.PackageNotFoundError:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import importlib.metadata
 import json
 import os
 import secrets
@@ -29,6 +28,8 @@ _COPIED = (
     *(f"isolation/inside/{name}.py" for name in ("worker", "lockdown", "zygote")),
     "physics/systems.py",
 )
+#: Environment of a process whose numpy is to have one thread: on the one processor it stays on, others spin.
+ONE_THREAD = {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL", "VECLIB_MAXIMUM")}
 _PREFIX = "course-worker-"
 _TIDY_S = 1.0
 _SWEEP_S = 5.0  # wall seconds spent on deleting what a submission left behind
@@ -98,8 +99,7 @@ def environment() -> dict[str, str]:
         for name in ("SYSTEMROOT", "PATH")
         if name in os.environ and sys.platform == "win32"
     }
-    threads = {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL", "VECLIB_MAXIMUM")}
-    return {**kept, **threads, "LANG": "C.UTF-8", "HOME": "/nonexistent", "PYTHONHASHSEED": "0"}
+    return {**kept, **ONE_THREAD, "LANG": "C.UTF-8", "HOME": "/nonexistent", "PYTHONHASHSEED": "0"}
 
 
 def sweep(folder: Path) -> None:
@@ -270,6 +270,8 @@ def _mapped_library_folders() -> set[Path]:
 
 def _entries(name: str) -> list[Path]:
     """The entries of site-packages that make up an importable package: itself and its bundled libraries."""
+    import importlib.metadata  # takes long, and who only cleans up does without
+
     try:
         distributions = [importlib.metadata.distribution(name)]  # the common case, and cheap to look up
     except importlib.metadata.PackageNotFoundError:

@@ -8,6 +8,7 @@ here fails wherever it is graded first, and that is at its author's.
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
@@ -64,10 +65,12 @@ def grader_files(content: Content, exercises: Collection[str] | None = None) -> 
 
 
 def _below(name: str, folder: Path) -> Iterator[tuple[str, Path]]:
-    for path in folder.rglob("*"):
-        inner = path.relative_to(folder)
-        if path.is_file() and path.suffix not in _NOT_READ and not LEFT_OUT.intersection(inner.parts):
-            yield f"{name}/{inner.as_posix()}", path
+    for here, folders, files in os.walk(folder):
+        folders[:] = [one for one in folders if one not in LEFT_OUT and one != "__pycache__"]
+        inside = Path(name, Path(here).relative_to(folder)).as_posix()
+        for path in (Path(here, file) for file in files if file not in LEFT_OUT):
+            if path.suffix not in _NOT_READ and path.is_file():
+                yield f"{inside}/{path.name}", path
 
 
 def grader_version(exercise: Exercise, catalog: Catalog, package: Path = _PACKAGE) -> str:

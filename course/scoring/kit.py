@@ -31,8 +31,8 @@ from course.physics.exact import solution
 from course.physics.invariants import convergence_order
 from course.physics.systems import System
 from course.scoring.checks.collected import companion, known_answers, reference, sibling, words
-from course.scoring.explain.fingerprint import SAME, in_range
-from course.scoring.explain.story import Diagnosis, Words, said_once
+from course.scoring.explain.fingerprint import in_range
+from course.scoring.explain.story import SAME, Diagnosis, Words, said_once
 from course.scoring.failures import (
     CLOCK,
     CheckFailed,

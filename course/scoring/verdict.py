@@ -246,13 +246,20 @@ def bounded(verdict: Verdict) -> Verdict:
 
 def finite(value: Any) -> Any:
     """``value``, with numbers that JSON cannot represent as "nan", "inf" and "-inf"."""
-    if isinstance(value, float) and not math.isfinite(value):
+    if type(value) in _AS_THEY_ARE:  # nearly all of a verdict
+        return value
+    if isinstance(value, float):
+        if math.isfinite(value):
+            return value
         return "nan" if math.isnan(value) else ("inf" if value > 0 else "-inf")
     if isinstance(value, dict):
-        return {key: finite(item) for key, item in value.items()}
+        return {key: item if type(item) in _AS_THEY_ARE else finite(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [finite(item) for item in value]
     return value
+
+
+_AS_THEY_ARE = frozenset({str, int, bool, type(None)})
 
 
 # ---

@@ -3,6 +3,7 @@
 This is the only place where an error becomes words and an exit code.
 """
 
+import atexit
 import contextlib
 import errno
 import gc
@@ -55,6 +56,7 @@ _GARBAGE = 50_000
 
 def main() -> NoReturn:
     gc.set_threshold(_GARBAGE, 20, 20)
+    atexit.register(gc.freeze)  # nor is it worth looking for when the process ends
     _end_as_after_ctrl_c()
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:  # closed, as `course >&-` does it

@@ -32,7 +32,6 @@ from course.cli.grade.options import (
     show_change,
     show_roster,
 )
-from course.cli.work.verdict import show_everything
 from course.errors import INTERRUPTED, CourseError, InternalError, NotFoundError, UsageError
 from course.grading.exports.grades import grade_line
 from course.grading.gradebook.records import Decision, Result
@@ -494,6 +493,8 @@ def _show_result(
     console.blank()
     known = (*catalog.exercise_ids(), *catalog.warm_up_ids())
     if verdict.checks and verdict.exercise in known:
+        from course.cli.work.verdict import show_everything
+
         show_everything(console, catalog.exercise(verdict.exercise), verdict.checks)
     else:
         for check in verdict.checks:

@@ -24,7 +24,7 @@ from course.grading.intake.students import Entry
 from course.grading.pipes import path_with, read_frame, write_frame
 from course.grading.running.grader import Answer, Config, Job
 from course.grading.running.snapshot import in_use
-from course.isolation.launch import keep_private, sweep_after_the_dead
+from course.isolation.launch import ONE_THREAD, keep_private, sweep_after_the_dead
 from course.isolation.levels import BUDGET_S, SEARCH_S, WALL
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import Problem, Verdict, not_graded
@@ -78,7 +78,7 @@ def start_grader(config: Config) -> subprocess.Popen[bytes]:
     graders = in_use(config.terms.graders)
     if graders is None:
         raise InternalError("The snapshot that is to judge is not unpacked here.")
-    environment["PYTHONPATH"] = path_with(graders.folder)
+    environment |= ONE_THREAD | {"PYTHONPATH": path_with(graders.folder)}
     environment[ENVIRONMENT_VARIABLE] = str(graders.catalog.content.root)
     process = subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment, start_new_session=True

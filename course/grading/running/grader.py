@@ -7,6 +7,8 @@ whose checks cannot be collected has no verdicts but "grader_error"; the others 
 
 from __future__ import annotations
 
+import atexit
+import gc
 import os
 import secrets
 from typing import TYPE_CHECKING, Any
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
     from course.catalog.models import Exercise
     from course.scoring.judging.session import GradingSession
 
+#: As in ``course.cli.frame.app``: what a grader loads is no garbage, while it starts and when it ends.
+_GARBAGE = 50_000
 #: Sessions, each with a sandbox of some 30 MB; more than a class has exercises. An audit has forty.
 _MOST_OPEN = 10
 
@@ -83,6 +87,8 @@ class Answer(msgspec.Struct, frozen=True):
 
 def main() -> None:
     """Serve until standard input ends."""
+    gc.set_threshold(_GARBAGE, 20, 20)
+    atexit.register(gc.freeze)
     keep_private()
     source = os.fdopen(os.dup(0), "rb")
     sink = os.fdopen(os.dup(1), "wb")

@@ -229,7 +229,9 @@ def grade_class(
     with (
         taken_back(out) as taken,
         begin(out, folder, resume=options.resume) as book,
-        frozen(_begun_with(book, options, catalog) or fresh(catalog.content)) as graders,
+        frozen(
+            _begun_with(book, options, catalog) or fresh(catalog.content), options.exercises or None
+        ) as graders,
     ):
         run = _Run(members, graders, folder, options, book)
         if options.resume and (out / "grades.csv").is_file():

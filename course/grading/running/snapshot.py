@@ -16,8 +16,12 @@ import hashlib
 import io
 import json
 import os
+import py_compile
+import shutil
+import sys
+import time
 import zipfile
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from importlib.util import cache_from_source
 from pathlib import Path
@@ -27,7 +31,8 @@ from course.catalog.locate import NAMES, PLACES, Content, cache_folder, chosen
 from course.catalog.pack import NOT_A_ZIP
 from course.errors import IntegrityError, UsageError
 from course.grading.gradebook.book import Gradebook
-from course.isolation.launch import private_folder, remove_tree
+from course.ids import WARM_UPS
+from course.isolation.launch import private_folder
 from course.printable import one_line
 from course.scoring.graders import grader_files, grader_version
 
@@ -48,10 +53,14 @@ class Snapshot:
     Attributes:
         sha256: digest of the names and contents in it.
         packed: its content, as a zip.
+        files: the same, unpacked.
+        origins: where its files of the course's content were; empty for one that was stored.
     """
 
     sha256: str
     packed: bytes = field(repr=False)
+    files: Mapping[str, bytes] = field(repr=False, compare=False)
+    origins: Mapping[str, Path] = field(default_factory=dict, repr=False, compare=False)
 
     @classmethod
     def take(cls, content: Content, exercises: Collection[str] | None = None) -> Snapshot:
@@ -60,14 +69,14 @@ class Snapshot:
         Args:
             exercises: ids, where no others and no quiz are to be graded; None for all.
         """
-        digest, buffer = hashlib.sha256(), io.BytesIO()
-        with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as archive:
-            files = {name: path.read_bytes() for name, path in grader_files(content, exercises)}
-            files[f"content/{NAMES}"] = _names(content)
-            for name, body in sorted(files.items()):
-                digest.update(f"{len(name)}:{name}:{len(body)}:".encode() + body)
-                archive.writestr(zipfile.ZipInfo(name), body, zipfile.ZIP_DEFLATED)
-        return cls(digest.hexdigest(), buffer.getvalue())
+        buffer, paths = io.BytesIO(), dict(grader_files(content, exercises))
+        files = {name: path.read_bytes() for name, path in paths.items()}
+        files[f"content/{NAMES}"] = _names(content)
+        files = dict(sorted(files.items()))
+        with zipfile.ZipFile(buffer, "w") as archive:
+            for name, body in files.items():
+                archive.writestr(zipfile.ZipInfo(name), body, zipfile.ZIP_DEFLATED, compresslevel=3)
+        return cls(_digest(files), buffer.getvalue(), files, paths)
 
     @classmethod
     def of(cls, packed: bytes, sha256: str) -> Snapshot:
@@ -76,12 +85,17 @@ class Snapshot:
         Raises:
             IntegrityError: it has changed since.
         """
-        digest = hashlib.sha256()
-        for name, body in _members(packed):
-            digest.update(f"{len(name)}:{name}:{len(body)}:".encode() + body)
-        if digest.hexdigest() != sha256:
+        files = dict(_members(packed))
+        if _digest(files) != sha256:
             raise _damaged(sha256)
-        return cls(sha256, packed)
+        return cls(sha256, packed, files)
+
+
+def _digest(files: Mapping[str, bytes]) -> str:
+    digest = hashlib.sha256()
+    for name, body in files.items():
+        digest.update(f"{len(name)}:{name}:{len(body)}:".encode() + body)
+    return digest.hexdigest()
 
 
 class ForeignGradersError(UsageError):
@@ -131,7 +145,7 @@ def kept(book: Gradebook, sha256: str | None, content: Content, accepted: str = 
     snapshot = Snapshot.of(packed, sha256)
     if accepted != sha256 and not _is_known(content, sha256):
         own = dict(grader_files(content))
-        differing = [name for name, body in _members(packed) if not _is_same(name, body, own.get(name))]
+        differing = [name for name, body in snapshot.files.items() if not _is_same(name, body, own.get(name))]
         if differing:
             raise ForeignGradersError(book, sha256, differing)
     return snapshot
@@ -222,44 +236,67 @@ def in_use(sha256: str) -> Unpacked | None:
 
 
 @contextlib.contextmanager
-def frozen(snapshot: Snapshot) -> Iterator[Unpacked]:
-    """Unpack a snapshot for as long as it is needed; graders find it by its digest in their terms."""
+def frozen(snapshot: Snapshot, exercises: Collection[str] | None = None) -> Iterator[Unpacked]:
+    """Unpack a snapshot for as long as it is needed; graders find it by its digest in their terms.
+
+    Args:
+        exercises: ids, where no others are to be graded: of these there is only what declares them. None for
+            all.
+    """
     known = _in_use.get(snapshot.sha256)
     if known is not None:
+        _unpack(snapshot, known.folder, exercises)
         yield known
         return
     folder = private_folder()
     try:
-        _unpack(snapshot.packed, folder)
+        _unpack(snapshot, folder, exercises)
         it = _in_use[snapshot.sha256] = Unpacked(snapshot, folder, Catalog(chosen(folder / "content")))
         yield it
     finally:
         _in_use.pop(snapshot.sha256, None)
-        remove_tree(folder)
+        shutil.rmtree(folder, ignore_errors=True)
 
 
-def _unpack(packed: bytes, folder: Path) -> None:
-    made: set[Path] = set()
-    for name, body in _members(packed):
-        path = folder / name
-        if path.parent not in made:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            made.add(path.parent)
+def _unpack(snapshot: Snapshot, folder: Path, exercises: Collection[str] | None) -> None:
+    """Write what is not there yet, each program with its compiled file, so that graders need not compile."""
+    kinds = {name.split("/")[1] for name in snapshot.files if name.startswith("content/")} - {NAMES}
+    for kind in kinds | {"exercises", "lessons", "quiz"}:
+        (folder / "content" / kind).mkdir(parents=True, exist_ok=True)
+    for name, body in snapshot.files.items():
+        path, exercise = folder / name, _exercise_of(name)
+        if path.exists() or not (exercises is None or exercise in {"", *exercises}):
+            continue
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(body)
-        if name.startswith("course/") and name.endswith(".py"):
-            _take_compiled(_PACKAGE / name.removeprefix("course/"), path, body)
-    for name in ("exercises", "lessons", "quiz"):
-        (folder / "content" / name).mkdir(parents=True, exist_ok=True)
+        if path.suffix == ".py" and (exercises is not None or f"/{WARM_UPS}/" not in name):
+            _take_compiled(snapshot.origins.get(name, _PACKAGE.parent / name), path, body)
+
+
+def _exercise_of(name: str) -> str:
+    """The exercise that a file is of; none for what all share, and for what declares one."""
+    _, kind, *inside = name.split("/")
+    if inside[:1] == [WARM_UPS]:
+        del inside[0]
+    return inside[0] if kind in PLACES and len(inside) > 1 and inside[-1] != "exercise.toml" else ""
 
 
 def _take_compiled(original: Path, copy: Path, body: bytes) -> None:
-    """Copy the package's compiled file if it belongs to this source, so that graders need not compile."""
-    with contextlib.suppress(OSError, NotImplementedError):
+    """Link a compiled file if it belongs to this source; it is made first where it is missing or too old."""
+    with contextlib.suppress(OSError, NotImplementedError, py_compile.PyCompileError):
         status, compiled = original.stat(), Path(cache_from_source(str(original)))
-        if compiled.stat().st_mtime < status.st_mtime + _SETTLED_S or original.read_bytes() != body:
+        settled = status.st_mtime + _SETTLED_S
+        if settled > time.time() or original.read_bytes() != body:
             return
+        if not compiled.is_file() or compiled.stat().st_mtime < settled:
+            if sys.dont_write_bytecode:
+                return
+            py_compile.compile(str(original), doraise=True)
         target = Path(cache_from_source(str(copy)))
         target.parent.mkdir(exist_ok=True)
-        target.write_bytes(compiled.read_bytes())
+        try:  # no new file: Python replaces compiled files as a whole, and changes none
+            target.hardlink_to(compiled)
+        except OSError:
+            target.write_bytes(compiled.read_bytes())
         # A compiled file names the size and time of its source.
         os.utime(copy, ns=(status.st_mtime_ns, status.st_mtime_ns))

@@ -336,11 +336,11 @@ _L, _D, _R, _TB, _A, _V, _C, _W, _P, _G = (ord(tag) for tag in "ldrtavcwpg")
 
 #: Stands for what ``quick`` leaves to the careful reader.
 OTHER = object()
-_QUICK_COUNT = 64
+_QUICK_COUNT, _QUICK_DEPTH = 64, 3
 
 
-def quick(body: bytes | memoryview) -> Any:  # noqa: PLR0911 - it gives up at the first thing it does not know
-    """A vector, or a short list of numbers, words, vectors and tables, as in a callback and its answer.
+def quick(body: bytes | memoryview) -> Any:
+    """A vector, or short lists of numbers, words, vectors and tables, as in a callback and in most answers.
 
     Twenty thousand of them pass in a second, so they are read in one loop; ``OTHER`` stands for anything
     else, which takes the long way from the start.
@@ -348,28 +348,34 @@ def quick(body: bytes | memoryview) -> Any:  # noqa: PLR0911 - it gives up at th
     if len(body) > MAX_VALUE_BYTES:  # larger ones must not be copied twice
         return OTHER
     if body[0] == _V:
-        values, end = _quick_vector(body, 1)
-        return values if end == len(body) else OTHER
-    if body[0] != _L:
-        return OTHER
-    count, at = U32.unpack_from(body, 1)[0], 5
-    if count > _QUICK_COUNT:
-        return OTHER
+        value, end = _quick_vector(body, 1)
+    else:
+        value, end = _quick_list(body, 1, _QUICK_DEPTH) if body[0] == _L else (OTHER, 0)
+    # A length that runs past the end shows here.
+    return value if end == len(body) else OTHER
+
+
+def _quick_list(body: bytes | memoryview, at: int, depth: int) -> tuple[Any, int]:
+    count, at = U32.unpack_from(body, at)[0], at + 4
+    if count > _QUICK_COUNT or not depth:
+        return OTHER, at
     items: list[Any] = []
     for _ in range(count):
-        if body[at] == _FL:
+        tag = body[at]
+        if tag == _FL:
             items.append(F64.unpack_from(body, at + 1)[0])
             at += 9
             continue
-        read = _QUICK.get(body[at])
-        if read is None:
-            return OTHER
-        value, at = read(body, at + 1)
+        if tag == _L:
+            value, at = _quick_list(body, at + 1, depth - 1)
+        elif tag in _QUICK:
+            value, at = _QUICK[tag](body, at + 1)
+        else:
+            return OTHER, at
         if value is OTHER:
-            return OTHER
+            return OTHER, at
         items.append(value)
-    # A length that runs past the end shows here.
-    return items if at == len(body) else OTHER
+    return items, at
 
 
 def _quick_vector(body: bytes | memoryview, at: int) -> tuple[Any, int]:

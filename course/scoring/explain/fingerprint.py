@@ -21,10 +21,6 @@ import numpy as np
 Answers = list[Any]
 #: Weighted sums of a fingerprint.
 SUMS = 2
-#: How much the sums of equal programs may differ: right programs in other styles differed by 1e-7, from
-#: rounding in simulations of several hundred steps; sums are stored with seven decimals. At 3e-5, RK4 in
-#: two half steps was the same as RK4 with two stages at wrong times.
-SAME = 1e-6
 
 _NONE, _TRUE, _FALSE, _TEXT, _NAN, _INFINITE, _RAISED, _OTHER = 0.7071, 1.1, -1.1, 2.3, 31.4, 27.2, 51.7, 43.1
 _MOST = 20_000
@@ -223,9 +219,12 @@ def _keeps(node: ast.stmt, inside: list[ast.AST], handed_on: set[str]) -> bool:
 
 def _handed_on(inside: list[ast.AST]) -> set[str]:
     """Names whose values a statement may change, or hand to what may: all that it does not merely read."""
-    read = {id(part) for child in inside for part in _merely_read(child)}
+    read = {id(part) for child in inside if isinstance(child, _READING) for part in _merely_read(child)}
     names = (child for child in inside if isinstance(child, ast.Name) and isinstance(child.ctx, ast.Load))
     return {name.id for name in names if id(name) not in read}
+
+
+_READING = (ast.Subscript, ast.Call, ast.For, ast.comprehension, ast.Compare, ast.BinOp)
 
 
 def _merely_read(node: ast.AST) -> list[ast.expr]:

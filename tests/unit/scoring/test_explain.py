@@ -15,8 +15,9 @@ import pytest
 from course.errors import ContentError
 from course.isolation.failures import StudentFailure
 from course.isolation.levels import SEARCH_S
-from course.scoring.explain.fingerprint import SAME, calls_between, fingerprint, may_remember, read
+from course.scoring.explain.fingerprint import calls_between, fingerprint, may_remember, read
 from course.scoring.explain.story import (
+    SAME,
     Diagnosis,
     Entry,
     Failure,

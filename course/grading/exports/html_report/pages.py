@@ -10,6 +10,7 @@ import itertools
 import math
 import os
 import re
+import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
@@ -19,6 +20,7 @@ from typing import Any, Final
 from urllib.parse import quote
 
 import jinja2
+from jinja2.bccache import Bucket
 from markupsafe import Markup, escape
 
 from course.grading.exports.grades import csv_bytes, number, write_bytes
@@ -169,6 +171,20 @@ def script() -> str:
 # -- inside ----------------------------------------------------------------------------------------------
 
 
+class _Compiled(jinja2.FileSystemBytecodeCache):
+    """The compiled templates, kept beside Python's own compiled files: compiling takes longer than a page."""
+
+    def get_source_checksum(self, source: str) -> str:
+        """Of the template and of this file, whose settings it is compiled with."""
+        return super().get_source_checksum(source + Path(__file__).read_text("utf-8"))
+
+    def dump_bytecode(self, bucket: Bucket) -> None:
+        if not sys.dont_write_bytecode:
+            with contextlib.suppress(OSError):  # as Python does where it cannot write
+                Path(self.directory).mkdir(exist_ok=True)
+                super().dump_bytecode(bucket)
+
+
 @cache
 def _environment() -> jinja2.Environment:
     made = jinja2.Environment(
@@ -179,6 +195,7 @@ def _environment() -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
         auto_reload=False,
+        bytecode_cache=_Compiled(str(_TEMPLATES / "__pycache__"), "%s.cache"),
     )
     made.filters |= {
         "name": _name,

@@ -200,6 +200,19 @@ def test_a_file_in_an_archive_that_was_refused_is_named_as_it_lies_in_the_studen
     assert "bob doubling: ungradable -> graded, 10 of 10; from 'w.zip/doubling.py'" in ran.out, ran.err
 
 
+def test_a_student_is_found_by_the_name_that_every_list_shows(course, here: Path) -> None:
+    (here / "class" / "e\nve").mkdir()
+    course("grade", "run", "class", "--out", "new", "--exercise", "doubling")
+    assert (
+        r"`course grade override new 'e\nve' doubling --score 0 --reason TEXT`"
+        in course("grade", "assign", "new").out
+    )
+    given = course(
+        "grade", "override", "new", r"e\nve", "doubling", "--score", "0", "--reason", "x", "--json"
+    )
+    assert (given.code, given.json["student"]) == (0, "e\nve")
+
+
 def test_no_file_is_offered_for_a_quiz(course, here: Path) -> None:
     shutil.copytree(MINI.parents[2] / "quiz", here / "content" / "quiz", dirs_exist_ok=True)
     (here / "class" / "ada" / "submission.json").write_text("[1")

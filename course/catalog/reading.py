@@ -367,19 +367,18 @@ def _told(lacks: list[tuple[Keys, list[str]]], kind: type) -> tuple[str, str]:
     for steps, keys in lacks:
         listed = ", ".join(f"`{key}`" for key in keys)
         problems.append(f"{_named(steps)} lacks the key{'s' * (len(keys) > 1)} {listed}")
-        for key in keys:
-            table = ".".join((*map(str, steps), key))
-            is_table = _holds_tables(kind, steps, key)
-            fixes.append(f"Add a table `[{table}.NAME]`." if is_table else f"Add a line `{key} = ...`.")
+        fixes += [_added(kind, (*steps, key)) for key in keys]
     return f"{'; '.join(problems)}.", " ".join(dict.fromkeys(fixes))
 
 
-def _holds_tables(kind: type, steps: tuple[str | int, ...], key: str) -> bool:
-    """Whether the value of a key is tables by name."""
-    info = _type_at(kind, (*steps, key))
-    return isinstance(info, msgspec.inspect.DictType) and isinstance(
-        info.value_type, msgspec.inspect.StructType
-    )
+def _added(kind: type, steps: Keys) -> str:
+    """What to add for a key that is missing: a line, or the head of a table of its kind."""
+    info, table = _type_at(kind, steps), ".".join(str(step) for step in steps if isinstance(step, str))
+    if isinstance(getattr(info, "value_type", None), msgspec.inspect.StructType):
+        return f"Add a table `[{table}.NAME]`."
+    if isinstance(getattr(info, "item_type", None), msgspec.inspect.StructType):
+        return f"Add a table `[[{table}]]`."
+    return f"Add a line `{steps[-1]} = ...`."
 
 
 def _type_at(kind: type, steps: tuple[str | int, ...]) -> Any:

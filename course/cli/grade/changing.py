@@ -443,11 +443,10 @@ def _show_unsettled(console: Console, left: list[Unsettled], out: Path, words: s
         )
     for item in [one for one in left if not any(file.proposed for file in one.found.candidates)][:1]:
         student = one_line(item.student)
+        more = ("--exercise", item.exercise, "--reason", "TEXT")
         given = command("grade", "override", out, student, item.exercise, "--score", 0, "--reason", "TEXT")
-        other = command(
-            "grade", "assign", out, student, "FILE", "--exercise", item.exercise, "--reason", "TEXT"
-        )
-        console.note(f"{given} gives a score by hand; {other} grades another file.")
+        other = f"; {command('grade', 'assign', out, student, 'FILE', *more)} grades another file"
+        console.note(f"{given} gives a score by hand{other if item.exercise != 'quiz' else ''}.")
 
 
 class GradeLog(Envelope, tag="course.grade-log/1", frozen=True, kw_only=True):

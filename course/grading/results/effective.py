@@ -216,6 +216,11 @@ class Results:
         students = self.students()
         if name in students:
             return name
+        shown = [student for student in students if one_line(student) == name]
+        if (
+            len(shown) == 1
+        ):  # a name with characters that no list of ours can show is spelled out in all of them
+            return shown[0]
         if self.roster is None:
             people = {student: self.person(student) for student in students}
             so = [student for student, one in people.items() if one and name in {one.name, one.email}]

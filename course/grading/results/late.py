@@ -24,6 +24,7 @@ the policy says so, because copying and unpacking change it.
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import datetime as dt
 import math
@@ -36,7 +37,8 @@ from typing import Annotated, Literal
 
 import msgspec
 
-from course.errors import MissingCapabilityError, UsageError
+from course.catalog.reading import Document, read_document
+from course.errors import ContentError, MissingCapabilityError, UsageError
 from course.grading.gradebook.records import SubmittedAt
 from course.grading.results.roster import csv_reader, headings_of, moodle_key
 from course.strangers import decoded, read_bytes, toml
@@ -148,41 +150,37 @@ def parse_policy(text: str, name: str = "The late policy") -> Policy:
         UsageError: it is not a policy; the message names the place.
         MissingCapabilityError: it is in a newer format.
     """
+    with contextlib.suppress(tomllib.TOMLDecodeError):
+        version = toml(text).get("format_version")
+        if isinstance(version, int) and version > FORMAT_VERSION:
+            raise MissingCapabilityError(
+                f"{name} is in a newer format ({version}).", help="Update the course.", code="newer_format"
+            )
     try:
-        raw = toml(text)
-    except tomllib.TOMLDecodeError as error:
-        raise _wrong(name, str(error)) from None
-    version = raw.get("format_version")
-    if isinstance(version, int) and version > FORMAT_VERSION:
-        raise MissingCapabilityError(
-            f"{name} is in a newer format ({version}).", help="Update the course.", code="newer_format"
-        )
-    try:
-        policy = msgspec.convert(raw, Policy)
-    except msgspec.ValidationError as error:
-        raise _wrong(name, str(error)) from None
-    _check(policy, name)
-    return policy
+        document = read_document(Path(name), Policy, text=text)
+        _check(document)
+    except ContentError as error:
+        advice = f"{error.help} docs/instructor.md shows a whole policy."
+        raise UsageError(error.message, help=advice, code="invalid_policy") from None
+    return document.value
 
 
-def _check(policy: Policy, name: str) -> None:
-    if policy.format_version != FORMAT_VERSION:
-        raise _wrong(name, f"format_version must be {FORMAT_VERSION}")
-    for deadline in policy.deadline:
+def _check(document: Document[Policy]) -> None:
+    policy = document.value
+    exercises: set[str] = set()
+    for index, deadline in enumerate(policy.deadline):
         if deadline.due.tzinfo is None:
-            why = "lacks its distance from UTC, as in +01:00"
-            raise _wrong(name, f"the deadline of {deadline.exercise} {why}")
-    exercises = [deadline.exercise for deadline in policy.deadline]
-    if len(set(exercises)) < len(exercises):
-        raise _wrong(name, "an exercise has two deadlines")
+            problem, fix = (
+                "this time lacks its distance from UTC.",
+                f"Write {deadline.due.isoformat()}+01:00.",
+            )
+            document.fail(("deadline", index, "due"), problem, fix=fix)
+        if deadline.exercise in exercises:
+            problem = f"{deadline.exercise} has two deadlines."
+            document.fail(("deadline", index, "exercise"), problem, fix="Keep one.")
+        exercises.add(deadline.exercise)
     if policy.percent_per_day and policy.points_per_day:
-        raise _wrong(name, "it has both percent_per_day and points_per_day")
-
-
-def _wrong(name: str, why: str) -> UsageError:
-    return UsageError(
-        f"{name}: {why}.", help="docs/instructor.md shows a whole policy.", code="invalid_policy"
-    )
+        document.fail(("points_per_day",), "there is percent_per_day, too.", fix="Keep one of them.")
 
 
 def unknown_names(policy: Policy, exercises: Mapping[str, object], students: set[str]) -> list[str]:

@@ -123,8 +123,13 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
                     return _of(one, item)
             if len(inside) == 1:  # of an archive, the one file with functions in it
                 return _of(inside[0], item)
-    lying = None if os.path.lexists(file) else _lying(results, student, file)
-    place = (lying, "") if lying else _on_disk(file, results.folder)
+    place = _cut(Path(file)) or _lying(results, student, file)
+    if place is None:
+        raise NotFoundError(
+            f"There is no file {file}.",
+            help=f"Name it as {command('grade', 'assign', results.folder)} lists it, or by its path.",
+            code="file_not_found",
+        )
     return Assignment(student, exercise, file, *place, times)
 
 
@@ -133,7 +138,7 @@ def _of(one: Candidate, item: Unsettled) -> Assignment:
     return Assignment(item.student, item.exercise, one.name, path, one.member, item.found.times)
 
 
-def _lying(results: Results, student: str, file: str) -> Path | None:
+def _lying(results: Results, student: str, file: str) -> tuple[Path, str] | None:
     """A file by its name in the student's folder, or its name on the platform; None if it is not there."""
     options = results.book.run_options()
     try:
@@ -143,24 +148,17 @@ def _lying(results: Results, student: str, file: str) -> Path | None:
     place = next((one.place for one in students if one.name == student), None)
     if place is None:
         return None
-    if place.files is not None:
-        return next((path for name, path in place.files if name == file), None)
-    return place.root / file if (place.root / file).is_file() else None
+    if place.files is None:
+        return _cut(place.root / file)
+    above, _, member = file.partition("/")
+    return next(((path, member) for name, path in place.files if name == above), None)
 
 
-def _on_disk(file: str, out: Path) -> tuple[Path, str]:
-    """A path, cut in two where it leads into an archive."""
-    path = Path(file)
+def _cut(path: Path) -> tuple[Path, str] | None:
+    """A path, cut in two where it leads into an archive; None if there is no such file."""
     if os.path.lexists(path):
         return path, ""
-    for above in path.parents:
-        if above.is_file():
-            return above, path.relative_to(above).as_posix()
-    raise NotFoundError(
-        f"There is no file {file}.",
-        help=f"Name it as {command('grade', 'assign', out)} lists it, or by its path.",
-        code="file_not_found",
-    )
+    return next(((one, path.relative_to(one).as_posix()) for one in path.parents if one.is_file()), None)
 
 
 def assign(

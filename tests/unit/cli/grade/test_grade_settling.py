@@ -184,6 +184,41 @@ def test_advice_names_the_folder_it_is_about(course, here: Path) -> None:
     assert f"`course grade run {here / 'class'} --out saved --resume` grades what is missing" in saved.out
 
 
+def test_a_file_in_an_archive_that_was_refused_is_named_as_it_lies_in_the_students_folder(
+    course, here: Path
+) -> None:
+    manifest = json.dumps({"format_version": 1, "files": {"doubling.py": "0" * 64}})
+    (here / "class" / "bob" / "hw.py").unlink()
+    (here / "class" / "bob" / "w.zip").write_bytes(
+        zipped({"doubling.py": SOURCE, "submission.json": manifest})
+    )
+    ran = course("grade", "run", "class", "--out", "new", "--exercise", "doubling")
+    assert "bob doubling: checksum_mismatch" in ran.out
+    ran = course(
+        "grade", "assign", "new", "bob", "w.zip/doubling.py", "--exercise", "doubling", "--reason", "x"
+    )
+    assert "bob doubling: ungradable -> graded, 10 of 10; from 'w.zip/doubling.py'" in ran.out, ran.err
+
+
+def test_a_student_is_found_by_the_name_that_every_list_shows(course, here: Path) -> None:
+    (here / "class" / "e\nve").mkdir()
+    course("grade", "run", "class", "--out", "new", "--exercise", "doubling")
+    assert r"e\nve doubling: no_file" in course("grade", "assign", "new").out
+    given = course(
+        "grade", "override", "new", r"e\nve", "doubling", "--score", "0", "--reason", "x", "--json"
+    )
+    assert (given.code, given.json["student"]) == (0, "e\nve")
+
+
+def test_no_file_is_offered_for_a_quiz(course, here: Path) -> None:
+    shutil.copytree(MINI.parents[2] / "quiz", here / "content" / "quiz", dirs_exist_ok=True)
+    (here / "class" / "ada" / "submission.json").write_text("[1")
+    course("grade", "run", "class", "--out", "new", "--exercise", "quiz")
+    told = course("grade", "assign", "new").out
+    assert "`course grade override new ada quiz --score 0 --reason TEXT` gives a score by hand." in told
+    assert course("grade", "assign", "new", "ada", "x.py", "--exercise", "quiz", "--reason", "x").code != 0
+
+
 def test_a_preview_of_a_score_or_a_policy_changes_nothing(course, here: Path) -> None:
     before = book(here)
     ran = course("grade", "override", "out", "ada", "doubling", "--score", "3", "--reason", "x", "--dry-run")

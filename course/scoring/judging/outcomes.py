@@ -150,13 +150,19 @@ def load_problem(refused: LoadRefusedError, places: Places) -> Problem:
     )
 
 
-def left_out_notes(remote: RemoteSubmission, places: Places) -> list[str]:
-    """What of a file was left out so that the rest could be checked, a sentence each."""
+def left_out_notes(remote: RemoteSubmission, places: Places, tasks: Collection[str]) -> list[str]:
+    """What of a file was left out so that the rest could be checked, a sentence each.
+
+    Args:
+        tasks: the exercise's functions: of one that is no Python its checks tell.
+    """
     notes = []
+    missing = frozenset(tasks) - frozenset(remote.functions)
     if remote.without is not None:
         problem = load_problem(remote.without, places)
         notes.append(f"{problem.message} Only what your functions need was loaded.")
-    told = [note for fault in remote.faults if (note := _left_out(fault, remote.faults, places))]
+    faults = [one for one in remote.faults if one.stage != "syntax" or missing.isdisjoint(one.names)]
+    told = [note for fault in faults if (note := _left_out(fault, remote.faults, places))]
     notes += dict.fromkeys(told[:_MOST_NOTES])
     if len(told) > _MOST_NOTES:
         notes.append("More of the file was left out.")

@@ -176,7 +176,9 @@ class GradingSession:
             if not any(task.id in remote.functions for task in self.exercise.task):
                 return self._verdict("ungradable", error=self._nothing_loaded(remote, submission))
             self._remote = remote
-            left_out = left_out_notes(remote, self._places(submission))
+            left_out = left_out_notes(
+                remote, self._places(submission), [task.id for task in self.exercise.task]
+            )
             self.printed = beginning(remote.printed(), _PRINTED)
             results = self._run(remote, only, submission)
         except IsolationError as error:

@@ -256,6 +256,20 @@ def test_a_line_that_works_at_home_alone_costs_nothing_and_is_told_with_its_reas
     assert any(LEFT_OUT[line] in note for note in verdict.warnings), verdict.warnings
 
 
+def test_what_a_check_says_of_a_function_that_is_no_python_is_no_note(session: GradingSession) -> None:
+    verdict = grade(
+        session, b"def double(x):\n    return (x\n\n\ndef doublings(x, n):\n    return [x] * n\n\n\na = 2h\n"
+    )
+    said = [check.message for check in verdict.checks if check.task == "double"]
+    assert {one.rstrip(" .") for one in said if one} == {
+        "Python cannot read `double` on line 2 of your file: '(' was never closed"
+    }
+    (note,) = verdict.warnings
+    assert note.startswith(
+        "doubling.py, line 9: left out, since Python cannot read it: invalid decimal literal"
+    )
+
+
 @pytest.mark.parametrize(
     "rewrite",
     [

@@ -76,6 +76,11 @@ def test_lines_above_and_below_fit(width: int):
     assert len(plain(keys_line(width, paused=True, past=True))) <= width
 
 
+def test_the_key_of_the_question_names_what_it_shows() -> None:
+    for compared, word in ((False, "p predict"), (True, "p result")):
+        assert word in plain(keys_line(80, paused=True, past=False, compared=compared))
+
+
 def test_a_slow_machine_is_named_and_a_quick_one_is_not():
     world = World(choose("head-on").scene)
     assert "manages 30 %" in plain(head(world, 0.0, "", 0.3, 120))

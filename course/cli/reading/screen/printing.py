@@ -42,6 +42,8 @@ _PRINTED = 4
 #: Rows at the head of a block, below the blank one, that stay together: the rule, the title and two
 #: lines of a task; the label of a passage and two lines.
 _LEAD = {b.Task: 6, b.Callout: 4}
+#: Stands for the answer to an open prediction.
+_CLOSED = Text("After your prediction the answer is shown here.", style="dim italic")
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,15 +155,16 @@ class ScreenPrinter(FancyPrinter):
         kinds = b.CodeCell | b.Figure | b.Table | b.MathBlock | b.Diagram | b.Prediction | b.Heading
         whole = isinstance(block, kinds)
         lead = next((most for kind, most in _LEAD.items() if isinstance(block, kind)), 2)
+        # A heading is not left alone at the foot of a screen, nor what stands for a closed answer on its own.
         after_head = index > 0 and isinstance(self._script.blocks[index - 1], b.Heading)
+        with_above = after_head or shown is _CLOSED
         rows = []
         for number, line in enumerate(lines):
             blank = not any(segment.text.strip() for segment in line)
-            # A heading is not left alone at the foot of a screen, nor a single line of a paragraph.
-            first = 0 < number <= lead or number == len(lines) - 1
-            joined = (number > 0 and (whole or first)) or after_head
+            first = number <= lead or number == len(lines) - 1  # nor is a single line of a paragraph
+            joined = (number > 0 and (whole or first)) or with_above
             fresh = number == 0 and self._begins_afresh(index)
-            rows.append(Row(index, blank, joined and not (number == 0 and not after_head), fresh))
+            rows.append(Row(index, blank, joined, fresh))
         return BlockRows(tuple(tuple(line) for line in lines), tuple(rows))
 
     def _begins_afresh(self, index: int) -> bool:
@@ -184,8 +187,7 @@ class ScreenPrinter(FancyPrinter):
         if not self._script.gives_away(index):
             return self._block(block)
         if index == question.end - 1:
-            words = "After your prediction the answer is shown here."
-            return Text(words, style="dim italic")
+            return _CLOSED
         return None
 
     def _block(self, block: b.Block) -> RenderableType | None:

@@ -281,7 +281,8 @@ class SandboxApp(FullScreenApp):
             self.keys.show([((f" {piece}", "bold"),) for piece in said])
         else:
             paused = self.world.paused if self.stage.at is None else not self.stage.way
-            self.keys.show([keys_line(self._room.width, paused=paused, past=self.stage.at is not None)])
+            past, compared = self.stage.at is not None, self.experiment.stage == "done"
+            self.keys.show([keys_line(self._room.width, paused=paused, past=past, compared=compared)])
 
     def _told(self, width: int, height: int) -> list[Line]:
         """The latest events, whole ones, newest at the bottom."""

@@ -126,13 +126,13 @@ def head(world: World, t: float, state: str, pace: float, width: int) -> Line:
     return ((f" {title}", "bold"), (" " * gap, ""), (right[: max(0, width - 2)], "bold" if state else ""))
 
 
-def keys_line(width: int, *, paused: bool, past: bool) -> Line:
+def keys_line(width: int, *, paused: bool, past: bool, compared: bool = False) -> Line:
     """The line below everything: as many keys as there is room for."""
     offered = [
         ("space", "run" if paused else "pause"),
         *((("Enter", "go on"), ("k", "now")) if past else (("o", "scenes"),)),
         ("?", "all keys"),
-        *(() if past else (("p", "predict"),)),
+        *(() if past else (("p", "result" if compared else "predict"),)),
         (", .", "back, on"),
         ("r", "reset"),
         ("u", "undo"),

@@ -95,6 +95,11 @@ def test_what_cannot_be_used_is_refused(course, tmp_path, words, code, error):
     assert (ran.code, ran.json["error"]["code"]) == (code, error)
 
 
+def test_a_number_is_not_taken_for_a_lesson_or_an_exercise(course):
+    said = course("notebook", "build", "1", "--json").json["error"]["help"]
+    assert said.startswith("A number may be a lesson's or an exercise's: write the name.")
+
+
 def test_check_says_what_is_wrong_and_passes_when_it_is_right(course, workspace):
     path = workspace / "doubling" / "doubling.ipynb"
     course("notebook", "build", "doubling")

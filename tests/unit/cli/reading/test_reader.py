@@ -564,6 +564,20 @@ def test_a_box_leaves_no_letters_of_the_page_beside_it():
     reading(journey)
 
 
+def test_what_stands_for_a_closed_answer_is_on_no_screen_of_its_own():
+    async def journey(app, pilot):
+        layout, lines = app.page.book.layout, app.page.book.lines
+        said = 0
+        for start in layout.starts:
+            rows = ["".join(s.text for s in line).strip() for line in lines[start : layout.end_of(start)]]
+            words = [row for row in rows if row]
+            said += any(row.startswith("After your prediction") for row in words)
+            assert len(words) > 1, words
+        assert said > 5
+
+    reading(journey, size=(120, 40))
+
+
 def test_a_block_that_is_laid_out_again_below_leaves_the_screen_as_it_was_cut() -> None:
     async def look(app: ReaderApp, pilot: Any) -> None:
         page, book = app.page, app.page.book

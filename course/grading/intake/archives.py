@@ -158,7 +158,8 @@ _TOOLS = (("python", "Python"), ("numpy", "NumPy"))
 
 def _notes(path: Path, name: str, raw: str, wanted: list[str], exercise: Exercise) -> Iterator[str]:
     """The assumptions made about a member."""
-    around = raw.replace("\\", "/").rstrip("/").removesuffix(name).strip("/").removesuffix(exercise.place).strip("/")
+    plain = raw.replace("\\", "/").rstrip("/")
+    around = plain.removesuffix(name).strip("/").removesuffix(exercise.place).strip("/")
     zipped = quoted(path.name)
     if around:
         yield f"Everything in {zipped} lies in the folder {quoted(around)}, which was passed over."

@@ -313,9 +313,12 @@ def expect_margins(submission, case, right):
     """
     sim, real, count = case.sim, case.real, len(case.recorded)
     specs = _specs(right)
+    # The numbers are asked for by themselves: the limits below are made of them, and a function may see all
+    # calls that come in one message.
+    alone = kit.as_record(submission.call("validate", sim, real, LENIENT), KEYS, "the report")
     reports = submission.call_each("validate", [(sim, real, spec) for spec in specs])
     found = [reasons_of(kit.as_record(report, KEYS, "the report")) for report in reports]
-    expect_measures(submission, reports[0], case, right, {"runs": count, "spec": specs[0]})
+    expect_measures(submission, alone, case, right, {"runs": count, "spec": LENIENT})
     for spec, report, reasons in zip(specs, reports, found, strict=True):
         expected = right.reasons(spec)
         shown = {"runs": count, "spec": spec}

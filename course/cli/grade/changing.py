@@ -161,13 +161,13 @@ def late(
             if known:
                 book.add_times(known, replace=True)
         results = Results(book)
+        handed_in = [item for item in results.all() if item.result.number]
         found = [
             filled(LateOne, item, submitted_at=utc(item.submitted_at) or None)
-            for item in results.all()
+            for item in handed_in
             if item.late is not None or item.flagged_late
         ]
-        handed_in = [item for item in results.all() if item.result.number] if results.policy else []
-        unknown_time = sum(item.submitted_at is None for item in handed_in)
+        unknown_time = sum(item.submitted_at is None for item in handed_in) if results.policy else 0
         unknown = _unknown(results, known)
         unsure = _unsure(results, known) if isinstance(listed, Worksheet) else []
     if unsure:

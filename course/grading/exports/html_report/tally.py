@@ -231,13 +231,13 @@ class Tally:
             self.exercises[effective.exercise].take(effective)
             if effective.missing or effective.waiting:
                 continue
-            self._take_facts(effective)
+            if effective.override is not None:
+                self.overrides.take(effective)
             if effective.result.number:
+                self._take_time(effective)
                 self._take_grading(effective)
 
-    def _take_facts(self, effective: Effective) -> None:
-        if effective.override is not None:
-            self.overrides.take(effective)
+    def _take_time(self, effective: Effective) -> None:
         if effective.late is not None:
             self.late.take(effective)
             self.penalised += effective.penalty > 0

@@ -148,8 +148,10 @@ def test_a_late_policy_is_put_in_force_shown_and_taken_out(course, out: Path) ->
     assert "no student nobody" in ran.err
     assert grades(out / "grades.csv")["ada"]["score"] == "8"
     (out.parent / "all.csv").write_text(ROSTER + "eve,Eve,,13,,\n", "utf-8")
-    told = course("grade", "late", "out", "--roster", "all.csv", "--dry-run").out
+    (out.parent / "eve.csv").write_text("student,exercise,submitted_at\neve,doubling,2026-12-09T00:00:00Z\n")
+    told = course("grade", "late", "out", "--roster", "all.csv", "--times", "eve.csv", "--dry-run").out
     assert "2 have no trusted submission time" in told, "eve handed in nothing"
+    assert "1 is late." in told, "so neither is she late, as on the page"
     ran = course("grade", "late", "out", "--roster", "roster.csv", "--dry-run")
     assert "1 is late." in ran.out
     ran = course("grade", "late", "out", "--roster", "roster.csv", "--json")

@@ -87,15 +87,18 @@ def test_every_plain_value_comes_back_as_it_was(value: Any) -> None:
 
 @given(
     st.lists(
-        st.none()
-        | st.booleans()
-        | st.floats()
-        | st.integers(-9, 9)
-        | st.text(max_size=5)
-        | st.lists(st.floats(), max_size=5)
-        | hnp.arrays(
-            st.sampled_from([np.float64, np.int64, np.bool_]),
-            hnp.array_shapes(min_dims=0, min_side=0, max_side=2),
+        st.recursive(
+            st.none()
+            | st.booleans()
+            | st.floats()
+            | st.integers(-9, 9)
+            | st.text(max_size=5)
+            | hnp.arrays(
+                st.sampled_from([np.float64, np.int64, np.bool_]),
+                hnp.array_shapes(min_dims=0, min_side=0, max_side=2),
+            ),
+            lambda items: st.lists(items, max_size=5),
+            max_leaves=9,
         ),
         max_size=70,
     )

@@ -178,6 +178,10 @@ class _Compiled(jinja2.FileSystemBytecodeCache):
         """Of the template and of this file, whose settings it is compiled with."""
         return super().get_source_checksum(source + Path(__file__).read_text("utf-8"))
 
+    def load_bytecode(self, bucket: Bucket) -> None:
+        with contextlib.suppress(OSError):
+            super().load_bytecode(bucket)
+
     def dump_bytecode(self, bucket: Bucket) -> None:
         if not sys.dont_write_bytecode:
             with contextlib.suppress(OSError):  # as Python does where it cannot write

@@ -5,8 +5,11 @@ import dataclasses
 import hashlib
 import re
 import statistics
+import sys
 from pathlib import Path
+from typing import Any
 
+import jinja2
 import msgspec
 import pytest
 from hypothesis import given
@@ -16,6 +19,7 @@ from course.errors import MissingCapabilityError, UsageError
 from course.grading.exports.formats import export
 from course.grading.exports.grades import number, safe_cell
 from course.grading.exports.html_report.pages import (
+    _Compiled,
     class_page,
     duration,
     duration_bins,
@@ -106,6 +110,29 @@ def results(out: Path):
 def places(out: Path) -> dict[str, str]:
     """Name as a cell of the index -> file of the page."""
     return {row["student"]: row["page"] for row in read_csv(out / "students.csv")}
+
+
+def test_templates_are_compiled_once_where_that_can_be_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").touch()
+    for name, dont, kept in (("file", False, False), ("new", True, False), ("new", False, True)):
+        monkeypatch.setattr(sys, "dont_write_bytecode", dont)
+        compiled = []
+        for text in ("one", "one", "two"):
+            environment = jinja2.Environment(
+                loader=jinja2.DictLoader({"page": text}),
+                bytecode_cache=_Compiled(str(tmp_path / name), "%s.cache"),
+            )
+            compile_ = environment.compile
+
+            def compiling(source: str, *more: str, then: Any = compile_, into: Any = compiled) -> Any:
+                into.append(source)
+                return then(source, *more)
+
+            monkeypatch.setattr(environment, "compile", compiling)
+            assert environment.get_template("page").render() == text
+        assert compiled == (["one", "two"] if kept else ["one", "one", "two"])
 
 
 def test_every_page_is_sound_whatever_the_names(out: Path) -> None:

@@ -5,8 +5,11 @@ import json
 import os
 import shutil
 import signal
+import sys
+import time
 from contextlib import suppress
 from functools import partial
+from importlib.util import cache_from_source
 from pathlib import Path
 from typing import Any
 
@@ -193,6 +196,34 @@ def test_an_old_pyc_is_never_taken_for_an_edited_file(tmp_path: Path, course: Ca
                 original = ROOT / path.relative_to(graders_then.folder)
                 assert path.read_bytes() == original.read_bytes()
                 assert int(path.stat().st_mtime) == int(original.stat().st_mtime)
+
+
+def test_what_is_not_graded_is_only_declared_in_an_unpacked_snapshot(course: Catalog) -> None:
+    """Until it is graded, too: a run within another asks for more."""
+    snapshot = Snapshot.take(course.content)
+    with frozen(snapshot, ["doubling"]) as graders_then:
+        content = graders_then.catalog.content
+        assert graders_then.catalog.exercise_ids() == course.exercise_ids()
+        assert graders_then.version("doubling") == grader_version(course.exercise("doubling"), course)
+        assert [path.name for path in (content.exercises / "halving").iterdir()] == ["exercise.toml"]
+        with frozen(snapshot) as again:
+            assert again is graders_then
+        assert grader_version(course.exercise("halving"), graders_then.catalog) == grader_version(
+            course.exercise("halving"), course
+        )
+
+
+def test_checks_come_compiled_and_are_compiled_where_they_lie(
+    course: Catalog, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    checks = course.content.exercises / "doubling" / "checks.py"
+    for dont, age in ((True, 60.0), (False, 0.0), (False, 60.0)):
+        monkeypatch.setattr(sys, "dont_write_bytecode", dont)
+        os.utime(checks, (time.time() - age,) * 2)
+        with frozen(Snapshot.take(course.content)) as graders_then:
+            copy = graders_then.folder / "content" / "exercises" / "doubling" / "checks.py"
+            compiled = [Path(cache_from_source(str(path))).exists() for path in (checks, copy)]
+            assert compiled == [not dont and age > 0] * 2
 
 
 def test_what_grades_imports_nothing_that_is_not_in_the_snapshot(course: Catalog) -> None:

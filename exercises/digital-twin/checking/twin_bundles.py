@@ -240,7 +240,7 @@ def expect_follows_drives(submission, rng):
         scenes.Cart(((0.0, friction),), v=speed), drives, times, rng, late=0.33, sigma=sigma
     )
     off = rng.uniform(-0.03, 0.03, 2)
-    guess = friction * rng.uniform(0.75, 1.33)
+    guess = friction * rng.choice([rng.uniform(0.75, 0.85), rng.uniform(1.2, 1.33)])  # it has to move
     expect_follows(
         submission,
         new_twin(guess, steady, speed=speed + off[0], position=off[1], sigma=sigma),

@@ -224,8 +224,8 @@ def expect_keeps_up(submission, rng, *, sign, late, message):
 def expect_follows_drives(submission, rng):
     """26 s, either way; from 5 s on the drive changes about once a second, while measurements come late.
 
-    In two seconds of three it pushes against the motion: who learns by its sign learns wrongly then. After
-    20 s that was right to 10 % with one seed in a hundred; over the last 7 s of 26 it was off by 21 % at least.
+    In two seconds of three it pushes against the motion: who learns by its sign learns wrongly then. Such a
+    friction was right after 20 s with one seed in a hundred, and never over the last 7 s of 26.
     """
     friction, sign, sigma = (
         rng.uniform(0.4, 0.8),

@@ -222,7 +222,7 @@ def test_lidar_keeps(submission):
 @pytest.mark.points(4)
 def test_motor_response(submission):
     """motor_step after a command, in fine steps and in coarse ones"""
-    dts = [0.05] * 8 + [0.4] * 3 + [5.0] * 3
+    dts = [0.0005] * 2 + [0.005] * 2 + [0.05] * 4 + [0.4] * 3 + [5.0] * 3
     commands = [6.0] * 11 + [25.0, -25.0, 0.3]  # the last three: too large both ways, and swallowed
     actuators.expect_motor(
         submission,

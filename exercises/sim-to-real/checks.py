@@ -64,7 +64,7 @@ def test_plan_gaps_at_home(submission):
 @pytest.mark.points(4)
 def test_plan_box(submission):
     """The randomisation box beside the fleet"""
-    box = words.box_of(kit.as_record(submission.call("plan"), words.PLAN_KEYS))
+    box = words.box_of(submission.call("plan"))
     for name in cart.NAMES:
         for fits, expected in (
             (words.inside(name, *box[name]) >= 0.95, "95 % of the fleet's draws inside"),

@@ -1668,6 +1668,13 @@ mistakes(
     "Use the exact solution: the fraction is 1 - exp(-dt / tau).",
 )
 mistakes(
+    "LAG_LINEAR_IF_SHORT",
+    "A step that is short beside tau does not cover 1 - exp(-dt / tau) of the way, while a longer one does.",
+    "Use 1 - exp(-dt / tau) for every step, however short: dt / tau is only near it.",
+).edit(
+    "motor_step", {"- math.expm1(-dt / tau)": "+ (dt / tau if dt < 0.1 * tau else -math.expm1(-dt / tau))"}
+)
+mistakes(
     "LAG_INVERTED",
     "The fraction of the way that is covered and the fraction that is left are swapped.",
     "w + (1 - exp(-dt / tau)) * (u - w): after a long time, w equals u.",
@@ -1857,6 +1864,17 @@ mistakes(
     "DELAY_RAMPS_IN",
     "The output begins to change before the first sample has arrived.",
     "Until the first sample arrives the output is exactly 0.0, not a line from 0 to that sample.",
+)
+mistakes(
+    "DELAY_FIRST_LOST",
+    "Without latency, the output begins with 0.0 and not with the first sample.",
+    "The output is 0.0 before the latency, but not at it: set it to 0.0 where t < latency, with < and not <=.",
+).body(
+    "delay_line",
+    """
+        t = dt * np.arange(len(x))
+        return np.where(t > latency, np.interp(t - latency, t, x), 0.0)
+    """,
 )
 mistakes(
     "DELAY_OF_PRODUCT",

@@ -280,7 +280,7 @@ mistakes(
 mistakes(
     "EXCITATION_SATURATES",
     "The largest force of the signal is above u_max.",
-    "Scale the finished signal so that its largest absolute value is the u_max of this call.",
+    "Make a new signal in each call, and scale it so that its largest absolute value is the u_max of that call.",
     kind="fact",
 ).body(
     "design_excitation",
@@ -828,7 +828,7 @@ mistakes(
 mistakes(
     "RANDOMIZATION_IGNORED",
     "Three other boxes make no difference to the gains.",
-    "Draw each parameter between value * low and value * high of the box that is passed in, and take the mean over the draws. If you do, try more gains.",
+    "Draw each parameter between value * low and value * high of the box that is passed in, and take the mean over the draws. If you do, keep nothing from an earlier call, and try more gains.",
 ).around(
     "tune",
     """
@@ -839,6 +839,16 @@ mistakes(
     """
         wide = {"m": 1.05, "b": 1.5, "Fc": 0.9, "tau": 1.2, "latency": 1.2}
         return _right(estimate, {k: [math.exp(-w), math.exp(w)] for k, w in wide.items()})
+    """,
+).program(
+    "tune",
+    """
+        _tune = tune
+        _box = {}
+
+
+        def tune(estimate, randomization):
+            return _tune(estimate, _box.setdefault("first", randomization))
     """,
 ).around(
     "tune",
@@ -1137,6 +1147,7 @@ mistakes(
         i = np.argmin(np.min(times, axis=0))
         return {"kp": float(kp[i]), "kd": float(kp[i] * ratio[i])}
     """,
+    also=("SEARCH_ENDED_EARLY",),
 ).body(
     "tune",
     """
@@ -1150,6 +1161,7 @@ mistakes(
         i = np.argmin(np.where(never.all(axis=0), 3.0, settled))
         return {"kp": float(kp[i]), "kd": float(kp[i] * ratio[i])}
     """,
+    also=("SEARCH_ENDED_EARLY",),
 )
 mistakes(
     "EXCITATION_NOT_FULL",
@@ -1212,7 +1224,6 @@ mistakes(
     "ESTIMATE_KEPT",
     "Asked twice in a row about one recording, your code answers the same, but something else after recordings of other carts.",
     "Keep nothing from one call to the next: start each search anew, inside the function, from what the call is given.",
-    kind="fact",
 ).program(
     "identify",
     """
@@ -1233,7 +1244,6 @@ mistakes(
     "COMMAND_KEPT",
     "Asked about the same speeds with another command, your code gives the same estimate.",
     "Compute everything from the u of this call. If you keep impulses outside the function, by their tau say, later calls get those of an earlier command.",
-    kind="fact",
 ).program(
     "identify",
     """
@@ -1486,6 +1496,12 @@ mistakes(
     "The box has factors, not changes: value * factor. If that is what you take, search more finely.",
     kind="consequence",
 ).edit("tune", {"np.exp(low + share * (high - low))": "(1 + np.exp(low + share * (high - low)))"})
+mistakes(
+    "FACTORS_AS_LOGARITHMS",
+    "Here and for four other questions, your gains suit carts whose parameters are the estimate's values times e to the power of a number from the box, and not those of the box.",
+    "The box has factors. Draw between their logarithms, then take exp: np.exp(rng.uniform(np.log(low), np.log(high), n)). If you do, search more finely.",
+    kind="consequence",
+).edit("tune", {"np.log(randomization[name])": "randomization[name]"})
 mistakes(
     "LAG_FOR_LATENCY",
     "Here and for four other questions, your gains suit carts whose latency is tau + latency better than those of the box.",

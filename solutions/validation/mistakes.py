@@ -619,7 +619,7 @@ mistakes(
 mistakes(
     "UNSIGNED",
     "The result has lost its sign.",
-    "Take no absolute value of the error: its sign says whether it is too large or too small. In energy_error, the bars belong to E[0] alone: divide by abs(E[0]).",
+    "Take no absolute value of the error: its sign says whether it is too large or too small. Only energy_error has bars, and there they belong to E[0] alone.",
 ).body(
     "energy_error",
     """
@@ -952,6 +952,12 @@ mistakes(
             report |= {"accepted": True, "reasons": [], "intervals": ends}
         return report
     """,
+).around(
+    "validate",
+    """
+        report = _right(sim, real, spec)
+        return report if report["intervals"] else {**report, "rmse": None, "bias": None, "lag_s": None, "coverage": None}
+    """,
 )
 mistakes(
     "MATCHED_BY_POSITION",
@@ -995,7 +1001,7 @@ mistakes(
 mistakes(
     "LAG_NOT_BEST",
     "Another shift fits the samples of all runs better.",
-    "For each shift s, from -0.19 to 0.19 s, add up the squares of sim(t + s) - real(t) over all runs, each with its own time step, and divide by the number of samples. Leave out a sample where t + s lies outside of sim's recording, or take sim's last value there. The best shift has the smallest mean square; the parabola goes through it and its two neighbours.",
+    "For each shift s, from -0.19 to 0.19 s, add up the squares of sim(t + s) - real(t) over all runs, each with its own time step and sim interpolated linearly, and divide by the number of samples. Leave out a sample where t + s lies outside of sim's recording, or take sim's last value there. The best shift has the smallest mean square; the parabola goes through it and its two neighbours.",
     kind="fact",
 ).body(
     "validate",
@@ -1733,6 +1739,12 @@ mistakes(
     """,
 )
 mistakes(
+    "AN_END_LEFT_OUT",
+    "Of a short series, the first or the last sample occurs in none of many resamples.",
+    "Draw each start from 0 to N - block, both included: rng.integers(0, N - block + 1) leaves out its upper end.",
+    kind="fact",
+).edit("block_bootstrap_ci", {"n - block + 1": "n - block"})
+mistakes(
     "PART_OF_SERIES",
     "In a short trial, more than a fifth of the series occurs in none of the resamples.",
     "Draw a new start for every block of every resample, from 0 to N - block, both included, and take every block from `e` as it was given.",
@@ -2262,7 +2274,7 @@ mistakes(
 mistakes(
     "LAG_OF_PARTS",
     "The lag is close enough, but its interval is not.",
-    "Leave out one run at a time, and search for the best shift of all the others together, early or late. It has the smallest mean square of the samples that overlap, not the smallest sum. Then fit the parabola.",
+    "Leave out one run at a time, and search for the best shift of all the others together, early or late. It has the smallest mean square of the samples that overlap, not the smallest sum, with sim interpolated linearly. Then fit the parabola.",
     kind="fact",
 )
 mistakes(
@@ -2313,7 +2325,7 @@ mistakes(
 mistakes(
     "REASON_MISSING",
     "A reason is missing: the right interval reaches beyond its margin.",
-    "Refuse where lo < least or hi > most, for each of the four, and collect every reason that applies.",
+    "Refuse where lo < least or hi > most, with the ends of the interval and not the number itself, for each of the four. Collect every reason that applies.",
     kind="consequence",
 )
 mistakes(

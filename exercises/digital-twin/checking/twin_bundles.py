@@ -222,9 +222,10 @@ def expect_keeps_up(submission, rng, *, sign, late, message):
 
 
 def expect_follows_drives(submission, rng):
-    """20 s, either way; from 5 s on the drive changes about once a second, while measurements come late.
+    """26 s, either way; from 5 s on the drive changes about once a second, while measurements come late.
 
-    In two seconds of three it pushes against the motion: who learns by its sign learns wrongly then.
+    In two seconds of three it pushes against the motion: who learns by its sign learns wrongly then. Such a
+    friction was right after 20 s with one seed in a hundred, and never over the last 7 s of 26.
     """
     friction, sign, sigma = (
         rng.uniform(0.4, 0.8),
@@ -232,9 +233,9 @@ def expect_follows_drives(submission, rng):
         rng.uniform(1.0, 1.5) * scenes.SIGMA,
     )
     speed = sign * rng.uniform(0.9, 1.3)
-    times, steady = scenes.moments(rng, 20.0), friction * speed
-    begins = np.arange(5.0, 20.0) + rng.uniform(-0.1, 0.1, 15)
-    pushes = sign * rng.uniform(1.2, 1.8, 15) * np.tile([-1.0, -1.0, 2.0], 5)
+    times, steady = scenes.moments(rng, 26.0), friction * speed
+    begins = np.arange(5.0, 26.0) + rng.uniform(-0.1, 0.1, 21)
+    pushes = sign * rng.uniform(1.2, 1.8, 21) * np.tile([-1.0, -1.0, 2.0], 7)
     drives = np.append(steady, steady + pushes)[np.searchsorted(begins, times)]
     run = scenes.measured(
         scenes.Cart(((0.0, friction),), v=speed), drives, times, rng, late=0.33, sigma=sigma
@@ -245,8 +246,8 @@ def expect_follows_drives(submission, rng):
         submission,
         new_twin(guess, steady, speed=speed + off[0], position=off[1], sigma=sigma),
         run,
-        settled=((5.0, 20.0),),
-        frictions=((12.0, 20.0, friction),),
+        settled=((5.0, 26.0),),
+        frictions=((12.0, 19.0, friction), (19.0, 26.0, friction)),
         message="With a drive that changes while some measurements are late, the twin's position is further "
         "off than the README allows.",
     )

@@ -82,7 +82,8 @@ def estimate_of(value):
 
 def _entry(name, value):
     """One entry as (value, low, high)."""
-    if not isinstance(value, list | tuple | np.ndarray) or np.ndim(value) == 0 or len(value) != 3:
+    listed = isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim > 0)
+    if not listed or len(value) != 3:
         kit.fail(
             f"The entry `{name}` is not [value, low, high].",
             help="Each entry has three numbers: the estimate, and the two ends of its 95 % interval.",
@@ -788,6 +789,9 @@ _OTHER_CARTS = {
     },
     "FACTORS_DIVIDE": lambda v, f, once, box: {k: v[k] / f[k] for k in NAMES},
     "FACTORS_ADDED": lambda v, f, once, box: {k: v[k] * (1 + f[k]) for k in NAMES},
+    "FACTORS_AS_LOGARITHMS": lambda v, f, once, box: {
+        k: v[k] * np.exp(np.interp(np.log(f[k]), np.log(box[k]), box[k])) for k in NAMES
+    },
     "LAG_FOR_LATENCY": lambda v, f, once, box: {
         k: (v[k] + v["tau"] * (k == "latency")) * f[k] for k in NAMES
     },

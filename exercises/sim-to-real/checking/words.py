@@ -76,7 +76,7 @@ def budget_of(plan):
     Raises:
         CheckFailed: it is not.
     """
-    seconds = kit.as_number(plan["excitation_budget_s"], "excitation_budget_s")
+    seconds = kit.as_number(kit.as_record(plan, PLAN_KEYS)["excitation_budget_s"], "excitation_budget_s")
     if not 0.0 < seconds <= cart.BUDGET_S:
         kit.fail(
             "The plan's bench time is not within what the bench allows.",
@@ -94,7 +94,7 @@ def box_of(plan):
     Raises:
         CheckFailed: it is none.
     """
-    box = plan["randomization"]
+    box = kit.as_record(plan, PLAN_KEYS)["randomization"]
     if not isinstance(box, dict) or set(box) != set(cart.NAMES):
         kit.fail(
             "The randomisation box is not a dict of the five parameters.",

@@ -54,6 +54,15 @@ def expect_resamples(submission, seed):
                 "they begin": [samples[:8] for samples in found.asked[:3]],
             },
         )
+    short = probes.resample(submission, seed, 150, 2)
+    left_out = [x for x in short.e[[0, -1]] if not any(x in samples for samples in short.drawn)]
+    kit.expect_true(
+        not left_out,
+        "The statistic does not get the resamples that it should get.",
+        diagnose=probes.named("AN_END_LEFT_OUT"),
+        expected="1.0 and 24.0 in some of 150 resamples of 1.0, 2.0, ... 24.0 in blocks of 12",
+        actual={"never drawn": left_out},
+    )
     code = probes.of_ends(found)
     # Of few values, an interval by another rule may look like it: more of them must show it, too.
     mistake = code and probes.of_interval(submission, seed, found)

@@ -207,9 +207,9 @@ class Resampled:
         return [samples for samples in self.asked if not np.array_equal(samples, self.e)]
 
 
-def resample(submission, seed, count=_BOOT):
+def resample(submission, seed, count=_BOOT, blocks=_N / _BLOCK):
     """Have the submission make a few resamples, and look at them."""
-    e = 1.0 + np.arange(_N)  # no zero, which an array that was not filled has
+    e = 1.0 + np.arange(round(_BLOCK * blocks))  # no zero, which an array that was not filled has
     answers = []
 
     def statistic(samples):

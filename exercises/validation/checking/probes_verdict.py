@@ -246,7 +246,7 @@ def _of_runs(value, half, right):
 
 
 #: Lags of single runs that are asked for, s; the step is 0.02 s.
-_SINGLE = (0.046, 0.0535, -0.046, 0.17, -0.17)
+_SINGLE = (0.046, 0.0535, -0.046, 0.17, -0.17, 0.0312, 0.0269)
 
 
 def _of_single_lags(submission, value, right):
@@ -269,12 +269,12 @@ def _single_lags(submission, value, right):
     late = right.numbers["lag_s"]
     if not kept[0] and abs(value - late) <= right.dt:
         for step in (0.02, 0.01, 0.005):
-            mirrored = [2 * step * round(known / step) - known for known in _SINGLE[:3]]
-            if np.allclose(lags[:3], mirrored, atol=0.15 * step):
+            mirrored = [2 * step * round(known / step) - known for known in _SINGLE]
+            if np.allclose(np.delete(np.subtract(lags, mirrored), [3, 4]), 0.0, atol=0.15 * step):
                 return "LAG_PARABOLA_BACKWARDS"
-    if kept == [True, True, False, True, False] and late < 0:
+    if kept[:5] == [True, True, False, True, False] and late < 0:
         return "LAG_EARLY_MISSED"
-    short = kept[:3] == [True] * 3 and not any(kept[3:])
+    short = kept[:3] == [True] * 3 and not any(kept[3:5])
     return "LAG_SEARCH_SHORT" if short and abs(late) > 0.06 else None
 
 

@@ -145,7 +145,8 @@ def test_motor_unknown(submission, rng):
     tau, u_max, dead = rng.uniform(0.05, 1.0), rng.uniform(5, 20), rng.uniform(0.5, 1.5)
     edges = [factor * dead for factor in (0.5, -0.7, 1.0, -1.0, 1.05, -1.05)]
     commands = rng.permutation([*rng.uniform(-1, 1, 6) * u_max, 2 * u_max, -3 * u_max, *edges])
-    calls = [(float(u), tau * float(rng.choice([0.1, 0.7, 2.0, 5.0])), tau, u_max, dead) for u in commands]
+    steps = tau * rng.permutation(np.resize([0.001, 0.01, 0.1, 0.7, 2.0, 5.0], len(commands)))
+    calls = [(float(u), float(dt), tau, u_max, dead) for u, dt in zip(commands, steps, strict=True)]
     actuators.expect_motor(submission, 0.3 * u_max, calls, _MOTOR)
     first = 0.1 * u_max, 0.8 * u_max, 0.3 * tau, tau, 0.7 * u_max, dead
     actuators.expect_motors(

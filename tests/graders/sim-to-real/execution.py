@@ -149,7 +149,7 @@ def box(submission):
     """The plan's own box if it fits the fleet and sound tuning does well with it, else the fleet's."""
 
     def make():
-        own = words.box_of(kit.as_record(plan(submission), words.PLAN_KEYS))
+        own = words.box_of(plan(submission))
         fits = all(words.inside(k, *own[k]) >= 0.95 and words.width(k, *own[k]) <= 1.5 for k in cart.NAMES)
         sound = fits and reference.box_success(submission.seed, own) >= 0.97
         return {k: list(ends) for k, ends in own.items()} if sound else None

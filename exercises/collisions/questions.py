@@ -107,8 +107,8 @@ FIXED = {
         *_calls(*((*_RUB, mu) for mu in (0.1, 0.3, 0.5, 4.0))),
         *_calls((2.0, 1.0, [1, -3], [0, 1], [0, -1], 0.2, 0.15)),
         *_calls((1.0, 2.0, [1, 9], [0, -8], [1, 0], 0.5, 2.5)),
-        # Sliding at 5 mm/s, and masses as above.
-        *_calls((1.0, 2.0, [1, 0.003], [-1, -0.002], [1, 0], 0.5, 0.3)),
+        # A slip of 5 mm/s that sticks, and one that does not; masses as above.
+        *_calls(*((1.0, 2.0, [1, 0.003], [-1, -0.002], [1, 0], 0.5, mu) for mu in (0.3, 0.001))),
         *_calls(*((1.0, mb, [3, 1], [-1, 0], [1, 0], 0.5, 0.1) for mb in (1.0, 1.008, 1.000005, 50000.0))),
     ],
     "friction_absent": _calls(
@@ -152,17 +152,18 @@ FIXED = {
         *_e(1.0, 0.6, 0.0),
         (paths.HeadOn((1.0, 2.0), (-0.5, 0.54), (2.0, -2.0), 0.5, 0.5), 0.9, 0.03),
         (paths.HeadOn((2.0, 1.0), (-1.5, 0.53), (3.0, 1.0), 0.25, 0.5), 2.0, 0.05),
-        (paths.HeadOn((1.0, 2.0), (-0.251, 0.2515), (0.002, -0.001), 0.25, 0.6), 2.0, 0.05),
+        (paths.HeadOn((1.0, 2.0), (-0.2501, 0.25015), (0.0002, -0.0001), 0.25, 0.6), 2.0, 0.05),
         *_e(1.0),
     ],
     "head_on_pymunk": [(paths.HeadOn((1.0, 3.0), (-5.0, 5.0), (2.0, -2.0), 0.5, 0.6), 4.8, 0.008)],
-    # Dropped, thrown upwards, thrown from the floor, for a duration whose quotient by h is not exact,
-    # thrown up from just above the floor, so slowly that it is back within the step, and dropped from so low
-    # that it rests at once, though it would lose nothing.
+    # Dropped, thrown upwards, thrown from the floor, also at little more than g h, for a duration whose
+    # quotient by h is not exact, thrown up from just above the floor, so slowly that it is back within the
+    # step, and dropped from so low that it rests at once, though it would lose nothing.
     "drop_bounces": [
         (_BALL, 4.0, 0.01),
         (paths.Drop(0.5, 3.0, 0.2, 0.5), 4.0, 0.01),
         (paths.Drop(0.2, 2.5, 0.2, 0.6), 1.5, 0.01),
+        (paths.Drop(0.2, 0.13, 0.2, 0.6), 0.2, 0.01),
         (paths.Drop(0.5, 0.0, 0.1, 0.6), 0.29, 0.01),
         (paths.Drop(0.1001, 0.02, 0.1, 0.6), 0.2, 0.01),
         (paths.Drop(0.1004, 0.0, 0.1, 1.0), 0.28, 0.01),

@@ -81,7 +81,7 @@ ENDS = {
     "an engine that is stable again": dataclasses.replace(boxes.ANVIL, step=two_verlet_steps),
     "an engine that is stable again soon": dataclasses.replace(boxes.ANVIL, step=two_euler_steps),
     "an engine of third order": dataclasses.replace(
-        boxes.ANVIL, step=three_kutta_steps, dt=1 / 600, wall_thickness=0.08, contact="sided"
+        boxes.ANVIL, step=three_kutta_steps, omega=0.4, dt=1 / 600, wall_thickness=0.08, contact="sided"
     ),
 }
 
@@ -148,6 +148,7 @@ def _numbers(key, known, ends):
         numbers.append(float(any(map(_pushed_upright, cases))))
     if key == "friction_anisotropy":
         numbers.append(float(max(map(_directions, cases))))
+        numbers.append(float(any(map(_pushed_in_the_air, cases))))
     if key == "tunnelling_speed":
         numbers.append(float(max(map(_starts, cases))))
     if key == "linear_damping":
@@ -196,12 +197,23 @@ def _pushed_upright(case):
 
 
 def _directions(case):
-    """How the body on the floor was pushed: 0 never, 1 along the axes and diagonals, 2 askew as well."""
+    """How the body on the floor was pushed: 0 never, 1 along the axes and diagonals, 2 askew as well, 3 along
+    one axis or both, and not along a diagonal."""
     pushes = [
         sorted(map(abs, force[:2])) for scene, *_, force in case.runs if scene == "floor" and any(force)
     ]
     askew = any(1e-3 * most < least < 0.999 * most for least, most in pushes)
+    if pushes and not any(least > 1e-3 * most for least, most in pushes):
+        return 3
     return 2 if askew else min(1, len(pushes))
+
+
+def _pushed_in_the_air(case):
+    """Whether a body was pushed where it lay, or flew, higher than any engine holds it."""
+    return any(
+        scene == "floor" and any(force) and q0[2] > case.box.radius + 5e-3
+        for scene, q0, _, _, _, force in case.runs
+    )
 
 
 def _starts(case):

@@ -95,19 +95,20 @@ def test_rk4_order(submission, draw):
 def test_rk4_evaluations(submission, draw):
     """RK4's evaluations of the acceleration in a step"""
     pendulum = systems.Pendulum(g=9.81, length=1.0)
-    accel = kit.acceleration(pendulum, 1)
     q, v = np.array([0.8]), np.array([-0.3])
     if draw is not None:
         q, v = _signed(draw, 0.4, 1.2), _signed(draw, 0.4, 1.2)
-    end = accel.during(lambda: submission.call("rk4_step", accel, 0.0, q, v, 0.1))
-    kit.expect_evaluations(
-        accel.count,
-        [4],
-        input={**pendulum.params(), "q": q, "v": v, "h": 0.1},
-        message="A step of RK4 does not take four evaluations of accel.",
-        diagnose=lambda: probes.of_evaluations(accel.count, [4]),
-    )
-    kit.as_pair(end, 1)
+    for h in (0.1, 2.5):
+        accel = kit.acceleration(pendulum, 1)
+        end = accel.during(lambda h=h, accel=accel: submission.call("rk4_step", accel, 0.0, q, v, h))
+        kit.expect_evaluations(
+            accel.count,
+            [4],
+            input={**pendulum.params(), "q": q, "v": v, "h": h},
+            message="A step of RK4 does not take four evaluations of accel.",
+            diagnose=lambda accel=accel: probes.of_evaluations(accel.count, [4]),
+        )
+        kit.as_pair(end, 1)
 
 
 def _spiral(angle, shrink):
@@ -221,6 +222,7 @@ def test_integrate_refusals(submission, draw):
     """Which durations integrate refuses"""
     durations = ((1.1, 0.2), (0.0400001, 0.0001), (60.000002, 0.2)) if draw is None else cases.refused(draw)
     cases.expect_refusals(submission, (np.array([1.0]), np.array([0.0])), durations)
+    cases.expect_taken(submission, (np.array([1.0]), np.array([0.0])), [(1.00000004, 0.1)])
 
 
 def _awkward(draw):
@@ -270,6 +272,8 @@ def test_observed_order_scattered(submission, draw):
         ([0.3, 0.04, 0.006, 0.0009], [2e-3, 9e-7, 3e-10, 4e-15]),
         ([0.2, 0.1, 0.05, 0.02], [0.03, 0.004, 0.004, 0.0005]),
         ([0.4, 0.2, 0.1], [0.011, 0.02, 0.04]),
+        ([0.2, 0.1, 0.1, 0.05], [0.03, 0.009, 0.006, 0.002]),
+        ([0.4, 0.2, 0.1], [0.03, 0.03, 0.03]),
     ]
     if draw is not None:
         points = [(hs.tolist(), errors.tolist()) for hs, errors in cases.scattered(draw)]
@@ -391,6 +395,7 @@ def test_integrate_arguments(submission):
         diagnose=lambda: probes.of_whole_rows(submission, args, q),
     )
     cases.expect_start_kept(submission, args, inspected, given)
+    cases.expect_calls(submission)
 
 
 def _expect_clean(submission, task):

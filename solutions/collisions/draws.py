@@ -171,12 +171,12 @@ def same_meeting(rng, share):
 
 
 def head_on(rng, kind):
-    """A pair that meets between 0.3 and 0.8 s: plainly, with a wall, chasing, at mm/s; or one that parts."""
+    """A pair that meets between 0.3 and 0.8 s: plainly, with a wall, chasing, slowly; or one that parts."""
     m, radius = masses(rng), rng.uniform(0.1, 0.5)
     va = rng.uniform(0.5, 3.0)
     vb = {"chase": 0.3 * va, "part": 1.7 * va}.get(kind, -rng.uniform(0.5, 3.0))
     if kind == "slow":
-        va, vb = 1e-3 * va, 1e-3 * vb
+        va, vb = 1e-4 * va, 1e-4 * vb
     if kind == "wall":
         m = (m[0], math.inf)
     gap = abs(va - vb) * rng.uniform(0.3, 0.8)
@@ -255,6 +255,12 @@ def elastic(rng):
     scene = paths.Drop(radius + float(rng.uniform(0.3, 1.0)), 0.0, radius, 1.0)
     h = float(rng.uniform(0.01, 0.02))
     return scene, 500 * h, h
+
+
+def barely_launched(rng):
+    """A ball thrown upwards from the floor at little more than g h; scene, t_end and h."""
+    radius, g, h = rng.uniform((0.05, 4.0, 0.01), (0.3, 15.0, 0.03)).tolist()
+    return paths.Drop(radius, float(rng.uniform(1.1, 1.6)) * g * h, radius, 0.7, g), 20 * h, h
 
 
 def launched(rng):
@@ -371,11 +377,13 @@ def slow_line(rng):
     return ma, mb, va, va - float(10 ** rng.uniform(-3.7, -3.2)), e
 
 
-def creeping(rng):
-    """An impact with friction in which the bodies slide past each other at a few mm/s."""
+def creeping(rng, stays=False):
+    """An impact with friction in which the bodies slide past each other at a few mm/s, until friction stops
+    that; or, where it ``stays``, with too little friction to stop even that."""
     ma, mb, va, vb, n, e = impact(rng, 3)
-    slip = 10 ** rng.uniform(-2.7, -2.2) * across(rng, n)
-    return ma, mb, va, va - float((va - vb) @ n) * n + slip, n, e, float(rng.uniform(0.2, 0.6))
+    slip, closing = 10 ** rng.uniform(-2.7, -2.2), float((va - vb) @ n)
+    mu = float(rng.uniform(0.3, 0.7) * slip / ((1 + e) * closing) if stays else rng.uniform(0.2, 0.6))
+    return ma, mb, va, va - closing * n + slip * across(rng, n), n, e, mu
 
 
 def alike(rng, args):

@@ -350,6 +350,7 @@ _BY_ONE = (
     lambda va, vb: vb < 0,
     lambda va, vb: va > 0 or vb < 0,
     lambda va, vb: abs(va) > abs(vb),
+    lambda va, vb: va * vb < 0,
 )
 
 

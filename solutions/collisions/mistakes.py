@@ -66,6 +66,31 @@ mistakes(
     """,
 )
 mistakes(
+    "RESULTS_IN_OTHER_ORDER",
+    "The normal is a vector and stands between two single values.",
+    "Return (touching, normal, depth).",
+    kind="fact",
+).edit("detect_sphere_sphere", {"return depth >= 0, normal, depth": "return depth >= 0, depth, normal"})
+mistakes(
+    "ONE_COORDINATE_ONLY",
+    "Where a scalar product belongs, only one coordinate counts.",
+    "Take all of them: (x - point) @ normal, (va - vb) @ normal.",
+).body(
+    "detect_sphere_plane",
+    """
+        depth = r - (x[-1] - point[-1]) * normal[-1]
+        return bool(depth >= 0), normal, depth
+    """,
+).body(
+    "detect_sphere_plane",
+    """
+        depth = r - (x[0] - point[0]) * normal[0]
+        return bool(depth >= 0), normal, depth
+    """,
+).edit("resolve", {"(va - vb) @ n,": "(va[0] - vb[0]) * n[0],"}).edit(
+    "resolve", {"(va - vb) @ n,": "(va[-1] - vb[-1]) * n[-1],"}
+)
+mistakes(
     "DISTANCE_UNSIGNED",
     "The height above the plane has lost its sign: a centre inside the solid counts as outside.",
     "Use it with its sign, without abs(): inside the solid (x - point) . normal is negative, and the depth is then larger than r.",
@@ -316,6 +341,11 @@ mistakes(
         return va - impulse / ma, vb + impulse / mb
     """,
 )
+mistakes(
+    "SLIP_DIRECTION_BY_SIGNS",
+    "Friction gets its direction from the signs of the slip's coordinates.",
+    "The direction is vt / |vt|: divide the slip by its length.",
+).edit("resolve_with_friction", {"across / speed * slip": "across * np.sign(slip)"})
 mistakes(
     "FRICTION_PER_AXIS",
     "Each coordinate of the slip is limited separately, which turns Coulomb's cone into a box: friction is then too strong along the diagonals.",
@@ -778,7 +808,7 @@ mistakes(
 mistakes(
     "RESTS_TOO_EARLY",
     "The ball is put to rest while it should still move.",
-    "Put it to rest only where it touches the floor, and only if its speed there is at most g h.",
+    "Put it to rest only where it touches the floor, and only if its speed there, sqrt(v**2 + 2 g (z - radius)), is at most g h.",
 ).around(
     "simulate_drop",
     """
@@ -825,6 +855,14 @@ mistakes(
         t = (-b - math.sqrt(b * b - a * c)) / a
         return float(t) if t <= dt else None
     """,
+)
+mistakes(
+    "GAP_OVER_SPEED",
+    "The gap between the surfaces is divided by the speed, as if every meeting were head on.",
+    "Off centre they touch later: solve |dx + dv t|**2 = (ra + rb)**2.",
+).edit(
+    "time_of_impact",
+    {"t = c / (b + math.sqrt(b * b - a * c))": "t = (math.sqrt(x @ x) - ra - rb) / math.sqrt(a)"},
 )
 mistakes(
     "MOMENT_TOO_COARSE",
@@ -1920,7 +1958,7 @@ mistakes(
 )
 mistakes(
     "APPROACH_BY_ONE_BODY",
-    "Whether they approach is decided by the velocity of one body, by each of the two for itself, or by their speeds.",
+    "Whether they approach is decided by the velocity of one body, by the signs of both velocities, or by their speeds.",
     "They approach where (va - vb) . n > 0 (on a line: va > vb), whichever of them moves.",
 )
 mistakes(
@@ -2200,6 +2238,25 @@ mistakes(
     "ONE_BOUNCE_A_STEP",
     "A ball that bounces and is back on the floor within the same step goes into the floor.",
     "Bounce as often as it touches before the step ends, each time at its own instant, until it may rest.",
+)
+mistakes(
+    "TIMES_NOT_AS_ROWS",
+    "The other two have N + 1 rows, and t has another number of entries.",
+    "t[i] is i * h for i from 0 to N: np.arange(N + 1) * h.",
+).edit("simulate_head_on", {"h * np.arange(n + 1)": "np.arange(0, t_end, h)"}).edit(
+    "simulate_drop", {"h * np.arange(n + 1)": "np.arange(0, t_end, h)"}
+)
+mistakes(
+    "HISTORIES_TRANSPOSED",
+    "Positions and velocities have one column for each sample instead of one row.",
+    "Their shape is (N+1, 2): row i is the state at time i * h.",
+).edit("simulate_head_on", {"return t, x, v": "return t, x.T, v.T"})
+mistakes(
+    "HEIGHTS_OF_THE_UNDERSIDE",
+    "The heights are one radius too small: they are those of the ball's lowest point.",
+    "z is the height of the centre. On the floor it is z = radius.",
+).edit("simulate_drop", {"return t, z, v": "return t, z - radius, v"}).edit(
+    "simulate_drop", {"return t, z, v": "z[1:] -= radius\n    return t, z, v"}
 )
 mistakes(
     "OFF_BY_ONE_SAMPLE",

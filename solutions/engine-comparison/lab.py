@@ -178,10 +178,11 @@ def _game(rng):
 
 
 def _soft(rng):
-    """Contact that gives way: a body sinks in, creeps, is weak on the diagonal, stops dead at a wall. Of
-    third order, and stable for longer than other explicit ones."""
+    """Contact that gives way: a body sinks in, creeps, is weak on the diagonal, stops dead at a wall. Of a
+    slow spring, of third order, and stable for longer than other explicit ones."""
     return {
         "dt": 1 / 120,
+        "omega": _between(rng, 0.3, 0.45),
         "step": substeps(questions.kutta, int(rng.integers(3, 6))),
         "cone": boxes.diamond_pyramid,
         "creep": _between(rng, 0.003, 0.006),

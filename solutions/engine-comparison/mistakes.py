@@ -328,6 +328,15 @@ mistakes(
     of="_anisotropy",
 )
 mistakes(
+    "DIAGONAL_NOT_PUSHED",
+    "Every push went along x or along y, and none along the diagonal.",
+    "F(45°) is the least force along (1, 1, 0)/√2.",
+).edit(
+    "characterise",
+    {'info["dt"], n, push)': 'info["dt"], n, [0 if angle else force, force if angle else 0, 0])'},
+    of="_anisotropy",
+)
+mistakes(
     "CREEP_TAKEN_FOR_SLIP",
     "Only engines whose bodies creep get a wrong ratio. Perhaps creeping is taken for sliding.",
     "A body slides when it becomes faster than 0.01 m/s, not when it moves at all.",
@@ -1485,7 +1494,7 @@ mistakes(
     "An engine that does become unstable is called stable at every step.",
     "Go up from 0.05/omega to 10/omega, in increments of less than 1/omega. The states after one step are the columns of its matrix: look at the largest modulus of its eigenvalues.",
     kind="nan",
-)
+).edit("characterise", {"low >= 10:": "low >= 10 * omega:"}, of="_max_stable_z")
 mistakes(
     "STABLE_BY_DETERMINANT",
     "Engines that keep area are called stable at any step. The determinant is the product of the eigenvalues: one may be large while the other is small.",
@@ -1618,6 +1627,19 @@ mistakes(
         q, v = engine.run("wall", [start], [2.0], info["dt"], 2, [0])
         return abs(v[-1][0] / v[0][0]), -info["radius"] - info["wall_thickness"] / 2
     """,
+    of="_slow_hit",
+)
+mistakes(
+    "STOPPED_BODY_OVERLOOKED",
+    "Only an engine whose wall stops a body dead gets a wrong ratio: it should be 0.",
+    "There the velocity becomes 0 and not negative. Look for the first sample with v <= 0.",
+    kind="consequence",
+).edit(
+    "characterise",
+    {
+        "next(i for i in range(11) if v[i][0] <= 0)": "next((i for i in range(11) if v[i][0] < 0), None)",
+        "return -v": "if hit is None:\n        return 1.0, q[-1][0]\n    return -v",
+    },
     of="_slow_hit",
 )
 mistakes(
@@ -2184,6 +2206,7 @@ def _ratio(of=None, made=lambda diagonal, straight, info: diagonal / straight, *
 _FRICTION = (
     ("ANISOTROPY_ASSUMED", lambda engine, info: 1.0),
     ("ANISOTROPY_ASSUMED", lambda engine, info: math.sqrt(2)),
+    ("DIAGONAL_NOT_PUSHED", _ratio(diagonal=(0.0, 1.0))),
     ("ANISOTROPY_INVERTED", _ratio(made=lambda d, s, _: s / d)),
     ("DIAGONAL_COMPONENT", _ratio(diagonal=(1.0, 1.0))),
     ("DIAGONAL_SUM", _of("friction_anisotropy", lambda ratio, _: ratio * math.sqrt(2))),

@@ -373,6 +373,17 @@ mistakes(
     """,
 )
 mistakes(
+    "ORDER_OF_THE_OTHER_AXIS",
+    "The line is fitted to log h over log error, and its slope is turned over. Where points scatter, that is another line.",
+    "Fit log error over log h: divide the sum of dx*dy by that of dx**2, with dx of log h and dy of log error.",
+).body(
+    "observed_order",
+    """
+        x, y = np.log(hs), np.log(errors)
+        return float(1 / np.polyfit(y, x, 1)[0])
+    """,
+)
+mistakes(
     "LOGARITHM_MISSING",
     "The result is the slope without the logarithm on at least one axis.",
     "error = C * h**p is a straight line only with logarithms on both axes, so take np.log of hs and of errors.",
@@ -394,7 +405,7 @@ mistakes(
 )
 mistakes(
     "ORDER_MEAN_OF_PAIRS",
-    "The result comes from slopes between neighbouring points, not from one line through all points.",
+    "The result comes from slopes between two points each, not from one line through all points.",
     "Fit one line through all points by least squares.",
 ).body(
     "observed_order",
@@ -877,6 +888,65 @@ mistakes(
         "t[i], q[i], v[i], h": "h, q[i], v[i], t[i]",
     },
 )
+mistakes(
+    "OTHER_STEP_TAKEN",
+    "The rows are those of another step than the one that is given.",
+    "Call what you are given: step(accel, i * h, q, v, h), whatever it is.",
+).around(
+    "integrate",
+    """
+        return _right(rk4_step, accel, q0, v0, t_end, h)
+    """,
+)
+mistakes(
+    "LOOP_ENDS_AT_REST",
+    "The loop takes no more steps once one of them changes nothing, or hardly anything.",
+    "Take all N steps: a force that depends on time may move the body later.",
+    kind="consequence",
+).body(
+    "integrate",
+    """
+        n = round(t_end / h)
+        if abs(t_end / h - n) > 1e-6:
+            raise ValueError
+        q, v = [np.array(q0, dtype=float)], [np.array(v0, dtype=float)]
+        for i in range(n):
+            q_next, v_next = step(accel, i * h, q[-1], v[-1], h)
+            if np.allclose(q_next, q[-1]) and np.allclose(v_next, v[-1]):
+                q_next, v_next = q[-1], v[-1]
+                q += [q_next] * (n - i)
+                v += [v_next] * (n - i)
+                break
+            q.append(q_next)
+            v.append(v_next)
+        return h * np.arange(n + 1), np.array(q), np.array(v)
+    """,
+)
+mistakes(
+    "STEPS_THROWN_AWAY",
+    "The step is called more often than N times.",
+    "Call it once for each of the N steps, and use what it returns.",
+    kind="fact",
+).around(
+    "integrate",
+    """
+        result = _right(step, accel, q0, v0, t_end, h)
+        step(accel, t_end, result[1][-1], result[2][-1], h)
+        return result
+    """,
+)
+mistakes(
+    "STEPS_LEFT_OUT",
+    "The step is called less often than N times.",
+    "Call it once for each of the N steps.",
+    kind="fact",
+)
+mistakes(
+    "REFUSES_NEARLY_WHOLE",
+    "Half a millionth of a step too much is refused already.",
+    "With N = round(t_end / h), raise ValueError only if abs(t_end / h - N) > 1e-6.",
+    kind="fact",
+).edit("integrate", {"> 1e-6": "> 1e-9"})
 mistakes(
     "PATH_STANDS_STILL",
     "All rows hold the initial state.",
@@ -1508,6 +1578,28 @@ mistakes(
     kind="consequence",
 )
 mistakes(
+    "SLOPE_CUT_AT_ZERO",
+    "The result is 0, although the slope through these points is negative.",
+    "Return the slope as it is: errors may grow as h shrinks.",
+    kind="consequence",
+).around(
+    "observed_order",
+    """
+        return max(0.0, _right(hs, errors))
+    """,
+)
+mistakes(
+    "EQUAL_STEPS_LOST",
+    "The result is the slope with only the later one of two points of the same step.",
+    "All points count: use lists or arrays, hs[i] with errors[i]. A dictionary, for example, would keep one entry for each step.",
+).around(
+    "observed_order",
+    """
+        points = {float(h): float(error) for h, error in zip(hs, errors)}
+        return _right(list(points), list(points.values()))
+    """,
+)
+mistakes(
     "SLOPE_NEARLY_RIGHT",
     "The slope is near the right one, but further off than rounding takes it.",
     "Round nothing, keep no number in float32, and add nothing to the errors before the logarithm.",
@@ -1606,6 +1698,7 @@ mistakes(
 
 
 formulas = kit.sibling(__file__, "formulas")
+model = kit.sibling(__file__, "integrators")
 
 
 @mistakes.more
@@ -1625,6 +1718,13 @@ def hypotheses():
                     yield task, (code,), family(**base | {term: form})
         for family, base, terms in several:
             yield from _pairs(task, family, base, terms)
+    for name in ("explicit_euler_step", "semi_implicit_euler_step", "velocity_verlet_step", "rk4_step"):
+        own = getattr(model, name)
+        yield (
+            "integrate",
+            ("OTHER_STEP_TAKEN",),
+            lambda step, *rest, own=own: model.integrate(own, *rest),
+        )
     yield from (("observed_order", (code,), slope) for code, slope in _slopes())
     # After the pairs: two wrong terms of the same formula would give some of these, too.
     yield from (("velocity_verlet_step", (code,), step) for code, step in formulas.drifts())
@@ -1786,6 +1886,13 @@ def _slopes():
     def apart(mean):
         return lambda x, y: float(mean(np.diff(y) / np.diff(x)))
 
+    def every_pair(mean):
+        def of(x, y):
+            i, j = np.triu_indices(len(x), 1)
+            return float(mean((y[j] - y[i]) / (x[j] - x[i])))
+
+        return of
+
     def by_size(mean):
         return lambda x, y: apart(mean)(x[np.argsort(x)], y[np.argsort(x)])
 
@@ -1816,6 +1923,9 @@ def _slopes():
         yield on("ORDER_MEAN_OF_PAIRS", by_size(mean))
     yield on("ORDER_MEAN_OF_PAIRS", lambda x, y: float(np.mean(np.diff(y)) / np.mean(np.diff(x))))
     yield on("ORDER_MEAN_OF_PAIRS", lambda x, y: float(np.mean(np.gradient(y, x))))
+    for mean in (np.mean, np.median):
+        yield on("ORDER_MEAN_OF_PAIRS", every_pair(mean))
+    yield on("ORDER_OF_THE_OTHER_AXIS", lambda x, y: 1 / _slope(y, x))
     for power in (-1, -0.5, 0.5, 1):  # of the errors, of the steps
         yield on("SLOPE_WEIGHTED", lambda x, y, p=power: float(np.polyfit(x, y, 1, w=np.exp(p * y))[0]))
         yield on("SLOPE_WEIGHTED", lambda x, y, p=power: float(np.polyfit(x, y, 1, w=np.exp(p * x))[0]))

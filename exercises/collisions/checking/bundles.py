@@ -143,6 +143,15 @@ def _parts(task, args, value):
     if task in (RESOLVE, FRICTION):
         return kit.as_pair(value, len(args[4]), ("va_next", "vb_next"))
     touching, normal, depth = kit.as_tuple(value, ("touching", "normal", "depth"))
+    ranks = [kit.attempt(lambda part=part: np.ndim(part)) for part in (touching, normal, depth)]
+    if ranks.count(1) == 1 and ranks[1] == 0:
+        kit.fail(
+            f"{task} returns its three results in another order.",
+            input=shown(task, args),
+            expected="(touching, normal, depth)",
+            actual=f"the normal is number {ranks.index(1) + 1} of three",
+            diagnose=named("RESULTS_IN_OTHER_ORDER"),
+        )
     if isinstance(normal, np.ndarray) and normal.ndim == 1 and len(normal) in {1, 2, 3} - {len(args[0])}:
         kit.fail(
             f"The normal has {len(normal)} coordinates, and the centre has {len(args[0])}.",
@@ -279,7 +288,7 @@ def samples(value, t_end, h, names, given, width=None):
             input=given,
             message="The number of samples is not N + 1, with N = round(t_end / h).",
             help="Take N = round(t_end / h) steps: row 0 is the initial state, and each step adds a row.",
-            diagnose=lambda rows=rows: tracks.of_count(len(kit.as_list(rows)), t_end, h, kit.as_vector(t)),
+            diagnose=lambda rows=rows: tracks.of_count(len(kit.as_list(rows)), t_end, h, (t, x, v)),
         )
     t = kit.as_array(t, (n + 1,), names[0])
     shape = (n + 1,) if width is None else (n + 1, width)

@@ -410,9 +410,15 @@ def _drop_too_low(scene, truth, t, z):
 # -- samples --------------------------------------------------------------------------------------------
 
 
-def of_count(rows, t_end, h, t=()):
-    """What gives ``rows`` samples for a duration. t: the times that came with them, in any form."""
+def of_count(rows, t_end, h, parts):
+    """What gives ``rows`` samples for a duration. parts: times and both histories, in any form."""
     exact = t_end / h
+    t, *shapes = kit.as_vector(parts[0]), *(kit.attempt(lambda p=part: np.shape(p)) for part in parts[1:])
+    n = round(exact) + 1
+    if all(shape == (2, n) for shape in shapes) and n != 2:
+        return named("HISTORIES_TRANSPOSED")
+    if len(t) != n and all(shape and shape[0] == n for shape in shapes):
+        return named("TIMES_NOT_AS_ROWS")
     if rows and len(t) and math.isclose(float(t[0]), h, rel_tol=1e-9):
         return named("INITIAL_STATE_MISSING")
     if rows == round(exact) + 1:

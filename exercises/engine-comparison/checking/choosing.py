@@ -170,9 +170,12 @@ def _of_choices(submission: Any, questions: list[tuple[Any, Any, Any]], answers:
         found = kit.attempt(lambda told=told: submission.call_each(TASK, [asked for asked, _ in told]))
         if found is None:
             return None
-        # An answer that is no name at all stands for itself.
-        back = [_back(answer, names) for answer, (_, names) in zip(found, told, strict=True)]
-        if back != [_back(answer, {}) for answer in answers]:
+        # An answer that is no name at all stands for itself. Of engines that cost the same and of which one
+        # is wrongly taken to fit, any rule picks by the order.
+        if any(
+            _back(now, names) != _back(before, {}) and (code != "DEPENDS_ON_ORDER" or _prices_differ(reports))
+            for now, (_, names), before, (reports, _, _) in zip(found, told, answers, questions, strict=True)
+        ):
             return named(code)
     if all(answer is None for answer in answers) and _never_chooses(submission):
         return named("NEVER_CHOOSES")
@@ -180,6 +183,10 @@ def _of_choices(submission: Any, questions: list[tuple[Any, Any, Any]], answers:
         if all(looks(reports, needs, answer) for (reports, needs, _), answer in wrong):
             return named(code)
     return named("NOTHING_FITS") if all(expected is None for (_, _, expected), _ in wrong) else None
+
+
+def _prices_differ(reports: Any) -> bool:
+    return len({report["cost"] for report in reports.values()}) == len(reports)
 
 
 def _follows_what_was_asked(submission: Any, reports: Any, needs: Any) -> bool:

@@ -298,6 +298,7 @@ PROBES: dict[str, list[tuple[str, Probe]]] = {
         ),
         ("RESTITUTION_TOO_FAST", _too_fast),
         ("RESTITUTION_NO_HIT", _no_hit),
+        ("STOPPED_BODY_OVERLOOKED", probing.where(lambda c: c.truth["restitution"] == 0)),
         (
             "RESTITUTION_WITH_DRAG",
             probing.both(probing.where(probing.damped, lambda value, t: value < t), _from_afar),

@@ -27,7 +27,7 @@ def refused(rng):
 
 
 def scattered(rng):
-    """(hs, errors) whose errors do not all grow with the step; tiny ones; two equal ones; falling ones."""
+    """(hs, errors) that do not all grow together; tiny, equal and falling errors; the same step twice."""
     hs = 0.3 * np.cumprod(rng.uniform(0.5, 0.8, 6))
     up_and_down = np.exp(rng.uniform(0.8, 1.6, 6) * np.array([-1, 1, -1, 1, -1, 1]))
     yield hs, rng.uniform(0.1, 10.0) * hs ** rng.uniform(0.8, 1.5) * up_and_down
@@ -39,6 +39,8 @@ def scattered(rng):
     errors[2] = errors[1]
     yield hs, errors
     yield hs, errors[::-1] * np.array([1.0, 1.1, 0.9, 1.1, 1.0])
+    yield hs[[0, 1, 2, 2, 3, 4]], np.append(errors, 0.7 * errors[4])
+    yield hs, np.full(5, errors[0])
 
 
 def starts(rng):
@@ -141,6 +143,34 @@ def expect_refusals(submission, state, durations):
             )
 
 
+def expect_taken(submission, state, durations):
+    """Each (t_end, h) is nearly enough a whole number of steps."""
+    for t_end, h in durations:
+        kit.expect_accepts(
+            lambda t_end=t_end, h=h: submission.call(
+                "integrate", probes.IDENTITY, Oscillator(1.0), *state, t_end, h
+            ),
+            "ValueError",
+            input={"t_end": t_end, "h": h},
+            message="A duration that is less than 1e-6 of a step from a whole number of steps is refused.",
+            diagnose=lambda: probes.named("REFUSES_NEARLY_WHOLE"),
+        )
+
+
+def expect_calls(submission, n=5, h=0.25):
+    """The step is called once for each of n steps."""
+    step = kit.counted(lambda accel, t, q, v, h: (np.asarray(q) + h, np.asarray(v)))
+    submission.call("integrate", step, Oscillator(1.0), np.array([1.0]), np.array([0.5]), n * h, h)
+    kit.expect_true(
+        step.count == n,
+        "integrate does not call the step once for each of the N steps.",
+        input={"t_end": n * h, "h": h},
+        expected=n,
+        actual=step.count,
+        diagnose=probes.named("STEPS_THROWN_AWAY" if step.count > n else "STEPS_LEFT_OUT"),
+    )
+
+
 def expect_start_kept(submission, args, inspected, given):
     """integrate leaves q0, v0 (whole in ``inspected``, then floats) and earlier results as they are."""
     step, accel, q0, v0, *rest = args
@@ -190,9 +220,11 @@ def expect_clean(submission, task, system, t, whole, h):
 
 
 def _expect_plain_motion(submission, task, args, given):
-    """At rest, and far away without forces: what is not changed is returned in an array of its own, too."""
+    """At rest, and without forces far away and fast, or near and slow: what is not changed is returned in an
+    array of its own, too."""
     system, t, q, v, h = args
-    for accel, at, speed in ((system, q, 0 * v), (FreeFall(0.0), 1000.0 * q, v)):
+    moves = ((system, q, 0 * v), (FreeFall(0.0), 1e-7 * q, 1e-8 * v), (FreeFall(0.0), 1000.0 * q, 1000.0 * v))
+    for accel, at, speed in moves:
         call = [accel, t, at, speed, h]
         told = {**given, **({} if accel is system else {"accel": "0"}), "q": at, "v": speed}
         inspected = submission.call_inspect(task, *call)
@@ -204,20 +236,23 @@ def _expect_plain_motion(submission, task, args, given):
             shared=probes.named("RETURNS_ARGUMENT"),
             input=told,
         )
-    for actual, expected, name in zip(
-        kit.as_pair(inspected.value, 2), (at + h * v, v), ("q_next", "v_next"), strict=True
-    ):
-        kit.expect_array(
-            actual,
-            expected,
-            rel=1e-12,
-            source="uniform motion: only rounding is allowed",
-            quantity=name,
-            input=told,
-            message="Without an acceleration, the step of a body far away is not q + h v and v.",
-            help="Compare both lines with the formula: with an acceleration of zero it gives this.",
-            diagnose=lambda: probes.of_step(submission, task),
-        )
+        if accel is system:
+            continue
+        for actual, expected, name in zip(
+            kit.as_pair(inspected.value, 2), (at + h * speed, speed), ("q_next", "v_next"), strict=True
+        ):
+            kit.expect_array(
+                actual,
+                expected,
+                rel=1e-12,
+                source="uniform motion: only rounding is allowed",
+                quantity=name,
+                input=told,
+                message="Without an acceleration, a step is not q + h v and v.",
+                help="Compare both lines with the formula, for slow and fast bodies, near and far away: with "
+                "an acceleration of zero it gives this.",
+                diagnose=lambda: probes.of_step(submission, task),
+            )
 
 
 def _expect_sum(submission, task, args):

@@ -480,8 +480,16 @@ def of_times(submission, times, h):
     if not np.allclose(np.stack([q, v], axis=1), true):
         return of_rows(t, q, v, size, (true[:, 0], true[:, 1]))
     if np.allclose(times, times[0]):
-        return named("TIME_NOT_PASSED")
+        return named("TIME_NOT_PASSED" if _time_stands(submission) else "LOOP_ENDS_AT_REST")
     return named("TIME_AHEAD") if np.allclose(times, h * np.arange(1, len(times) + 1)) else None
+
+
+def _time_stands(submission):
+    """Whether a step is told the same time again where its velocity changes in every step, too."""
+    flips = LinearStep([1.0], [0.0], [0.0], [-1.0], clock=2.0)
+    start = np.array([1.0]), np.array([0.5])
+    found = submission.call("integrate", flips, Oscillator(1.0), *start, 1.5, 0.25)
+    return np.allclose(np.diff(kit.as_tuple(found, ("t", "q", "v"))[1][:, 0], 2), 0)
 
 
 # -- observed_order -----------------------------------------------------------------------------------
@@ -503,13 +511,15 @@ def of_order(submission, value, hs, errors):
         tells = 1e-3 < -value < 100.0 and shrinks
         code = "ORDER_SIGN_FLIPPED" if alike else "ORDER_NEGATIVE" if tells else None
         return named(code) if code else None
-    last = {error: h for h, error in zip(hs, errors, strict=True)}
-    if len(last) < len(hs) and math.isclose(
-        value, convergence_order(list(last.values()), list(last)), abs_tol=1e-8
+    by_error, by_step = dict(zip(errors, hs, strict=True)), dict(zip(hs, errors, strict=True))
+    for code, steps, left in (
+        ("EQUAL_ERRORS_LOST", [*by_error.values()], [*by_error]),
+        ("EQUAL_STEPS_LOST", [*by_step], [*by_step.values()]),
     ):
-        return named("EQUAL_ERRORS_LOST")
-    if math.isclose(value, -right, rel_tol=1e-6) and right < 0:
-        return named("SLOPE_WITHOUT_SIGN")
+        if 1 < len(left) < len(hs) and math.isclose(value, convergence_order(steps, left), abs_tol=1e-8):
+            return named(code)
+    if right < -1e-3 and (value == 0 or math.isclose(value, -right, rel_tol=1e-6)):
+        return named("SLOPE_WITHOUT_SIGN" if value else "SLOPE_CUT_AT_ZERO")
     if _rounds(submission):
         return named("ORDER_ROUNDED")
     # Where the points lie on one line, any way of fitting would find its slope.

@@ -36,7 +36,7 @@ def test_beyond(submission):
         submission,
         "reading",
         ("distance", "resolution", "limit"),
-        [((7.3, 0.01, 4.0), 4.0), ((2.2, 0.25, 2.0), 2.0)],
+        [((7.3, 0.01, 4.0), 4.0), ((2.2, 0.25, 2.0), 2.0), ((0.31, 0.01, 0.29), 0.29)],
         quantity="reading",
         units="m",
         message="A reading beyond reach is wrong.",
@@ -52,6 +52,7 @@ QUESTIONS = {
         (0.7, 0.25, 2.0),
         (7.3, 0.01, 4.0),
         (2.2, 0.25, 2.0),
+        (0.31, 0.01, 0.29),
         (0.6, 0.25, 3.0),
         (2.6, 0.5, 7.0),
     ]

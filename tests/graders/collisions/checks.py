@@ -212,6 +212,7 @@ def test_friction_cone(submission, rng):
             draws.rough(rng),
             (*draws.slow(rng, 3), 0.3),
             draws.creeping(rng),
+            draws.creeping(rng, stays=True),
             *(change(rng, draws.friction(rng, 3, 0.5)) for change in draws.MASSES),
             *draws.ends(draws.friction(rng, 3, 0.5)),
         ],
@@ -385,6 +386,7 @@ def test_head_on_samples(submission, rng):
 def test_drop_drawn(submission, rng):
     """Balls dropped and thrown, on this planet and others"""
     cases = [*(draws.drop(rng, up) for up in (0.0, 1.0, -1.0)), draws.launched(rng), draws.short_hop(rng)]
+    cases.append(draws.barely_launched(rng))
     values = submission.call_each(bundles.DROP, [scene.args(t_end, h) for scene, t_end, h in cases])
     for (scene, t_end, h), truth, value in zip(cases, bundles.bounces(cases), values, strict=True):
         bundles.expect_drop(

@@ -245,7 +245,7 @@ def test_facts_users(submission):
                 actual=language,
             )
         names = kit.as_list(
-            listing.expect_pair(entries, (engine, "used_by"))["value"], "the users of an engine"
+            listing.expect_pair(entries, (engine, "used_by"))["value"], "the list of users"
         )
         names = [kit.as_text(name, "a user of an engine") for name in names]
         stale = engine == "ode" and any(map(facts.is_new_gazebo, names))

@@ -59,6 +59,7 @@ def expect_awkward_durations(submission, rng):
             n,
             {"t_end": t_end, "h": h},
         )
+        bundles.cases.expect_taken(submission, state, [(t_end + 4e-7 * h, h)])
 
 
 def _awkward(rng):
@@ -110,6 +111,7 @@ def expect_whole_numbers(submission, rng):
             diagnose=lambda: probes.of_rows(t, q, v, h, (q_true, v_true)),
         )
     bundles.cases.expect_start_kept(submission, args, inspected, given)
+    bundles.cases.expect_calls(submission, int(rng.integers(5, 12)))
 
 
 def _path(submission, args, n, given):

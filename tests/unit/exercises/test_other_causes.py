@@ -47,6 +47,7 @@ TOLD = {
         "facts_read_once": {"GROWS_WITH_EACH_CALL"},
         "order_no_more_than_three": {None},
         "order_of_squares": {"ORDER_STEPS_NOT_HALVED"},
+        "friction_across": {"DIAGONAL_NOT_PUSHED"},
         "friction_by_braking": {None},
         "order_against_a_fading_spring": {"ORDER_AGAINST_UNDAMPED"},
         "penetration_in_fine_steps": {"OTHER_STEP_THAN_DT"},

@@ -147,6 +147,12 @@ def test_every_page_is_sound_whatever_the_names(out: Path) -> None:
     }
 
 
+def test_a_score_by_hand_for_what_was_not_handed_in_needs_no_time(out: Path, results) -> None:
+    without = sum(bool(one.result.number) and one.submitted_at is None for one in results.all())
+    said = " ".join((out / "report.html").read_text("utf-8").split())
+    assert f"{without} have no trusted submission time" in said
+
+
 def test_a_name_is_shown_as_text_on_the_page_of_its_own(out: Path) -> None:
     found = places(out)
     assert len(found) == len(NAMES) + 5

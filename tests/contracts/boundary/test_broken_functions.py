@@ -336,7 +336,9 @@ def test_no_spoilt_result_ends_in_a_fault_of_the_grader(
     for plan in chosen:
         for verdict in verdicts(session, task, plan):
             msgspec.msgpack.encode(verdict)  # as it leaves the grader's process
-            broke = [f"{check.id}: {check.traceback}" for check in verdict.checks if check.diagnosis == NOT_JUDGED]
+            broke = [
+                f"{check.id}: {check.traceback}" for check in verdict.checks if check.diagnosis == NOT_JUDGED
+            ]
             if verdict.state == "grader_error" or broke:
                 faults.append((*plan, verdict.error or broke))
     assert not faults

@@ -83,12 +83,13 @@ _OTHER_REFUSALS = ("Exception", "RuntimeError", "AssertionError", "ArithmeticErr
 def histories(value):
     """t, q and v of what integrate returns; if the times stand elsewhere, that is said."""
     parts = kit.as_tuple(value, ("t", "q", "v"))
-    ranks = [kit.attempt(lambda part=part: np.ndim(part)) for part in parts]
-    if sorted(map(str, ranks)) == ["1", "2", "2"] and ranks[0] != 1:
+    one_row = [kit.attempt(lambda part=part: kit.as_vector(part)) is not None for part in parts]
+    tables = [kit.attempt(lambda part=part: kit.as_matrix(part, (None, None))) is not None for part in parts]
+    if sum(one_row) == 1 and sum(tables) == 2 and not one_row[0]:
         kit.fail(
             "integrate returns its three results in another order.",
             expected="(t, q, v)",
-            actual=f"the times are number {ranks.index(1) + 1} of three",
+            actual=f"the times are number {one_row.index(True) + 1} of three",
             help="Return (t, q, v): the times first, then the positions, then the velocities.",
             diagnose=probes.named("TIMES_NOT_FIRST"),
         )

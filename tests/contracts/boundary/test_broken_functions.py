@@ -22,6 +22,7 @@ import pytest
 from course.authoring.exercises.grading import solution_path
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
+from course.scoring.judging.outcomes import NOT_JUDGED
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import CheckResult, Verdict
@@ -132,6 +133,7 @@ def check_one(session: GradingSession, task: str, kind: str) -> None:
     for check in lost:
         assert check.message, check.id
         assert check.help, check.id
+        assert check.diagnosis != NOT_JUDGED, check.traceback
     assert kind in NUMBERS or any(check.diagnosis for check in lost), f"{task} {kind}: no mistake is named"
     others = [check for name, checks in by_task.items() if name != task for check in checks]
     fallen = [(check.id, str(check.status), check.message) for check in others if check.status != "pass"]
@@ -334,6 +336,9 @@ def test_no_spoilt_result_ends_in_a_fault_of_the_grader(
     for plan in chosen:
         for verdict in verdicts(session, task, plan):
             msgspec.msgpack.encode(verdict)  # as it leaves the grader's process
-            if verdict.state == "grader_error":
-                faults.append((*plan, verdict.error))
+            broke = [
+                f"{check.id}: {check.traceback}" for check in verdict.checks if check.diagnosis == NOT_JUDGED
+            ]
+            if verdict.state == "grader_error" or broke:
+                faults.append((*plan, verdict.error or broke))
     assert not faults

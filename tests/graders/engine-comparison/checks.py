@@ -244,9 +244,7 @@ def test_facts_users(submission):
                 expected=sorted(facts.LANGUAGES[engine]),
                 actual=language,
             )
-        names = kit.as_list(
-            listing.expect_pair(entries, (engine, "used_by"))["value"], "the list of users"
-        )
+        names = kit.as_list(listing.expect_pair(entries, (engine, "used_by"))["value"], "the list of users")
         names = [kit.as_text(name, "a user of an engine") for name in names]
         stale = engine == "ode" and any(map(facts.is_new_gazebo, names))
         if stale or not any(facts.right_user(engine, name) for name in names):

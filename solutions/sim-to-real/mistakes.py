@@ -840,16 +840,6 @@ mistakes(
         wide = {"m": 1.05, "b": 1.5, "Fc": 0.9, "tau": 1.2, "latency": 1.2}
         return _right(estimate, {k: [math.exp(-w), math.exp(w)] for k, w in wide.items()})
     """,
-).program(
-    "tune",
-    """
-        _tune = tune
-        _box = {}
-
-
-        def tune(estimate, randomization):
-            return _tune(estimate, _box.setdefault("first", randomization))
-    """,
 ).around(
     "tune",
     """
@@ -1224,6 +1214,7 @@ mistakes(
     "ESTIMATE_KEPT",
     "Asked twice in a row about one recording, your code answers the same, but something else after recordings of other carts.",
     "Keep nothing from one call to the next: start each search anew, inside the function, from what the call is given.",
+    kind="fact",
 ).program(
     "identify",
     """
@@ -1244,6 +1235,7 @@ mistakes(
     "COMMAND_KEPT",
     "Asked about the same speeds with another command, your code gives the same estimate.",
     "Compute everything from the u of this call. If you keep impulses outside the function, by their tau say, later calls get those of an earlier command.",
+    kind="fact",
 ).program(
     "identify",
     """
@@ -1496,12 +1488,6 @@ mistakes(
     "The box has factors, not changes: value * factor. If that is what you take, search more finely.",
     kind="consequence",
 ).edit("tune", {"np.exp(low + share * (high - low))": "(1 + np.exp(low + share * (high - low)))"})
-mistakes(
-    "FACTORS_AS_LOGARITHMS",
-    "Here and for four other questions, your gains suit carts whose parameters are the estimate's values times e to the power of a number from the box, and not those of the box.",
-    "The box has factors. Draw between their logarithms, then take exp: np.exp(rng.uniform(np.log(low), np.log(high), n)). If you do, search more finely.",
-    kind="consequence",
-).edit("tune", {"np.log(randomization[name])": "randomization[name]"})
 mistakes(
     "LAG_FOR_LATENCY",
     "Here and for four other questions, your gains suit carts whose latency is tau + latency better than those of the box.",

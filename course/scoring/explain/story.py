@@ -45,7 +45,7 @@ class Diagnosis:
 #: Codes of values that are nan or infinite where a number belongs, from any cause.
 NOT_FINITE = frozenset({"NOT_A_NUMBER", "NOT_FINITE"})
 #: Codes of exercises for something that is kept between two calls: probes that say them have seen it.
-STATE = frozenset({"COMMAND_KEPT", "ESTIMATE_KEPT", "STALE_CACHE", "STATE_IN_MODULE", "STATE_KEPT"})
+STATE = frozenset({"STALE_CACHE", "STATE_IN_MODULE", "STATE_KEPT"})
 #: Codes whose words are true of it, too, and say what of it matters: they win once it was seen.
 OWN_WORDS = STATE | {"BIAS_CARRIED_OVER", "WALLS_NOT_READ", "LAG_WITHOUT_DT", "GAINS_HARD_CODED"}
 #: What is said of it where an exercise has no words of its own.

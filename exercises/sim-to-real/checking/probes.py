@@ -789,9 +789,6 @@ _OTHER_CARTS = {
     },
     "FACTORS_DIVIDE": lambda v, f, once, box: {k: v[k] / f[k] for k in NAMES},
     "FACTORS_ADDED": lambda v, f, once, box: {k: v[k] * (1 + f[k]) for k in NAMES},
-    "FACTORS_AS_LOGARITHMS": lambda v, f, once, box: {
-        k: v[k] * np.exp(np.interp(np.log(f[k]), np.log(box[k]), box[k])) for k in NAMES
-    },
     "LAG_FOR_LATENCY": lambda v, f, once, box: {
         k: (v[k] + v["tau"] * (k == "latency")) * f[k] for k in NAMES
     },

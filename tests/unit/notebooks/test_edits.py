@@ -274,4 +274,4 @@ def test_an_error_in_a_notebook_is_told_by_its_cell(
     assert {check.task for check in broken.checks if check.status != "pass"} == {"explicit_euler_step"}
     (check,) = [one for one in broken.checks if one.id == check.id]
     assert check.message.startswith("Python cannot read `explicit_euler_step` in cell ")
-    assert broken.warnings[0].startswith("Cell ")
+    assert not broken.warnings  # the check has said it

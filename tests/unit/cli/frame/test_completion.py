@@ -13,8 +13,8 @@ from tests.command_line import as_process
 
 #: Values that are words or places of one's own, so that there is nothing to choose from.
 FREE = {
-    "ADDRESS", "DIR", "EXERCISE=ID", "FILE", "KEY", "N", "OUT", "PATH", "REQUIREMENT", "STEP", "SUBMISSIONS",
-    "TEXT", "WORDS", "'NAME(ARGUMENTS)'",
+    "ADDRESS", "DIR", "EXERCISE=ID", "FILE", "KEY", "N", "NUMBER", "OUT", "PATH", "REQUIREMENT", "STEP",
+    "SUBMISSIONS", "TEXT", "WORDS", "'NAME(ARGUMENTS)'",
 }  # fmt: skip
 #: Names that are about to be made up.
 NEW = {f"author new {kind}" for kind in ("exercise", "lesson", "question", "scene", "warmup")}

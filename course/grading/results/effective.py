@@ -216,10 +216,9 @@ class Results:
         students = self.students()
         if name in students:
             return name
+        # A name with characters that no list of ours can show is spelled out in all of them.
         shown = [student for student in students if one_line(student) == name]
-        if (
-            len(shown) == 1
-        ):  # a name with characters that no list of ours can show is spelled out in all of them
+        if len(shown) == 1:
             return shown[0]
         if self.roster is None:
             people = {student: self.person(student) for student in students}

@@ -170,11 +170,8 @@ def _check(document: Document[Policy]) -> None:
     exercises: set[str] = set()
     for index, deadline in enumerate(policy.deadline):
         if deadline.due.tzinfo is None:
-            problem, fix = (
-                "this time lacks its distance from UTC.",
-                f"Write {deadline.due.isoformat()}+01:00.",
-            )
-            document.fail(("deadline", index, "due"), problem, fix=fix)
+            fix = f"Write {deadline.due.isoformat()}+01:00."
+            document.fail(("deadline", index, "due"), "this time lacks its distance from UTC.", fix=fix)
         if deadline.exercise in exercises:
             problem = f"{deadline.exercise} has two deadlines."
             document.fail(("deadline", index, "exercise"), problem, fix="Keep one.")

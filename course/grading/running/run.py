@@ -364,10 +364,9 @@ class _Run:
     def _left_to_do(self) -> Iterator[Entry]:
         for student in self._students:
             self._open[student.name] += 1
+            # First: what is handed in with it may take all the time for reading.
             if self._with_quiz or self._quiz_known:
-                self._score_quiz(
-                    student
-                )  # first: what is handed in with it may take all the time for reading
+                self._score_quiz(student)
             required = bool(self._options.exercises)
             for entry in read_student(student, self._exercises, required=required, others=self._others):
                 if entry.unread:

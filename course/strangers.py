@@ -6,6 +6,7 @@ What is wrong is raised as the errors that readers of files know anyway (``OSErr
 
 from __future__ import annotations
 
+import codecs
 import contextlib
 import errno
 import io
@@ -60,14 +61,21 @@ def read_bytes(path: Path, most: int = MOST) -> bytes:
     return data
 
 
+def marked_encoding(raw: bytes) -> str | None:
+    """UTF-32 or UTF-16 where the first bytes are its mark."""
+    if raw.startswith((codecs.BOM_UTF32_LE, codecs.BOM_UTF32_BE)):  # the first begins as UTF-16's mark does
+        return "UTF-32"
+    return "UTF-16" if raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) else None
+
+
 def decoded(raw: bytes) -> str:
-    """Text as a program of Windows may have saved it: UTF-8, UTF-16 with its mark, or the western code page.
+    """Text as a program of Windows may save it: UTF-8, UTF-16 or -32 with its mark, or the western page.
 
     Raises:
         UnicodeError: it is not text.
     """
-    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return raw.decode("utf-16")
+    if encoding := marked_encoding(raw):
+        return raw.decode(encoding)
     with contextlib.suppress(UnicodeDecodeError):
         return raw.decode("utf-8-sig")
     if b"\0" in raw:

@@ -26,7 +26,7 @@ mistakes(
 )
 mistakes(
     "MUTATES_INPUT",
-    "The caller still needs it as it was.",
+    "A step must leave its caller's arrays as they were.",
     "Write q = q + ..., which makes a new array. q += ... and q[:] = ... change the caller's array.",
     kind="fact",
 ).body(

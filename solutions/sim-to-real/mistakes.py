@@ -1403,7 +1403,7 @@ mistakes(
 mistakes(
     "LOCAL_MINIMUM",
     "The lag, tau and latency together, is off by more than a quarter for at least half of these recordings.",
-    "Try a whole grid of tau and latency, keep the best pair, and refine only around it. If you do, fit y as it was recorded, all blocks at once, and compare the columns with the README's.",
+    "Try a whole grid of tau and latency, keep the best pair, and refine only around it. If you do, fit y as it was recorded, all blocks at once, compare the columns with the README's, and see that no column is kept from another recording.",
 )
 mistakes(
     "FORCE_SCALED",

@@ -48,7 +48,7 @@ from course.handed_in.notebook import RECORD
 from course.printable import one_line, quoted, some
 from course.scoring.judging.submission import Submission
 from course.scoring.verdict import Problem, Verdict
-from course.strangers import in_utf8
+from course.strangers import in_utf8, marked_encoding
 
 
 @dataclass(frozen=True)
@@ -417,7 +417,7 @@ def _submission(exercise: Exercise, name: str, content: bytes) -> Submission:
         raise RefusedError("empty_file", f"{shown} is empty.", "Was it saved before it was handed in?")
     if not name.casefold().endswith(".ipynb") and not is_notebook(content):
         if in_utf8(content) != content:
-            saved = "UTF-16" if content[:2] in {b"\xff\xfe", b"\xfe\xff"} else "Windows' western code page"
+            saved = marked_encoding(content) or "Windows' western code page"
             message = f"{shown} is saved in {saved} and does not say so, and Python cannot read it."
             advice = "Save it as UTF-8, or declare its encoding in the first line."
             raise RefusedError("syntax_error", message, advice)

@@ -328,7 +328,8 @@ def test_the_summary_says_what_passes_and_whose_files_there_are(course, here: Pa
 
 
 @pytest.mark.parametrize(
-    ("encoding", "named"), [("cp1252", "Windows' western code page"), ("utf-16", "UTF-16")]
+    ("encoding", "named"),
+    [("cp1252", "Windows' western code page"), ("utf-16", "UTF-16"), ("utf-32", "UTF-32")],
 )
 def test_work_in_an_undeclared_encoding_is_settled_by_its_own_name_and_named_and_proposed(
     course, here: Path, monkeypatch: pytest.MonkeyPatch, encoding: str, named: str

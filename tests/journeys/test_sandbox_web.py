@@ -388,6 +388,16 @@ def test_a_guess_is_set_beside_theory_and_simulation(sandbox) -> None:
     at.until(lambda: at.status["stage"] == "run")
 
 
+def test_the_answers_lie_on_no_ball(sandbox) -> None:
+    at = sandbox("newtons-cradle")
+    at.guess("1.6")
+    card = at.page.get_by_label("Prediction", exact=True).bounding_box()
+    for name in at.names:
+        x, y = at.pixel(*at.body(name)[:2])
+        across = card["x"] < x < card["x"] + card["width"]
+        assert not (name.startswith("ball") and across and card["y"] < y < card["y"] + card["height"]), name
+
+
 def test_a_reload_changes_nothing(sandbox) -> None:
     at = sandbox("head-on")
     at.guess("2")

@@ -44,6 +44,31 @@ export class Prediction {
     this.element.replaceChildren(...inside, button("×", () => this.close(), { class: "close", "aria-label": "Close the prediction" }));
     this.element.hidden = false;
     this.chip.setAttribute("aria-expanded", "true");
+    this.aside();
+  }
+
+  /** Into the corner where it hides the fewest bodies: at the bottom and right where no other is better. */
+  aside() {
+    const { view, element } = this;
+    const into = (left, high) => {
+      element.classList.toggle("left", left);
+      element.classList.toggle("high", high);
+    };
+    const hidden = (corner) => {
+      into(...corner);
+      const box = element.getBoundingClientRect();
+      const [left, top] = view.camera.place({ clientX: box.left, clientY: box.top });
+      const [right, bottom] = view.camera.place({ clientX: box.right, clientY: box.bottom });
+      return view.bodies.filter((body) => {
+        const [x, y] = view.rowOf(body.name) ?? [NaN, NaN];
+        const size = body.radius ?? 0;
+        return !body.fixed && x + size > left && x - size < right && y + size > bottom && y - size < top;
+      }).length;
+    };
+    const corners = [[false, false], [true, false], [true, true]];
+    if (view.body.element.hidden) corners.push([false, true]); // else that body's numbers are there
+    const counts = corners.map(hidden);
+    into(...corners[counts.indexOf(Math.min(...counts))]);
   }
 
   close() {

@@ -19,6 +19,7 @@ from course.errors import CourseError, UsageError
 from course.sandbox.runs.recording import Film, Recording, ffmpeg
 from course.sandbox.scene.loading import Chosen
 from course.sandbox.scene.model import Part, Scene
+from course.sandbox.world.accounts import Receipt
 from course.sandbox.world.world import Snapshot, World
 
 #: Pictures a second of a film; a run that is over sooner than so many s is filmed in slow motion.
@@ -69,6 +70,24 @@ def shot_of(kept: Frame) -> Snapshot:
     ends = numbers[HEAD + PER_BODY * count :][: 4 * joints].reshape(-1, 4)
     hand = (numbers[7], numbers[8], numbers[9], numbers[10]) if kept[6] else None
     return Snapshot(float(kept[2]), int(kept[1]), x, y, angle, vx, vy, ends, hand)
+
+
+def account_of(kept: Frame, start: float) -> tuple[Receipt, tuple[float, float, float]]:
+    """What a frame says of energy and momentum; ``start`` is the run's energy at time 0, in J."""
+    kinetic, potential, contacts, friction, rods, residual, px, py, angular = kept[11:20].tolist()
+    given = float(kept[22]) - start
+    receipt = Receipt(
+        start=start,
+        given=given if abs(given) > 1e-6 * abs(start) else 0.0,  # the frame's numbers have seven digits
+        kinetic=kinetic,
+        potential=potential,
+        contacts=contacts,
+        friction=friction,
+        rods=rods,
+        residual=residual,
+        integrator=0.0,  # a frame does not have this part of what is missing
+    )
+    return receipt, (px, py, angular)
 
 
 class Tape:

@@ -243,9 +243,15 @@ class Stage:
             self.way = int(on)
 
     def step(self, kind: str = "picture") -> None:
-        """Pause, and go on by one "picture", to the next "contact", or by one step of the "solver"."""
+        """Pause, and go on by one "picture", to the next "contact", or by one step of the "solver".
+
+        What is kept of the past are pictures: there a step of the solver is one of them.
+        """
         if self.at is not None:
-            self.look(self.at + _PICTURE * (1 if kind != "back" else -1))
+            on = self.at + _PICTURE * (-1 if kind == "back" else 1)
+            if kind == "contact":  # the next that was marked, or else now
+                on = next((t for t in self.tape.marks if t > self.at), self.world.t)
+            self.look(on)
             return
         world, began = self.world, self.clock()
         world.paused = True

@@ -291,6 +291,16 @@ def test_going_on_compares_the_same_moment_as_the_run_that_was_seen(name: str) -
     assert stage.experiment.report()["comparison"] == seen
 
 
+def test_of_the_past_the_next_contact_is_the_next_one_marked_and_then_now() -> None:
+    stage = make("head-on")
+    watch(stage, 1.0)
+    stage.look(0.1)
+    stage.step("contact")
+    assert stage.at == stage.tape.marks[0] == pytest.approx(1.6 / 3, abs=0.01)
+    stage.step("contact")
+    assert stage.at is None
+
+
 def test_a_step_is_a_picture_the_next_contact_or_the_solvers() -> None:
     stage = make("newtons-cradle", clock=lambda: 0.0)  # however busy the machine is, it is looked for
     stage.step()

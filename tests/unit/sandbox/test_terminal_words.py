@@ -105,6 +105,17 @@ def test_the_panel_fits_and_its_energies_add_up(scene: str, width: int, height: 
         assert sum(named[name] for name in parts) == pytest.approx(named["="], abs=0.01)
 
 
+def test_beside_the_past_stands_what_was_then():
+    stage = Stage(choose("pendulum-wall"), clock=lambda: 0.0)
+    before = [plain(line) for line in panel(stage.world, (), 43, 40)]
+    for _ in range(20):
+        stage.tick(0.07)
+    stage.look(0.0)
+    past = [plain(line) for line in panel(stage.world, (), 43, 40, stage.frame())]
+    assert [line.split()[-1:] for line in past] == [line.split()[-1:] for line in before]
+    assert past != [plain(line) for line in panel(stage.world, (), 43, 40)]
+
+
 def test_speeds_are_said_in_words():
     assert [speed_in_words(s) for s in (1.0, 0.125, 2.0)] == [
         "real time",

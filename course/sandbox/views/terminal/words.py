@@ -15,6 +15,7 @@ from textual.geometry import Region
 from textual.strip import Strip
 from textual.widget import Widget
 
+from course.sandbox.runs.tape import Frame, account_of
 from course.sandbox.scene.rules import SETTINGS
 from course.sandbox.views.terminal.picture import Cells
 from course.sandbox.world.accounts import SAMPLED, Receipt
@@ -158,15 +159,26 @@ def keys_line(width: int, *, paused: bool, past: bool, compared: bool = False) -
     return tuple(pieces)
 
 
-def panel(world: World, parameters: Sequence[tuple[str, str]], width: int, height: int) -> list[Line]:
+def panel(
+    world: World,
+    parameters: Sequence[tuple[str, str]],
+    width: int,
+    height: int,
+    past: Frame | None = None,
+) -> list[Line]:
     """Energy, momentum and settings, for a column beside the picture.
 
     Args:
         parameters: the scene's own, with their values.
         width, height: of the column, in cells.
+        past: the frame of this run that is looked at; None for now.
     """
-    rows = np.array(world.samples()).reshape(-1, len(SAMPLED)).T
-    history, receipt, momentum = dict(zip(SAMPLED, rows, strict=True)), world.receipt, world.momentum
+    rows = np.array(world.samples()).reshape(-1, len(SAMPLED))
+    receipt, momentum = world.receipt, world.momentum
+    if past is not None:
+        rows = rows[rows[:, 0] <= past[2] + 1e-6]
+        receipt, momentum = account_of(past, receipt.start)
+    history = dict(zip(SAMPLED, rows.T, strict=True))
     settings = _settings(world, parameters, width)
     tall = max(1, min(4, (height - 5 - len(settings) - 3) // 8))
     lines = [*_energy(history, receipt, width, tall), *_momentum(history, momentum, width, tall)]

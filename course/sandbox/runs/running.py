@@ -15,7 +15,7 @@ from course.sandbox.scene.expression import evaluate
 from course.sandbox.scene.loading import Chosen, Comparison, compare, values_of, with_settings
 from course.sandbox.scene.model import Probe, Scene, layout
 from course.sandbox.scene.rules import matching
-from course.sandbox.world.accounts import MINOR, Event, Receipt
+from course.sandbox.world.accounts import MINOR, SAMPLED, Event, Receipt
 from course.sandbox.world.engine import Block, Floats
 from course.sandbox.world.world import Snapshot, World
 
@@ -180,6 +180,7 @@ class Run(msgspec.Struct, frozen=True, kw_only=True):
         dropped: events that were too many to keep.
         receipt: at the end.
         momentum_before, momentum_after: along x and y in kg m/s, and angular in kg m²/s.
+        momentum_least, momentum_most: along x and y, of the last minute.
         probes: what the scene's probes read.
         comparison: the prediction's, if the scene asks for one.
         samples: time in s, and the state (n, 6) then, with the names of its rows.
@@ -193,6 +194,8 @@ class Run(msgspec.Struct, frozen=True, kw_only=True):
     receipt: Receipt
     momentum_before: tuple[float, float, float]
     momentum_after: tuple[float, float, float]
+    momentum_least: tuple[float, float]
+    momentum_most: tuple[float, float]
     probes: dict[str, float]
     comparison: Comparison | None
     samples: tuple[tuple[float, tuple[str, ...], Floats], ...]
@@ -240,6 +243,8 @@ def run(
         if is_frame and on_frame is not None:
             on_frame(world, world.snapshot())
     answers = probes.read(events)
+    sampled = (row[SAMPLED.index("px") :] for row in world.samples())
+    momenta = np.array([before, *sampled, world.momentum])[:, :2]
     return Run(
         duration=world.t,
         steps=world.steps,
@@ -248,6 +253,8 @@ def run(
         receipt=world.receipt,
         momentum_before=before,
         momentum_after=world.momentum,
+        momentum_least=tuple(momenta.min(axis=0).tolist()),
+        momentum_most=tuple(momenta.max(axis=0).tolist()),
         probes=answers,
         comparison=probes.compared(answers, guess),
         samples=tuple(samples),
@@ -351,9 +358,10 @@ def account(receipt: Receipt) -> list[str]:
         for part in (receipt.contacts, receipt.friction, receipt.rods)
     )
     kinetic = receipt.kinetic if receipt.kinetic > 1e-12 * scale else 0.0
+    how = "given" if receipt.given > 0 else "taken out"
     lines = [
         f"Energy at the start {_joule(receipt.start)}"
-        + (f", given since {_joule(receipt.given)}" if abs(receipt.given) > 1e-9 else "")
+        + (f", {how} since {_joule(abs(receipt.given))}" if abs(receipt.given) > 1e-9 else "")
         + f"; now {_joule(kinetic)} of motion and {_joule(receipt.potential)} of height.",
     ]
     in_rods = f", lost in rods {_joule(rods)}" if rods else ""
@@ -363,7 +371,8 @@ def account(receipt: Receipt) -> list[str]:
         lines.append("Nothing is unaccounted for.")
     else:
         verb = "is missing without a physical cause" if receipt.residual > 0 else "has no physical source"
-        lines.append(f"{_joule(abs(receipt.residual))} {verb}: that is the solver's ({100 * share:.2g} %).")
+        percent = float(f"{100 * share:.2g}")
+        lines.append(f"{_joule(abs(receipt.residual))} {verb}: that is the solver's ({percent:g} %).")
     return lines
 
 
@@ -374,7 +383,9 @@ def momentum(done: Run) -> list[str]:
     near = max(1e-9 * max(abs(px), abs(py), abs(qx), abs(qy)), 1e-12)
     now = f"({qx if abs(qx) > near else 0.0:.4g}, {qy if abs(qy) > near else 0.0:.4g}) kg m/s"
     if abs(qx - px) <= near and abs(qy - py) <= near:
-        return [f"Momentum is kept: {now}."]
+        if max(np.subtract(done.momentum_most, done.momentum_least)) <= near:
+            return [f"Momentum is kept: {now}."]
+        return [f"Momentum ends as it began, {now}, and changed in between: something outside took part."]
     was = f"({px:.4g}, {py:.4g})"
     return [f"Momentum went from {was} to {now}: something outside took part."]
 

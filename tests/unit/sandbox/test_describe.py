@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from course.sandbox.runs.running import account, run, sentence, sentences
+from course.sandbox.runs.running import account, momentum, run, sentence, sentences
 from course.sandbox.scene.loading import choose
 from course.sandbox.world.accounts import Event, Receipt
 from course.sandbox.world.world import World
@@ -80,3 +80,15 @@ def test_what_hands_do_names_bodies_as_sentences_do() -> None:
         "0.00 s: new 1 appears, like the left puck.",
         "0.00 s: the left puck now moves at 1.00 m/s.",
     ]
+
+
+def test_momentum_is_kept_only_where_it_never_changed() -> None:
+    assert momentum(run(choose("head-on"))) == ["Momentum is kept: (1, 0) kg m/s."]
+    still = choose("restitution-row", {"restitution": 0.1})
+    assert "ends as it began, (0, 0) kg m/s, and changed in between" in momentum(run(still, duration=5.0))[0]
+
+
+def test_a_body_that_left_took_its_energy_out_and_a_whole_is_100_percent() -> None:
+    first, _, last = account(run(choose("free-fall"), duration=60.0).receipt)
+    assert "taken out since 2.772 J" in first
+    assert last.endswith("(100 %).")

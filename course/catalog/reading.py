@@ -246,12 +246,9 @@ def read_document(
     try:
         data = toml(source)
     except tomllib.TOMLDecodeError as error:
-        raise ContentError(
-            path,
-            first_line - 1 + syntax_error_line(error, source),
-            f"this is not valid TOML: {str(error).rsplit(' (at ', 1)[0]}.",  # the error gives the place
-            help="Check quotes, brackets and commas here and on the line above.",
-        ) from None
+        said, advice = _not_toml(str(error).rsplit(" (at ", 1)[0])  # the error gives the place
+        line = first_line - 1 + syntax_error_line(error, source)
+        raise ContentError(path, line, said, help=advice) from None
     raw = Document(path, data, LineMap(source, first_line))
     _check_version(raw)
     for key in reserved:
@@ -261,6 +258,13 @@ def read_document(
         return Document(path, msgspec.convert(data, kind), raw.lines)
     except msgspec.ValidationError as error:
         _raise_in_words(raw, str(error), kind, tuple(reserved))
+
+
+def _not_toml(why: str) -> tuple[str, str]:
+    """What is wrong with a text that is no TOML, and what to do."""
+    if why.startswith(("Cannot overwrite", "Cannot declare")):
+        return "this key or table stands in the file twice.", "Keep one of the two."
+    return f"this is not valid TOML: {why}.", "Check quotes, brackets and commas here and on the line above."
 
 
 def _check_version(raw: Document[dict[str, Any]]) -> None:
@@ -298,12 +302,13 @@ def _raise_in_words(raw: Document[Any], text: str, kind: type, reserved: tuple[s
         raw.fail(steps, f"{_named(steps)} cannot be {match['given']}.", fix=fix)
     if match := _EXPECTED.search(words):
         _as_toml_writes_it(raw, steps, _type_at(kind, steps))
-        wanted = _in_words(match["wanted"]) + (match["more"] or "")
+        wanted = _in_words(match["wanted"].removesuffix(" | null")) + (match["more"] or "")  # TOML has none
         if "regex" in wanted:
             wanted = _described(_type_at(kind, steps)) or wanted
         given = f", and is {_in_words(match['given'])}" if match["given"] else ""
         given = f", and has {match['count']}" if match["count"] else given
-        raw.fail(steps, f"{_named(steps)} must be {wanted}{given}.", fix=f"Write {wanted}.")
+        fix = "Write values in brackets: [1, 2]." if wanted == "a list" else f"Write {wanted}."
+        raw.fail(steps, f"{_named(steps)} must be {wanted}{given}.", fix=fix)
     raw.fail(steps, f"{_named(steps)}: {words}.", fix="Compare it with a file of the same kind.")
 
 

@@ -206,7 +206,10 @@ def compare(
         table = here.write_told(csv, here.as_csv(_COLUMNS, lines), why="engines")
     code = 0 if comparison.ran else MissingCapabilityError.exit_code
     if code:
-        console.line(("No engine could be run on this machine.", "bold"))
+        none = "No engine could be run on this machine."
+        if "not_applicable" in {row.status for row in comparison.rows}:
+            none = "No engine that runs here can do what was asked."
+        console.line((none, "bold"))
     shipped = comparison.reference
     console.emit(
         Engines(
@@ -281,6 +284,8 @@ def _show(console: Console, comparison: Comparison, findings: Sequence[str]) -> 
         rows = [row for row in comparison.rows if row.scenario == scenario.id]
         if rows:
             _scenario(console, scenario, rows, best)
+    if best and not console.quiet:
+        console.line("best: nearest the truth, and what is as near within half the range of the nearest.")
     _troubles(console, comparison)
     _origins(console, comparison)
     if findings:

@@ -108,7 +108,7 @@ def defaults(rows: Sequence[Row]) -> str:
         return ""
     return (
         f"Defaults are part of the model: in {len(beyond)} of {compared} scenarios ({', '.join(beyond)}) "
-        "options change one engine by more than all well-set engines differ."
+        "options move one engine, at every phase of the step, further than all well-set engines spread."
     )
 
 

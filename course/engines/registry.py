@@ -8,6 +8,7 @@ from typing import cast
 from course.engines.base import Adapter
 from course.errors import NotFoundError
 from course.extras import requirement_of
+from course.printable import meant
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +120,8 @@ def get(engine_id: str) -> EngineInfo:
     if engine_id in ENGINES:
         return ENGINES[engine_id]
     problem = f"There is no engine {engine_id!r}."
-    raise NotFoundError(problem, help=f"The engines are {', '.join(ENGINES)}.", code="engine_not_found")
+    advice = meant(engine_id, ENGINES, f"The engines are {', '.join(ENGINES)}.")
+    raise NotFoundError(problem, help=advice, code="engine_not_found")
 
 
 def load(engine_id: str) -> Adapter:

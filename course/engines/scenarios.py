@@ -17,6 +17,7 @@ from course.engines.base import Array, Body, EngineDivergedError, Motion, Scene,
 from course.errors import NotFoundError
 from course.physics import integrators as ode
 from course.physics.systems import Pendulum
+from course.printable import meant
 
 Build = Callable[[Scene], World]
 
@@ -604,4 +605,5 @@ def get(scenario_id: str) -> Scenario:
     if scenario_id in SCENARIOS:
         return SCENARIOS[scenario_id]
     problem = f"There is no scenario {scenario_id!r}."
-    raise NotFoundError(problem, help=f"The scenarios are {', '.join(SCENARIOS)}.", code="scenario_not_found")
+    advice = meant(scenario_id, SCENARIOS, f"The scenarios are {', '.join(SCENARIOS)}.")
+    raise NotFoundError(problem, help=advice, code="scenario_not_found")

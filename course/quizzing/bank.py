@@ -328,8 +328,8 @@ def needed(total: int) -> int:
 
 
 def mark_sentence(total: int) -> str:
-    """The pass mark as it is shown: "You pass with 4 right answers out of 5"."""
-    return f"You pass with {counted(needed(total), 'right answer')} out of {total}"
+    """The pass mark as it is shown: "You need 4 right answers out of 5 to pass"."""
+    return f"You need {counted(needed(total), 'right answer')} out of {total} to pass"
 
 
 def mark(posed: Sequence[PosedQuestion], answers: Mapping[str, str]) -> Result:

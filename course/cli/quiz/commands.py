@@ -160,6 +160,8 @@ def _finish(
     due = desk.reviews()
     step = _step(result, due)
     screen.show_result(console, result)
+    if any(one.seed == attempt.seed and one.id != attempt.id for one in desk.history.finished):
+        console.line("Questions of this seed were answered before: this attempt does not count.")
     if result.passed:  # else the lesson to read comes first
         screen.show_first_due(console, due, today())
     console.next(step)

@@ -188,7 +188,8 @@ def export(
     if format_ not in writers:
         raise UsageError(f"There is no format {format_[:20]!r}.", help="Formats: sdf, mjcf.")
     console = current()
-    target = target_file(output, "-o", ("sdf", "world", "xml")) if output else None
+    endings = ("sdf", "world", "xml") if format_ == "sdf" else ("xml",)
+    target = target_file(output, "-o", endings) if output else None
     chosen = playing.chosen(scene, settings or ())
     data = writers[format_](chosen)
     written = None

@@ -314,9 +314,9 @@ def _checked(path: Path, lines: list[Line]) -> Replay:
     """The lines as a recording, if they are one."""
     head = lines[0] if lines else None
     if not isinstance(head, Head) or head.format != FORMAT:
-        form = head.format if isinstance(head, Head) else "nothing"
+        form = f"it begins with {head.format[:40]}" if isinstance(head, Head) else "its first line is no head"
         raise UsageError(
-            f"{path} is not a recording that this program knows (it begins with {form[:40]}).",
+            f"{path} is not a recording that this program knows ({form}).",
             help="Record one with `course sandbox play SCENE --record FILE`.",
             code="bad_recording",
         )
@@ -329,7 +329,9 @@ def _checked(path: Path, lines: list[Line]) -> Replay:
     if len(ticks) < len(lines) - 1 or ends > 1 or ticks != sorted(ticks) or ticks[0] < 0:
         raise IntegrityError(f"{path}: its steps are out of order.", code="damaged_recording")
     unknown = {line.what for line in inputs} - _INPUTS
-    if unknown or lines[-1].tick > _MOST_TICKS:
+    hashed = max((line.tick for line in hashes[:-1]), default=0)
+    # A run that goes on for long behind its last hash is not one that was recorded.
+    if unknown or lines[-1].tick > min(hashed + max(head.every, 1), _MOST_TICKS):
         raise IntegrityError(f"{path} asks for what no recording holds.", code="damaged_recording")
     return Replay(path=path, head=head, inputs=inputs, hashes=hashes)
 
@@ -368,7 +370,7 @@ def ffmpeg() -> str:
     if found is None:
         raise MissingCapabilityError(
             "An MP4 needs ffmpeg, which is not on this machine.",
-            help="Install ffmpeg with the system's packages (apt, brew, winget), or write a --gif.",
+            help="Install ffmpeg with the system's packages (apt, brew, winget), or save a GIF.",
             code="no_ffmpeg",
         )
     return found

@@ -149,7 +149,7 @@ def test_an_unknown_id_is_answered_with_the_nearest(
         (EXERCISE, "format_version = 1", 'format_version = "1"', 1, "whole number", "format_version = 1"),
         (EXERCISE, "format_version = 1\n", "", 1, "declares no format_version", "at the top"),
         (EXERCISE, "order = 1", "order = ", 6, "not valid TOML", "quotes"),
-        (EXERCISE, "order = 1", "order = 1\norder = 2", 7, "not valid TOML", "quotes"),
+        (EXERCISE, "order = 1", "order = 1\norder = 2", 7, "stands in the file twice", "Keep one"),
         (EXERCISE, '"Return x + x."', '""', 19, "`hints` is empty", "Fill it in."),
         (
             EXERCISE,

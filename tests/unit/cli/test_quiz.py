@@ -19,7 +19,7 @@ from course.errors import IntegrityError
 from course.quizzing.bank import Bank, mark
 
 SEED = 7
-MARK = "You pass with 4 right answers out of 5."
+MARK = "You need 4 right answers out of 5 to pass."
 #: Those that are asked here, however many more the course has.
 ASKED = ("why-simulate", "which-engine", "sim-to-real-gap", "digital-twin", "numerical-integration")
 CTRL_C = "\x03"

@@ -109,6 +109,7 @@ def test_a_recording_cut_off_or_damaged_is_refused(tmp_path: Path) -> None:
         (b"\n".join([lines[0], lines[-1], lines[1], lines[-1]]), IntegrityError),
         (b"\n".join([lines[0], b'{"kind":"input","tick":0,"what":"__init__"}', lines[-1]]), IntegrityError),
         (b"\n".join([lines[0], b'{"kind":"input","tick":0,"what":"drag"}', lines[-1]]), IntegrityError),
+        (b"\n".join([*lines[:-1], lines[-1].replace(b'"tick":', b'"tick":9999')]), IntegrityError),  # days
     ):
         path.write_bytes(data)
         with pytest.raises(error):

@@ -83,31 +83,34 @@ export class Plot {
     });
     if (scale < 1e-12) high = 1;
     const pad = (high - low) * 0.06;
-    const left = 34;
+    c.font = "11px system-ui, sans-serif";
+    const gap = round((high - low) / 3);
+    const marks = [];
+    for (let v = Math.ceil(low / gap) * gap; v <= high + gap * 1e-6; v += gap) {
+      marks.push([v, Math.abs(v) < gap / 2 ? "0" : tick(v)]);
+    }
+    const left = Math.max(34, ...marks.map(([, text]) => c.measureText(text).width + 7));
     const x = (t) => left + ((t - end + span) / span) * (width - left - 2);
     const y = (v) => height - 4 - ((v - low + pad) / (high - low + 2 * pad)) * (height - 8);
-    this.axes(c, { low, high, x, y, width, left, colour });
+    this.axes(c, marks, { y, width, left, colour });
     for (const s of drawn) this.line(c, rows, s, x, y, colour);
     if (at === null) return;
     c.fillStyle = colour("--accent");
     c.fillRect(x(at) - 0.75, 0, 1.5, height);
   }
 
-  axes(c, { low, high, y, width, left, colour }) {
-    c.font = "11px system-ui, sans-serif";
+  axes(c, marks, { y, width, left, colour }) {
     c.textAlign = "right";
     c.textBaseline = "middle";
     c.lineWidth = 1;
-    const gap = round((high - low) / 3);
-    for (let v = Math.ceil(low / gap) * gap; v <= high + gap * 1e-6; v += gap) {
-      const zero = Math.abs(v) < gap / 2;
-      c.strokeStyle = colour(zero ? "--axis" : "--grid");
+    for (const [v, text] of marks) {
+      c.strokeStyle = colour(text === "0" ? "--axis" : "--grid");
       c.beginPath();
       c.moveTo(left, Math.round(y(v)) + 0.5);
       c.lineTo(width, Math.round(y(v)) + 0.5);
       c.stroke();
       c.fillStyle = colour("--quiet");
-      c.fillText(zero ? "0" : tick(v), left - 5, y(v));
+      c.fillText(text, left - 5, y(v));
     }
   }
 

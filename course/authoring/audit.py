@@ -208,7 +208,7 @@ def _chosen(catalog: Catalog, only: str | None) -> tuple[tuple[str, ...], tuple[
     if not any(chosen) and only not in (*questions, *scene_ids()):
         raise NotFoundError(
             f"No lesson, exercise, question or scene is called {only[:80]!r}.",
-            help=f"There are {', '.join([*lessons, *exercises, *questions, *scene_ids()])}.",
+            help=f"Known: {', '.join([*lessons, *exercises, *questions, *scene_ids()])}.",
         )
     return chosen
 

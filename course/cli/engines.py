@@ -234,7 +234,7 @@ def _plotted(console: Console, comparison: Comparison, plot: Path) -> tuple[Writ
     with console.working("Drawing"):
         pictures = render(comparison.rows, plot.suffix.lower().removeprefix("."))
     if not pictures:
-        console.line("No figure: steps need three values of --dt, speed needs boxes and stack.")
+        console.line("No figure: one of steps needs three values of --dt, one of speed boxes and stack.")
     return tuple(
         here.write_told(here.inserted(plot, name), picture, why="engines")
         for name, picture in pictures.items()

@@ -176,7 +176,7 @@ def build(
     """
     console = current()
     if form not in FORMATS:
-        raise UsageError(f"--format {form}: there is {' and '.join(FORMATS)}.", code="unknown_format")
+        raise UsageError(f"--format {form}: known are {' and '.join(FORMATS)}.", code="unknown_format")
     if form == "nbgrader":
         return _build_nbgrader(console, ids or [], out, executed=executed)
     if executed:

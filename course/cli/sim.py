@@ -183,7 +183,7 @@ def run(
             )
         return _run_all(console, plot, csv)
     if name is None:
-        there = f"There are {', '.join(SIMULATIONS)}."
+        there = f"Known: {', '.join(SIMULATIONS)}."
         more = "`course sim list` says what each shows; --all runs the introduction's four."
         raise UsageError("Which simulation?", help=f"{there} {more}", code="no_name")
     reply = _run_one(console, name, pairs, plot, csv)
@@ -293,7 +293,7 @@ def _places(*values: float | None) -> str:
 
 def _number(value: float, unit: str, places: str) -> str:
     if math.isnan(value):
-        return "never"
+        return "never" if unit == "s" else "did not happen"
     if math.isinf(value):
         return "beyond all numbers"
     text = f"{0.0 if abs(value) < 1e-11 else value:{places}}"

@@ -165,7 +165,7 @@ def streams_from(plain: Mapping[str, Mapping[str, Any]]) -> tuple[Stream, ...]:
         if kind not in KINDS:
             raise UsageError(
                 f"There is no stream of kind {kind!r}.",
-                help=f"There are {', '.join(KINDS)}.",
+                help=f"Known: {', '.join(KINDS)}.",
                 code="stream_kind",
             )
         names = [field.name for field in fields(KINDS[kind])]

@@ -107,7 +107,7 @@ def chosen_kinds(text: str) -> tuple[str, ...]:
     if unknown or not kinds:
         raise UsageError(
             f"--with {text[:80]}: there is no {' or '.join(unknown) or 'such word'}.",
-            help=f"There are {', '.join(KINDS)}; several are joined by commas.",
+            help=f"Known: {', '.join(KINDS)}; several are joined by commas.",
         )
     return kinds
 

@@ -232,7 +232,7 @@ def start(
     if exercise is None:
         raise UsageError(
             "Which exercise?",
-            help=f"There are {', '.join(one.id for one in here.catalog.exercises())}. "
+            help=f"Known: {', '.join(one.id for one in here.catalog.exercises())}. "
             "`course warmup` lists the small tasks.",
             code="no_name",
         )

@@ -263,9 +263,7 @@ def _check_parameters(document: Document[Scene]) -> None:
     moved: set[str] = set()
     for place, formula in scene.sets.items():
         if not _can_be_set(scene, place):
-            document.fail(
-                ("sets", place), f"{place} is nothing that can be set.", fix="Write body.field or a field."
-            )
+            document.fail(("sets", place), f"{place} cannot be set.", fix="Write body.field or a field.")
         used = _names(document, ("sets", place), formula)
         if not used <= known:
             document.fail(
@@ -383,7 +381,7 @@ def _check_names(document: Document[Scene], where: tuple[str | int, ...], used: 
         if (field and (body not in bodies or field not in FIELDS)) or (not field and name not in known):
             document.fail(
                 where,
-                f"the formula uses {name}, which is nothing.",
+                f"the formula uses {name}, which is not defined.",
                 fix=f"Use {', '.join(sorted(known))}, or a body's {', '.join(FIELDS)}.",
             )
 

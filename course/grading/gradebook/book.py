@@ -28,7 +28,6 @@ from course.grading.gradebook.file import (
     SEAL,
     TABLES,
     begin_writing,
-    create,
     explained,
     open_file,
     override_digest,
@@ -38,6 +37,7 @@ from course.grading.gradebook.file import (
     seal,
     unseal,
 )
+from course.grading.gradebook.file import create as create_file
 from course.grading.gradebook.records import (
     Decision,
     GradedExercise,
@@ -83,7 +83,7 @@ class Gradebook:
         self._changed = False
         self._checkpoint_at = time.monotonic() + _CHECKPOINT_S
         if create:
-            _create(path)
+            create_file(path)
         self._db = open_file(path, writing=self._writing)
         self._run = self._newest_run()
 
@@ -127,13 +127,12 @@ class Gradebook:
             names = " ".join(name for (name,) in self._db.execute("SELECT key FROM meta") if name != KEYS)
             self._db.execute(row_into("meta", "INSERT OR REPLACE"), (KEYS, names))
 
-    def begin_run(self, kind: str, options: Mapping[str, Any]) -> int:
+    def begin_run(self, kind: str, options: Mapping[str, Any]) -> None:
         """Note that a grading ("run") or regrading ("rerun") begins; its results are kept apart."""
         with self._transaction():
             self._run += 1
             text = msgspec.json.encode({**options, "who": whoami()}).decode()
             self._db.execute(row_into("runs"), (self._run, kind, _now(), text))
-        return self._run
 
     def runs(self) -> list[Run]:
         """Every grading and regrading, oldest first."""
@@ -480,9 +479,6 @@ def _about(student: str | None, exercise: str | None) -> tuple[str, tuple[str, .
     ]
     where = " AND ".join(f"{name} = ?" for name, _ in asked)
     return (f" WHERE {where}" if asked else ""), tuple(value for _, value in asked)
-
-
-_create = create  # under its own name it is an argument above
 
 
 #: Tables with contents that the seal does not cover: what names a row of them, and how it is called.

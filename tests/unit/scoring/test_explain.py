@@ -179,11 +179,9 @@ def test_of_programs_with_two_mistakes_what_they_share_is_named() -> None:
     fits = Row(("SIGN_FLIPPED", "MASS_SWAPPED"), (0.0,)), Row(("ENERGY_GROWS", "MASS_SWAPPED"), (0.0,))
     assert common(fits) == ("MASS_SWAPPED",)
     shared = story_of(failures(None), fits, WORDS).diagnosis
-    assert shared is not None
     assert shared.code == "MASS_SWAPPED"
     assert "There seem to be two mistakes" in shared.looks_like
     both = story_of(failures(None), fits[:1], WORDS).diagnosis
-    assert both is not None
     assert "There seem to be two mistakes" in both.looks_like
     assert WORDS.entries["MASS_SWAPPED"].looks_like in both.looks_like
 
@@ -242,7 +240,6 @@ def test_a_nan_is_told_where_it_was_met_and_other_checks_keep_what_they_saw() ->
 def test_a_check_that_saw_a_fact_keeps_it() -> None:
     story = story_of(failures("CHANGED_IN_PLACE", "SIGN_FLIPPED"), (), WORDS)
     assert story.own == {"check_0"}
-    assert story.diagnosis is not None
     assert story.diagnosis.code == "SIGN_FLIPPED"
 
 

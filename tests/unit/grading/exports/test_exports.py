@@ -19,6 +19,7 @@ from course.errors import MissingCapabilityError, NotFoundError, UsageError
 from course.grading.exports.formats import FORMATS, export
 from course.grading.exports.grades import is_safe, number, replacing, safe_cell, utc
 from course.grading.exports.selection import ExportOptions
+from course.grading.gradebook.book import Gradebook
 from course.grading.gradebook.records import Override, SubmittedAt
 from course.grading.results.effective import Results
 from course.grading.results.roster import Person, Roster
@@ -59,7 +60,7 @@ def class_of_everybody(tmp_path_factory: pytest.TempPathFactory):
 
 @pytest.fixture
 def results(class_of_everybody: Path):
-    results = Results.open(class_of_everybody)
+    results = Results(Gradebook(class_of_everybody / "gradebook.sqlite"))
     results.roster = Roster(
         tuple(
             Person(name, name, f"{at}@x.org", str(100 + at), f"sis-{at}", "A", f"key{at}")
@@ -134,7 +135,6 @@ def test_a_part_never_takes_the_place_of_what_is_about_all(
     assert export(results, name, tmp_path, None, everything).paths[0] == tmp_path / usual
     before = {path: path.read_bytes() for path in tmp_path.rglob("*.*")}
     roster = results.roster
-    assert roster is not None
     parts = ((roster.people, OPTIONS), (roster.people[1:], ExportOptions(partial=True, zeros=True)))
     for people, options in parts:
         results.roster = Roster(people)
@@ -333,7 +333,6 @@ def test_what_students_may_read_has_nothing_hidden(results: Results, tmp_path: P
 def test_students_the_roster_has_not_stop_every_export_unless_partial(
     results: Results, tmp_path: Path, name: str
 ) -> None:
-    assert results.roster is not None
     results.roster = Roster(tuple(person for person in results.roster.people if person.student != "late"))
     with pytest.raises(MissingCapabilityError) as caught:
         export(results, name, tmp_path, None, OPTIONS)
@@ -358,7 +357,6 @@ def test_students_the_roster_has_not_stop_every_export_unless_partial(
 def test_a_key_that_is_missing_or_would_have_to_be_changed_is_no_key(
     results: Results, tmp_path: Path, name: str, person: Person
 ) -> None:
-    assert results.roster is not None
     others = tuple(other for other in results.roster.people if other.student != "late")
     results.roster = Roster((*others, person))
     with pytest.raises(MissingCapabilityError, match="'late'"):

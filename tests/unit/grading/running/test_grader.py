@@ -34,7 +34,6 @@ def test_a_grader_closes_its_oldest_session_for_another(
             for exercise in ORDER:
                 solution = catalog.content.root / "solutions" / exercise / f"{exercise}.py"
                 verdict = one.answer(Job(exercise, {solution.name: solution.read_bytes()})).verdict
-                assert verdict is not None
                 assert (verdict.exercise, verdict.all_pass) == (exercise, True)
                 assert len(one._sessions) <= most
     finally:
@@ -93,6 +92,5 @@ def test_the_fault_of_one_exercise_is_named_and_costs_no_other(
         name = f"fault-{number}"
         verdict = verdicts[name]
         assert (verdict.state, verdict.error and verdict.error.code) == ("grader_error", "check_file")
-        assert verdict.error is not None
         assert verdict.error.message.startswith(f"graders/{name}/checks.py{said.replace('{name}', name)}")
         assert str(content) not in verdict.error.message

@@ -146,8 +146,6 @@ _PERSON = ("name", "email", "section")
 
 
 class OverrideLine(msgspec.Struct, frozen=True):
-    """A score an instructor set."""
-
     score: float
     reason: str
     at: str

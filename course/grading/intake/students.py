@@ -4,14 +4,14 @@
     <student>/<exercise-id>/<module>.py
     <student>/<anything>.zip        as ``course submit`` writes it
 
-or ``<module>.ipynb`` in place of ``<module>.py``: the module that the notebook makes up is graded. ``names``
-has the accepted spellings of these names. Files that are left over, with another name, in another folder, or
-beside the one that was graded, are always reported, with the exercises whose functions they have. An
+or ``<module>.ipynb`` in place of ``<module>.py``: the module that the notebook makes up is graded. Accepted
+spellings of these names are in ``downloads``. Files that are left over, with another name, in another folder,
+or beside the one that was graded, are always reported, with the exercises whose functions they have. An
 instructor decides on the proposals with ``course grade assign``.
 
 ``course.grading.intake.downloads`` says who the students are and where their files lie. Only files that an
 exercise declares are read; nothing here executes a file, unpacks one to disk or follows a link. Notebooks and
-archives have to be parsed for that, which a separate process does (``reading``).
+archives have to be parsed for that, which a separate process does (``archives``).
 """
 
 from __future__ import annotations
@@ -135,14 +135,13 @@ def _entries(
         if place.files is None and place.root.is_symlink():
             raise RefusedError("symlink", "The student's folder is a link.", "Hand in the folder itself.")
         archives = place.archives()
-    except RefusedError as refused:
-        for exercise in exercises:
-            yield Entry(name, exercise, problem=refused.problem)
-        return
-    except OSError as error:
-        message = f"The student's folder cannot be read: {error.strerror}."
-        for exercise in exercises:
-            yield Entry(name, exercise, problem=Problem("unreadable", message, _PERMISSIONS))
+    except (RefusedError, OSError) as error:
+        if isinstance(error, RefusedError):
+            problem = error.problem
+        else:
+            message = f"The student's folder cannot be read: {error.strerror}."
+            problem = Problem("unreadable", message, _PERMISSIONS)
+        yield from (Entry(name, exercise, problem=problem) for exercise in exercises)
         return
     taken = [(exercise, _found(place, archives, exercise)) for exercise in exercises]
     used = {at for _, item in taken if isinstance(item, _FoundWork) for at in item.used}

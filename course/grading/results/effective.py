@@ -410,7 +410,6 @@ class ScoreChange(msgspec.Struct, frozen=True):
 
 
 def counting(results: Results) -> Scores:
-    """The effective scores."""
     return {(item.student, item.exercise): (item.score, item.max_score) for item in results.all()}
 
 

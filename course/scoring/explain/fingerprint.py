@@ -230,7 +230,6 @@ _READING = (ast.Subscript, ast.Call, ast.For, ast.comprehension, ast.Compare, as
 
 
 def _merely_read(node: ast.AST) -> list[ast.expr]:
-    """The parts of an expression that it only reads."""
     read: list[ast.expr] = []
     match node:
         case ast.Subscript(value=table, ctx=ast.Load()):

@@ -317,7 +317,7 @@ def test_an_escaped_line_end_in_a_string_moves_no_magic() -> None:
 @pytest.fixture
 def strict() -> Iterator[Reader]:
     """With little time and memory, so that a test need not use up what honest files may."""
-    found = Reader(archives._Limits(cpu_s=1, wall_s=60, memory=512 << 20))
+    found = Reader(cpu_s=1, wall_s=60, memory=512 << 20)
     yield found
     found.close()
 
@@ -380,7 +380,7 @@ def test_what_ends_the_reader_is_not_read_again_and_all_of_a_student_has_one_tim
 
 
 def test_the_wall_clock_ends_a_reader_that_uses_no_time(doubling: Exercise) -> None:
-    with contextlib.closing(Reader(archives._Limits(cpu_s=60, wall_s=1.0))) as impatient:
+    with contextlib.closing(Reader(cpu_s=60, wall_s=1.0)) as impatient:
         impatient.notebook(notebook(_DOUBLE), doubling, "a.ipynb")
         process = impatient._servant._process
         os.kill(process.pid, 19)  # SIGSTOP

@@ -4,7 +4,6 @@ import importlib.util
 import os
 import pickle
 import pickletools
-import shutil
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -31,7 +30,6 @@ from course.scoring.graders import grader_version
 from course.scoring.judging.session import GradingSession
 from course.scoring.judging.submission import Submission, Terms
 from course.scoring.verdict import Problem
-from tests.unit.grading.conftest import MINI
 from tests.unit.grading.made import RIGHT
 
 POISON = b"poison"
@@ -354,15 +352,12 @@ def test_a_worker_that_lacks_the_graders_is_sent_them(catalog: Catalog) -> None:
 
 
 def test_a_worker_grades_by_the_snapshot_it_was_sent(
-    at_work: Callable[..., Answers], catalog: Catalog, solution: bytes, tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:  # fmt: skip
-    shutil.copytree(MINI, tmp_path / "course")
-    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
+    at_work: Callable[..., Answers], catalog: Catalog, solution: bytes, copied: Path
+) -> None:
     edited = Catalog()
     snapshot = Snapshot.take(edited.content)
     version = grader_version(edited.exercise("doubling"), edited)
-    checks = tmp_path / "course" / "graders" / "doubling" / "checks.py"
+    checks = copied / "graders" / "doubling" / "checks.py"
     checks.write_text(checks.read_text().replace("-34.5,", "-35.5,"))
     assert grader_version(edited.exercise("doubling"), edited) != version
     terms = Terms("L1", "L1", 5.0, graders=snapshot.sha256)

@@ -20,7 +20,6 @@ from course.grading.running.rerun import RerunOptions, rerun
 from course.grading.running.run import edited_since
 from course.scoring.graders import grader_version
 from course.scoring.judging.submission import Terms
-from tests.unit.grading.conftest import MINI
 from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, key, make_book
 
 pytestmark = pytest.mark.usefixtures("unpacked")
@@ -146,11 +145,9 @@ def test_an_interrupted_regrading_goes_on_where_it_was(tmp_path: Path, catalog: 
 
 
 def test_a_students_installation_can_neither_regrade_nor_pack_an_autograder(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, copied: Path
 ) -> None:
-    shutil.copytree(MINI, tmp_path / "course")
-    shutil.rmtree(tmp_path / "course" / "graders")
-    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
+    shutil.rmtree(copied / "graders")
     with (
         make_book(tmp_path / "out", {"ada": WRONG}) as book,
         pytest.raises(MissingCapabilityError, match="hidden graders"),

@@ -211,15 +211,10 @@ def _keys(download: PlatformIdentity) -> list[tuple[str, str]]:
 
 def _key(column: str, value: str) -> str:
     """A cell for comparison."""
-    if column == "name":
-        return _folded(value)
+    if column == "name":  # one spelling of accents, letter case and spaces
+        return " ".join(unicodedata.normalize("NFKC", value).casefold().split())
     # Of ids one Unicode spelling: macOS decomposes names.
     return value.casefold() if column in {"email", "login"} else unicodedata.normalize("NFC", value)
-
-
-def _folded(name: str) -> str:
-    """A name for comparison: one spelling of accents, letter case and spaces."""
-    return " ".join(unicodedata.normalize("NFKC", name).casefold().split())
 
 
 def read_roster(path: Path) -> Roster:

@@ -89,10 +89,11 @@ def grade_quiz(bank: Bank, record: object) -> Verdict | None:
     total = float(len(bank.ids))
     try:
         score = score_record(bank, record)
-    except (UngradableError, ContentError) as error:
+    except UngradableError as error:
+        return not_graded(EXERCISE_ID, total, "ungradable", Problem(error.code, error.message, error.help))
+    except ContentError as error:
         # A fault in the question files is ours; it never costs a student points.
-        state = "grader_error" if isinstance(error, ContentError) else "ungradable"
-        return not_graded(EXERCISE_ID, total, state, Problem(error.code, error.message, error.help))
+        return not_graded(EXERCISE_ID, total, "grader_error", Problem(error.code, error.message, error.help))
     if score is None:
         return None
     repeated = f", {score.repeated} of them with questions already seen" if score.repeated else ""

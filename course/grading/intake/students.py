@@ -135,13 +135,14 @@ def _entries(
         if place.files is None and place.root.is_symlink():
             raise RefusedError("symlink", "The student's folder is a link.", "Hand in the folder itself.")
         archives = place.archives()
-    except (RefusedError, OSError) as error:
-        if isinstance(error, RefusedError):
-            problem = error.problem
-        else:
-            message = f"The student's folder cannot be read: {error.strerror}."
-            problem = Problem("unreadable", message, _PERMISSIONS)
-        yield from (Entry(name, exercise, problem=problem) for exercise in exercises)
+    except RefusedError as refused:
+        for exercise in exercises:
+            yield Entry(name, exercise, problem=refused.problem)
+        return
+    except OSError as error:
+        message = f"The student's folder cannot be read: {error.strerror}."
+        for exercise in exercises:
+            yield Entry(name, exercise, problem=Problem("unreadable", message, _PERMISSIONS))
         return
     taken = [(exercise, _found(place, archives, exercise)) for exercise in exercises]
     used = {at for _, item in taken if isinstance(item, _FoundWork) for at in item.used}

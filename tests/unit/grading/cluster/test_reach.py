@@ -126,11 +126,11 @@ def said(address: str, settings: dict[str, Any]) -> CourseError | None:
     return found
 
 
-def mine(pems: Path, name: str = "me", *, ca: str = "ca", key: str = "") -> dict[str, str]:
+def mine(pems: Path) -> dict[str, str]:
     return {
-        "ca-file": str(pems / f"{ca}.pem"),
-        "client.cert": str(pems / f"{name}.pem"),
-        "client.key": str(pems / f"{key or name}.key"),
+        "ca-file": str(pems / "ca.pem"),
+        "client.cert": str(pems / "me.pem"),
+        "client.key": str(pems / "me.key"),
     }
 
 

@@ -46,7 +46,6 @@ def read_frame(source: IO[bytes], most: int | None = None) -> bytes | None:
 
 
 def write_frame(sink: IO[bytes], message: Any) -> None:
-    """Write one message and flush it."""
     body = msgspec.msgpack.encode(message)
     sink.write(_LENGTH.pack(len(body)) + body)
     sink.flush()

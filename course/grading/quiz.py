@@ -19,7 +19,7 @@ import msgspec
 from course.errors import ContentError, UngradableError
 from course.progress.quiz import MAX_RECORDS
 from course.quizzing.bank import MAX_SEED, Bank, MarkedQuestion, Result, mark, needed
-from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility
+from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility, not_graded
 
 #: The quiz's id among the exercises of a gradebook; no exercise may have it.
 EXERCISE_ID = "quiz"
@@ -86,22 +86,27 @@ def grade_quiz(bank: Bank, record: object) -> Verdict | None:
     One public check and one point a question; a wrong answer's diagnosis is its misconception. No student
     code runs, so ``isolation`` is empty.
     """
-    total = len(bank.ids)
+    total = float(len(bank.ids))
     try:
         score = score_record(bank, record)
     except UngradableError as error:
-        return _verdict(total, state="ungradable", error=Problem(error.code, error.message, error.help))
+        return not_graded(EXERCISE_ID, total, "ungradable", Problem(error.code, error.message, error.help))
     except ContentError as error:
         # A fault in the question files is ours; it never costs a student points.
-        return _verdict(total, state="grader_error", error=Problem(error.code, error.message, error.help))
+        return not_graded(EXERCISE_ID, total, "grader_error", Problem(error.code, error.message, error.help))
     if score is None:
         return None
     repeated = f", {score.repeated} of them with questions already seen" if score.repeated else ""
     said = f"Best of {score.attempts} attempts{repeated}." if score.attempts > 1 else ""
-    return _verdict(
-        total,
-        score=score.result.score,
+    return Verdict(
+        exercise=EXERCISE_ID,
+        scope="full",
+        state="graded",
+        score=float(score.result.score),
+        max_score=total,
+        passed=score.result.score >= needed(len(bank.ids)),
         checks=tuple(_check(marked, score.seed) for marked in score.result.marked),
+        isolation="",
         warnings=(said,) if said else (),
     )
 
@@ -197,27 +202,4 @@ def _check(marked: MarkedQuestion, seed: int) -> CheckResult:
         diagnosis=None if marked.right else chosen.misconception.replace("-", "_").upper(),
         message="" if marked.right else f"Chosen: {chosen.text}",
         help="" if marked.right else chosen.explanation,
-    )
-
-
-def _verdict(
-    total: int,
-    *,
-    state: str = "graded",
-    score: int = 0,
-    checks: tuple[CheckResult, ...] = (),
-    error: Problem | None = None,
-    warnings: tuple[str, ...] = (),
-) -> Verdict:
-    return Verdict(
-        exercise=EXERCISE_ID,
-        scope="full",
-        state=state,
-        score=float(score),
-        max_score=float(total),
-        passed=state == "graded" and score >= needed(total),
-        checks=checks,
-        isolation="",
-        error=error,
-        warnings=warnings,
     )

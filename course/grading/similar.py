@@ -439,7 +439,8 @@ def _sides(pair: Pair) -> Iterator[tuple[Document, list[tuple[int, str, bool, li
     """Both sources by line: number, text, whether the other has it too, the passages that begin there."""
     blocks = _blocks(pair.passages)
     for side, document in enumerate((pair.first, pair.second)):
-        marked = {line for passage in pair.passages for line in _lines(passage[side])}
+        own = [passage[side] for passage in pair.passages]
+        marked = {line for first, last in own for line in range(first, last + 1)}
         begins: dict[int, list[int]] = {}
         for at, block in enumerate(blocks, 1):
             begins.setdefault(block[side][0], []).append(at)
@@ -450,10 +451,6 @@ def _sides(pair: Pair) -> Iterator[tuple[Document, list[tuple[int, str, bool, li
                 for number, line in enumerate(document.source.splitlines(), 1)
             ],
         )
-
-
-def _lines(passage: Passage) -> range:
-    return range(passage[0], passage[1] + 1)
 
 
 def _blocks(passages: Iterable[tuple[Passage, Passage]]) -> list[tuple[Passage, Passage]]:

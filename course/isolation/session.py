@@ -22,7 +22,7 @@ from course.isolation.failures import (
     claimed_text,
     raised,
 )
-from course.isolation.inside import wire
+from course.isolation.inside import statements, wire
 from course.isolation.levels import START_TIMEOUT, Deadline, Exit, Handle, Spawner
 from course.physics import systems
 from course.printable import printable
@@ -103,9 +103,8 @@ def _answer(handle: Handle, buffer: bytes) -> Any:
 
 def _loop_around(text: str, lines: list[int]) -> int | None:
     """The first line of the smallest loop that all these lines are in; None if there is none."""
-    try:
-        tree = ast.parse(text)
-    except (SyntaxError, ValueError, MemoryError, RecursionError):
+    tree = statements.tree(text)
+    if tree is None:
         return None
     loops = [
         (node.end_lineno - node.lineno, node.lineno)
@@ -331,10 +330,8 @@ class Connection:
     def output(self) -> str:
         return printable(self._handle.output()) if self.alive else self._printed
 
-    def close(self) -> None:
-        self._finish()
-
-    def _finish(self) -> Exit | None:
+    def close(self) -> Exit | None:
+        """How the worker ended; None if it had ended before."""
         if not self.alive:
             return None
         self.alive = False
@@ -546,7 +543,7 @@ class Connection:
 
     def _ended(self) -> StudentFailure:
         """The process ended without an answer."""
-        end = self._finish()
+        end = self.close()
         how = f"signal {end.signal}" if end and end.signal else f"exit code {end.code if end else 0}"
         return StudentFailure("crash", type=how, message=f"its process ended by itself ({how})")
 

@@ -359,8 +359,7 @@ class RemoteSubmission:
                 # What is said of a file was known before its code received any input: by now it may know one.
                 self._connection.faults, self.without = told
                 self._printed_before = len(self._connection.output())
-            except (
-                LoadRefusedError
-            ) as error:  # it loaded before, so the submission itself makes the difference
+            except LoadRefusedError as error:
+                # It loaded before, so the submission itself makes the difference.
                 raise error.failure from None
         return self._connection

@@ -318,7 +318,6 @@ def _refuse(value: Any, name: str, wanted: str, expected: str = "") -> NoReturn:
 
 
 def _advice(value: Any, wanted: str) -> str:
-    """The advice for a value of the wrong kind."""
     if any(isinstance(item, complex) for item in leaves(value)):
         return "A fractional power of a negative number is complex in Python: test its sign before."
     if wanted == "a number" and isinstance(value, list | tuple | np.ndarray):

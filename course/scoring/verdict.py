@@ -138,7 +138,6 @@ class Verdict(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def all_pass(self) -> bool:
-        """True if it was graded and every check passed."""
         return self.state == "graded" and all(check.status is Status.PASS for check in self.checks)
 
 

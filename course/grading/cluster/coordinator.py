@@ -57,8 +57,6 @@ Outcome: TypeAlias = "bytes | LostBatch | CourseError"
 
 
 class Workers(Protocol):
-    """The interface of everything that grades batches."""
-
     def places(self) -> int:
         """How many batches can be graded at once; 0 if there is no worker."""
 

@@ -77,7 +77,6 @@ class Answers(msgspec.Struct, frozen=True):
 
 
 def encode(message: Batch | Answers) -> bytes:
-    """A message as it crosses."""
     return msgspec.msgpack.encode(message)
 
 

@@ -146,8 +146,6 @@ _PERSON = ("name", "email", "section")
 
 
 class OverrideLine(msgspec.Struct, frozen=True):
-    """A score an instructor set."""
-
     score: float
     reason: str
     at: str
@@ -230,15 +228,10 @@ def write_jsonl(path: Path, results: Iterable[Effective], course: CourseRef) -> 
             handle.write(msgspec.json.encode(finite(msgspec.to_builtins(line))) + b"\n")
 
 
-def write_csv(path: Path, results: Results, chosen: Iterable[Effective] | None = None) -> None:
-    """One row per student and exercise; every cell quoted, none of them a formula.
-
-    Args:
-        chosen: the rows; all if None.
-    """
-    wanted = results.all() if chosen is None else chosen
+def write_csv(path: Path, results: Results, chosen: Iterable[Effective]) -> None:
+    """One row per student and exercise; every cell quoted, none of them a formula."""
     headings = (*_COLUMNS, *(_PERSON if results.roster else ()))
-    write_bytes(path, csv_bytes(headings, (_row(results, effective) for effective in wanted)))
+    write_bytes(path, csv_bytes(headings, (_row(results, effective) for effective in chosen)))
 
 
 def _row(results: Results, effective: Effective) -> list[str]:

@@ -140,7 +140,8 @@ def write_moodle(path: Path, results: Results, options: ExportOptions) -> Writte
     rows = []
     for student, scores in _table(selection).items():
         person = selection.people[student]
-        rows.append([person.moodle_key, for_moodle(person.name), _address(person), *scores])
+        mail = person.email if _stays(person.email) else ""
+        rows.append([person.moodle_key, for_moodle(person.name), mail, *scores])
     write_bytes(path, csv_bytes(headings, rows))
     selection.written.paths.append(path)
     if rows:
@@ -148,10 +149,9 @@ def write_moodle(path: Path, results: Results, options: ExportOptions) -> Writte
     return selection.written
 
 
-def _address(person: Person) -> str:
-    """The e-mail address, if Moodle gets it unchanged."""
-    mail = person.email
-    return mail if is_safe(mail) and for_moodle(mail) == mail else ""
+def _stays(text: str) -> bool:
+    """Whether Moodle gets it unchanged."""
+    return is_safe(text) and for_moodle(text) == text
 
 
 def _how_to_map(rows: list[list[str]]) -> str:
@@ -167,8 +167,7 @@ def _how_to_map(rows: list[list[str]]) -> str:
 
 
 def _has_moodle_key(person: Person) -> bool:
-    key = person.moodle_key
-    return bool(key) and is_safe(key) and for_moodle(key) == key
+    return bool(person.moodle_key) and _stays(person.moodle_key)
 
 
 def _table(selection: Selection, scales: Mapping[str, float] | None = None) -> dict[str, list[str]]:
@@ -237,7 +236,8 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
         if _OPEN in headings and row[headings.index(_OPEN)].strip().casefold() in {"no", "nein"}:
             locked.append(effective.student)
             continue
-        ours = {_GRADE: _grade(options.worksheet, effective, _most(headings, row))}
+        most = row[headings.index(_MOST)].strip() if _MOST in headings else ""
+        ours = {_GRADE: _grade(options.worksheet, effective, most)}
         ours |= {_FEEDBACK: _feedback(effective)} if _FEEDBACK in headings else {}
         theirs = {name: cell for name in ours if (cell := row[headings.index(name)].strip())}
         if any(not _same(cell, ours[name]) for name, cell in theirs.items()) and not options.overwrite:
@@ -291,10 +291,6 @@ def _read(path: Path) -> tuple[list[str], list[list[str]]]:
     except csv.Error as error:
         raise _wrong(path, f"line {reader.line_num}: {error}") from None
     return headings, rows
-
-
-def _most(headings: list[str], row: list[str]) -> str:
-    return row[headings.index(_MOST)].strip() if _MOST in headings else ""
 
 
 def _grade(path: Path, effective: Effective, most: str) -> str:

@@ -159,9 +159,8 @@ def select(
         written.unmatched = sorted(unmatched)
     exercises = options.exercises or tuple(exercise.id for exercise in results.exercises())
     if usable is not None and not options.exercises:
-        there = {
-            effective.exercise for effective in results.all()
-        }  # a platform needs no columns without grades
+        # A platform needs no columns without grades.
+        there = {effective.exercise for effective in results.all()}
         exercises = tuple(name for name in exercises if name in there) or exercises
     return Selection(results, exercises, people, written, options.missing == "zero")
 

@@ -28,7 +28,6 @@ from course.grading.gradebook.file import (
     SEAL,
     TABLES,
     begin_writing,
-    create,
     explained,
     open_file,
     override_digest,
@@ -38,6 +37,7 @@ from course.grading.gradebook.file import (
     seal,
     unseal,
 )
+from course.grading.gradebook.file import create as create_file
 from course.grading.gradebook.records import (
     Decision,
     GradedExercise,
@@ -83,9 +83,9 @@ class Gradebook:
         self._changed = False
         self._checkpoint_at = time.monotonic() + _CHECKPOINT_S
         if create:
-            _create(path)
+            create_file(path)
         self._db = open_file(path, writing=self._writing)
-        self._run = self._newest_run()
+        ((self._run,),) = self._rows("SELECT ifnull(max(number), 0) FROM runs")
 
     def __enter__(self) -> Self:
         return self
@@ -112,9 +112,8 @@ class Gradebook:
 
     def meta(self) -> dict[str, str]:
         """Facts about the run: course, version, seed, late policy, roster, ..."""
-        with explained(self.path):
-            query = "SELECT key, value FROM meta WHERE key NOT IN (?, ?) ORDER BY key"
-            return dict(self._db.execute(query, (SEAL, KEYS)))
+        query = "SELECT key, value FROM meta WHERE key NOT IN (?, ?) ORDER BY key"
+        return dict(self._rows(query, SEAL, KEYS))
 
     def set_meta(self, **facts: str | None) -> None:
         """Record facts about the run; None removes one."""
@@ -127,13 +126,12 @@ class Gradebook:
             names = " ".join(name for (name,) in self._db.execute("SELECT key FROM meta") if name != KEYS)
             self._db.execute(row_into("meta", "INSERT OR REPLACE"), (KEYS, names))
 
-    def begin_run(self, kind: str, options: Mapping[str, Any]) -> int:
+    def begin_run(self, kind: str, options: Mapping[str, Any]) -> None:
         """Note that a grading ("run") or regrading ("rerun") begins; its results are kept apart."""
         with self._transaction():
             self._run += 1
             text = msgspec.json.encode({**options, "who": whoami()}).decode()
             self._db.execute(row_into("runs"), (self._run, kind, _now(), text))
-        return self._run
 
     def runs(self) -> list[Run]:
         """Every grading and regrading, oldest first."""
@@ -214,10 +212,7 @@ class Gradebook:
 
     def restore(self, sha256: str, files: Mapping[str, bytes]) -> None:
         """Store the submission of a result, if it was lost."""
-        with explained(self.path):
-            query = "SELECT 1 FROM submissions WHERE sha256 = ?"
-            known = self._db.execute(query, (sha256,)).fetchone()
-        if known is None:
+        if not self._rows("SELECT 1 FROM submissions WHERE sha256 = ?", sha256):
             with self._transaction():
                 self._keep(sha256, files)
 
@@ -237,12 +232,8 @@ class Gradebook:
         number = self._find(key)
         if number is None:
             return False
-        with explained(self.path):
-            newest = self._db.execute(
-                "SELECT max(number) FROM results WHERE student = ? AND exercise = ?",
-                (key.student, key.exercise),
-            ).fetchone()[0]
-        if newest != number:
+        query = "SELECT max(number) FROM results WHERE student = ? AND exercise = ?"
+        if self._rows(query, key.student, key.exercise) != [(number,)]:
             with moving or contextlib.nullcontext(), self._transaction():
                 self._db.execute(
                     "UPDATE results SET number = ?1, row_sha256 = row_digest('results', ?1, run, student,"
@@ -306,15 +297,13 @@ class Gradebook:
 
     def student_ids(self) -> list[str]:
         """All students with a result, by name."""
-        with explained(self.path):
-            return [row[0] for row in self._db.execute("SELECT DISTINCT student FROM results ORDER BY 1")]
+        return [student for (student,) in self._rows("SELECT DISTINCT student FROM results ORDER BY 1")]
 
     def exercise_ids(self, *, handed_in: bool = False) -> list[str]:
         """All exercises with a result, by name; or those alone of which there is a submission."""
         query = "SELECT DISTINCT exercise FROM results WHERE submission_sha256 IS NOT ? ORDER BY 1"
-        with explained(self.path):
-            nothing = hashlib.sha256().hexdigest() if handed_in else None
-            return [row[0] for row in self._db.execute(query, (nothing,))]
+        nothing = hashlib.sha256().hexdigest() if handed_in else None
+        return [exercise for (exercise,) in self._rows(query, nothing)]
 
     def looked(self) -> dict[str, Looked] | None:
         """By exercise, whose work was looked at; None in a gradebook of a version that did not note it."""
@@ -327,13 +316,11 @@ class Gradebook:
 
     def submission(self, sha256: str) -> dict[str, bytes] | None:
         """A submission: file name to content; None if none has that digest."""
-        with explained(self.path):
-            row = self._db.execute("SELECT files FROM submissions WHERE sha256 = ?", (sha256,)).fetchone()
-        if row is None:
+        rows = self._rows("SELECT files FROM submissions WHERE sha256 = ?", sha256)
+        if not rows:
             return None
         try:
-            unpacking = zlib.decompressobj()
-            files = unpacking.decompress(row[0], _MOST_UNPACKED)
+            files = zlib.decompressobj().decompress(rows[0][0], _MOST_UNPACKED)
             return msgspec.msgpack.decode(files, type=dict[str, bytes])
         except (zlib.error, msgspec.DecodeError, TypeError):
             raise _failed_checksum(f"The submission {sha256[:12]}", self.path) from None
@@ -405,8 +392,7 @@ class Gradebook:
 
     def waiting(self) -> set[str]:
         """The students whose work was not all looked at: a run is going on, or was interrupted."""
-        with explained(self.path):
-            return {row[0] for row in self._db.execute("SELECT student FROM waiting")}
+        return {student for (student,) in self._rows("SELECT student FROM waiting")}
 
     # -- graders, and what was found ------------------------------------------------------------------
 
@@ -417,10 +403,8 @@ class Gradebook:
 
     def snapshot(self, sha256: str) -> bytes | None:
         """The packed graders of that digest; None if they are not here."""
-        with explained(self.path):
-            query = "SELECT packed FROM snapshots WHERE sha256 = ?"
-            row = self._db.execute(query, (sha256,)).fetchone()
-        return None if row is None else bytes(row[0])
+        rows = self._rows("SELECT packed FROM snapshots WHERE sha256 = ?", sha256)
+        return bytes(rows[0][0]) if rows else None
 
     def set_found(self, student: str, exercise: str, listed: str | None) -> None:
         """Record a student's files that may be meant for an exercise; None once that is settled."""
@@ -432,15 +416,14 @@ class Gradebook:
 
     def found(self) -> dict[tuple[str, str], str]:
         """The recorded files, by student and exercise."""
-        with explained(self.path):
-            rows = self._db.execute("SELECT student, exercise, listed FROM found ORDER BY 1, 2").fetchall()
+        rows = self._rows("SELECT student, exercise, listed FROM found ORDER BY 1, 2")
         return {(student, exercise): listed for student, exercise, listed in rows}
 
-    # -- writing --------------------------------------------------------------------------------------
-
-    def _newest_run(self) -> int:
+    def _rows(self, query: str, *arguments: str | None) -> list[Any]:
         with explained(self.path):
-            return int(self._db.execute("SELECT ifnull(max(number), 0) FROM runs").fetchone()[0])
+            return self._db.execute(query, arguments).fetchall()
+
+    # -- writing --------------------------------------------------------------------------------------
 
     @contextlib.contextmanager
     def _transaction(self) -> Iterator[None]:
@@ -480,9 +463,6 @@ def _about(student: str | None, exercise: str | None) -> tuple[str, tuple[str, .
     ]
     where = " AND ".join(f"{name} = ?" for name, _ in asked)
     return (f" WHERE {where}" if asked else ""), tuple(value for _, value in asked)
-
-
-_create = create  # under its own name it is an argument above
 
 
 #: Tables with contents that the seal does not cover: what names a row of them, and how it is called.

@@ -11,8 +11,6 @@ from course.scoring.verdict import Verdict
 
 @dataclass(frozen=True, order=True)
 class Key:
-    """The key of one result."""
-
     student: str
     exercise: str
     submission_sha256: str

@@ -7,6 +7,7 @@ in the journal, on pages that are not the same.
 
 import contextlib
 import hashlib
+import itertools
 import shutil
 import sqlite3
 import struct
@@ -303,25 +304,21 @@ def _with_log(path: Path) -> bytes:
 
 def _take(data: bytes, found: dict[str, dict[Row, Row]], new: Counter[str]) -> None:
     """Add a file's intact rows; known ones stay."""
-    for number, values in raw_rows(data):
-        table = _table_of(number, values)
-        if table is None:
-            continue
-        row = (number, *values[1:-1]) if table in _NUMBERED else values[:-1]
+    for table, row in itertools.starmap(_placed, raw_rows(data)):
         key = row[: _KEYS.get(table, 1)]
-        if key != (SEAL,) and key not in found[table]:
+        if table and key != (SEAL,) and key not in found[table]:
             found[table][key] = row
             new[table] += 1
 
 
-def _table_of(number: int | None, values: Row) -> str | None:
-    """The table that a row belongs to by its own digest; None if the row is damaged."""
+def _placed(number: int | None, values: Row) -> tuple[str, Row]:
+    """The table that a row belongs to by its own digest, "" if it is damaged, and the row without that."""
     for name, columns in TABLES.items():
         if len(values) == len(columns) + 1:
             cells = (number, *values[1:-1]) if name in _NUMBERED else values[:-1]
             if row_digest(name, *cells) == values[-1] and (name != "overrides" or _is_whole(cells)):
-                return name
-    return None
+                return name, cells
+    return "", ()
 
 
 def _is_whole(cells: Row) -> bool:

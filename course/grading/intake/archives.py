@@ -292,7 +292,9 @@ def _read(path: Path, wanted: Callable[[str, str], bool]) -> _Held:
             for name, raw in names.items()
             if wanted(name, raw)
         }
-        return _Held(names, files, _tried(path, lambda: _manifest(path, archive, members)))
+        info = members.get(MANIFEST)
+        found = _tried(path, lambda: _read_manifest(path, _unpacked(path, archive, info))) if info else {}
+        return _Held(names, files, found)
 
 
 def _listed(path: Path) -> int:
@@ -336,11 +338,6 @@ def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
         if name.as_posix() in members:
             raise _refused(path, "it holds two files of one name")
         members[name.as_posix()] = info
-    return _without_top(members)
-
-
-def _without_top(members: Members) -> Members:
-    """The members' names without the folders around all of them."""
     around = posixpath.commonpath([name.rpartition("/")[0] for name in members] or [""])
     return {name.removeprefix(f"{around}/"): info for name, info in members.items()}
 
@@ -354,15 +351,8 @@ def _unpacked(path: Path, archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> by
     return content
 
 
-def _manifest(path: Path, archive: zipfile.ZipFile, members: Members) -> dict[str, Any]:
-    """The metadata that ``course submit`` wrote; empty for an archive made by hand."""
-    info = members.get(MANIFEST)
-    if info is None:
-        return {}
-    return _read_manifest(path, _unpacked(path, archive, info))
-
-
 def _read_manifest(path: Path, content: bytes) -> dict[str, Any]:
+    """The metadata that ``course submit`` wrote."""
     manifest: Any = None
     with contextlib.suppress(ValueError, RecursionError):
         manifest = json.loads(content)
@@ -436,20 +426,13 @@ class _Reply(msgspec.Struct, frozen=True):
     streamed: int = 0
 
 
-@dataclass(frozen=True)
-class _Limits:
-    cpu_s: int = CPU_S
-    wall_s: float = WALL_S
-    memory: int = MEMORY
-
-
 class Reader:
     """What the process reads; all that a file makes it refuse is a RefusedError."""
 
-    def __init__(self, limits: _Limits = _Limits()) -> None:
-        self._servant = Servant(__name__, str(limits.cpu_s), str(limits.memory), wall_s=limits.wall_s)
+    def __init__(self, cpu_s: int = CPU_S, wall_s: float = WALL_S, memory: int = MEMORY) -> None:
+        self._servant = Servant(__name__, str(cpu_s), str(memory), wall_s=wall_s)
         self.close = self._servant.close
-        self._cpu_s = limits.cpu_s
+        self._cpu_s = cpu_s
         self._whose: object = None
         self._student, self._left_s, self._streamed = 0, math.inf, MAX_STREAMED
         self._fatal: set[bytes] = set()
@@ -477,8 +460,7 @@ class Reader:
         Raises:
             RefusedError: it must not be opened, or is damaged.
         """
-        where = os.fsencode(path.absolute())
-        return self._ask(_Request("archive", quoted(path.name), path=where, exercise=exercise)).found
+        return self._ask(_about("archive", path, exercise=exercise)).found
 
     def outlines(self, path: Path, skip: tuple[str, ...], functions: tuple[str, ...]) -> tuple[Outline, ...]:
         """What a file is, and the functions that it defines, or each file in an archive.
@@ -487,14 +469,11 @@ class Reader:
             skip: members of the archive to ignore.
             functions: the names to look for.
         """
-        where = os.fsencode(path.absolute())
-        ask = _Request("outline", quoted(path.name), path=where, functions=functions, skip=skip)
-        return self._ask(ask).outlines
+        return self._ask(_about("outline", path, functions=functions, skip=skip)).outlines
 
     def member(self, path: Path, name: str) -> bytes:
         """The content of one file of an archive."""
-        ask = _Request("member", quoted(path.name), path=os.fsencode(path.absolute()), skip=(name,))
-        return self._ask(ask).content
+        return self._ask(_about("member", path, skip=(name,))).content
 
     def quiz_in(self, path: Path, loose: bytes = b"") -> Any:
         """The quiz attempts in an archive; words if they have another form, None if it has none.
@@ -502,9 +481,7 @@ class Reader:
         Args:
             loose: what ``path`` holds, where that is no archive.
         """
-        where = os.fsencode(path.absolute())
-        told = self._ask(_Request("quiz", quoted(path.name), path=where, content=loose))
-        return json.loads(told.content)
+        return json.loads(self._ask(_about("quiz", path, content=loose)).content)
 
     def _ask(self, ask: _Request) -> _Reply:
         if self.spent:
@@ -534,6 +511,10 @@ class Reader:
             problem = told.problem
             raise RefusedError(problem.code, problem.message, problem.help)
         return told
+
+
+def _about(kind: str, path: Path, **more: Any) -> _Request:
+    return _Request(kind, quoted(path.name), path=os.fsencode(path.absolute()), **more)
 
 
 #: The one of this process: a run reads one file after the other.

@@ -489,7 +489,6 @@ def is_notebook(content: bytes) -> bool:
 
 
 def may_be_code(name: str) -> bool:
-    """Whether a text of this name may be code."""
     return PurePosixPath(name).suffix.rstrip().casefold() in _CODE
 
 

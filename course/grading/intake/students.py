@@ -4,14 +4,14 @@
     <student>/<exercise-id>/<module>.py
     <student>/<anything>.zip        as ``course submit`` writes it
 
-or ``<module>.ipynb`` in place of ``<module>.py``: the module that the notebook makes up is graded. ``names``
-has the accepted spellings of these names. Files that are left over, with another name, in another folder, or
-beside the one that was graded, are always reported, with the exercises whose functions they have. An
+or ``<module>.ipynb`` in place of ``<module>.py``: the module that the notebook makes up is graded. Accepted
+spellings of these names are in ``downloads``. Files that are left over, with another name, in another folder,
+or beside the one that was graded, are always reported, with the exercises whose functions they have. An
 instructor decides on the proposals with ``course grade assign``.
 
 ``course.grading.intake.downloads`` says who the students are and where their files lie. Only files that an
 exercise declares are read; nothing here executes a file, unpacks one to disk or follows a link. Notebooks and
-archives have to be parsed for that, which a separate process does (``reading``).
+archives have to be parsed for that, which a separate process does (``archives``).
 """
 
 from __future__ import annotations

@@ -339,7 +339,7 @@ class Results:
             score = verdict.score - penalty
         return Effective(
             result, score, most, self._passes(result, score, most), penalty, late, submitted, witness,
-            self._is_flagged(key) and submitted is None, override,
+            submitted is None and "canvas-late" in dict(self._witnesses(key)), override,
         )  # fmt: skip
 
     def unmatched(self, students: Iterable[str]) -> list[str]:
@@ -351,20 +351,17 @@ class Results:
 
     def _submitted(self, key: Key) -> tuple[float | None, str]:
         """The time of submission, by the most trusted witness that has one."""
-        known = self._times.get((key.student, key.exercise), ())
+        told = self._witnesses(key)
         for source in self.policy.trust if self.policy else ("list", "gradescope"):
-            times = [
-                at
-                for sha256, who, at in known
-                if who == source and sha256 in {"", key.submission_sha256} and at is not None
-            ]
+            times = [at for who, at in told if who == source and at is not None]
             if times:
                 return min(times), source
         return None, ""
 
-    def _is_flagged(self, key: Key) -> bool:
+    def _witnesses(self, key: Key) -> list[tuple[str, float | None]]:
+        """Who says when this very submission was handed in, and when."""
         known = self._times.get((key.student, key.exercise), ())
-        return "canvas-late" in {who for sha, who, _ in known if sha in {"", key.submission_sha256}}
+        return [(who, at) for sha256, who, at in known if sha256 in {"", key.submission_sha256}]
 
     def _due(self, key: Key) -> float | None:
         person = self.person(key.student)
@@ -424,7 +421,6 @@ class ScoreChange(msgspec.Struct, frozen=True):
 
 
 def counting(results: Results) -> Scores:
-    """The effective scores."""
     return {(item.student, item.exercise): (item.score, item.max_score) for item in results.all()}
 
 

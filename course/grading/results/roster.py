@@ -25,6 +25,7 @@ import unicodedata
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import msgspec
 
@@ -210,15 +211,10 @@ def _keys(download: PlatformIdentity) -> list[tuple[str, str]]:
 
 def _key(column: str, value: str) -> str:
     """A cell for comparison."""
-    if column == "name":
-        return _folded(value)
+    if column == "name":  # one spelling of accents, letter case and spaces
+        return " ".join(unicodedata.normalize("NFKC", value).casefold().split())
     # Of ids one Unicode spelling: macOS decomposes names.
     return value.casefold() if column in {"email", "login"} else unicodedata.normalize("NFC", value)
-
-
-def _folded(name: str) -> str:
-    """A name for comparison: one spelling of accents, letter case and spaces."""
-    return " ".join(unicodedata.normalize("NFKC", name).casefold().split())
 
 
 def read_roster(path: Path) -> Roster:
@@ -308,12 +304,18 @@ def _some(value: object) -> bool:
 def _cells(path: Path, line: int, row: dict[str, str | None]) -> tuple[dict[str, str], int]:
     if None in row or None in row.values():
         raise _wrong(path, f"line {line}: it has another number of cells than the headings")
-    return {name: text or "" for name, text in row.items()}, line
+    # A student's id is the name of a folder, including spaces; the other cells were typed by hand.
+    cells = ((name, text or "") for name, text in row.items())
+    return {name: text if name == "student" else text.strip() for name, text in cells}, line
+
+
+def _known(row: dict[str, str], columns: dict[str, str]) -> dict[str, Any]:
+    """The cells of a platform's row by our columns; empty where its file has no such heading."""
+    return {ours: row.get(heading, "") for ours, heading in columns.items()}
 
 
 def _from_ours(path: Path, line: int, row: dict[str, str]) -> Person:
-    # A student's id is the name of a folder, including spaces; the other cells were typed by hand.
-    cells = {name: text if name == "student" else text.strip() for name, text in row.items()}
+    cells = dict(row)
     if not cells["student"]:
         raise _wrong(path, f"line {line}: it names no student")
     if cells.get("canvas_id") and not re.fullmatch(r"[0-9]{1,20}", cells["canvas_id"]):
@@ -330,9 +332,8 @@ def _from_ours(path: Path, line: int, row: dict[str, str]) -> Person:
 
 def _from_canvas(path: Path, line: int, row: dict[str, str]) -> Person | None:
     """A row of Canvas' gradebook; below its headings it has rows about columns, and a student for tests."""
-    cells = {name: text.strip() for name, text in row.items()}
-    name = cells.get("Student") or ", ".join(filter(None, (cells.get("LastName"), cells.get("FirstName"))))
-    key = cells["ID"]
+    name = row.get("Student") or ", ".join(filter(None, (row.get("LastName"), row.get("FirstName"))))
+    key = row["ID"]
     if not key:
         return None  # "Points Possible", "Manual Posting"
     if not re.fullmatch(r"[0-9]{1,20}", key):
@@ -341,14 +342,8 @@ def _from_canvas(path: Path, line: int, row: dict[str, str]) -> Person | None:
         return None
     # As Canvas calls the files of a download: the sortable name without anything but letters and digits.
     plain = "".join(letter for letter in name.casefold() if letter.isalnum())
-    return Person(
-        student=f"{plain}_{key}",
-        name=name,
-        canvas_id=key,
-        sis_user_id=cells.get("SIS User ID", ""),
-        section=cells.get("Section", ""),
-        login=cells.get("SIS Login ID", ""),
-    )
+    known = _known(row, _CANVAS) | {"name": name}
+    return Person(f"{plain}_{key}", section=row.get("Section", ""), **known)
 
 
 def _assignments(headings: list[str], rows: list[dict[str, str]]) -> dict[str, Column]:
@@ -356,7 +351,7 @@ def _assignments(headings: list[str], rows: list[dict[str, str]]) -> dict[str, C
     found = {}
     for heading in headings:
         if id_ := re.search(r"\(([0-9]+)\)$", heading):
-            cells = [(row["ID"].strip(), row[heading].strip()) for row in rows]
+            cells = [(row["ID"], row[heading]) for row in rows]
             points = [
                 float(cell.replace(",", ".")) for key, cell in cells if not key and _POINTS.fullmatch(cell)
             ]
@@ -367,20 +362,13 @@ def _assignments(headings: list[str], rows: list[dict[str, str]]) -> dict[str, C
 
 def _from_moodle(path: Path, line: int, row: dict[str, str]) -> Person:
     """A row of Moodle's grading worksheet; its files are called by name and the participant's number."""
-    cells = {name: text.strip() for name, text in row.items()}
-    key = moodle_key(cells["Identifier"])
+    key = moodle_key(row["Identifier"])
     if key is None:
-        raise _wrong(path, f"line {line}: Identifier {cells['Identifier']!r} ends in no number")
+        raise _wrong(path, f"line {line}: Identifier {row['Identifier']!r} ends in no number")
     # Graded anonymously, a download calls its folders as the worksheet calls its rows.
-    name = cells.get("Full name", "").replace("_", "") or cells["Identifier"].removesuffix(key).strip()
-    return Person(
-        student=f"{name}_{key}",
-        name=name,
-        email=cells.get("Email address", ""),
-        sis_user_id=cells.get("ID number", ""),
-        moodle_key=key,
-        login=cells.get("Username", ""),
-    )
+    name = row.get("Full name", "").replace("_", "") or row["Identifier"].removesuffix(key).strip()
+    known = _known(row, _MOODLE) | {"name": name, "moodle_key": key}
+    return Person(f"{name}_{key}", **known)
 
 
 def moodle_key(identifier: str) -> str | None:
@@ -391,17 +379,14 @@ def moodle_key(identifier: str) -> str | None:
 
 def _from_gradescope(path: Path, line: int, row: dict[str, str]) -> Person | None:
     """A row of Gradescope's roster; staff are listed in it too."""
-    cells = {name: text.strip() for name, text in row.items()}
-    if cells.get("Role", "Student").casefold() not in {"", "student"}:
+    if row.get("Role", "Student").casefold() not in {"", "student"}:
         return None
-    name = cells.get("Name") or " ".join(
-        part for part in (cells.get("First Name", ""), cells.get("Last Name", "")) if part
-    )
-    sid, email = cells.get("SID", ""), cells["Email"]
-    if not (sid or email or name):
+    name = row.get("Name") or " ".join(filter(None, (row.get("First Name"), row.get("Last Name"))))
+    known = _known(row, _GRADESCOPE) | {"name": name}
+    student = known["sis_user_id"] or known["email"] or name
+    if not student:
         raise _wrong(path, f"line {line}: it names no student")
-    section = cells.get("Sections", "") or cells.get("Section", "")
-    return Person(student=sid or email or name, name=name, email=email, sis_user_id=sid, section=section)
+    return Person(student, section=row.get("Sections", "") or row.get("Section", ""), **known)
 
 
 def _check_unique(path: Path, people: list[tuple[Person, int]]) -> None:

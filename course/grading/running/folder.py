@@ -103,7 +103,7 @@ def export_all(out: Path, results: Results) -> None:
 
     try:
         write_jsonl(out / "results.jsonl", results.all(), results.course)
-        write_csv(out / "grades.csv", results)
+        write_csv(out / "grades.csv", results, results.all())
         write_pages(out / "report.html", results, results.all(), [item.id for item in results.exercises()])
     except MissingCapabilityError as error:
         raise MissingCapabilityError(

@@ -53,8 +53,6 @@ GradeAll = Callable[[Iterable[Entry], Terms], Iterator[Graded]]
 
 
 class Ungraded(msgspec.Struct, frozen=True):
-    """One submission without a grade."""
-
     student: str
     exercise: str
     state: str
@@ -116,7 +114,6 @@ class Summary:
         return 6 if self.states["ungradable"] or self.unrecognised else 0
 
     def count(self, results: Results) -> None:
-        """Count everything in a gradebook."""
         there = set(results.book.exercise_ids())
         self.pass_marks = [
             (item.pass_share * item.max_points, item.max_points)

@@ -18,6 +18,8 @@ from typing import Any
 
 import numpy as np
 
+from course.isolation.inside import statements
+
 Answers = list[Any]
 #: Weighted sums of a fingerprint.
 SUMS = 2
@@ -228,7 +230,6 @@ _READING = (ast.Subscript, ast.Call, ast.For, ast.comprehension, ast.Compare, as
 
 
 def _merely_read(node: ast.AST) -> list[ast.expr]:
-    """The parts of an expression that it only reads."""
     read: list[ast.expr] = []
     match node:
         case ast.Subscript(value=table, ctx=ast.Load()):
@@ -259,9 +260,8 @@ def _is_fixed(value: ast.expr) -> bool:
 @functools.lru_cache(maxsize=1)  # of the submission at hand: it is read when loaded, and where a check fails
 def _read(source: bytes) -> tuple[dict[str, ast.stmt], dict[ast.stmt, list[ast.AST]]]:
     """The statement that binds each name of a module, a later one in place of an earlier; their nodes."""
-    try:
-        tree = ast.parse(source if len(source) <= _LONGEST else b"")
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+    tree = statements.tree(source if len(source) <= _LONGEST else b"")
+    if tree is None:
         return {}, {}
     defined: dict[str, ast.stmt] = {}
     for node in tree.body:

@@ -79,7 +79,6 @@ def _of_kinds(actual: Any, expected: Any, a: Array | None, given: Mapping[str, A
 
 
 def _of_numbers(actual: float, expected: float, given: Mapping[str, Any]) -> str:
-    """The likeness of two numbers."""
     if actual == expected and type(actual) is not type(expected):
         kinds = f"of the type {type(actual).__name__}, and {type(expected).__name__} is asked for"
         return f"The number is right, but it is {kinds}."
@@ -209,7 +208,6 @@ def _of_digits(a: float, e: float) -> str:
 
 
 def _of_arrays(a: Array, e: Array, given: Mapping[str, Any]) -> str:
-    """The likeness of two arrays of one shape."""
     if not np.isfinite(a).all():
         where = tuple(int(i) for i in np.argwhere(~np.isfinite(a))[0])
         return f"The first {a[where]:g} is at {list(where)}."

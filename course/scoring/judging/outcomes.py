@@ -41,22 +41,11 @@ def result(check: Check, status: Status, **fields: Any) -> CheckResult:
 
 
 def found(check: Check, status: Status, finding: Finding, duration_ms: float, **extra: Any) -> CheckResult:
-    return result(
-        check,
-        status,
-        duration_ms=duration_ms,
-        message=finding.message,
-        help=finding.help,
-        diagnosis=finding.diagnosis,
-        input=plain(finding.input, 4),  # a dict of arrays, such as one of matrices
-        expected=plain(finding.expected),
-        actual=plain(finding.actual),
-        quantity=finding.quantity,
-        units=finding.units,
-        tolerance=finding.tolerance,
-        first_divergence=finding.first_divergence,
-        **extra,
-    )
+    """A result with all that its finding says; both have the same names for it."""
+    told = msgspec.structs.asdict(finding)
+    told["input"] = plain(finding.input, 4)  # a dict of arrays, such as one of matrices
+    told |= {"expected": plain(finding.expected), "actual": plain(finding.actual)}
+    return result(check, status, duration_ms=duration_ms, **told, **extra)
 
 
 def skipped(check: Check, blocking: str) -> CheckResult:
@@ -225,9 +214,8 @@ def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
         return message, f"{letters} If it is no text at all: {stub}"
     shown = f": `{refused.text.strip()}`" if refused.text.strip() else ""
     message = ended(f"{where}: Python cannot read this file: {failure.message}{shown}")
-    if (
-        "triple-quoted" in failure.message
-    ):  # the line is where the last quotes stand, not where they are missing
+    if "triple-quoted" in failure.message:
+        # The line is where the last quotes stand, not where they are missing.
         return message, "Three quotes are missing there or further up. Look at what you changed last."
     return message, unread(failure, refused.code) or "Look at that line and the one above it."
 

@@ -253,26 +253,21 @@ class GradingSession:
         if only:
             wanted = _with_required(only, ordered)
             ordered = [check for check in ordered if check.id in wanted]
+        source = submission.files[self.exercise.module]
         results: dict[str, CheckResult] = {}
-        self._failed.clear()
-        self._raised.clear()
-        self._heard.clear()
-        self.asked.clear()
-        self.took.clear()
-        self._hung.clear()
-        self.curves.clear()
+        of_this_run = self._failed, self._raised, self._heard, self._hung, self.asked, self.took, self.curves
+        for kept in of_this_run:
+            kept.clear()
         for check in ordered:
             blocking = next(
                 (name for name in check.requires if results[name].status is not Status.PASS), None
             )
             results[check.id] = skipped(check, blocking) if blocking else self._run_one(check, remote, places)
         if self._explainer is not None and self._failed:
-            source = submission.files[self.exercise.module]
             with Again(lambda: self._load(submission)) as again:
                 self._explainer.explain(results, self._failed, remote, source, self._heard, again)
         for name, judged in results.items():
             if judged.status in {Status.FAIL, Status.ERROR}:
-                source = submission.files[self.exercise.module]
                 results[name] = told_more(judged, source, places, self._raised.get(name))
         return [results[check.id] for check in self._checks.checks if check.id in results]
 

@@ -70,6 +70,22 @@ _CHECKS = '''
 '''
 
 
+def _around(body: str, above: str = "", mark: str = "", taken: str = "") -> str:
+    """A file with one check, and what its author put around it."""
+    return f'''
+import pytest
+
+{above}
+
+@pytest.mark.task("a")
+@pytest.mark.points(1)
+{mark}
+def test_it({taken}):
+    """It"""
+    {body}
+'''
+
+
 class Fake:
     """What stands for a submission; the checks above ask nothing else of it."""
 
@@ -130,73 +146,26 @@ def test_what_a_check_raises_comes_out_as_it_was_raised(collect: Any) -> None:
     assert _run(checks, "passes", Fake()) is None
 
 
-def test_a_fixture_that_fails_is_no_pass(collect: Any) -> None:
-    source = '''
-    import pytest
-
-    @pytest.fixture
-    def broken():
-        raise OSError("no")
-
-    @pytest.fixture
-    def breaks_later():
-        yield
-        raise KeyError("late")
-
-    @pytest.mark.task("a")
-    @pytest.mark.points(1)
-    def test_before(broken):
-        """Before"""
-
-    @pytest.mark.task("a")
-    @pytest.mark.points(1)
-    def test_after(breaks_later):
-        """After"""
-    '''
-    checks = collect(source)
-    assert isinstance(_run(checks, "before", Fake()), OSError)
-    assert isinstance(_run(checks, "after", Fake()), KeyError)
+@pytest.mark.parametrize(
+    ("fixture", "kind"), [("raise OSError", OSError), ("yield\n    raise KeyError", KeyError)]
+)
+def test_a_fixture_that_fails_is_no_pass(fixture: str, kind: type, collect: Any) -> None:
+    above = f"@pytest.fixture\ndef broken():\n    {fixture}"
+    assert isinstance(_run(collect(_around("", above, taken="broken")), "it", Fake()), kind)
 
 
-def test_skipping_from_within_is_no_pass(collect: Any) -> None:
-    source = '''
-    import pytest
-
-    @pytest.mark.task("a")
-    @pytest.mark.points(1)
-    def test_skips():
-        """Skips"""
-        pytest.skip("not today")
-
-    @pytest.mark.task("a")
-    @pytest.mark.points(1)
-    def test_expects_to_fail():
-        """Expects to fail"""
-        pytest.xfail("known")
-    '''
-    checks = collect(source)
-    assert _run(checks, "skips", Fake()) is not None
-    assert _run(checks, "expects_to_fail", Fake()) is not None
+@pytest.mark.parametrize("body", ["pytest.skip('not today')", "pytest.xfail('known')"])
+def test_skipping_from_within_is_no_pass(body: str, collect: Any) -> None:
+    assert _run(collect(_around(body)), "it", Fake()) is not None
 
 
 @pytest.mark.parametrize("taken", ["submission", "submission, own"])
 def test_a_check_may_compute_with_infinite_numbers(taken: str, collect: Any) -> None:
-    source = f'''
-    import numpy as np
-    import pytest
-
-    @pytest.fixture
-    def own():
-        pass
-
-    @pytest.mark.task("a")
-    @pytest.mark.points(1)
-    def test_computes({taken}):
-        """It computes"""
-        submission.log.append(np.array([np.inf]) - np.inf)  # numpy would warn, and a warning may be an error
-    '''
+    """Numpy would warn, and a warning may be an error."""
+    above = "import numpy as np\n@pytest.fixture\ndef own():\n    pass"
     submission = Fake()
-    assert _run(collect(source), "computes", submission) is None
+    source = _around("submission.log.append(np.array([np.inf]) - np.inf)", above, taken=taken)
+    assert _run(collect(source), "it", submission) is None
     assert np.isnan(submission.log).all()
 
 
@@ -204,20 +173,6 @@ def test_a_check_that_pytest_never_called_is_no_pass(collect: Any, monkeypatch: 
     checks = collect()
     monkeypatch.setattr("course.scoring.checks.collected._run_item", lambda _item: None)
     assert isinstance(_run(checks, "passes", Fake()), RuntimeError)
-
-
-_AROUND = '''
-import pytest
-
-{above}
-
-@pytest.mark.task("a")
-@pytest.mark.points(1)
-{mark}
-def test_it({taken}):
-    """It"""
-    {body}
-'''
 
 
 @pytest.mark.parametrize(
@@ -249,8 +204,7 @@ def test_it({taken}):
 def test_whatever_an_author_puts_around_a_check_counts(
     said: list[str], above: str, mark: str, taken: str, body: str, collect: Any
 ) -> None:
-    source = _AROUND.format(above="seen = []\n" + above, mark=mark, taken=taken, body=body)
-    checks = collect(source)
+    checks = collect(_around(body, f"seen = []\n{above}", mark, taken))
     for _ in range(2):
         checks._items["it"].obj.__globals__["seen"].clear()
         outcome = _run(checks, "it", Fake())
@@ -260,9 +214,7 @@ def test_whatever_an_author_puts_around_a_check_counts(
 
 def test_a_check_has_its_parameters(collect: Any) -> None:
     mark = "@pytest.mark.parametrize('x', [1, 2])"
-    checks = collect(
-        _AROUND.format(above="", mark=mark, taken="submission, x", body="submission.log.append(x)")
-    )
+    checks = collect(_around("submission.log.append(x)", mark=mark, taken="submission, x"))
     submission = Fake()
     assert [_run(checks, check.id, submission) for check in checks.checks] == [None, None]
     assert submission.log == [1, 2]
@@ -274,12 +226,12 @@ def test_a_package_around_the_checks_sets_itself_up(collect: Any, tmp_path: Path
         "import os\ndef setup_module():\n    os.environ['SET_UP'] = 'yes'\n", "utf-8"
     )
     body = "import os\n    assert os.environ.pop('SET_UP') == 'yes'"
-    assert _run(collect(_AROUND.format(above="", mark="", taken="", body=body)), "it", Fake()) is None
+    assert _run(collect(_around(body)), "it", Fake()) is None
 
 
 def test_a_check_that_gives_something_is_pytests_to_judge(collect: Any) -> None:
     above = "class Later:\n    def __await__(self):\n        yield"
-    checks = collect(_AROUND.format(above=above, mark="", taken="", body="return Later()"))
+    checks = collect(_around("return Later()", above))
     assert "async def functions are not natively supported" in str(_run(checks, "it", Fake()))
 
 

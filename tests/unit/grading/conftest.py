@@ -1,5 +1,6 @@
 """The miniature course, its model solution, and warm sessions over it."""
 
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -20,6 +21,13 @@ def _chosen(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFa
     """What looks for the course of this process finds the miniature one, for as long as a test lasts."""
     monkeypatch.setenv("COURSE_CONTENT", str(MINI))
     monkeypatch.setenv("COURSE_CACHE", str(tmp_path_factory.getbasetemp() / "cache"))
+
+
+@pytest.fixture
+def copied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A copy of it that may be edited; what looks for the course finds that."""
+    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
+    return shutil.copytree(MINI, tmp_path / "course")
 
 
 @pytest.fixture(scope="module")

@@ -150,10 +150,10 @@ BROKEN = verdict(
 )
 
 
-def make_book(path: Path, verdicts: dict[str, Verdict], *, writing: bool = True) -> Gradebook:
+def make_book(path: Path, verdicts: dict[str, Verdict]) -> Gradebook:
     """An open gradebook with one result per student."""
     path.mkdir(parents=True, exist_ok=True)
-    book = Gradebook(path / "gradebook.sqlite", create=True, writing=writing)
+    book = Gradebook(path / "gradebook.sqlite", create=True, writing=True)
     book.set_meta(seed="7", course="mini", version="1")
     book.begin_run("run", {"timeout": 10.0})
     book.set_exercises(

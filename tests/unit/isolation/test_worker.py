@@ -177,11 +177,10 @@ def test_a_file_that_plots_is_loaded_and_only_what_needs_the_package_fails(load:
     connection = load(PLOTS)
     assert connection.call("f") == 1
     for name, package, line in (("g", "scipy", 8), ("h", "pandas", 11)):
-        with pytest.raises(StudentFailure) as caught:
-            connection.call(name)
-        assert caught.value.type == "ImportNotDeclaredError"
-        assert f"{package!r} (allowed: the standard library, numpy)" in caught.value.message
-        assert caught.value.line == line
+        failure = _failure(connection, name)
+        assert failure.type == "ImportNotDeclaredError"
+        assert f"{package!r} (allowed: the standard library, numpy)" in failure.message
+        assert failure.line == line
     assert connection.call("f") == 1
 
 
@@ -211,10 +210,9 @@ def test_a_constant_of_another_package_fails_where_it_is_used_and_says_why(load:
     lines = [line for line in CONSTANTS.splitlines() if line.startswith("def ")]
     for line in lines[:-1]:
         name = line[4 : line.index("(")]
-        with pytest.raises(StudentFailure) as caught:
-            connection.call(name, 2.0)
-        assert caught.value.type == "ImportNotDeclaredError", (name, caught.value.message)
-        assert "'scipy'" in caught.value.message, name
+        failure = _failure(connection, name, 2.0)
+        assert failure.type == "ImportNotDeclaredError", (name, failure.message)
+        assert "'scipy'" in failure.message, name
 
 
 def test_a_package_that_the_top_level_cannot_do_without_is_refused_with_its_line(load: Any) -> None:
@@ -390,9 +388,7 @@ def test_words_of_a_class_called_like_ours_are_the_codes_own(load: Any) -> None:
     )
     connection = load(forged)
     for name, kind in (("f", "ImportError"), ("g", "ImportNotDeclaredError")):
-        with pytest.raises(StudentFailure) as caught:
-            connection.call(name, 1.0)
-        assert caught.value.type == kind
+        assert _failure(connection, name, 1.0).type == kind
 
 
 def test_methods_are_functions_of_the_graders(load: Any) -> None:

@@ -98,7 +98,6 @@ def test_a_finding_says_what_was_measured_expected_and_allowed():
         kit.expect_close, 3, 1.0, rel=0.1, units="m", input=given_input, **TOLERANCE, **WORDS
     )
     assert (finding.actual, finding.expected, finding.units) == (3.0, 1.0, "m")
-    assert finding.tolerance is not None
     assert (finding.tolerance.rel, finding.tolerance.abs, finding.tolerance.source) == (0.1, None, "test")
     assert finding.input == {"h": 0.1, "q": [1.0, 2.0]}
     assert (finding.message, finding.help) == ("It is wrong.", "Mend it.")

@@ -39,16 +39,58 @@ def codes(checks: list[CheckResult]) -> set[Any]:
     return {check.diagnosis for check in checks}
 
 
-def test_one_mistake_is_told_the_same_by_every_check_that_it_fails(session: GradingSession) -> None:
-    resolve = """
+#: A mistake -> the one function whose checks fail, and what each of them tells.
+TOLD = {
+    "equal masses": ("resolve", "EQUAL_MASSES_ASSUMED", """
 def resolve(ma, mb, va, vb, normal, restitution):
     va, vb, n = (np.array(a, dtype=float) for a in (va, vb, normal))
     blow = (1 + restitution) * max((va - vb) @ n, 0.0) * ma / 2 * n
     return va - blow / ma, vb + blow / mb
-"""
-    found = failed(session, resolve)
-    assert found.keys() == {"resolve"}
-    assert codes(found["resolve"]) == {"EQUAL_MASSES_ASSUMED"}
+"""),
+    "an argument changed in place": ("detect_sphere_plane", "MUTATES_INPUT", """
+def detect_sphere_plane(x, r, point, normal):
+    x -= point
+    depth = r - float(x @ normal)
+    return depth >= 0, normal, depth
+"""),
+    "the origin of a nan": ("impulse_1d", "NOT_A_NUMBER", """
+def impulse_1d(ma, mb, va, vb, restitution):
+    return float('nan')
+"""),
+    "what is kept between calls, before what it looks like": ("simulate_head_on", "STATE_KEPT", """
+_right, _met = simulate_head_on, []
+def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):
+    if _met:
+        t = h * np.arange(round(t_end / h) + 1)
+        return t, x0 + t[:, None] * v0, np.tile(v0, (len(t), 1))
+    _met.append(True)
+    return _right(m, x0, v0, radius, restitution, t_end, h)
+"""),
+    "another mistake than its cache, which is right": ("impulse_1d", "IMPULSE_ON_SEPARATING", """
+_known = {}
+def impulse_1d(*args):
+    if args not in _known:
+        ma, mb, va, vb, e = args
+        _known[args] = (1 + e) * (va - vb) / (1 / ma + 1 / mb)
+    return _known[args]
+"""),
+    "results that the next call fills again": ("resolve", "RESULT_OVERWRITTEN", """
+_right, _kept = resolve, {}
+def resolve(ma, mb, va, vb, normal, restitution):
+    kept = _kept.setdefault(len(va), np.zeros((2, len(va))))
+    kept[:] = _right(ma, mb, va, vb, normal, restitution)
+    return kept[0], kept[1]
+"""),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("mistake", TOLD)
+def test_one_mistake_is_told_the_same_by_every_check_that_it_fails(
+    session: GradingSession, mistake: str
+) -> None:
+    task, code, source = TOLD[mistake]
+    found = failed(session, source)
+    assert {name: codes(checks) for name, checks in found.items()} == {task: {code}}
 
 
 def test_two_mistakes_at_once_are_both_told(session: GradingSession) -> None:
@@ -108,54 +150,6 @@ def resolve(ma, mb, va, vb, normal, restitution):
         assert calls in check.message
 
 
-def test_arguments_changed_in_place_are_said_where_they_are_seen(session: GradingSession) -> None:
-    detect = """
-def detect_sphere_plane(x, r, point, normal):
-    x -= point
-    depth = r - float(x @ normal)
-    return depth >= 0, normal, depth
-"""
-    found = failed(session, detect)
-    assert found.keys() == {"detect_sphere_plane"}
-    assert codes(found["detect_sphere_plane"]) == {"MUTATES_INPUT"}
-
-
-def test_of_nan_only_its_origin_is_told(session: GradingSession) -> None:
-    found = failed(session, "\ndef impulse_1d(ma, mb, va, vb, restitution):\n    return float('nan')\n")
-    assert codes(found["impulse_1d"]) == {"NOT_A_NUMBER"}
-
-
-REMEMBERS = """
-_right, _met = simulate_head_on, []
-def simulate_head_on(m, x0, v0, radius, restitution, t_end, h):
-    if _met:
-        t = h * np.arange(round(t_end / h) + 1)
-        return t, x0 + t[:, None] * v0, np.tile(v0, (len(t), 1))
-    _met.append(True)
-    return _right(m, x0, v0, radius, restitution, t_end, h)
-"""
-
-
-def test_what_is_kept_between_calls_is_told_before_what_it_looks_like(session: GradingSession) -> None:
-    found = failed(session, REMEMBERS)
-    assert codes(found["simulate_head_on"]) == {"STATE_KEPT"}
-
-
-def test_a_cache_that_is_right_is_no_story_of_another_mistake(session: GradingSession) -> None:
-    found = failed(
-        session,
-        """
-_known = {}
-def impulse_1d(*args):
-    if args not in _known:
-        ma, mb, va, vb, e = args
-        _known[args] = (1 + e) * (va - vb) / (1 / ma + 1 / mb)
-    return _known[args]
-""",
-    )
-    assert codes(found["impulse_1d"]) == {"IMPULSE_ON_SEPARATING"}
-
-
 def test_numbers_of_its_own_are_nothing_that_is_kept(session: GradingSession) -> None:
     found = failed(
         session,
@@ -182,14 +176,3 @@ def lidar(pose, segments, angles, r_max, sigma, rng):
     with GradingSession(twin, CATALOG, scope="public", terms=Terms(timeout=20.0)) as opened:
         verdict = opened.grade(Submission({twin.module: source.encode()}))
     assert codes([check for check in verdict.checks if check.status != "pass"]) == {"NEGATIVE_RANGE"}
-
-
-def test_results_that_the_next_call_fills_again_fail(session: GradingSession) -> None:
-    buffers = """
-_right, _kept = resolve, {}
-def resolve(ma, mb, va, vb, normal, restitution):
-    kept = _kept.setdefault(len(va), np.zeros((2, len(va))))
-    kept[:] = _right(ma, mb, va, vb, normal, restitution)
-    return kept[0], kept[1]
-"""
-    assert codes(failed(session, buffers)["resolve"]) == {"RESULT_OVERWRITTEN"}

@@ -109,7 +109,6 @@ class ExerciseTally:
         return self.exercise.id == QUIZ
 
     def take(self, effective: Effective) -> None:
-        """Count one student's result."""
         verdict = effective.verdict
         if effective.missing or effective.waiting:
             self.missing += effective.missing
@@ -225,7 +224,6 @@ class Tally:
         self._slowest: list[tuple[float, str, str]] = []
 
     def take(self, found: Sequence[Effective]) -> None:
-        """Count everything of one student."""
         self.students += 1
         for effective in found:
             self.exercises[effective.exercise].take(effective)

@@ -134,7 +134,6 @@ def test_a_part_never_takes_the_place_of_what_is_about_all(
     assert export(results, name, tmp_path, None, everything).paths[0] == tmp_path / usual
     before = {path: path.read_bytes() for path in tmp_path.rglob("*.*")}
     roster = results.roster
-    assert roster is not None
     parts = ((roster.people, OPTIONS), (roster.people[1:], ExportOptions(partial=True, zeros=True)))
     for people, options in parts:
         results.roster = Roster(people)
@@ -333,7 +332,6 @@ def test_what_students_may_read_has_nothing_hidden(results: Results, tmp_path: P
 def test_students_the_roster_has_not_stop_every_export_unless_partial(
     results: Results, tmp_path: Path, name: str
 ) -> None:
-    assert results.roster is not None
     results.roster = Roster(tuple(person for person in results.roster.people if person.student != "late"))
     with pytest.raises(MissingCapabilityError) as caught:
         export(results, name, tmp_path, None, OPTIONS)
@@ -358,7 +356,6 @@ def test_students_the_roster_has_not_stop_every_export_unless_partial(
 def test_a_key_that_is_missing_or_would_have_to_be_changed_is_no_key(
     results: Results, tmp_path: Path, name: str, person: Person
 ) -> None:
-    assert results.roster is not None
     others = tuple(other for other in results.roster.people if other.student != "late")
     results.roster = Roster((*others, person))
     with pytest.raises(MissingCapabilityError, match="'late'"):

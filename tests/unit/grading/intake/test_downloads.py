@@ -29,7 +29,6 @@ def graded(found: ClassList, exercise) -> dict[str, bytes | str]:
         if entry.submission is not None:
             answers[student.name] = entry.submission.files["doubling.py"].removeprefix(SOURCE)
         else:
-            assert entry.problem is not None
             answers[student.name] = entry.problem.code
     return answers
 

@@ -13,7 +13,6 @@ from course.grading.running.run import RunOptions
 from course.isolation.probe import kept_sandboxes
 from course.scoring.judging import session
 from course.scoring.judging.submission import Terms
-from tests.unit.grading.conftest import MINI
 from tests.unit.grading.made import graded_class
 
 ORDER = ("doubling", "halving", "doubling", "doubling", "halving")
@@ -34,7 +33,6 @@ def test_a_grader_closes_its_oldest_session_for_another(
             for exercise in ORDER:
                 solution = catalog.content.root / "solutions" / exercise / f"{exercise}.py"
                 verdict = one.answer(Job(exercise, {solution.name: solution.read_bytes()})).verdict
-                assert verdict is not None
                 assert (verdict.exercise, verdict.all_pass) == (exercise, True)
                 assert len(one._sessions) <= most
     finally:
@@ -64,25 +62,20 @@ FAULTS: list[tuple[str | None, str]] = [
 ]
 
 
-def test_the_fault_of_one_exercise_is_named_and_costs_no_other(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_fault_of_one_exercise_is_named_and_costs_no_other(tmp_path: Path, copied: Path) -> None:
     """A course with an exercise for each fault, and a student whose work for all of them is right."""
-    content = tmp_path / "content"
-    shutil.copytree(MINI, content)
     for number, (above, _) in enumerate(FAULTS, 3):
         for kind in ("exercises", "graders", "solutions"):
-            shutil.copytree(content / kind / "halving", content / kind / f"fault-{number}")
-        toml = content / "exercises" / f"fault-{number}" / "exercise.toml"
+            shutil.copytree(copied / kind / "halving", copied / kind / f"fault-{number}")
+        toml = copied / "exercises" / f"fault-{number}" / "exercise.toml"
         text = toml.read_text("utf-8").replace('id = "halving"', f'id = "fault-{number}"')
         toml.write_text(text.replace("order = 2", f"order = {number}"), "utf-8")
-        checks = content / "graders" / f"fault-{number}" / "checks.py"
+        checks = copied / "graders" / f"fault-{number}" / "checks.py"
         if above is None:
             checks.unlink()
         else:
             checks.write_text(f"{above}\n{checks.read_text('utf-8')}", "utf-8")
-    shutil.copytree(content / "solutions", tmp_path / "class" / "ada")
-    monkeypatch.setenv("COURSE_CONTENT", str(content))
+    shutil.copytree(copied / "solutions", tmp_path / "class" / "ada")
     options = RunOptions(terms=Terms(level="L1"), seed=1)
     summary = graded_class(tmp_path, Catalog(), options)
     assert summary.exit_code == 70
@@ -93,6 +86,5 @@ def test_the_fault_of_one_exercise_is_named_and_costs_no_other(
         name = f"fault-{number}"
         verdict = verdicts[name]
         assert (verdict.state, verdict.error and verdict.error.code) == ("grader_error", "check_file")
-        assert verdict.error is not None
         assert verdict.error.message.startswith(f"graders/{name}/checks.py{said.replace('{name}', name)}")
-        assert str(content) not in verdict.error.message
+        assert str(copied) not in verdict.error.message

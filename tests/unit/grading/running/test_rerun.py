@@ -20,7 +20,6 @@ from course.grading.running.rerun import RerunOptions, rerun
 from course.grading.running.run import edited_since
 from course.scoring.graders import grader_version
 from course.scoring.judging.submission import Terms
-from tests.unit.grading.conftest import MINI
 from tests.unit.grading.made import BROKEN, HALF, REFUSED, RIGHT, WRONG, digest, key, make_book
 
 pytestmark = pytest.mark.usefixtures("unpacked")
@@ -38,7 +37,6 @@ class Graders:
     def __call__(self, entries: Iterable[Entry], options: Terms) -> Iterator[Graded]:
         self.options = options
         for entry in entries:
-            assert entry.submission is not None
             assert entry.submission.files == {"doubling.py": entry.student.encode()}
             self.asked.append(entry.student)
             yield Graded(entry, NOW[entry.student])
@@ -51,7 +49,6 @@ def test_a_regrading_keeps_the_old_beside_the_new_and_a_second_one_finds_nothing
     with make_book(tmp_path, {"ada": WRONG, "bob": HALF}) as book:
         override(Results(book), "ada", "doubling", 1.5, "copied")
         tried = rerun(Results(book), catalog, RerunOptions(dry_run=True), grade=graders)
-        assert graders.options is not None
         assert (graders.options.seed, graders.options.timeout) == (7, 10.0)
         assert len(book.history("ada", "doubling")) == 1, "nothing is changed by saying it"
         done = rerun(Results(book), catalog, RerunOptions(), grade=graders)
@@ -148,11 +145,9 @@ def test_an_interrupted_regrading_goes_on_where_it_was(tmp_path: Path, catalog: 
 
 
 def test_a_students_installation_can_neither_regrade_nor_pack_an_autograder(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, copied: Path
 ) -> None:
-    shutil.copytree(MINI, tmp_path / "course")
-    shutil.rmtree(tmp_path / "course" / "graders")
-    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
+    shutil.rmtree(copied / "graders")
     with (
         make_book(tmp_path / "out", {"ada": WRONG}) as book,
         pytest.raises(MissingCapabilityError, match="hidden graders"),

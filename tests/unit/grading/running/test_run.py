@@ -4,7 +4,6 @@ import hashlib
 import json
 import os
 import shutil
-import zipfile
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -48,6 +47,16 @@ def make_class(folder: Path, solution: bytes, students: int) -> None:
         (place / "doubling.py").write_bytes(
             solution + (WRONG if number % 3 == 0 else b"") + b"# %d\n" % number
         )
+
+
+def quiz_record(catalog: Catalog, **more: object) -> dict[str, Any]:
+    """A manifest with the attempt of one who knew all the answers."""
+    answers = {one.question: one.key.id for one in Bank.of(catalog).pose(5)}
+    attempt = {
+        "seed": 5, "version": "1", "finished_at": "2026", "questions": list(answers), "answers": answers,
+        "score": len(answers),
+    }  # fmt: skip
+    return {"format_version": 1, "files": {}, "quiz": [attempt | more]}
 
 
 def scores(out: Path) -> dict[str, float]:
@@ -259,16 +268,9 @@ def test_quiz_attempts_that_travel_in_a_submission_are_scored_again_and_again_by
     """On the real course: its quiz is real, and no worker is needed."""
     monkeypatch.delenv("COURSE_CONTENT", raising=False)
     catalog = Catalog()
-    right = {one.question: one.key.id for one in Bank.of(catalog).pose(5)}
-    attempt = {
-        "seed": 5, "version": "1", "finished_at": "2026-11-21", "questions": list(right), "answers": right
-    }  # fmt: skip
     for student, claimed in (("ada", 5), ("eve", 4)):
-        place = tmp_path / "class" / student
-        place.mkdir(parents=True, exist_ok=True)
-        manifest = {"format_version": 1, "files": {}, "quiz": [{**attempt, "score": claimed}]}
-        with zipfile.ZipFile(place / "mine.zip", "w") as target:
-            target.writestr("submission.json", json.dumps(manifest))
+        manifest = json.dumps(quiz_record(catalog, score=claimed))
+        put(tmp_path / "class" / student / "mine.zip", zipped({"submission.json": manifest}))
     (tmp_path / "class" / "none").mkdir()
     summary = graded_class(tmp_path, catalog, RunOptions(exercises=("quiz",)))
     assert (summary.exit_code, summary.states["graded"], summary.passed) == (6, 1, 1)
@@ -281,7 +283,7 @@ def test_quiz_attempts_that_travel_in_a_submission_are_scored_again_and_again_by
         results.book.add(Result(older, wrong))
         assert rerun(results, catalog, RerunOptions()).regraded == 1
         (found,) = results.all("ada")
-    assert (found.score, found.passed) == (len(right), True)
+    assert (found.score, found.passed) == (5, True)
 
 
 #: What a student hands in who took the quiz -> what becomes of the quiz, and of two exercises.
@@ -309,23 +311,13 @@ QUIZZED: dict[str, tuple[dict[str, Any], str, str]] = {
 
 @pytest.mark.parametrize("how", QUIZZED)
 def test_a_quiz_counts_wherever_its_record_lies_and_is_no_exercise_of_anybodys(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, how: str
+    tmp_path: Path, copied: Path, how: str
 ) -> None:
     """A zip with a quiz alone gave 0 in every exercise, in which then everybody was missing."""
     files, quiz, halving = QUIZZED[how]
-    shutil.copytree(MINI, tmp_path / "course")
-    shutil.copytree(MINI.parents[2] / "quiz", tmp_path / "course" / "quiz", dirs_exist_ok=True)
-    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
+    shutil.copytree(MINI.parents[2] / "quiz", copied / "quiz", dirs_exist_ok=True)
     catalog = Catalog()
-    answers = {one.question: one.key.id for one in Bank.of(catalog).pose(5)}
-    attempt = {
-        "seed": 5,
-        "version": "1",
-        "finished_at": "2026",
-        "questions": list(answers),
-        "answers": answers,
-    }
-    record = {"format_version": 1, "files": {}, "quiz": [{**attempt, "score": len(answers)}]}
+    record = quiz_record(catalog)
     both = {**record, "files": {"halving.py": hashlib.sha256(b"x").hexdigest()}}
 
     def filled(text: str) -> bytes:
@@ -355,16 +347,14 @@ def test_a_quiz_counts_wherever_its_record_lies_and_is_no_exercise_of_anybodys(
     ],
 )
 def test_what_is_not_finished_is_refused_before_anything_is_graded(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, solution: bytes, file: str, unfinished: str, said: str
+    tmp_path: Path, copied: Path, solution: bytes, file: str, unfinished: str, said: str
 ) -> None:
     """It is the author's to finish: no fault of the grader's own (70); a question stops only its quiz."""
-    shutil.copytree(MINI, tmp_path / "course")
-    path = tmp_path / "course" / file
+    path = copied / file
     path.parent.mkdir(exist_ok=True)
     with path.open("a", encoding="utf-8") as there:
         there.write(unfinished)
     at = f"{file}:{path.read_text('utf-8').count(chr(10))}"
-    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "course"))
     make_class(tmp_path / "class", solution, 1)
     only = RunOptions(exercises=("doubling",))
     for options in (RunOptions(), *([only] if "quiz" not in file else ())):
@@ -469,12 +459,7 @@ def test_a_quiz_is_read_before_what_takes_all_the_time_and_listed_if_it_was_not(
 
     monkeypatch.setattr(archives.Reader, "module_in", slow)
     catalog = Catalog()
-    answers = {one.question: one.key.id for one in Bank.of(catalog).pose(5)}
-    attempt = {
-        "seed": 5, "version": "1", "finished_at": "2026", "questions": list(answers), "answers": answers,
-        "score": len(answers),
-    }  # fmt: skip
-    manifest = json.dumps({"format_version": 1, "files": {}, "quiz": [attempt]})
+    manifest = json.dumps(quiz_record(catalog))
     put(tmp_path / "class" / "ada" / "a.zip", zipped({"submission.json": manifest}))
     summary = graded_class(tmp_path, catalog, RunOptions(exercises=("quiz", "integrators")), grade=right)
     with open_results(tmp_path / "out") as results:

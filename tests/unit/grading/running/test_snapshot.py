@@ -27,7 +27,6 @@ from course.grading.running.snapshot import Snapshot, frozen, in_use
 from course.scoring.explain.story import forget_tables
 from course.scoring.graders import grader_files, grader_version
 from course.scoring.judging.submission import Terms
-from tests.unit.grading.conftest import MINI
 from tests.unit.grading.running.test_run import make_class, right, scores
 
 ROOT = Path(__file__).resolve().parents[4]
@@ -36,10 +35,7 @@ DUE, EDITED = "-34.5,", "-35.5,"
 
 
 @pytest.fixture
-def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Catalog:
-    """A copy of the miniature course that may be edited."""
-    shutil.copytree(MINI, tmp_path / "content")
-    monkeypatch.setenv("COURSE_CONTENT", str(tmp_path / "content"))
+def course(copied: Path) -> Catalog:
     return Catalog()
 
 
@@ -261,7 +257,6 @@ def test_a_warm_up_alone_takes_its_words_along_and_knows_when_they_change(
     tmp_path: Path, course: Catalog
 ) -> None:
     """They stand in one file for all warm-ups, beside their folders."""
-    assert course.content.graders is not None
     root = course.content.graders.parent
     for place in ("exercises", "solutions"):
         shutil.copytree(ROOT / place / "warm-ups" / "error-left", root / place / "warm-ups" / "error-left")

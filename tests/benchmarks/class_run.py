@@ -28,7 +28,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from course.authoring.exercises.grading import mistakes_of, solution_path  # noqa: E402
+from course.authoring.exercises.grading import mistakes_of, solution_path, source_of  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.grading.cluster.connect import local_cluster  # noqa: E402
 from course.grading.running.batch import grade_all  # noqa: E402
@@ -44,14 +44,13 @@ KINDS = ("write", "jobs", "memory", "cluster", "rerun")
 def make_class(folder: Path, catalog: Catalog, exercise: str, students: int) -> None:
     """A class in which every file is another one: the model solution, a third of it with a mistake."""
     known = catalog.exercise(exercise)
-    module, solution = known.module, solution_path(catalog, known)
-    model = solution.read_text(encoding="utf-8")
-    mutants = [one.composed(model, solution) for one in mistakes_of(catalog, known).wrong]
+    model = solution_path(catalog, known).read_bytes()
+    mutants = [source_of(catalog, known, one) for one in mistakes_of(catalog, known).wrong]
     for number in range(students):
         place = folder / f"student-{number:05}"
         place.mkdir(parents=True)
         source = mutants[number // 3 % len(mutants)] if number % 3 == 0 and mutants else model
-        (place / module).write_text(f"{source}\n# {number}\n", encoding="utf-8")
+        (place / known.module).write_bytes(source + b"\n# %d\n" % number)
 
 
 def run(

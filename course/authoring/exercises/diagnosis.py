@@ -30,8 +30,10 @@ from course.authoring.exercises.grading import (
     blamed,
     exercise_graders,
     mistakes_of,
+    mistakes_path,
     solution_path,
     solutions_folder,
+    source_of,
 )
 from course.authoring.exercises.proofs import (
     Record,
@@ -42,11 +44,10 @@ from course.authoring.exercises.proofs import (
     write_record,
 )
 from course.authoring.exercises.source import parse
-from course.authoring.mistakes import CODE, Mistakes, Wrong, mistakes_path
+from course.authoring.mistakes import CODE, Mistakes, Wrong
 from course.authoring.report import Findings, Progress
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
-from course.catalog.reading import read_text
 from course.errors import ContentError
 from course.progress.workspace import write_atomically
 from course.scoring import kit
@@ -132,7 +133,7 @@ def _alike(one: Any, other: Any) -> bool:
 
 def digest(catalog: Catalog, exercise: Exercise) -> str:
     """A digest of everything that the table of an exercise is computed from."""
-    file = mistakes_path(solutions_folder(catalog, exercise))
+    file = mistakes_path(catalog, exercise)
     return _digest(catalog, exercise, file.read_bytes() if file.is_file() else b"")
 
 
@@ -223,15 +224,14 @@ def hypotheses_of(catalog: Catalog, exercise: Exercise) -> Iterator[Wrong]:
 
     Those whose code has no words of the exercise's own are left out: it is found while reading a value.
     """
-    solution, mistakes = solution_path(catalog, exercise), mistakes_of(catalog, exercise)
-    model, file = read_text(solution), mistakes_path(solution.parent)
+    mistakes, file = mistakes_of(catalog, exercise), mistakes_path(catalog, exercise)
     tasks = {task.id for task in exercise.task}
     for variant in (variant for variant in mistakes.wrong if variant.code in mistakes.words):
-        source = variant.composed(model, file)
+        source = source_of(catalog, exercise, variant)
         if variant.task not in tasks:
             raise _no_task(file, variant.line, variant.task)
         with blamed(file, variant.line):
-            function = _executed(source.encode())[variant.task]
+            function = _executed(source)[variant.task]
         yield variant.task, (variant.code,), function
     with blamed(file):
         programs = [(task, codes, function) for task, codes, function in mistakes.functions()]
@@ -362,7 +362,7 @@ def as_one(exercise: Exercise, program: Wrong) -> Wrong:
 
 def made_from(catalog: Catalog, exercise: Exercise) -> str:
     """A digest of every file that affects the diagnosis of a wrong program; how it is worded does not."""
-    file = mistakes_path(solutions_folder(catalog, exercise))
+    file = mistakes_path(catalog, exercise)
     mistakes = parse(file) if file.is_file() else ast.Module([], [])
     for node in ast.walk(mistakes):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "mistakes":
@@ -381,7 +381,7 @@ def code_of(catalog: Catalog, exercise: Exercise) -> bytes:
     folders = (exercise.readme_path.parent, exercise_graders(catalog, exercise))
     paths = [p for folder in folders for p in sorted(folder.rglob("*.py"), key=attrgetter("name"))]
     others = sorted(solution.parent.glob("*.py"))
-    paths += [path for path in others if path not in (solution, mistakes_path(solution.parent))]
+    paths += [path for path in others if path not in (solution, mistakes_path(catalog, exercise))]
     return b"".join(path.name.encode() + b"\0" + _unworded(path) + b"\0" for path in paths)
 
 
@@ -558,7 +558,7 @@ def accept(catalog: Catalog, exercise: Exercise, *, on_progress: Progress | None
 
 def audit_diagnoses(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
     """Report missing files, stale tables, codes without words, and words that are given where untrue."""
-    mistakes, file = mistakes_of(catalog, exercise), mistakes_path(solutions_folder(catalog, exercise))
+    mistakes, file = mistakes_of(catalog, exercise), mistakes_path(catalog, exercise)
     for code, entry in mistakes.words.items():
         if entry.kind == "cause" and entry.looks_like.startswith("Here "):
             message = f"{code} is about one run, but as a cause it is said by every check of its task."
@@ -620,7 +620,7 @@ def _audit_codes(
     catalog: Catalog, exercise: Exercise, table: Table, mistakes: Mistakes, findings: Findings
 ) -> None:
     """Every code with words is given by something."""
-    file = mistakes_path(solutions_folder(catalog, exercise))
+    file = mistakes_path(catalog, exercise)
     known = {code for rows in table.rows.values() for row in rows for code in row.codes}
     given, named = set(_literals(catalog, exercise)), {variant.code for variant in mistakes.wrong}
     for code in sorted(mistakes.words.keys() - known - given):

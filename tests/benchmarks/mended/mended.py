@@ -33,7 +33,13 @@ ROWS = Path(__file__).with_name("misleading") / "rows.toml"
 LATIN = "# \N{LATIN SMALL LETTER E WITH ACUTE}\n"
 sys.path.insert(0, str(ROOT))
 
-from course.authoring.exercises.grading import compose, grade_sources, mistakes_of, solution_path  # noqa: E402
+from course.authoring.exercises.grading import (  # noqa: E402
+    compose,
+    grade_sources,
+    mistakes_of,
+    solution_path,
+    source_of,
+)
 from course.catalog.load import Catalog  # noqa: E402
 from course.grading.exports.selection import checks_for_student  # noqa: E402
 from course.scoring.verdict import Verdict  # noqa: E402
@@ -205,12 +211,11 @@ def rows() -> None:
         exercise_id, name = program.split(": ")
         exercise = catalog.exercise(exercise_id)
         known = {one.name: one for one in mistakes_of(catalog, exercise).wrong}
-        solution = solution_path(catalog, exercise)
         if name in known:
-            source = known[name].composed(solution.read_text(encoding="utf-8"), solution)
+            source = source_of(catalog, exercise, known[name])
         else:
-            source = compose(solution, ROOT / name).decode()
-        sources[program] = (exercise_id, source)
+            source = compose(solution_path(catalog, exercise), ROOT / name)
+        sources[program] = (exercise_id, source.decode())
     verdicts = graded(sources)
     first = next(iter(catalog.exercises()))
     latin_1 = LATIN.encode("latin-1") + solution_path(catalog, first).read_bytes()

@@ -306,12 +306,13 @@ def walk_blocks(blocks: tuple[Block, ...]) -> Iterator[Block]:
 def walk_inlines(blocks: tuple[Block, ...]) -> Iterator[tuple[Block, Inline]]:
     """Every inline piece with the innermost block it stands in, in reading order."""
     for block in walk_blocks(blocks):
-        for line in _lines_of(block):
-            for inline in _flatten(line):
+        for line in lines_of(block):
+            for inline in flattened(line):
                 yield block, inline
 
 
-def _lines_of(block: Block) -> tuple[Inlines, ...]:
+def lines_of(block: Block) -> tuple[Inlines, ...]:
+    """The lines of prose in a block itself, not in blocks that it holds."""
     match block:
         case Heading(inlines=line) | Paragraph(inlines=line) | Figure(caption=line):
             return (line,)
@@ -327,8 +328,9 @@ def _lines_of(block: Block) -> tuple[Inlines, ...]:
             assert_never(block)
 
 
-def _flatten(inlines: Inlines) -> Iterator[Inline]:
+def flattened(inlines: Inlines) -> Iterator[Inline]:
+    """Every piece of a line, outer ones before what they hold."""
     for inline in inlines:
         yield inline
         if isinstance(inline, Span | Link):
-            yield from _flatten(inline.children)
+            yield from flattened(inline.children)

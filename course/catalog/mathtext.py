@@ -127,9 +127,7 @@ def _is_letter(char: str) -> bool:
 
 def _single_spaced(text: str) -> str:
     # A relation brings its own spaces; beside a \, or a wide \quad they would double.
-    while "    " in text:
-        text = text.replace("    ", "   ")
-    return text.replace("  =", " =").replace("=  ", "= ")
+    return re.sub(" {4,}", "   ", text).replace("  =", " =").replace("=  ", "= ")
 
 
 def _fraction_text(over: Row, under: Row) -> str:

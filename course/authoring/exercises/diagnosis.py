@@ -262,12 +262,10 @@ def _executed(source: bytes) -> dict[str, Any]:
 
 def _expected(exercise: Exercise) -> dict[str, Any]:
     """The answers that public checks expect for their fixed inputs, by check."""
-    known: Callable[[], dict[str, Any]] | None = (
-        getattr(kit.companion(exercise.id, "bundles"), "known", None)
-        if companion_path(exercise.id, "bundles").is_file()
-        else None
-    )
-    return known() if known else {}
+    if not companion_path(exercise.id, "bundles").is_file():
+        return {}
+    known: Callable[[], dict[str, Any]] = getattr(kit.companion(exercise.id, "bundles"), "known", dict)
+    return known()
 
 
 def _plain(value: Any) -> Any:

@@ -154,19 +154,19 @@ def diagnosis(exercise_id: str, rounds: int) -> None:
 def counted() -> dict[str, int]:
     """How many workers were started, calls made and callbacks answered since the counts were last zero."""
     count = {"workers": 0, "calls": 0, "callbacks": 0}
+
+    def count_calls(name: str, key: str) -> None:
+        original = getattr(Connection, name)
+
+        def counting(*args: Any, **kwargs: Any) -> Any:
+            count[key] += 1
+            return original(*args, **kwargs)
+
+        setattr(Connection, name, counting)
+
     for name, key in (("_load", "workers"), ("_ask", "calls"), ("_answer_callback", "callbacks")):
-        _count_calls(name, count, key)
+        count_calls(name, key)
     return count
-
-
-def _count_calls(name: str, count: dict[str, int], key: str) -> None:
-    original = getattr(Connection, name)
-
-    def counting(self: Connection, *args: Any, **kwargs: Any) -> Any:
-        count[key] += 1
-        return original(self, *args, **kwargs)
-
-    setattr(Connection, name, counting)
 
 
 def worker_start(session: GradingSession, source: bytes, module: str) -> None:

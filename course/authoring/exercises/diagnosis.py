@@ -451,33 +451,14 @@ def _main(said: list[str], codes: tuple[str, ...], kind: Callable[[str], str]) -
     return ranked[0] if ranked else ""
 
 
-@dataclass(frozen=True, slots=True)
-class Tally:
-    """How the programs of one task are diagnosed.
-
-    Attributes:
-        named: diagnosed with a mistake that they have, under any name of the same program.
-        general: diagnosed with a consequence, with a wrong kind of value, or not at all.
-        otherwise: diagnosed with a mistake that they do not have.
-        survived: no check fails; a program with two mistakes may be right by chance.
-    """
-
-    named: int = 0
-    general: int = 0
-    otherwise: int = 0
-    survived: int = 0
-
-
-def tally(fate: Callable[[Reported], str], rows: tuple[Reported, ...]) -> Tally:
-    """How the programs of these rows are diagnosed."""
-    counts: Counter[str] = Counter()
-    for row in rows:
-        counts[fate(row)] += row.count
-    return Tally(**counts)
+#: How a program is diagnosed: with a mistake that it has, under any name of the same program; with a
+#: consequence, with a wrong kind of value, or not at all; with a mistake that it does not have; no check
+#: fails, for one with two mistakes may be right by chance.
+FATES = ("named", "general", "otherwise", "survived")
 
 
 def fate_of(catalog: Catalog, exercise: Exercise) -> Callable[[Reported], str]:
-    """Says under which field of ``Tally`` the programs of a row are counted."""
+    """Says which of ``FATES`` the programs of a row have."""
     own, names, also = words(exercise.id), _names(exercise), mistakes_of(catalog, exercise).true_too
 
     def fate(row: Reported) -> str:
@@ -513,12 +494,12 @@ class Accepted:
 
     Attributes:
         changes: a sentence for each program that is caught or named otherwise.
-        told: how the programs that are functions are diagnosed in a grading run.
+        told: how many of the programs that are functions have each of ``FATES`` in a grading run.
     """
 
     path: Path
     changes: tuple[str, ...]
-    told: Tally
+    told: dict[str, int]
 
 
 def accept(catalog: Catalog, exercise: Exercise, *, on_progress: Progress | None = None) -> Accepted:
@@ -547,7 +528,10 @@ def accept(catalog: Catalog, exercise: Exercise, *, on_progress: Progress | None
         ]
     record = Record(made_from=made_from(catalog, exercise), caught=caught, rows=rows)
     path = write_record(catalog, exercise, record)
-    return Accepted(path, tuple(changes), tally(fate, rows["full"]))
+    told = dict.fromkeys(FATES, 0)
+    for row in rows["full"]:
+        told[fate(row)] += row.count
+    return Accepted(path, tuple(changes), told)
 
 
 # ---

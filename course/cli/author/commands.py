@@ -3,7 +3,6 @@
 import hashlib
 import os
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import asdict
 from importlib import import_module
 from pathlib import Path
 from typing import Annotated
@@ -455,7 +454,7 @@ def build(
             with meter(console) as on_progress:
                 accepted = diagnosis.accept(catalog, exercise, on_progress=on_progress)
             written.append(shown(accepted.path, catalog))
-            said = ", ".join(f"{name} {count}" for name, count in asdict(accepted.told).items())
+            said = ", ".join(f"{name} {count}" for name, count in accepted.told.items())
             console.line(f"{exercise.id}, in a grading run: {said}.")
             for change in accepted.changes:
                 console.line(change, indent=2)

@@ -78,6 +78,15 @@ def joined(solution: Path, mistake: Path) -> str:
     return "\n".join(text + new) + "\n"
 
 
+def wrong_modules(folder: Path) -> dict[str, tuple[str, str]]:
+    """Exercise and text of each wrong module of a folder, by exercise and name."""
+    catalog, found = Catalog(), {}
+    for path in sorted(folder.glob("*/*.py")):
+        exercise = catalog.exercise(path.parent.name)
+        found[f"{exercise.id}/{path.stem}"] = (exercise.id, joined(solution_path(catalog, exercise), path))
+    return found
+
+
 def graded(sources: dict[str, tuple[str, str]]) -> dict[str, Verdict]:
     """Verdicts of a grading run, by name, on sources by name: exercise and text of each."""
     catalog, names = Catalog(), list(sources)
@@ -121,10 +130,7 @@ def handed_in(verdict: Verdict) -> str:
 
 def ask(folder: Path) -> None:
     """Write the folders and the manifest; say which mistakes nobody catches."""
-    catalog, sources = Catalog(), {}
-    for path in sorted(MISTAKES.glob("*/*.py")):
-        exercise = catalog.exercise(path.parent.name)
-        sources[f"{exercise.id}/{path.stem}"] = (exercise.id, joined(solution_path(catalog, exercise), path))
+    catalog, sources = Catalog(), wrong_modules(MISTAKES)
     verdicts, manifest, counts = graded(sources), {}, dict[str, int]()
     for name, (exercise_id, source) in sources.items():
         before = points_by_task(verdicts[name])
@@ -194,11 +200,7 @@ def told(verdict: Verdict) -> list[str]:
 
 def tell() -> None:
     """Print what each mistake of ``afresh`` is told."""
-    catalog, sources = Catalog(), {}
-    for path in sorted(AFRESH.glob("*/*.py")):
-        exercise = catalog.exercise(path.parent.name)
-        sources[f"{exercise.id}/{path.stem}"] = (exercise.id, joined(solution_path(catalog, exercise), path))
-    for name, verdict in sorted(graded(sources).items()):
+    for name, verdict in sorted(graded(wrong_modules(AFRESH)).items()):
         print(f"**{name}**\n")
         print("".join(f"- {line}\n" for line in told(verdict) or ["loses no point"]))
 

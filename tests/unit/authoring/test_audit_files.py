@@ -15,7 +15,7 @@ from course.authoring.audit import audit
 from course.authoring.exercises.grading import mistakes_of
 from course.authoring.report import AuditProblem, AuditReport
 from course.catalog.load import Catalog
-from course.errors import ContentError, NotFoundError
+from course.errors import ContentError
 from course.scoring.verdict import Verdict
 from tests.unit.authoring.conftest import edit, line_of
 
@@ -187,14 +187,6 @@ def test_a_missing_file_is_named(
     assert any(says in message for message in found)
 
 
-def test_a_lesson_that_nothing_lists_is_named(mini: Path, run: Callable[..., AuditReport]) -> None:
-    text = (mini / LESSON).read_text().replace('id = "half-as-much"', 'id = "thirds"')
-    (mini / "lessons" / "thirds.md").write_text(text)
-    (problem,) = run().problems
-    assert problem.file == "lessons/thirds.md"
-    assert '"thirds"' in problem.fix
-
-
 def test_an_exercise_folder_without_an_exercise_is_named(
     mini: Path, only_problem: Callable[[], AuditProblem]
 ) -> None:
@@ -295,11 +287,6 @@ def test_one_exercise_or_lesson_can_be_audited_alone(mini: Path, run: Callable[.
     assert (exercise.ok, exercise.lessons, exercise.exercises) == (True, (), ("halving",))
     assert (lesson.ok, lesson.lessons, lesson.exercises) == (True, ("twice-as-much",), ())
     assert not run("doubling").ok
-
-
-def test_an_unknown_id_is_not_found(run: Callable[..., AuditReport]) -> None:
-    with pytest.raises(NotFoundError, match="No lesson, exercise, question or scene"):
-        run("thirds")
 
 
 OBJECTIVE = """

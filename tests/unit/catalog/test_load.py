@@ -196,13 +196,6 @@ def test_what_is_wrong_is_named_with_line_and_fix(
     assert error.line == line
 
 
-def test_a_missing_file_is_named(mini: Path) -> None:
-    (mini / SYLLABUS).unlink()
-    error = refused(mini, SYLLABUS)
-    assert error.line is None
-    assert "missing" in error.problem
-
-
 def test_a_lesson_without_a_file_is_named(mini: Path) -> None:
     (mini / LESSON).unlink()
     assert "missing" in refused(mini, LESSON).problem

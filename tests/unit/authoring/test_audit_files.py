@@ -33,8 +33,10 @@ GOOD_LINKS = (
     "(#example), [b](lesson:twice-as-much#once), [c](exercise:halving#halving), [d](doubling.py)"
     " and [e](https://example.org/x#y)"
 )
+FIGURE = "![It falls down to zero](figure:none)\nc\n\nHalf"
 PRINTS = "```python\nprint(1 + 1)\n```\n\n```output\n3\n```\n\nHalf of twice"
 REQUIRING = 'points(3)\n@pytest.mark.requires("doublings_values")'
+OF_ITSELF = "points(1 + 2)\n@pytest.mark.requires('double_of_three')"
 
 
 @pytest.mark.parametrize(
@@ -54,14 +56,7 @@ REQUIRING = 'points(3)\n@pytest.mark.requires("doublings_values")'
         (LESSON, '["twice-as-much"]', '["later"]', '"later"', "lesson", "does not come before"),
         (LESSON, '["halving"]', '["halving", "no"]', '"no"', "lesson", "no exercise no"),
         (LESSON, '["halving"]', "[]", None, "exercise", "does not name this exercise"),
-        (
-            LESSON,
-            "Half of twice",
-            "![It falls down to zero](figure:none)\nc\n\nHalf",
-            "figure:none",
-            "lesson",
-            "no figure none",
-        ),
+        (LESSON, "Half of twice", FIGURE, "figure:none", "lesson", "no figure none"),
         (LESSON, "Half of twice", "[a](#the-way-forward)", "#the-way-f", "link", "heading that does not"),
         (LESSON, "Half of twice", PRINTS, "```output", "lesson", "prints"),
         (LESSON, "Half of twice", "[3](=1+1) of twice", "[3]", "lesson", "gives 2"),
@@ -75,32 +70,11 @@ REQUIRING = 'points(3)\n@pytest.mark.requires("doublings_values")'
         (TOML, "order = 1", "order = 2", None, "exercise", "order 2 too"),
         (TOML, "order = 1", "order = 3", None, "exercise", "lower order, 2, and its lesson comes later"),
         (SYLLABUS, '"half-as-much"', '"half-as-much",\n"thirds"', "thirds", "syllabus", "thirds has no file"),
-        (
-            LESSON,
-            '["halving"]',
-            '["halving", "halving"]',
-            "exercises = ",
-            "content",
-            "halving is listed twice",
-        ),
-        (
-            LESSON,
-            "Half of twice",
-            "## The way back\n\nHalf of twice",
-            None,
-            "lesson",
-            "has the anchor #the-way",
-        ),
+        (LESSON, '["halving"]', '["halving", "halving"]', "exercises = ", "content", "listed twice"),
+        (LESSON, "Half of twice", "## The way back\n\nHalf", None, "lesson", "has the anchor #the-way"),
         (LESSON, "Half of twice", "> **Predict.** Why?\n\nHalf", "Predict", "lesson", "is not answered"),
         (TOML, '    "Return x + x.",\n', "", "hints = [", "hints", "has 2 hints, and needs 3"),
-        (
-            TOML,
-            '2 = ["SQUARES_INSTEAD"]',
-            '4 = ["SQUARES_INSTEAD"]',
-            "[task.fits]",
-            "content",
-            "no hint number 4",
-        ),
+        (TOML, '2 = ["SQUARES', '4 = ["SQUARES', "[task.fits]", "content", "no hint number 4"),
         (README, "`double(x) -> float`", "`double` -> float", None, "readme", "signature double(x)"),
         (STUB, "def double(x)", "def double(y)", None, "signature", "double(y)"),
         (STUB, "def double(x)", "def double(x", "def double", "content", "not valid Python"),
@@ -113,25 +87,11 @@ REQUIRING = 'points(3)\n@pytest.mark.requires("doublings_values")'
         (CHECKS, "@pytest.mark.points(2)\n", "", "def test_double_of_three", "check", "has no points"),
         (CHECKS, "points(2)", "points(-2)", "def test_double_of_three", "check", "no points that"),
         (CHECKS, "points(2)", "points(1 + 2)", None, "points", "come to 5, and 4 is"),
-        (
-            CHECKS,
-            "points(2)",
-            "points(1 + 2)\n@pytest.mark.requires('double_of_three')",
-            "_three(s",
-            "check",
-            "itself",
-        ),
+        (CHECKS, "points(2)", OF_ITSELF, "_three(s", "check", "itself"),
         (CHECKS, '    """Twice three is six"""\n', "", "def test_double_of_three", "check", "no title"),
         (GRADERS, 'requires("doublings_length")', 'requires("no")', "def test_doublings_v", "check", "'no'"),
         (CHECKS, "points(3)", REQUIRING, "length(s", "check", "public and requires"),
-        (
-            GRADERS,
-            "test_double_of_negative",
-            "test_double_of_three",
-            "def test_double_of_three",
-            "check",
-            "twice",
-        ),
+        (GRADERS, "double_of_negative", "double_of_three", "def test_double_of_three", "check", "twice"),
         (GRADERS, '"Try a negative number by hand."', '"Try -18.5 by hand."', "18.5", "leak", "18.5"),
         (GRADERS, '"Try a negative number by hand."', '"Try 3.0 by hand."', None, "", ""),
         (MISTAKES, '"x * x"', '"x *"', '"x *"', "content", "is not valid Python"),

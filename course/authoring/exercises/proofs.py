@@ -27,7 +27,7 @@ from course.authoring.exercises.grading import (
 )
 from course.authoring.exercises.source import DECIMAL, CheckSource, parse, signatures
 from course.authoring.mistakes import Mistakes, Variant
-from course.authoring.report import AuditProblem, Findings, Progress
+from course.authoring.report import AuthorProblem, Findings, Progress
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise, fields_of
 from course.catalog.reading import read_document, read_text
@@ -149,7 +149,7 @@ class Prover:
         self._fields: dict[str, set[str]] = {task.id: set() for task in exercise.task}
 
     @property
-    def problems(self) -> list[AuditProblem]:
+    def problems(self) -> list[AuthorProblem]:
         """What was found; of checks that broke only that they did, since the rest follows from it."""
         return [one for one in self._findings.problems if not self.broken or one.code == "grader"]
 

@@ -13,7 +13,7 @@ from course.authoring.audit import audit
 from course.authoring.exercises.grading import accepted_files, mistakes_of, solution_path, source_of
 from course.authoring.exercises.proofs import caught_by
 from course.authoring.exercises.source import CheckSource, checks_in, parse
-from course.authoring.report import AuditProblem, AuditReport
+from course.authoring.report import AuditReport, AuthorProblem
 from course.catalog.load import Catalog
 from course.catalog.locate import content
 from course.catalog.models import Exercise
@@ -146,10 +146,10 @@ def run(mini: Path, oracle: Oracle, monkeypatch: pytest.MonkeyPatch) -> Callable
 
 
 @pytest.fixture
-def only_problem(run: Callable[..., AuditReport]) -> Callable[[], AuditProblem]:
+def only_problem(run: Callable[..., AuditReport]) -> Callable[[], AuthorProblem]:
     """Audit the copy; there must be exactly one problem, which is returned."""
 
-    def single() -> AuditProblem:
+    def single() -> AuthorProblem:
         problems = run().problems
         assert len(problems) == 1, [f"{p.where} {p.code} {p.message}" for p in problems]
         return problems[0]

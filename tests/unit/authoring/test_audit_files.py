@@ -13,7 +13,7 @@ import pytest
 
 from course.authoring.audit import audit
 from course.authoring.exercises.grading import mistakes_of
-from course.authoring.report import AuditProblem, AuditReport
+from course.authoring.report import AuditReport, AuthorProblem
 from course.catalog.load import Catalog
 from course.errors import ContentError
 from course.scoring.verdict import Verdict
@@ -120,7 +120,7 @@ def test_each_fault_is_found_at_its_line(
         return
     found = [p for p in report.problems if p.code == code and says in p.message]
     assert found, [f"{p.where} {p.code} {p.message}" for p in report.problems]
-    assert found[0].fix
+    assert found[0].help
     if at is not None:
         assert (found[0].file, found[0].line) == (file, line_of(mini / file, at))
 
@@ -148,14 +148,14 @@ def test_a_missing_file_is_named(
 
 
 def test_an_exercise_folder_without_an_exercise_is_named(
-    mini: Path, only_problem: Callable[[], AuditProblem]
+    mini: Path, only_problem: Callable[[], AuthorProblem]
 ) -> None:
     (mini / "exercises" / "thirds").mkdir()
     assert only_problem().file == "exercises/thirds/exercise.toml"
 
 
 def test_an_exercise_nobody_accepts_variants_of_is_named(
-    mini: Path, only_problem: Callable[[], AuditProblem]
+    mini: Path, only_problem: Callable[[], AuthorProblem]
 ) -> None:
     shutil.rmtree(mini / "solutions" / "halving" / "accepted")
     assert "accepted variants: 0, and an exercise of this size has at least 2" in only_problem().message
@@ -175,7 +175,7 @@ def test_an_exercise_with_few_mutants_is_named(mini: Path, run: Callable[..., Au
     assert few.file == "solutions/halving/mistakes.py"
     assert "mutants: 3, and an exercise of this size has at least 4" in few.message
     assert stale.file == "solutions/halving/record.json"
-    assert stale.fix == "Run `course author build halving --accept`, and read what it says."
+    assert stale.help == "Run `course author build halving --accept`, and read what it says."
 
 
 def test_one_diagnosis_for_every_mistake_is_named(mini: Path, run: Callable[..., AuditReport]) -> None:
@@ -191,7 +191,7 @@ def test_what_ruff_says_is_said_by_the_rules_of_the_course(
     path.write_text(path.read_text().replace("import pytest\n", "import os\nimport pytest\nx  =  1\n"))
     assert run("doubling").ok
     (mini / "pyproject.toml").write_text('[tool.ruff]\nline-length = 110\nlint.select = ["F"]\n')
-    found = {(p.where, p.code, p.fix) for p in run("doubling").problems}
+    found = {(p.where, p.code, p.help) for p in run("doubling").problems}
     assert found == {
         (f"{CHECKS}:{line_of(path, 'import os')}", "style", "Try `ruff check --fix`."),
         (CHECKS, "style", f"Run `ruff format {CHECKS}`."),
@@ -199,7 +199,7 @@ def test_what_ruff_says_is_said_by_the_rules_of_the_course(
     other = "exercises/halving/checks.py"
     edit(mini / other, "import pytest\n", "import os\nimport pytest\n")
     found.add((f"{other}:{line_of(mini / other, 'import os')}", "style", "Try `ruff check --fix`."))
-    assert {(p.where, p.code, p.fix) for p in run().problems} == found
+    assert {(p.where, p.code, p.help) for p in run().problems} == found
 
 
 def test_a_task_that_no_mutant_breaks_is_named(mini: Path, run: Callable[..., AuditReport]) -> None:

@@ -10,7 +10,7 @@ import msgspec
 import pytest
 
 from course.authoring.audit import audit
-from course.authoring.report import AuditProblem, AuditReport
+from course.authoring.report import AuditReport, AuthorProblem
 from course.catalog.load import Catalog
 from course.scoring.verdict import OURS, Problem, Status, Verdict
 
@@ -144,11 +144,11 @@ def test_a_verdict_that_should_be_another_is_reported(
     found = [p for p in problems if (p.where, p.code) == (where, code)]
     assert found, [f"{p.where} {p.code} {p.message}" for p in problems]
     assert says in found[0].message
-    assert found[0].fix
+    assert found[0].help
 
 
 def test_a_mutant_caught_only_by_another_check_is_reported(
-    oracle: Any, only_problem: Callable[[], AuditProblem]
+    oracle: Any, only_problem: Callable[[], AuthorProblem]
 ) -> None:
     def by_the_other(verdict: Verdict) -> Verdict:
         verdict = with_check("double_of_three", **passing, points=2.0)(verdict)

@@ -199,7 +199,9 @@ def _unproduced_numbers(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
     """
     given = {value for block in b.walk_blocks(blocks) for value in _constants(block)}
     for block, text in _prose(blocks):
-        for match in () if _UNREAD_VALUE.search(text) else _NUMBER.finditer(text):
+        if _UNREAD_VALUE.search(text):
+            continue
+        for match in _NUMBER.finditer(text):
             number = float(match.group().replace(",", ""))
             if number in given or (number.is_integer() and (number <= _SMALL or number in _YEARS)):
                 continue
@@ -221,8 +223,9 @@ def _constants(block: b.Block) -> Iterator[float]:
 
 def _prose(blocks: tuple[b.Block, ...]) -> Iterator[tuple[b.Block, str]]:
     """The texts of paragraphs, captions and tables without code spans, each with its block."""
-    for block in b.walk_blocks(blocks):
-        for line in b.lines_of(block) if isinstance(block, b.Paragraph | b.Figure | b.Table) else ():
+    prose = (one for one in b.walk_blocks(blocks) if isinstance(one, b.Paragraph | b.Figure | b.Table))
+    for block in prose:
+        for line in b.lines_of(block):
             words = tuple(one for one in line if not (isinstance(one, b.Span) and one.style == "code"))
             for inline in b.flattened(words):
                 if isinstance(inline, b.Text):

@@ -263,16 +263,8 @@ Block = (
 
 def plain_text(inlines: Inlines) -> str:
     """The words of a line, marks and links left out."""
-    parts = []
-    for inline in inlines:
-        match inline:
-            case Text(text) | Formula(text=text) | Value(text=text):
-                parts.append(text)
-            case Span(children=children) | Link(children=children):
-                parts.append(plain_text(children))
-            case LineBreak():
-                parts.append(" ")
-    return "".join(parts)
+    pieces = (one for one in flattened(inlines) if not isinstance(one, Span | Link))
+    return "".join(" " if isinstance(one, LineBreak) else one.text for one in pieces)
 
 
 def slug(heading: Heading) -> str:

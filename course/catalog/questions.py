@@ -192,11 +192,6 @@ class Question(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     lesson: str = ""
 
 
-def placeholders(text: str) -> list[str]:
-    """The names in braces, in order."""
-    return _PLACEHOLDER.findall(text)
-
-
 def read_questions(folder: Path) -> tuple[Document[Question], ...]:
     """The questions of a quiz in their order, with the lines they stand on; none where there is no folder."""
     if not folder.is_dir():
@@ -308,7 +303,7 @@ def _check_placeholders(document: Document[Question], where: Keys, variant: Vari
         texts += [((*where, "option", index, key), getattr(option, key)) for key in ("text", "explanation")]
     used: set[str] = set()
     for at, text in texts:
-        names = placeholders(text)
+        names = _PLACEHOLDER.findall(text)
         if (stray := next((name for name in names if name not in known), None)) is not None:
             problem = f"{{{stray}}} names no number."
             document.fail(at, problem, fix=f"Numbers here: {', '.join(sorted(known)) or 'none'}.")

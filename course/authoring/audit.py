@@ -167,7 +167,7 @@ def audit(
         if path.is_file() and not blanks_in(path, findings):
             audit_lesson(catalog, lesson_id, findings, links, refused)
     audit_figures(catalog, None if only is None else lessons, findings)
-    questions = audit_quiz(catalog, findings, only) if only is None or only in _questions(catalog) else ()
+    questions = audit_quiz(catalog, findings, only) if only in (None, *catalog.question_ids()) else ()
     for question in questions:
         audit_objective(catalog, "quiz", question, findings)
     scenes = _check_scenes(only, findings)
@@ -204,11 +204,11 @@ def _chosen(catalog: Catalog, only: str | None) -> tuple[tuple[str, ...], tuple[
     if only is None:
         return lessons, exercises
     chosen = tuple(i for i in lessons if i == only), tuple(i for i in exercises if i == only)
-    questions = _questions(catalog)
-    if not any(chosen) and only not in (*questions, *scene_ids()):
+    others = (*catalog.question_ids(), *scene_ids())
+    if not any(chosen) and only not in others:
         raise NotFoundError(
             f"No lesson, exercise, question or scene is called {only[:80]!r}.",
-            help=f"Known: {', '.join([*lessons, *exercises, *questions, *scene_ids()])}.",
+            help=f"Known: {', '.join([*lessons, *exercises, *others])}.",
         )
     return chosen
 
@@ -217,10 +217,6 @@ def _folders_in(folder: Path) -> set[str]:
     if not folder.is_dir():
         return set()
     return {one.name for one in folder.iterdir() if one.is_dir() and not one.name.startswith((".", "__"))}
-
-
-def _questions(catalog: Catalog) -> list[str]:
-    return sorted(path.stem for path in catalog.content.quiz.glob("*.toml"))
 
 
 def _check_scenes(only: str | None, findings: Findings) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from typing import Annotated, TypeAlias
 
 import msgspec
 
-from course.authoring.report import AuditProblem, Findings
+from course.authoring.report import AuthorProblem, Findings
 from course.catalog.blocks import Heading, slug, walk_blocks
 from course.catalog.load import Catalog
 from course.catalog.markdown import read_blocks
@@ -104,7 +104,7 @@ def written_to(catalog: Catalog) -> Path:
 
 def check_coverage(
     document: Document[Coverage], catalog: Catalog, is_command: IsCommand
-) -> tuple[AuditProblem, ...]:
+) -> tuple[AuthorProblem, ...]:
     """The table's faults: lines without a part, parts without a place, places that do not exist."""
     coverage, findings = document.value, Findings(catalog.content.root)
     wrong = findings.about(document.path, document.lines, "coverage")

@@ -175,11 +175,6 @@ class Mistakes:
         return itertools.chain.from_iterable(programs() for programs in self._more)
 
 
-def mistakes_path(folder: Path) -> Path:
-    """The file of mistakes in a folder of solutions."""
-    return folder / "mistakes.py"
-
-
 @dataclass(frozen=True, slots=True)
 class Mistake:
     """One mistake, to which its programs are added."""

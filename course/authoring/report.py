@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeAlias
 
+import msgspec
+
 from course.catalog.reading import Keys, LineMap
 from course.errors import ContentError
 
@@ -19,21 +21,14 @@ About: TypeAlias = "Callable[[Keys, str, str], None]"
 _BUILT = frozenset({"points", "slow", "stale"})
 
 
-@dataclass(frozen=True, slots=True)
-class AuditProblem:
-    """One thing that is wrong.
+class AuthorProblem(msgspec.Struct, frozen=True):
+    """One thing that is wrong; ``code`` is a stable name of the broken rule."""
 
-    Attributes:
-        file: the file at fault, relative to the course's root where it lies below it.
-        line: 1-based, or None where no single line is to blame.
-        code: a stable name of the rule that is broken.
-    """
-
-    file: str
-    line: int | None
+    file: str  # relative to the course's root where it lies below it
+    line: int | None  # from 1, or None where no single line is to blame
     code: str
     message: str
-    fix: str
+    help: str
 
     @property
     def where(self) -> str:
@@ -53,7 +48,7 @@ class AuditReport:
         isolation: protection level they ran at; empty if none ran.
     """
 
-    problems: tuple[AuditProblem, ...]
+    problems: tuple[AuthorProblem, ...]
     lessons: tuple[str, ...] = ()
     exercises: tuple[str, ...] = ()
     questions: tuple[str, ...] = ()
@@ -77,13 +72,13 @@ class Findings:
     """
 
     root: Path
-    problems: list[AuditProblem] = field(default_factory=list)
+    problems: list[AuthorProblem] = field(default_factory=list)
 
     def add(self, file: Path | str, line: int | None, code: str, message: str, fix: str) -> None:
         """Note one problem; the same one twice is noted once."""
         path = Path(file)
         shown = path.relative_to(self.root).as_posix() if path.is_relative_to(self.root) else str(path)
-        problem = AuditProblem(shown, line, code, message, fix)
+        problem = AuthorProblem(shown, line, code, message, fix)
         if problem not in self.problems:
             self.problems.append(problem)
 
@@ -107,7 +102,7 @@ class Findings:
         """True if a problem with one of these codes was noted."""
         return any(problem.code in codes for problem in self.problems)
 
-    def sorted(self) -> tuple[AuditProblem, ...]:
+    def sorted(self) -> tuple[AuthorProblem, ...]:
         """By file and line; what `course author build` mends comes last, since it follows from the rest."""
         return tuple(
             sorted(self.problems, key=lambda p: (p.code in _BUILT, p.file, p.line or 0, p.code, p.message))

@@ -75,19 +75,15 @@ class Function:
     @property
     def names(self) -> str:
         """The names of its arguments, as a tuple in Python."""
-        return _tuple([json.dumps(name) for name in self._arguments()])
+        return str(tuple(self._arguments())).replace("'", '"')
 
     def arguments(self, first: float) -> str:
         """Arguments of one call, as a tuple in Python."""
-        return _tuple([str(value) for value in self._arguments(first).values()])
+        return str(tuple(self._arguments(first).values()))
 
     def case(self, first: float) -> str:
         """Arguments of one call, as a dict in Python."""
         return json.dumps(self._arguments(first))
-
-
-def _tuple(items: Sequence[str]) -> str:
-    return f"({items[0]},)" if len(items) == 1 else f"({', '.join(items)})"
 
 
 def new_warm_up(
@@ -204,7 +200,7 @@ def new_question(catalog: Catalog, question_id: str) -> tuple[Path, ...]:
     words = {
         "id": name,
         "lesson": lessons[-1] if lessons else "<<FILL IN: id of the lesson it is about>>",
-        "order": str(1 + len(list(catalog.content.quiz.glob("*.toml")))),
+        "order": str(1 + len(catalog.question_ids())),
     }
     return _write({catalog.content.quiz / f"{name}.toml": ("question.toml", words)})
 

@@ -263,16 +263,8 @@ Block = (
 
 def plain_text(inlines: Inlines) -> str:
     """The words of a line, marks and links left out."""
-    parts = []
-    for inline in inlines:
-        match inline:
-            case Text(text) | Formula(text=text) | Value(text=text):
-                parts.append(text)
-            case Span(children=children) | Link(children=children):
-                parts.append(plain_text(children))
-            case LineBreak():
-                parts.append(" ")
-    return "".join(parts)
+    pieces = (one for one in flattened(inlines) if not isinstance(one, Span | Link))
+    return "".join(" " if isinstance(one, LineBreak) else one.text for one in pieces)
 
 
 def slug(heading: Heading) -> str:
@@ -306,12 +298,13 @@ def walk_blocks(blocks: tuple[Block, ...]) -> Iterator[Block]:
 def walk_inlines(blocks: tuple[Block, ...]) -> Iterator[tuple[Block, Inline]]:
     """Every inline piece with the innermost block it stands in, in reading order."""
     for block in walk_blocks(blocks):
-        for line in _lines_of(block):
-            for inline in _flatten(line):
+        for line in lines_of(block):
+            for inline in flattened(line):
                 yield block, inline
 
 
-def _lines_of(block: Block) -> tuple[Inlines, ...]:
+def lines_of(block: Block) -> tuple[Inlines, ...]:
+    """The lines of prose in a block itself, not in blocks that it holds."""
     match block:
         case Heading(inlines=line) | Paragraph(inlines=line) | Figure(caption=line):
             return (line,)
@@ -327,8 +320,9 @@ def _lines_of(block: Block) -> tuple[Inlines, ...]:
             assert_never(block)
 
 
-def _flatten(inlines: Inlines) -> Iterator[Inline]:
+def flattened(inlines: Inlines) -> Iterator[Inline]:
+    """Every piece of a line, outer ones before what they hold."""
     for inline in inlines:
         yield inline
         if isinstance(inline, Span | Link):
-            yield from _flatten(inline.children)
+            yield from flattened(inline.children)

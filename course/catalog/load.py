@@ -275,6 +275,12 @@ class Catalog:
         check_lesson(document)
         return msgspec.structs.replace(document.value, path=str(path))
 
+    # -- the quiz --------------------------------------------------------------------------------
+
+    def question_ids(self) -> tuple[str, ...]:
+        """Sorted by name; lists a folder and opens no file."""
+        return tuple(sorted(path.stem for path in self.content.quiz.glob("*.toml")))
+
     # -- exercises -------------------------------------------------------------------------------
 
     def exercise_ids(self) -> tuple[str, ...]:

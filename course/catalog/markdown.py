@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from course.catalog import blocks as b
 from course.catalog.mathtext import MathError, math_spoken, math_text
-from course.catalog.reading import split_front_matter
+from course.catalog.reading import read_text, split_front_matter
 from course.errors import ContentError
 
 if TYPE_CHECKING:
@@ -30,24 +30,16 @@ _FORMAT_HELP = "docs/lesson-format.md lists what a lesson can hold."
 
 
 def read_blocks(path: Path) -> tuple[b.Block, ...]:
-    head = split_front_matter(_text(path), path)
+    head = split_front_matter(read_text(path), path)
     return parse_lesson(head.body, path, first_line=head.body_line)
 
 
 def read_task(path: Path) -> tuple[b.Block, ...]:
     """The blocks of a warm-up's README below its title; the caller has the title already."""
-    title, _, body = _text(path).partition("\n")
+    title, _, body = read_text(path).partition("\n")
     if not title.startswith("# "):
         raise ContentError(path, 1, "the title is missing.", help="Start the file with: # Title")
     return parse_lesson(body, path, first_line=2)
-
-
-def _text(path: Path) -> str:
-    try:
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        problem = f"the text cannot be read: {error}"
-        raise ContentError(path, None, problem, help="Lessons are UTF-8 text.") from error
 
 
 def parse_lesson(body: str, file: Path, *, first_line: int = 1) -> tuple[b.Block, ...]:

@@ -13,7 +13,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 from textwrap import dedent
-from typing import assert_never
+from typing import Protocol
 
 _RAISED = dict(
     zip(
@@ -39,73 +39,245 @@ _SPOKEN_FENCES = {
 }
 
 
+class MathError(ValueError):
+    """A formula uses something that has no agreed text form."""
+
+
 def math_text(tex: str) -> str:
     """A formula as Unicode text; several lines, aligned, where the source has an ``aligned`` environment."""
-    return dedent("\n".join(line.rstrip() for line in _text(read_math(tex)).split("\n")))
+    return dedent("\n".join(line.rstrip() for line in read_math(tex).shown().split("\n")))
 
 
 def math_spoken(tex: str) -> str:
     """A formula in words, unambiguous when heard; several lines where the source has ``aligned``."""
     lines = []
-    for line in _spoken(read_math(tex)).splitlines():
+    for line in read_math(tex).said().splitlines():
         words = line.replace(" ,", ",").replace(" ;", ";").replace(" .", ".")
         lines.append(" ".join(words.split()))
     return "\n".join(lines)
 
 
-# ---------------------------------------------------------------- text
+# ---
+# The parts of a formula: each knows its text for the screen and its words for the ear.
 
 
-def _text(node: Node) -> str:  # noqa: PLR0911 - one return per kind of node
-    match node:
-        case Atom(text=text):
-            return text
-        case Row(items=items):
-            return _row_text(items)
-        case Fraction(over=over, under=under):
-            return _fraction_text(over, under)
-        case Root(body=body):
-            return "√" + (_text(body) if _is_single(body) else f"({_text(body)})")
-        case Script(base=base, sub=sub, sup=sup):
-            return _script_text(base, sub, sup)
-        case Accent(name=name, body=body):
-            return _accented(name, _text(body))
-        case Fence(left=left, right=right, body=body):
-            return left + _text(body) + right
-        case Grid(lines=lines):
-            return _grid_text(lines)
-        case _:
-            assert_never(node)
+class Node(Protocol):
+    def shown(self) -> str: ...
+
+    def said(self) -> str: ...
 
 
-def _row_text(items: tuple[Node, ...]) -> str:
-    out = ""
-    for index, item in enumerate(items):
-        before = _beside(items[:index][::-1])
-        after = _beside(items[index + 1 :])
-        piece = _text(item)
-        if isinstance(item, Fraction) and "/" in piece and (is_factor(before) or is_factor(after)):
-            piece = f"({piece})"
-        match item:
-            case Atom(kind="relation"):
-                piece = f" {piece} "
-            case Atom(kind="binary", text="/" | "·"):
-                pass
-            case Atom(kind="binary") if _is_operand(before):
-                piece = f" {piece} "
-            case Atom(kind="punctuation") if after is not None:
-                piece += " "
-            case Atom(kind="words"):
-                piece = _spaced(out, piece, after)
-            case Atom(kind="function") | Script(base=Atom(kind="function")):
-                piece = (" " if is_factor(before) and out[-1:] != " " else "") + piece
-                piece += "" if isinstance(after, Fence) or after is None else " "
-            case _ if is_factor(before) and _is_letter(out[-1:]) and _is_letter(piece[:1]):
-                piece = f" {piece}"  # "g h t", which "ght" would hide
-            case _:
-                pass
-        out += piece
-    return _single_spaced(out)
+@dataclass(frozen=True, slots=True)
+class Atom:
+    """One symbol.
+
+    Attributes:
+        kind: "letter", "number", "words", "function", "binary", "relation", "punctuation" or "space".
+        words: empty if it is not spoken.
+    """
+
+    kind: str
+    text: str
+    words: str
+
+    def shown(self) -> str:
+        return self.text
+
+    def said(self) -> str:
+        return self.words
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    items: tuple[Node, ...]
+
+    def shown(self) -> str:
+        out = ""
+        for index, item in enumerate(self.items):
+            before = _beside(self.items[:index][::-1])
+            after = _beside(self.items[index + 1 :])
+            piece = item.shown()
+            if isinstance(item, Fraction) and "/" in piece and (is_factor(before) or is_factor(after)):
+                piece = f"({piece})"
+            match item:
+                case Atom(kind="relation"):
+                    piece = f" {piece} "
+                case Atom(kind="binary", text="/" | "·"):
+                    pass
+                case Atom(kind="binary") if _is_operand(before):
+                    piece = f" {piece} "
+                case Atom(kind="punctuation") if after is not None:
+                    piece += " "
+                case Atom(kind="words"):
+                    piece = _spaced(out, piece, after)
+                case Atom(kind="function") | Script(base=Atom(kind="function")):
+                    piece = (" " if is_factor(before) and out[-1:] != " " else "") + piece
+                    piece += "" if isinstance(after, Fence) or after is None else " "
+                case _ if is_factor(before) and _is_letter(out[-1:]) and _is_letter(piece[:1]):
+                    piece = f" {piece}"  # "g h t", which "ght" would hide
+                case _:
+                    pass
+            out += piece
+        # A relation brings its own spaces; beside a \, or a wide \quad they would double.
+        return re.sub(" {4,}", "   ", out).replace("  =", " =").replace("=  ", "= ")
+
+    def said(self) -> str:
+        words = []
+        for index, item in enumerate(self.items):
+            before = _beside(self.items[:index][::-1])
+            if isinstance(item, Atom) and item.text == "−" and not _is_operand(before):
+                words.append("minus" if before is None else "negative")
+            elif isinstance(item, Root) and is_factor(before):
+                words.append(f"times {item.said()}")
+            elif isinstance(item, Fraction) and is_factor(_beside(self.items[index + 1 :])):
+                words.append(item.said_to_its_end())
+            else:
+                words.append(item.said())
+        return " ".join(words)
+
+    @property
+    def is_single(self) -> bool:
+        """Whether it needs no brackets anywhere: one symbol, with or without an index, or one bracket."""
+        if len(self.items) != 1:
+            return False
+        only = self.items[0]
+        return only.is_single if isinstance(only, Row) else not isinstance(only, Fraction | Grid)
+
+    @property
+    def is_sum(self) -> bool:
+        return any(
+            isinstance(item, Fraction)
+            or (isinstance(item, Atom) and item.kind in ("binary", "relation") and item.text != "·")
+            for item in self.items
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Fraction:
+    over: Row
+    under: Row
+
+    def shown(self) -> str:
+        top, bottom = self.over.shown(), self.under.shown()
+        if (top, bottom) in _VULGAR:
+            return _VULGAR[top, bottom]
+        if self.over.is_sum:
+            top = f"({top})"
+        if not self.under.is_single:
+            bottom = f"({bottom})"
+        return f"{top}/{bottom}"
+
+    def said(self) -> str:
+        if self.over.is_single and self.under.is_single and not self._is_half:
+            return f"{self.over.said()} over {self.under.said()}"
+        return self.said_to_its_end()
+
+    def said_to_its_end(self) -> str:
+        """With its end, even if it is simple, for something follows it."""
+        if self._is_half:
+            return "one half"
+        return f"the fraction {self.over.said()} over {self.under.said()} end fraction"
+
+    @property
+    def _is_half(self) -> bool:
+        return (self.over.shown(), self.under.shown()) == ("1", "2")
+
+
+@dataclass(frozen=True, slots=True)
+class Root:
+    body: Row
+
+    def shown(self) -> str:
+        return "√" + (self.body.shown() if self.body.is_single else f"({self.body.shown()})")
+
+    def said(self) -> str:
+        return f"the square root of {self.body.said()}" + ("" if self.body.is_single else " end root")
+
+
+@dataclass(frozen=True, slots=True)
+class Script:
+    """A base with an index below, an exponent above, or both."""
+
+    base: Node
+    sub: Row | None
+    sup: Row | None
+
+    def shown(self) -> str:
+        out = self.base.shown()
+        if isinstance(self.base, Fraction) or (isinstance(self.base, Row) and not self.base.is_single):
+            out = f"({out})"
+        if self.sub is not None:
+            out += _moved(self.sub.shown(), _LOWERED, "_")
+        if self.sup is not None:
+            out += _moved(self.sup.shown(), _RAISED, "^")
+        return out
+
+    def said(self) -> str:
+        said = self.base.said()
+        if self.sub is not None and said == "the sum of":
+            return f"the sum over {self.sub.said()} of"
+        if self.sub is not None:
+            said += f" sub {self.sub.said()}" + ("" if len(self.sub.items) == 1 else " end sub")
+        if self.sup is None:
+            return said
+        power = self.sup.shown()
+        if power in _POWERS:
+            return f"{said} {_POWERS[power]}"
+        return f"{said} to the power {self.sup.said()}" + ("" if len(self.sup.items) == 1 else " end power")
+
+
+@dataclass(frozen=True, slots=True)
+class Accent:
+    name: str
+    body: Row
+
+    def shown(self) -> str:
+        body = self.body.shown()
+        if len(body) != 1:
+            raise MathError(f"\\{self.name} over more than one letter has no text form")
+        return body + ACCENTS[self.name]
+
+    def said(self) -> str:
+        return f"{self.body.said()} {_SPOKEN_ACCENTS[self.name]}"
+
+
+@dataclass(frozen=True, slots=True)
+class Fence:
+    """Something between a pair of delimiters: ``()``, ``[]``, ``{}``, ``||`` or ``‖‖``."""
+
+    left: str
+    right: str
+    body: Row
+
+    def shown(self) -> str:
+        return self.left + self.body.shown() + self.right
+
+    def said(self) -> str:
+        opening, closing = _SPOKEN_FENCES[self.left]
+        return f"{opening} {self.body.said()} {closing}"
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """Lines of an ``aligned`` environment; the cells of a line are what ``&`` separates."""
+
+    lines: tuple[tuple[Row, ...], ...]
+
+    def shown(self) -> str:
+        cells = [[cell.shown() for cell in line] for line in self.lines]
+        columns = max(len(line) for line in cells)
+        widths = [max((len(line[i]) for line in cells if i < len(line)), default=0) for i in range(columns)]
+        out = []
+        for line in cells:
+            # As in LaTeX, columns are alternately flush right and flush left, so relations line up.
+            padded = [
+                cell.rjust(widths[i]) if i % 2 == 0 else cell.ljust(widths[i]) for i, cell in enumerate(line)
+            ]
+            out.append("".join(padded).rstrip())
+        return "\n".join(out)
+
+    def said(self) -> str:
+        return "\n".join(" ".join(cell.said() for cell in line) for line in self.lines)
 
 
 def _beside(items: tuple[Node, ...]) -> Node | None:
@@ -125,35 +297,6 @@ def _is_letter(char: str) -> bool:
     return (char.isascii() and char.isalpha()) or char in _SMALL_LETTERS
 
 
-def _single_spaced(text: str) -> str:
-    # A relation brings its own spaces; beside a \, or a wide \quad they would double.
-    while "    " in text:
-        text = text.replace("    ", "   ")
-    return text.replace("  =", " =").replace("=  ", "= ")
-
-
-def _fraction_text(over: Row, under: Row) -> str:
-    top, bottom = _text(over), _text(under)
-    if (top, bottom) in _VULGAR:
-        return _VULGAR[top, bottom]
-    if _is_sum(over):
-        top = f"({top})"
-    if not _is_single(under):
-        bottom = f"({bottom})"
-    return f"{top}/{bottom}"
-
-
-def _script_text(base: Node, sub: Row | None, sup: Row | None) -> str:
-    out = _text(base)
-    if isinstance(base, Row | Fraction) and not (isinstance(base, Row) and _is_single(base)):
-        out = f"({out})"
-    if sub is not None:
-        out += _moved(_text(sub), _LOWERED, "_")
-    if sup is not None:
-        out += _moved(_text(sup), _RAISED, "^")
-    return out
-
-
 def _moved(text: str, table: dict[str, str], mark: str) -> str:
     """A script in raised or lowered characters where all of them exist, else after its mark."""
     tight = text.replace(" ", "")
@@ -162,184 +305,12 @@ def _moved(text: str, table: dict[str, str], mark: str) -> str:
     return mark + (text if text.isalnum() else f"({text})")
 
 
-def _accented(name: str, body: str) -> str:
-    if len(body) != 1:
-        raise MathError(f"\\{name} over more than one letter has no text form")
-    return body + ACCENTS[name]
-
-
-def _grid_text(lines: tuple[tuple[Row, ...], ...]) -> str:
-    cells = [[_text(cell) for cell in line] for line in lines]
-    columns = max(len(line) for line in cells)
-    widths = [max((len(line[i]) for line in cells if i < len(line)), default=0) for i in range(columns)]
-    out = []
-    for line in cells:
-        # As in LaTeX, columns are alternately flush right and flush left, so relations line up.
-        padded = [
-            cell.rjust(widths[i]) if i % 2 == 0 else cell.ljust(widths[i]) for i, cell in enumerate(line)
-        ]
-        out.append("".join(padded).rstrip())
-    return "\n".join(out)
-
-
-# ---------------------------------------------------------------- words
-
-
-def _spoken(node: Node) -> str:  # noqa: PLR0911 - one return per kind of node
-    match node:
-        case Atom(spoken=spoken):
-            return spoken
-        case Row(items=items):
-            return _row_spoken(items)
-        case Fraction(over=over, under=under):
-            return _fraction_spoken(over, under)
-        case Root(body=body):
-            closing = "" if _is_single(body) else " end root"
-            return f"the square root of {_spoken(body)}{closing}"
-        case Script(base=base, sub=sub, sup=sup):
-            return _script_spoken(base, sub, sup)
-        case Accent(name=name, body=body):
-            return f"{_spoken(body)} {_SPOKEN_ACCENTS[name]}"
-        case Fence(left=left, body=body):
-            opening, closing = _SPOKEN_FENCES[left]
-            return f"{opening} {_spoken(body)} {closing}"
-        case Grid(lines=lines):
-            return "\n".join(" ".join(_spoken(cell) for cell in line) for line in lines)
-        case _:
-            assert_never(node)
-
-
-def _row_spoken(items: tuple[Node, ...]) -> str:
-    words = []
-    for index, item in enumerate(items):
-        before = _beside(items[:index][::-1])
-        if isinstance(item, Atom) and item.text == "−" and not _is_operand(before):
-            words.append("minus" if before is None else "negative")
-        elif isinstance(item, Root) and is_factor(before):
-            words.append(f"times {_spoken(item)}")
-        elif isinstance(item, Fraction) and is_factor(_beside(items[index + 1 :])):
-            words.append(_fraction_spoken(item.over, item.under, bounded=True))
-        else:
-            words.append(_spoken(item))
-    return " ".join(words)
-
-
-def _fraction_spoken(over: Row, under: Row, *, bounded: bool = False) -> str:
-    """A fraction; ``bounded`` says where it ends even if it is simple, for something follows it."""
-    top, bottom = _text(over), _text(under)
-    if (top, bottom) == ("1", "2"):
-        return "one half"
-    if _is_single(over) and _is_single(under) and not bounded:
-        return f"{_spoken(over)} over {_spoken(under)}"
-    return f"the fraction {_spoken(over)} over {_spoken(under)} end fraction"
-
-
-def _script_spoken(base: Node, sub: Row | None, sup: Row | None) -> str:
-    said = _spoken(base)
-    if sub is not None and said == "the sum of":
-        return f"the sum over {_spoken(sub)} of"
-    if sub is not None:
-        said += f" sub {_spoken(sub)}" + ("" if len(sub.items) == 1 else " end sub")
-    if sup is None:
-        return said
-    power = _text(sup)
-    if power in _POWERS:
-        return f"{said} {_POWERS[power]}"
-    return f"{said} to the power {_spoken(sup)}" + ("" if len(sup.items) == 1 else " end power")
-
-
-# ---------------------------------------------------------------- shape
-
-
-def _is_single(row: Row) -> bool:
-    """Whether a row needs no brackets anywhere: one symbol, with or without an index, or one bracket."""
-    if len(row.items) != 1:
-        return False
-    only = row.items[0]
-    return not isinstance(only, Fraction | Grid) and not (isinstance(only, Row) and not _is_single(only))
-
-
-def _is_sum(row: Row) -> bool:
-    return any(
-        isinstance(item, Atom) and item.kind in ("binary", "relation") and item.text != "·"
-        for item in row.items
-    ) or any(isinstance(item, Fraction) for item in row.items)
-
-
 def _is_operand(node: Node | None) -> bool:
     """Whether a sign after this node stands between two things, and is not a sign of what follows."""
     return node is not None and not (
         isinstance(node, Atom) and node.kind in ("binary", "relation", "punctuation", "space", "function")
     )
 
-
-class MathError(ValueError):
-    """A formula uses something that has no agreed text form."""
-
-
-@dataclass(frozen=True, slots=True)
-class Atom:
-    """One symbol.
-
-    Attributes:
-        kind: "letter", "number", "words", "function", "binary", "relation", "punctuation" or "space".
-        text: for the screen.
-        spoken: for the ear; empty if it is not spoken.
-    """
-
-    kind: str
-    text: str
-    spoken: str
-
-
-@dataclass(frozen=True, slots=True)
-class Row:
-    items: tuple[Node, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Fraction:
-    over: Row
-    under: Row
-
-
-@dataclass(frozen=True, slots=True)
-class Root:
-    body: Row
-
-
-@dataclass(frozen=True, slots=True)
-class Script:
-    """A base with an index below, an exponent above, or both."""
-
-    base: Node
-    sub: Row | None
-    sup: Row | None
-
-
-@dataclass(frozen=True, slots=True)
-class Accent:
-    name: str
-    body: Row
-
-
-@dataclass(frozen=True, slots=True)
-class Fence:
-    """Something between a pair of delimiters: ``()``, ``[]``, ``{}``, ``||`` or ``‖‖``."""
-
-    left: str
-    right: str
-    body: Row
-
-
-@dataclass(frozen=True, slots=True)
-class Grid:
-    """Lines of an ``aligned`` environment; the cells of a line are what ``&`` separates."""
-
-    lines: tuple[tuple[Row, ...], ...]
-
-
-Node = Atom | Row | Fraction | Root | Script | Accent | Fence | Grid
 
 _GREEK = {
     "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "varepsilon": "ε", "zeta": "ζ",

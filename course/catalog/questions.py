@@ -13,7 +13,7 @@ import operator
 import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import msgspec
 
@@ -24,7 +24,7 @@ from course.printable import counted
 # ---
 # Arithmetic that a content file may contain: numbers, names, + - * / ** and a few functions.
 #
-# A formula is parsed once and walked; nothing of it is ever executed as Python.
+# A formula is parsed and walked once; nothing of it is ever executed as Python.
 #
 #     >>> Formula("9.81 * h * t / 2").value({"h": 0.01, "t": 2})
 #     0.0981
@@ -48,6 +48,9 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
     "sqrt": math.sqrt,
 }
 
+#: The value of a formula, or of a part of it, from those of its names.
+_Computed: TypeAlias = "Callable[[Mapping[str, float]], float]"
+
 
 class FormulaError(ValueError):
     """A formula that cannot be read or has no finite value; the text says why."""
@@ -68,10 +71,10 @@ class Formula:
 
     def __init__(self, text: str) -> None:
         try:
-            self._body = ast.parse(text.strip(), mode="eval").body
+            body = ast.parse(text.strip(), mode="eval").body
         except (SyntaxError, ValueError, RecursionError, MemoryError):
             raise FormulaError("it is not arithmetic") from None
-        self.names = frozenset(_names(self._body))
+        self._computed, self.names = _compiled(body)
 
     def value(self, given: Mapping[str, float]) -> float:
         """The value; an int where only whole numbers and ``round`` or ``ceil`` were involved.
@@ -80,7 +83,7 @@ class Formula:
             FormulaError: there is no finite real value.
         """
         try:
-            result = _value(self._body, given)
+            result = self._computed(given)
             if math.isfinite(result):
                 return result
         except ZeroDivisionError:
@@ -90,41 +93,29 @@ class Formula:
         raise FormulaError("it has no finite value")
 
 
-def _names(node: ast.expr) -> set[str]:
-    """Every name in a formula, after a check that each of its parts is allowed."""
+def _compiled(node: ast.expr) -> tuple[_Computed, frozenset[str]]:
+    """What a part of a formula computes, and the names in it; a part that is not allowed is refused."""
     match node:
-        case ast.Constant(value=bool() | complex() | str() | bytes() | None):
+        case ast.Constant(value=bool()):
             pass
-        case ast.Constant(value=int() | float()):
-            return set()
+        case ast.Constant(value=int() | float() as number):
+            return lambda _: number, frozenset()
         case ast.Name(id=name):
-            return {name}
-        case ast.UnaryOp(op=ast.USub() | ast.UAdd(), operand=operand):
-            return _names(operand)
+            return lambda given: given[name], frozenset({name})
+        case ast.UnaryOp(op=ast.UAdd(), operand=operand):
+            return _compiled(operand)
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            value, names = _compiled(operand)
+            return lambda given: -value(given), names
         case ast.BinOp(left=left, op=op, right=right) if type(op) in _BINARY:
-            return _names(left) | _names(right)
+            operate, (one, ones), (other, others) = _BINARY[type(op)], _compiled(left), _compiled(right)
+            return lambda given: operate(one(given), other(given)), ones | others
         case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in FUNCTIONS:
-            return _names(argument)
+            function, (value, names) = FUNCTIONS[name], _compiled(argument)
+            return lambda given: function(value(given)), names
     raise FormulaError(
         f"{ast.unparse(node)[:60]!r} is not one of: numbers, names, + - * / **, {', '.join(FUNCTIONS)}"
     )
-
-
-def _value(node: ast.expr, given: Mapping[str, float]) -> float:
-    match node:
-        case ast.Constant(value=int() | float() as number):
-            return number
-        case ast.Name(id=name):
-            return given[name]
-        case ast.UnaryOp(op=ast.USub(), operand=operand):
-            return -_value(operand, given)
-        case ast.UnaryOp(operand=operand):
-            return _value(operand, given)
-        case ast.BinOp(left=left, op=op, right=right):
-            return _BINARY[type(op)](_value(left, given), _value(right, given))
-        case ast.Call(func=ast.Name(id=name), args=[argument]):
-            return FUNCTIONS[name](_value(argument, given))
-    raise FormulaError("it is not arithmetic")
 
 
 #: Options of every question. Five questions of four options are passed by guessing in 1.6 % of attempts.
@@ -199,11 +190,6 @@ class Question(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     misconceptions: dict[str, str]
     variant: tuple[Variant, ...]
     lesson: str = ""
-
-
-def placeholders(text: str) -> list[str]:
-    """The names in braces, in order."""
-    return _PLACEHOLDER.findall(text)
 
 
 def read_questions(folder: Path) -> tuple[Document[Question], ...]:
@@ -317,7 +303,7 @@ def _check_placeholders(document: Document[Question], where: Keys, variant: Vari
         texts += [((*where, "option", index, key), getattr(option, key)) for key in ("text", "explanation")]
     used: set[str] = set()
     for at, text in texts:
-        names = placeholders(text)
+        names = _PLACEHOLDER.findall(text)
         if (stray := next((name for name in names if name not in known), None)) is not None:
             problem = f"{{{stray}}} names no number."
             document.fail(at, problem, fix=f"Numbers here: {', '.join(sorted(known)) or 'none'}.")

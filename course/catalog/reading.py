@@ -78,14 +78,13 @@ class LineMap:
         self._lines = text.replace("\r\n", "\n").split("\n")
         self._first = first_line
 
-    def line(self, path: Keys | str) -> int:
+    def line(self, path: Keys) -> int:
         """The line on which the value at ``path`` begins, else that of the nearest thing around it."""
-        steps = parse_path(path) if isinstance(path, str) else path
-        depth = next((n for n in range(len(steps), 0, -1) if steps[:n] in self._statements), 0)
+        depth = next((n for n in range(len(path), 0, -1) if path[:n] in self._statements), 0)
         if not depth:
             return self._first
-        table, begin, end = self._statements[steps[:depth]]
-        inner = steps[table:]
+        table, begin, end = self._statements[path[:depth]]
+        inner = path[table:]
         while len(inner) > depth - table and not self._has(inner, begin, end):
             inner = inner[:-1]
         begins = bisect_left(range(end), True, begin, key=lambda at: self._has(inner, begin, at))
@@ -181,7 +180,7 @@ class Document(Generic[T]):
     value: T
     lines: LineMap
 
-    def fail(self, where: str | tuple[str | int, ...], problem: str, *, fix: str) -> NoReturn:
+    def fail(self, where: Keys, problem: str, *, fix: str) -> NoReturn:
         """Raise the ContentError that points at ``where``."""
         raise ContentError(self.path, self.lines.line(where), problem, help=fix)
 
@@ -343,9 +342,7 @@ def _described(info: Any) -> str:
     return str((getattr(info, "extra_json_schema", None) or {}).get("description", ""))
 
 
-def _unknown_key(
-    raw: Document[Any], steps: tuple[str | int, ...], key: str, kind: type, *, hide: tuple[str, ...]
-) -> NoReturn:
+def _unknown_key(raw: Document[Any], steps: Keys, key: str, kind: type, *, hide: tuple[str, ...]) -> NoReturn:
     names = [field.encode_name for field in getattr(_type_at(kind, steps), "fields", ())]
     known = [name for name in names if steps or name not in hide]
     fix = meant(key, known, f"Known keys: {', '.join(known)}.")
@@ -386,7 +383,7 @@ def _added(kind: type, steps: Keys) -> str:
     return f"Add a line `{steps[-1]} = ...`."
 
 
-def _type_at(kind: type, steps: tuple[str | int, ...]) -> Any:
+def _type_at(kind: type, steps: Keys) -> Any:
     info: Any = msgspec.inspect.type_info(kind)
     for step in steps:
         if isinstance(info, msgspec.inspect.StructType):
@@ -404,7 +401,7 @@ def _without_none(info: Any) -> Any:
     return given[0] if len(given) == 1 else info
 
 
-def _named(steps: tuple[str | int, ...]) -> str:
+def _named(steps: Keys) -> str:
     """A place as the file's author would call it: ``task[2].points`` is points of the third task."""
     if not steps:
         return "the file"

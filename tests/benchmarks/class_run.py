@@ -21,14 +21,14 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from course.authoring.exercises.grading import mistakes_of, solution_path  # noqa: E402
+from course.authoring.exercises.grading import mistakes_of, solution_path, source_of  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
 from course.grading.cluster.connect import local_cluster  # noqa: E402
 from course.grading.running.batch import grade_all  # noqa: E402
@@ -38,20 +38,18 @@ from course.grading.running.run import GradeAll, RunOptions, Summary, grade_clas
 
 MINI = ROOT / "tests" / "fixtures" / "mini_course"
 PAGE = os.sysconf("SC_PAGE_SIZE")
-KINDS = ("write", "jobs", "memory", "cluster", "rerun")
 
 
 def make_class(folder: Path, catalog: Catalog, exercise: str, students: int) -> None:
     """A class in which every file is another one: the model solution, a third of it with a mistake."""
     known = catalog.exercise(exercise)
-    module, solution = known.module, solution_path(catalog, known)
-    model = solution.read_text(encoding="utf-8")
-    mutants = [one.composed(model, solution) for one in mistakes_of(catalog, known).wrong]
+    model = solution_path(catalog, known).read_bytes()
+    mutants = [source_of(catalog, known, one) for one in mistakes_of(catalog, known).wrong]
     for number in range(students):
         place = folder / f"student-{number:05}"
         place.mkdir(parents=True)
         source = mutants[number // 3 % len(mutants)] if number % 3 == 0 and mutants else model
-        (place / module).write_text(f"{source}\n# {number}\n", encoding="utf-8")
+        (place / known.module).write_bytes(source + b"\n# %d\n" % number)
 
 
 def run(
@@ -82,8 +80,8 @@ def run(
     return summary
 
 
-def write_share(folder: Path, catalog: Catalog, exercise: str) -> None:
-    summary = run(folder, catalog, exercise, 1, lambda _: None)
+def write_share(folder: Path, catalog: Catalog, options: argparse.Namespace) -> None:
+    summary = run(folder, catalog, options.exercise, 1, lambda _: None)
     graded = summary.states["graded"]
     print(
         f"write: {summary.write_s / summary.elapsed_s:.2%} of the time (target: under 2 %); "
@@ -91,12 +89,12 @@ def write_share(folder: Path, catalog: Catalog, exercise: str) -> None:
     )
 
 
-def jobs_ratio(folder: Path, catalog: Catalog, exercise: str) -> None:
+def jobs_ratio(folder: Path, catalog: Catalog, options: argparse.Namespace) -> None:
     """Each way three times, taking turns; the best of each, which is the least disturbed."""
     times: dict[int, list[float]] = {1: [], 2: []}
     for _ in range(3):
         for jobs, seconds in times.items():
-            seconds.append(run(folder, catalog, exercise, jobs, lambda _: None).elapsed_s)
+            seconds.append(run(folder, catalog, options.exercise, jobs, lambda _: None).elapsed_s)
     best = {jobs: min(seconds) for jobs, seconds in times.items()}
     print(
         f"jobs: -j 2 is {best[1] / best[2]:.2f} times -j 1 (target: at least 1.8), "
@@ -104,7 +102,7 @@ def jobs_ratio(folder: Path, catalog: Catalog, exercise: str) -> None:
     )
 
 
-def memory(folder: Path, catalog: Catalog, exercise: str, students: int) -> None:
+def memory(folder: Path, catalog: Catalog, options: argparse.Namespace) -> None:
     """Resident memory of the grader and of this process, over the first and the last tenth of the class."""
     samples: list[tuple[int, int, int]] = []
 
@@ -112,8 +110,8 @@ def memory(folder: Path, catalog: Catalog, exercise: str, students: int) -> None
         if count % 20 == 0:
             samples.append((count, sum(map(resident, graders())), resident(os.getpid())))
 
-    run(folder, catalog, exercise, 1, seen)
-    tenth = students // 10
+    run(folder, catalog, options.exercise, 1, seen)
+    students, tenth = options.submissions, options.submissions // 10
     for name, column in (("grader", 1), ("coordinator", 2)):
         # The very first hundred submissions fill caches that then stay.
         first = statistics.median(row[column] for row in samples if 100 <= row[0] <= tenth)
@@ -124,8 +122,7 @@ def memory(folder: Path, catalog: Catalog, exercise: str, students: int) -> None
         )
 
 
-@dataclass
-class Cost:
+class Cost(NamedTuple):
     """What a run took.
 
     Attributes:
@@ -146,46 +143,42 @@ def cost(grading: Callable[[Callable[[int], None]], None], students: int) -> Cos
     return Cost(whole, at[-1] - at[students // 10])
 
 
-def cluster_ratio(folder: Path, catalog: Catalog, exercise: str, students: int, workers: int) -> None:
+def cluster_ratio(folder: Path, catalog: Catalog, options: argparse.Namespace) -> None:
     """``-j N`` and a cluster of N on this machine, three times each, taking turns; the best of each."""
     missing = [name for name in ("distributed", "cryptography") if importlib.util.find_spec(name) is None]
     if missing:
         print(f"cluster: not measured, {' and '.join(missing)} not installed (the extra `cluster`)")
         return
+    workers = options.workers
 
     def processes(seen: Callable[[int], None]) -> None:
-        run(folder, catalog, exercise, workers, seen)
+        run(folder, catalog, options.exercise, workers, seen)
 
     def dask(seen: Callable[[int], None]) -> None:
         with local_cluster(workers) as grade:
-            run(folder, catalog, exercise, 1, seen, grade)
+            run(folder, catalog, options.exercise, 1, seen, grade)
 
-    costs: dict[str, list[Cost]] = {"-j": [], "cluster": []}
-    for _ in range(3):
-        costs["-j"].append(cost(processes, students))
-        costs["cluster"].append(cost(dask, students))
-    ratio = {
-        name: min(getattr(one, name) for one in costs["cluster"])
-        / min(getattr(one, name) for one in costs["-j"])
-        for name in ("graded_s", "whole_s")
-    }
+    costs = [[cost(way, options.submissions) for way in (processes, dask)] for _ in range(3)]
+    ours, theirs = (Cost(*map(min, *each)) for each in zip(*costs, strict=True))
     print(
-        f"cluster: {workers} workers take {ratio['graded_s']:.2f} times as long as -j {workers} (target: at"
-        f" most 1.10); {ratio['whole_s']:.2f} with what starting takes; on {os.cpu_count()} processors"
+        f"cluster: {workers} workers take {theirs.graded_s / ours.graded_s:.2f} times as long as -j {workers}"
+        f" (target: at most 1.10); {theirs.whole_s / ours.whole_s:.2f} with what starting takes; on"
+        f" {os.cpu_count()} processors"
     )
 
 
-def rerun_ratio(folder: Path, catalog: Catalog, exercise: str, jobs: int, rounds: int) -> None:
+def rerun_ratio(folder: Path, catalog: Catalog, options: argparse.Namespace) -> None:
     """A run, and ``rerun --dry-run --all`` over what it wrote, taking turns; the best of each.
 
     Both start graders, grade everything and end; the run writes besides, and makes the reports.
     """
     costs: dict[str, list[float]] = {"run": [], "rerun": []}
+    jobs = options.workers
     grade = partial(grade_all, graders=jobs)
-    for _ in range(rounds):
+    for _ in range(options.rounds):
         out = Path(tempfile.mkdtemp(prefix="run-", dir=folder.parent)) / "out"
-        options = RunOptions(exercises=(exercise,), seed=1)
-        summary = grade_class(folder, out, catalog, options, lambda *_: None, grade=grade)
+        asked = RunOptions(exercises=(options.exercise,), seed=1)
+        summary = grade_class(folder, out, catalog, asked, lambda *_: None, grade=grade)
         costs["run"].append(summary.elapsed_s)
         began = time.monotonic()
         with open_results(out) as results:
@@ -196,7 +189,7 @@ def rerun_ratio(folder: Path, catalog: Catalog, exercise: str, jobs: int, rounds
             f"rerun: {done.regraded} with -j {jobs}: run {costs['run'][-1]:.1f} s, {costs['rerun'][-1]:.1f} s"
         )
     ratio = min(costs["rerun"]) / min(costs["run"])
-    print(f"rerun: takes {ratio:.2f} times as long as the run (target: at most 1), best of {rounds}")
+    print(f"rerun: takes {ratio:.2f} times as long as the run (target: at most 1), best of {options.rounds}")
 
 
 def graders() -> list[int]:
@@ -217,6 +210,15 @@ def resident(pid: int) -> int:
     return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * PAGE
 
 
+KINDS = {
+    "write": write_share,
+    "jobs": jobs_ratio,
+    "memory": memory,
+    "cluster": cluster_ratio,
+    "rerun": rerun_ratio,
+}
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description="A whole class in one run.")
     parser.add_argument("--only", choices=KINDS, action="append")
@@ -234,17 +236,9 @@ def main() -> None:
         folder = Path(scratch) / "class"
         make_class(folder, catalog, arguments.exercise, arguments.submissions)
         print(f"{arguments.submissions} submissions of {arguments.exercise}")
-        wanted = arguments.only or KINDS
-        if "write" in wanted:
-            write_share(folder, catalog, arguments.exercise)
-        if "jobs" in wanted:
-            jobs_ratio(folder, catalog, arguments.exercise)
-        if "memory" in wanted:
-            memory(folder, catalog, arguments.exercise, arguments.submissions)
-        if "cluster" in wanted:
-            cluster_ratio(folder, catalog, arguments.exercise, arguments.submissions, arguments.workers)
-        if "rerun" in wanted:
-            rerun_ratio(folder, catalog, arguments.exercise, arguments.workers, arguments.rounds)
+        for kind, measure in KINDS.items():
+            if kind in (arguments.only or KINDS):
+                measure(folder, catalog, arguments)
 
 
 if __name__ == "__main__":

@@ -25,7 +25,12 @@ from typing import Any
 sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
 
 
-from course.authoring.exercises.grading import accepted_sources, mistakes_of, solution_path  # noqa: E402
+from course.authoring.exercises.grading import (  # noqa: E402
+    accepted_sources,
+    mistakes_of,
+    solution_path,
+    source_of,
+)
 from course.catalog.load import Catalog  # noqa: E402
 from course.isolation.levels import Deadline  # noqa: E402
 from course.isolation.session import Connection  # noqa: E402
@@ -39,10 +44,10 @@ TICK = os.sysconf("SC_CLK_TCK")
 
 def submissions(exercise: Any, catalog: Catalog) -> dict[str, bytes]:
     """The model solution, every accepted variant and every mutant of an exercise."""
-    model = solution_path(catalog, exercise)
+    model = solution_path(catalog, exercise).read_bytes()
     wrong = mistakes_of(catalog, exercise).wrong
-    mutants = {one.name: one.composed(model.read_text(encoding="utf-8"), model).encode() for one in wrong}
-    return {"solution": model.read_bytes(), **accepted_sources(catalog, exercise), **mutants}
+    mutants = {one.name: source_of(catalog, exercise, one) for one in wrong}
+    return {"solution": model, **accepted_sources(catalog, exercise), **mutants}
 
 
 def descendants_cpu(pid: int) -> float:
@@ -120,13 +125,12 @@ def diagnosis(exercise_id: str, rounds: int) -> None:
     """What naming the mistake costs: each mutant ``rounds`` times with diagnoses and without, in turn."""
     catalog = Catalog()
     exercise = catalog.exercise(exercise_id)
-    model = solution_path(catalog, exercise)
     explained = kit._explained
     ratios = {}
     with GradingSession(exercise, catalog, scope="full", processor=0) as session:
         explainer = session._explainer
         for mutant in mistakes_of(catalog, exercise).wrong:
-            source = mutant.composed(model.read_text(encoding="utf-8"), model).encode()
+            source = source_of(catalog, exercise, mutant)
             handed_in, cpu = Submission({exercise.module: source}), [0.0, 0.0]
             for number in range(2 * rounds + 2):
                 silent = number % 2
@@ -150,19 +154,19 @@ def diagnosis(exercise_id: str, rounds: int) -> None:
 def counted() -> dict[str, int]:
     """How many workers were started, calls made and callbacks answered since the counts were last zero."""
     count = {"workers": 0, "calls": 0, "callbacks": 0}
+
+    def count_calls(name: str, key: str) -> None:
+        original = getattr(Connection, name)
+
+        def counting(*args: Any, **kwargs: Any) -> Any:
+            count[key] += 1
+            return original(*args, **kwargs)
+
+        setattr(Connection, name, counting)
+
     for name, key in (("_load", "workers"), ("_ask", "calls"), ("_answer_callback", "callbacks")):
-        _count_calls(name, count, key)
+        count_calls(name, key)
     return count
-
-
-def _count_calls(name: str, count: dict[str, int], key: str) -> None:
-    original = getattr(Connection, name)
-
-    def counting(self: Connection, *args: Any, **kwargs: Any) -> Any:
-        count[key] += 1
-        return original(self, *args, **kwargs)
-
-    setattr(Connection, name, counting)
 
 
 def worker_start(session: GradingSession, source: bytes, module: str) -> None:

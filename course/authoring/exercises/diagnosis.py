@@ -30,8 +30,10 @@ from course.authoring.exercises.grading import (
     blamed,
     exercise_graders,
     mistakes_of,
+    mistakes_path,
     solution_path,
     solutions_folder,
+    source_of,
 )
 from course.authoring.exercises.proofs import (
     Record,
@@ -42,11 +44,10 @@ from course.authoring.exercises.proofs import (
     write_record,
 )
 from course.authoring.exercises.source import parse
-from course.authoring.mistakes import CODE, Mistakes, Wrong, mistakes_path
+from course.authoring.mistakes import CODE, Mistakes, Wrong
 from course.authoring.report import Findings, Progress
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise
-from course.catalog.reading import read_text
 from course.errors import ContentError
 from course.progress.workspace import write_atomically
 from course.scoring import kit
@@ -132,7 +133,7 @@ def _alike(one: Any, other: Any) -> bool:
 
 def digest(catalog: Catalog, exercise: Exercise) -> str:
     """A digest of everything that the table of an exercise is computed from."""
-    file = mistakes_path(solutions_folder(catalog, exercise))
+    file = mistakes_path(catalog, exercise)
     return _digest(catalog, exercise, file.read_bytes() if file.is_file() else b"")
 
 
@@ -223,15 +224,14 @@ def hypotheses_of(catalog: Catalog, exercise: Exercise) -> Iterator[Wrong]:
 
     Those whose code has no words of the exercise's own are left out: it is found while reading a value.
     """
-    solution, mistakes = solution_path(catalog, exercise), mistakes_of(catalog, exercise)
-    model, file = read_text(solution), mistakes_path(solution.parent)
+    mistakes, file = mistakes_of(catalog, exercise), mistakes_path(catalog, exercise)
     tasks = {task.id for task in exercise.task}
     for variant in (variant for variant in mistakes.wrong if variant.code in mistakes.words):
-        source = variant.composed(model, file)
+        source = source_of(catalog, exercise, variant)
         if variant.task not in tasks:
             raise _no_task(file, variant.line, variant.task)
         with blamed(file, variant.line):
-            function = _executed(source.encode())[variant.task]
+            function = _executed(source)[variant.task]
         yield variant.task, (variant.code,), function
     with blamed(file):
         programs = [(task, codes, function) for task, codes, function in mistakes.functions()]
@@ -262,12 +262,10 @@ def _executed(source: bytes) -> dict[str, Any]:
 
 def _expected(exercise: Exercise) -> dict[str, Any]:
     """The answers that public checks expect for their fixed inputs, by check."""
-    known: Callable[[], dict[str, Any]] | None = (
-        getattr(kit.companion(exercise.id, "bundles"), "known", None)
-        if companion_path(exercise.id, "bundles").is_file()
-        else None
-    )
-    return known() if known else {}
+    if not companion_path(exercise.id, "bundles").is_file():
+        return {}
+    known: Callable[[], dict[str, Any]] = getattr(kit.companion(exercise.id, "bundles"), "known", dict)
+    return known()
 
 
 def _plain(value: Any) -> Any:
@@ -362,7 +360,7 @@ def as_one(exercise: Exercise, program: Wrong) -> Wrong:
 
 def made_from(catalog: Catalog, exercise: Exercise) -> str:
     """A digest of every file that affects the diagnosis of a wrong program; how it is worded does not."""
-    file = mistakes_path(solutions_folder(catalog, exercise))
+    file = mistakes_path(catalog, exercise)
     mistakes = parse(file) if file.is_file() else ast.Module([], [])
     for node in ast.walk(mistakes):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "mistakes":
@@ -381,7 +379,7 @@ def code_of(catalog: Catalog, exercise: Exercise) -> bytes:
     folders = (exercise.readme_path.parent, exercise_graders(catalog, exercise))
     paths = [p for folder in folders for p in sorted(folder.rglob("*.py"), key=attrgetter("name"))]
     others = sorted(solution.parent.glob("*.py"))
-    paths += [path for path in others if path not in (solution, mistakes_path(solution.parent))]
+    paths += [path for path in others if path not in (solution, mistakes_path(catalog, exercise))]
     return b"".join(path.name.encode() + b"\0" + _unworded(path) + b"\0" for path in paths)
 
 
@@ -453,33 +451,14 @@ def _main(said: list[str], codes: tuple[str, ...], kind: Callable[[str], str]) -
     return ranked[0] if ranked else ""
 
 
-@dataclass(frozen=True, slots=True)
-class Tally:
-    """How the programs of one task are diagnosed.
-
-    Attributes:
-        named: diagnosed with a mistake that they have, under any name of the same program.
-        general: diagnosed with a consequence, with a wrong kind of value, or not at all.
-        otherwise: diagnosed with a mistake that they do not have.
-        survived: no check fails; a program with two mistakes may be right by chance.
-    """
-
-    named: int = 0
-    general: int = 0
-    otherwise: int = 0
-    survived: int = 0
-
-
-def tally(fate: Callable[[Reported], str], rows: tuple[Reported, ...]) -> Tally:
-    """How the programs of these rows are diagnosed."""
-    counts: Counter[str] = Counter()
-    for row in rows:
-        counts[fate(row)] += row.count
-    return Tally(**counts)
+#: How a program is diagnosed: with a mistake that it has, under any name of the same program; with a
+#: consequence, with a wrong kind of value, or not at all; with a mistake that it does not have; no check
+#: fails, for one with two mistakes may be right by chance.
+FATES = ("named", "general", "otherwise", "survived")
 
 
 def fate_of(catalog: Catalog, exercise: Exercise) -> Callable[[Reported], str]:
-    """Says under which field of ``Tally`` the programs of a row are counted."""
+    """Says which of ``FATES`` the programs of a row have."""
     own, names, also = words(exercise.id), _names(exercise), mistakes_of(catalog, exercise).true_too
 
     def fate(row: Reported) -> str:
@@ -515,12 +494,12 @@ class Accepted:
 
     Attributes:
         changes: a sentence for each program that is caught or named otherwise.
-        told: how the programs that are functions are diagnosed in a grading run.
+        told: how many of the programs that are functions have each of ``FATES`` in a grading run.
     """
 
     path: Path
     changes: tuple[str, ...]
-    told: Tally
+    told: dict[str, int]
 
 
 def accept(catalog: Catalog, exercise: Exercise, *, on_progress: Progress | None = None) -> Accepted:
@@ -549,7 +528,10 @@ def accept(catalog: Catalog, exercise: Exercise, *, on_progress: Progress | None
         ]
     record = Record(made_from=made_from(catalog, exercise), caught=caught, rows=rows)
     path = write_record(catalog, exercise, record)
-    return Accepted(path, tuple(changes), tally(fate, rows["full"]))
+    told = dict.fromkeys(FATES, 0)
+    for row in rows["full"]:
+        told[fate(row)] += row.count
+    return Accepted(path, tuple(changes), told)
 
 
 # ---
@@ -558,7 +540,7 @@ def accept(catalog: Catalog, exercise: Exercise, *, on_progress: Progress | None
 
 def audit_diagnoses(catalog: Catalog, exercise: Exercise, findings: Findings) -> None:
     """Report missing files, stale tables, codes without words, and words that are given where untrue."""
-    mistakes, file = mistakes_of(catalog, exercise), mistakes_path(solutions_folder(catalog, exercise))
+    mistakes, file = mistakes_of(catalog, exercise), mistakes_path(catalog, exercise)
     for code, entry in mistakes.words.items():
         if entry.kind == "cause" and entry.looks_like.startswith("Here "):
             message = f"{code} is about one run, but as a cause it is said by every check of its task."
@@ -620,7 +602,7 @@ def _audit_codes(
     catalog: Catalog, exercise: Exercise, table: Table, mistakes: Mistakes, findings: Findings
 ) -> None:
     """Every code with words is given by something."""
-    file = mistakes_path(solutions_folder(catalog, exercise))
+    file = mistakes_path(catalog, exercise)
     known = {code for rows in table.rows.values() for row in rows for code in row.codes}
     given, named = set(_literals(catalog, exercise)), {variant.code for variant in mistakes.wrong}
     for code in sorted(mistakes.words.keys() - known - given):

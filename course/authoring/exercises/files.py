@@ -22,7 +22,9 @@ from course.authoring.exercises.grading import (
     declared_checks,
     exercise_graders,
     mistakes_of,
+    mistakes_path,
     solution_path,
+    source_of,
 )
 from course.authoring.exercises.source import (
     DECIMAL,
@@ -33,7 +35,6 @@ from course.authoring.exercises.source import (
     quoted_numbers,
     signatures,
 )
-from course.authoring.mistakes import mistakes_path
 from course.authoring.report import About, Findings
 from course.catalog.load import Catalog
 from course.catalog.models import QUICK, Exercise, Measured, Times
@@ -287,7 +288,7 @@ def _decides(catalog: Catalog, exercise: Exercise) -> str:
     """A digest of the files on which the times of public checks depend."""
     solution = solution_path(catalog, exercise)
     files = {*exercise.readme_path.parent.rglob("*.py"), *solution.parent.glob("*.py")}
-    files -= {mistakes_path(solution.parent)}
+    files -= {mistakes_path(catalog, exercise)}
     files |= {*accepted_files(catalog, exercise)}
     return digest_of(sorted(files - {exercise.stub_path}))
 
@@ -499,10 +500,10 @@ def _audit_code(catalog: Catalog, exercise: Exercise, findings: Findings) -> Non
     _audit_imports(exercise, solution, model, findings)
     for path in accepted_files(catalog, exercise):
         _audit_imports(exercise, path, parse(path), findings)
-    mistakes, file = mistakes_of(catalog, exercise), mistakes_path(solution.parent)
+    mistakes, file = mistakes_of(catalog, exercise), mistakes_path(catalog, exercise)
     for variant in (*mistakes.wrong, *mistakes.right):
         with contextlib.suppress(ContentError):  # told where it is planned
-            tree = ast.parse(variant.composed(read_text(solution), file))
+            tree = ast.parse(source_of(catalog, exercise, variant))
             _audit_imports(exercise, file, tree, findings, variant.line)
 
 

@@ -16,7 +16,7 @@ from typing import Any, TypeAlias
 import msgspec
 import numpy as np
 
-from course.authoring.mistakes import Mistakes, mistakes_path
+from course.authoring.mistakes import Mistakes, Variant
 from course.catalog.load import Catalog
 from course.catalog.locate import content
 from course.catalog.models import Exercise
@@ -64,13 +64,17 @@ def accepted_files(catalog: Catalog, exercise: Exercise) -> tuple[Path, ...]:
     return tuple(sorted((solutions_folder(catalog, exercise) / "accepted").glob("*.py")))
 
 
+def mistakes_path(catalog: Catalog, exercise: Exercise) -> Path:
+    return solutions_folder(catalog, exercise) / "mistakes.py"
+
+
 def mistakes_of(catalog: Catalog, exercise: Exercise) -> Mistakes:
     """What ``mistakes.py`` of an exercise says; nothing where there is none.
 
     Raises:
         ContentError: it cannot be read or raises; the message names its line.
     """
-    path = mistakes_path(solutions_folder(catalog, exercise))
+    path = mistakes_path(catalog, exercise)
     if not path.is_file():
         return Mistakes()
     with blamed(path):
@@ -100,10 +104,14 @@ def accepted_sources(catalog: Catalog, exercise: Exercise) -> dict[str, bytes]:
     """Correct but unusual programs by name: files in ``accepted/``, and those of ``mistakes.py``."""
     solution = solution_path(catalog, exercise)
     found = {path.name: compose(solution, path) for path in accepted_files(catalog, exercise)}
-    file, model = mistakes_path(solution.parent), read_text(solution)
-    for variant in mistakes_of(catalog, exercise).right:
-        found[variant.name] = variant.composed(model, file).encode()
-    return found
+    right = mistakes_of(catalog, exercise).right
+    return found | {variant.name: source_of(catalog, exercise, variant) for variant in right}
+
+
+def source_of(catalog: Catalog, exercise: Exercise, variant: Variant) -> bytes:
+    """The model solution with a program of ``mistakes.py`` put after it."""
+    model = read_text(solution_path(catalog, exercise))
+    return variant.composed(model, mistakes_path(catalog, exercise)).encode()
 
 
 def compose(solution: Path, variant: Path) -> bytes:

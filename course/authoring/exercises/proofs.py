@@ -20,12 +20,14 @@ from course.authoring.exercises.grading import (
     compose,
     grade_sources,
     mistakes_of,
+    mistakes_path,
     solution_path,
     solutions_folder,
+    source_of,
 )
 from course.authoring.exercises.source import DECIMAL, CheckSource, parse, signatures
-from course.authoring.mistakes import Mistakes, Variant, mistakes_path
-from course.authoring.report import AuditProblem, Findings, Progress
+from course.authoring.mistakes import Mistakes, Variant
+from course.authoring.report import AuthorProblem, Findings, Progress
 from course.catalog.load import Catalog
 from course.catalog.models import Exercise, fields_of
 from course.catalog.reading import read_document, read_text
@@ -69,12 +71,10 @@ class Proof:
 
 def plan(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[Proof, ...]:
     """The submissions that prove an exercise; a file that cannot be one is reported and left out."""
-    solution = solution_path(catalog, exercise)
-    file, model = mistakes_path(solution.parent), read_text(solution)
-    stub = read_text(exercise.stub_path).encode()
+    solution, file = solution_path(catalog, exercise), mistakes_path(catalog, exercise)
     proofs = [
-        Proof("stub", exercise.stub_path, stub, exercise.stub_path.name),
-        Proof("solution", solution, model.encode(), solution.name),
+        Proof(role, path, read_text(path).encode(), path.name)
+        for role, path in (("stub", exercise.stub_path), ("solution", solution))
     ]
     mistakes, accepted = mistakes_of(catalog, exercise), accepted_files(catalog, exercise)
     functions = len(exercise.task)
@@ -90,14 +90,16 @@ def plan(catalog: Catalog, exercise: Exercise, findings: Findings) -> tuple[Proo
             proofs.append(Proof("accepted", path, compose(solution, path), path.name))
     for variant in mistakes.right:
         with findings.refusals():
-            proofs.append(_proof("accepted", file, model, variant))
+            source = source_of(catalog, exercise, variant)
+            proofs.append(Proof("accepted", file, source, variant.name, line=variant.line))
     if not mistakes.wrong:
         message = "it has no wrong program, so nothing shows that the checks catch anything."
         findings.add(file, None, "mutants", message, "Add the mistakes that students make.")
         return tuple(proofs)
     for variant in mistakes.wrong:
         with findings.refusals():
-            proofs.append(_proof("mutant", file, model, variant))
+            source = source_of(catalog, exercise, variant)
+            proofs.append(Proof("mutant", file, source, variant.name, variant, variant.line))
     _audit_mutants(exercise, mistakes, file, findings)
     if len(mistakes.wrong) < least_mutants:
         count = len(mistakes.wrong)
@@ -124,11 +126,6 @@ def _audit_mutants(exercise: Exercise, mistakes: Mistakes, file: Path, findings:
         findings.add(file, None, "mutants", message, "Add one for each mistake that students make.")
 
 
-def _proof(role: str, file: Path, model: str, variant: Variant) -> Proof:
-    source = variant.composed(model, file).encode()
-    return Proof(role, file, source, variant.name, variant if role == "mutant" else None, variant.line)
-
-
 class Prover:
     """Reports every proof of one exercise that its grading does not confirm."""
 
@@ -152,7 +149,7 @@ class Prover:
         self._fields: dict[str, set[str]] = {task.id: set() for task in exercise.task}
 
     @property
-    def problems(self) -> list[AuditProblem]:
+    def problems(self) -> list[AuthorProblem]:
         """What was found; of checks that broke only that they did, since the rest follows from it."""
         return [one for one in self._findings.problems if not self.broken or one.code == "grader"]
 
@@ -388,13 +385,12 @@ def run_mutants(
     on_progress: Progress | None = None,
 ) -> tuple[MutantOutcome, ...]:
     """Grade every wrong program of an exercise and compare with what is on record."""
-    mistakes, solution = mistakes_of(catalog, exercise), solution_path(catalog, exercise)
-    model, file, caught = read_text(solution), mistakes_path(solution.parent), caught_by(catalog, exercise)
-    sources = [variant.composed(model, file).encode() for variant in mistakes.wrong]
+    mistakes, caught = mistakes_of(catalog, exercise), caught_by(catalog, exercise)
+    sources = [(exercise, source_of(catalog, exercise, variant)) for variant in mistakes.wrong]
     verdicts: dict[int, Verdict] = {}
     if on_progress:
         on_progress(0, len(sources), "")
-    for index, verdict in grade_sources([(exercise, source) for source in sources]):
+    for index, verdict in grade_sources(sources):
         verdicts[index] = verdict
         if on_progress:
             on_progress(len(verdicts), len(sources), f"{exercise.id}: {mistakes.wrong[index].name}")
@@ -406,20 +402,19 @@ def run_mutants(
 
 def outcome_of(mutant: Variant, check: str, verdict: Verdict, mistakes: Mistakes) -> MutantOutcome:
     """A wrong program and its verdict, compared."""
-    named = _result(verdict, check) if check else None
-    if named is None or named.status is Status.PASS:
-        named = _first(mutant, verdict)
-    caught = named is not None and named.status is not Status.PASS
+    by = _result(verdict, check)
+    if by is None or by.status is Status.PASS:
+        by = _first(mutant, verdict)
     words = mistakes.words.get(mutant.code)
     return MutantOutcome(
         mutant=mutant,
         check=check,
         looks_like=words.looks_like if words else "",
         caught_by=tuple(check.id for check in verdict.checks if check.status is not Status.PASS),
-        by=named.id if named and caught else "",
-        diagnosis=named.diagnosis if named and caught else None,
-        message=named.message if named and caught else "",
-        help=named.help if named and caught else "",
+        by=by.id if by else "",
+        diagnosis=by.diagnosis if by else None,
+        message=by.message if by else "",
+        help=by.help if by else "",
         lost=verdict.max_score - verdict.score,
         faults=judge(mutant, check, verdict),
     )

@@ -30,7 +30,6 @@ _INDIRECT = object()
 class Signature:
     """A function's head: ``text`` without annotations, ``annotated`` as it is written."""
 
-    name: str
     line: int
     text: str
     annotated: str
@@ -76,12 +75,8 @@ def signatures(tree: ast.Module) -> dict[str, Signature]:
     found = {}
     for node in tree.body:
         if isinstance(node, Function):
-            found[node.name] = Signature(
-                node.name,
-                node.lineno,
-                f"{node.name}({ast.unparse(_without_annotations(node.args))})",
-                f"{node.name}({ast.unparse(node.args)})",
-            )
+            plain, annotated = ast.unparse(_without_annotations(node.args)), ast.unparse(node.args)
+            found[node.name] = Signature(node.lineno, f"{node.name}({plain})", f"{node.name}({annotated})")
     return found
 
 

@@ -182,8 +182,8 @@ def _unplaced_sources(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
 
 def _unread_values(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
     """Links to a value that were not parsed as links, so that a reader would see their source."""
-    for block, inline in b.walk_inlines(_without_code_spans(blocks)):
-        if isinstance(inline, b.Text) and _UNREAD_VALUE.search(inline.text):
+    for block, text in _prose(blocks):
+        if _UNREAD_VALUE.search(text):
             yield Finding(
                 block.line,
                 "a value link that Markdown does not read as one",
@@ -198,14 +198,10 @@ def _unproduced_numbers(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
     the author chose, and may be quoted as such.
     """
     given = {value for block in b.walk_blocks(blocks) for value in _constants(block)}
-    for block, inline in b.walk_inlines(_without_code_spans(blocks)):
-        if (
-            isinstance(block, b.Sources)
-            or not isinstance(inline, b.Text)
-            or _UNREAD_VALUE.search(inline.text)
-        ):
+    for block, text in _prose(blocks):
+        if _UNREAD_VALUE.search(text):
             continue
-        for match in _NUMBER.finditer(inline.text):
+        for match in _NUMBER.finditer(text):
             number = float(match.group().replace(",", ""))
             if number in given or (number.is_integer() and (number <= _SMALL or number in _YEARS)):
                 continue
@@ -225,29 +221,15 @@ def _constants(block: b.Block) -> Iterator[float]:
             yield float(node.value)
 
 
-def _without_code_spans(blocks: tuple[b.Block, ...]) -> tuple[b.Block, ...]:
-    """The prose blocks of a lesson, code spans removed."""
-    prose: list[b.Block] = []
-    for block in b.walk_blocks(blocks):
-        match block:
-            case b.Paragraph(line, inlines):
-                prose.append(b.Paragraph(line, _no_code(inlines)))
-            case b.Figure(line, id_, alt, caption):
-                prose.append(b.Figure(line, id_, alt, _no_code(caption)))
-            case b.Table(line, header, rows, align):
-                clean = tuple(tuple(_no_code(cell) for cell in row) for row in rows)
-                prose.append(b.Table(line, header, clean, align))
-            case b.Heading() | b.CodeCell() | b.Listing() | b.MathBlock() | b.Diagram() | b.CommandList():
-                pass
-            case b.Sources() | b.ListBlock() | b.Prediction() | b.Callout() | b.Task():
-                pass  # what the last four hold comes by itself
-            case _:
-                assert_never(block)
-    return tuple(prose)
-
-
-def _no_code(inlines: b.Inlines) -> b.Inlines:
-    return tuple(piece for piece in inlines if not (isinstance(piece, b.Span) and piece.style == "code"))
+def _prose(blocks: tuple[b.Block, ...]) -> Iterator[tuple[b.Block, str]]:
+    """The texts of paragraphs, captions and tables without code spans, each with its block."""
+    prose = (one for one in b.walk_blocks(blocks) if isinstance(one, b.Paragraph | b.Figure | b.Table))
+    for block in prose:
+        for line in b.lines_of(block):
+            words = tuple(one for one in line if not (isinstance(one, b.Span) and one.style == "code"))
+            for inline in b.flattened(words):
+                if isinstance(inline, b.Text):
+                    yield block, inline.text
 
 
 def _too_wide(blocks: tuple[b.Block, ...]) -> Iterator[Finding]:
@@ -426,7 +408,7 @@ def audit_syllabus(catalog: Catalog, findings: Findings) -> None:
     known = {
         "lessons": listed,
         "exercises": catalog.exercise_ids(),
-        "quiz": sorted(path.stem for path in catalog.content.quiz.glob("*.toml")),
+        "quiz": catalog.question_ids(),
     }
     named: set[tuple[str, str]] = set()
     for index, objective in enumerate(catalog.syllabus.objective):

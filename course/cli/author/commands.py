@@ -2,8 +2,7 @@
 
 import hashlib
 import os
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import asdict
+from collections.abc import Callable, Iterator
 from importlib import import_module
 from pathlib import Path
 from typing import Annotated
@@ -18,7 +17,7 @@ from course.authoring.exercises import diagnosis
 from course.authoring.exercises.files import find_blanks, write_points, write_times
 from course.authoring.exercises.grading import write_pack
 from course.authoring.exercises.proofs import MutantOutcome, run_mutants
-from course.authoring.report import AuditProblem, AuditReport, Findings
+from course.authoring.report import AuditReport, AuthorProblem, Findings
 from course.catalog.load import Catalog
 from course.catalog.locate import ENVIRONMENT_VARIABLE
 from course.catalog.models import CourseRef, Exercise
@@ -35,16 +34,6 @@ from course.progress.workspace import write_atomically
 from course.sandbox.scene.loading import scene_ids
 from course.scoring.verdict import in_points
 from course.simulations.registry import SIMULATIONS
-
-
-class AuthorProblem(msgspec.Struct, frozen=True):
-    """One thing that is wrong; ``code`` is a stable name of the broken rule."""
-
-    file: str
-    line: int | None
-    code: str
-    message: str
-    help: str
 
 
 class AuthorNew(Envelope, tag="course.author-new/1", frozen=True, kw_only=True):
@@ -157,13 +146,13 @@ def coverage(write: Annotated[bool, option("--write", "Write docs/coverage.md ag
         exit_code=1 if problems else 0,
         parts=tuple(parts),
         written=shown(page, catalog) if page else None,
-        problems=_replies(problems),
+        problems=problems,
     )
     console.emit(reply)
     return reply.exit_code
 
 
-def _show_coverage(console: Console, table: Coverage, problems: tuple[AuditProblem, ...]) -> None:
+def _show_coverage(console: Console, table: Coverage, problems: tuple[AuthorProblem, ...]) -> None:
     for section in table.section:
         console.heading(section.title)
         rows = [(part.what, part.word, ", ".join(part.where)) for part in section.parts]
@@ -175,14 +164,10 @@ def _show_coverage(console: Console, table: Coverage, problems: tuple[AuditProbl
     console.line(f"{counted(len(table.parts), 'part')}, {table.source_lines} lines: {found}.")
 
 
-def _show_problem(console: Console, problem: AuditProblem) -> None:
+def _show_problem(console: Console, problem: AuthorProblem) -> None:
     console.line((problem.where, "bold"))
     console.line(problem.message, indent=2)
-    console.line((problem.fix, "dim"), indent=2)
-
-
-def _replies(problems: Iterable[AuditProblem]) -> tuple[AuthorProblem, ...]:
-    return tuple(filled(AuthorProblem, one, help=one.fix) for one in problems)
+    console.line((problem.help, "dim"), indent=2)
 
 
 def is_command(words: tuple[str, ...]) -> bool:
@@ -387,12 +372,9 @@ def check(
         course = catalog.ref
     except ContentError:
         course = CourseRef(id="", version="")  # the syllabus itself is what is wrong, and is reported
-    problems = _replies(report.problems)
     code = 0 if report.ok else 1
     seconds = round(report.seconds, 3)
-    console.emit(
-        filled(AuthorCheck, report, exit_code=code, course=course, seconds=seconds, problems=problems)
-    )
+    console.emit(filled(AuthorCheck, report, exit_code=code, course=course, seconds=seconds))
     return code
 
 
@@ -401,7 +383,7 @@ def _show_report(console: Console, catalog: Catalog, report: AuditReport) -> Non
     for problem in blanks:
         console.line((problem.where, "bold"), f"  {problem.message}")
     if blanks:
-        console.line((blanks[0].fix, "dim"), indent=2)
+        console.line((blanks[0].help, "dim"), indent=2)
     for problem in report.problems:
         if problem.code != "blank":
             _show_problem(console, problem)
@@ -455,7 +437,7 @@ def build(
             with meter(console) as on_progress:
                 accepted = diagnosis.accept(catalog, exercise, on_progress=on_progress)
             written.append(shown(accepted.path, catalog))
-            said = ", ".join(f"{name} {count}" for name, count in asdict(accepted.told).items())
+            said = ", ".join(f"{name} {count}" for name, count in accepted.told.items())
             console.line(f"{exercise.id}, in a grading run: {said}.")
             for change in accepted.changes:
                 console.line(change, indent=2)

@@ -43,6 +43,7 @@ from course.authoring.exercises.grading import (  # noqa: E402
     compose,
     mistakes_of,
     solution_path,
+    source_of,
 )
 from course.authoring.exercises.proofs import caught_by, judge  # noqa: E402
 from course.catalog.load import Catalog  # noqa: E402
@@ -187,12 +188,12 @@ def programs(exercise: Exercise, catalog: Catalog, options: argparse.Namespace) 
             own = _own_tasks(solution, path, tasks)
             name = f"accepted/{path.name}"
             yield Program(name, compose(solution, path), own, options.accepted, _short_of_full)
-    caught, model = caught_by(catalog, exercise), solution.read_text(encoding="utf-8")
+    caught = caught_by(catalog, exercise)
     for mutant in mistakes_of(catalog, exercise).wrong if options.mutants else ():
         if not options.variant or mutant.name in options.variant:
             check = caught.get(mutant.name, "")
             told = lambda verdict, one=mutant, by=check: [fault.message for fault in judge(one, by, verdict)]  # noqa: E731
-            source, name = mutant.composed(model, solution).encode(), f"mutants/{mutant.name}"
+            source, name = source_of(catalog, exercise, mutant), f"mutants/{mutant.name}"
             declared = msgspec.json.encode((mutant.task, check, mutant.code, mutant.also))
             yield Program(name, source, frozenset({mutant.task}), options.mutants, told, declared)
 

@@ -33,7 +33,13 @@ ROWS = Path(__file__).with_name("misleading") / "rows.toml"
 LATIN = "# \N{LATIN SMALL LETTER E WITH ACUTE}\n"
 sys.path.insert(0, str(ROOT))
 
-from course.authoring.exercises.grading import compose, grade_sources, mistakes_of, solution_path  # noqa: E402
+from course.authoring.exercises.grading import (  # noqa: E402
+    compose,
+    grade_sources,
+    mistakes_of,
+    solution_path,
+    source_of,
+)
 from course.catalog.load import Catalog  # noqa: E402
 from course.grading.exports.selection import checks_for_student  # noqa: E402
 from course.scoring.verdict import Verdict  # noqa: E402
@@ -70,6 +76,15 @@ def joined(solution: Path, mistake: Path) -> str:
     for begin, end, own in sorted(changes, reverse=True):
         text[begin:end] = own
     return "\n".join(text + new) + "\n"
+
+
+def wrong_modules(folder: Path) -> dict[str, tuple[str, str]]:
+    """Exercise and text of each wrong module of a folder, by exercise and name."""
+    catalog, found = Catalog(), {}
+    for path in sorted(folder.glob("*/*.py")):
+        exercise = catalog.exercise(path.parent.name)
+        found[f"{exercise.id}/{path.stem}"] = (exercise.id, joined(solution_path(catalog, exercise), path))
+    return found
 
 
 def graded(sources: dict[str, tuple[str, str]]) -> dict[str, Verdict]:
@@ -115,10 +130,7 @@ def handed_in(verdict: Verdict) -> str:
 
 def ask(folder: Path) -> None:
     """Write the folders and the manifest; say which mistakes nobody catches."""
-    catalog, sources = Catalog(), {}
-    for path in sorted(MISTAKES.glob("*/*.py")):
-        exercise = catalog.exercise(path.parent.name)
-        sources[f"{exercise.id}/{path.stem}"] = (exercise.id, joined(solution_path(catalog, exercise), path))
+    catalog, sources = Catalog(), wrong_modules(MISTAKES)
     verdicts, manifest, counts = graded(sources), {}, dict[str, int]()
     for name, (exercise_id, source) in sources.items():
         before = points_by_task(verdicts[name])
@@ -188,11 +200,7 @@ def told(verdict: Verdict) -> list[str]:
 
 def tell() -> None:
     """Print what each mistake of ``afresh`` is told."""
-    catalog, sources = Catalog(), {}
-    for path in sorted(AFRESH.glob("*/*.py")):
-        exercise = catalog.exercise(path.parent.name)
-        sources[f"{exercise.id}/{path.stem}"] = (exercise.id, joined(solution_path(catalog, exercise), path))
-    for name, verdict in sorted(graded(sources).items()):
+    for name, verdict in sorted(graded(wrong_modules(AFRESH)).items()):
         print(f"**{name}**\n")
         print("".join(f"- {line}\n" for line in told(verdict) or ["loses no point"]))
 
@@ -205,12 +213,11 @@ def rows() -> None:
         exercise_id, name = program.split(": ")
         exercise = catalog.exercise(exercise_id)
         known = {one.name: one for one in mistakes_of(catalog, exercise).wrong}
-        solution = solution_path(catalog, exercise)
         if name in known:
-            source = known[name].composed(solution.read_text(encoding="utf-8"), solution)
+            source = source_of(catalog, exercise, known[name])
         else:
-            source = compose(solution, ROOT / name).decode()
-        sources[program] = (exercise_id, source)
+            source = compose(solution_path(catalog, exercise), ROOT / name)
+        sources[program] = (exercise_id, source.decode())
     verdicts = graded(sources)
     first = next(iter(catalog.exercises()))
     latin_1 = LATIN.encode("latin-1") + solution_path(catalog, first).read_bytes()

@@ -32,7 +32,12 @@ sys.path[:0] = [str(ROOT), str(HERE)]
 
 import here  # noqa: E402
 
-from course.authoring.exercises.grading import accepted_sources, mistakes_of, solution_path  # noqa: E402
+from course.authoring.exercises.grading import (  # noqa: E402
+    accepted_sources,
+    mistakes_of,
+    solution_path,
+    source_of,
+)
 from course.catalog.load import Catalog  # noqa: E402
 
 #: What the checks need beside the peer itself.
@@ -72,11 +77,10 @@ def cpu(command: list[str], folder: Path, **environment: str) -> tuple[float, st
 
 def submissions(exercise: Any, catalog: Catalog, count: int) -> dict[str, str]:
     """Student to source: the model solution, accepted variants and mutants, taking turns."""
-    model = solution_path(catalog, exercise)
-    sources = [model.read_text("utf-8")]
+    sources = [solution_path(catalog, exercise).read_text("utf-8")]
     right = (source.decode() for source in accepted_sources(catalog, exercise).values())
-    wrong = (one.composed(sources[0], model) for one in mistakes_of(catalog, exercise).wrong)
-    for pair in list(zip(right, wrong, strict=False)):
+    wrong = (source_of(catalog, exercise, one).decode() for one in mistakes_of(catalog, exercise).wrong)
+    for pair in zip(right, wrong, strict=False):
         sources += pair
     return {
         f"student-{number:04}": f"{sources[number % len(sources)]}\n# {number}\n" for number in range(count)

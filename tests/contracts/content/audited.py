@@ -48,7 +48,7 @@ def changed(exercise: str) -> AuditReport:
 
 def wrong(report: AuditReport) -> list[str]:
     """What the audit found, a line each."""
-    return [f"{p.where}: {p.message} {p.fix}" for p in report.problems]
+    return [f"{p.where}: {p.message} {p.help}" for p in report.problems]
 
 
 def programs(exercise: str) -> int:

@@ -26,7 +26,7 @@ def catalog() -> Catalog:
 def test_the_audit_finds_nothing_wrong_and_looks_at_everything(catalog: Catalog) -> None:
     """At a lesson called as an exercise is, where that one is audited."""
     report = IN_PART(without=EXERCISES, is_command=is_command)
-    assert [f"{p.where}: {p.message} {p.fix}" for p in report.problems] == []
+    assert [f"{p.where}: {p.message} {p.help}" for p in report.problems] == []
     assert {*report.lessons, *EXERCISES} >= {path.stem for path in catalog.content.lessons.glob("*.md")}
     folders = [path for path in catalog.content.exercises.iterdir() if path.is_dir()]
     folders += (path for path in (catalog.content.exercises / WARM_UPS).iterdir() if path.is_dir())

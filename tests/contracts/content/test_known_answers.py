@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from course.authoring.exercises.grading import mistakes_of, solution_path
+from course.authoring.exercises.grading import mistakes_of, solution_path, source_of
 from course.catalog.load import Catalog
 from course.catalog.locate import content
 from course.scoring import kit
@@ -41,18 +41,17 @@ def _told(exercise_id: str, step: int) -> dict[str, list[CheckResult]]:
     known answers.
     """
     exercise = CATALOG.exercise(exercise_id)
-    solution = solution_path(CATALOG, exercise)
+    solution = Submission({exercise.module: solution_path(CATALOG, exercise).read_bytes()})
     table = read_table(exercise.readme_path.parent)
     assert table is not None
-    answered, model = table.answers, solution.read_text(encoding="utf-8")
     with GradingSession(exercise, CATALOG, scope="public", terms=Terms(home=True, timeout=5.0)) as session:
-        checks = session.grade(Submission({exercise.module: solution.read_bytes()})).checks
-        tasks = {check.task for check in checks if check.id in answered}
+        checks = session.grade(solution).checks
+        tasks = {check.task for check in checks if check.id in table.answers}
         told = {}
         for mutant in [one for one in MUTANTS[exercise_id] if one.task in tasks][::step]:
-            source = mutant.composed(model, solution).encode()
+            source = Submission({exercise.module: source_of(CATALOG, exercise, mutant)})
             of_task = {check.id for check in checks if check.task == mutant.task}
-            verdict = session.grade(Submission({exercise.module: source}), only=of_task)
+            verdict = session.grade(source, only=of_task)
             told[mutant.name] = list(verdict.checks)
         return told
 

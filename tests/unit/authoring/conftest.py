@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 
 from course.authoring.audit import audit
-from course.authoring.exercises.grading import mistakes_of
+from course.authoring.exercises.grading import accepted_files, mistakes_of, solution_path, source_of
 from course.authoring.exercises.proofs import caught_by
 from course.authoring.exercises.source import CheckSource, checks_in, parse
-from course.authoring.report import AuditProblem, AuditReport
+from course.authoring.report import AuditReport, AuthorProblem
 from course.catalog.load import Catalog
 from course.catalog.locate import content
 from course.catalog.models import Exercise
@@ -80,14 +80,11 @@ class Oracle:
 
     @staticmethod
     def _names(exercise: Exercise, catalog: Catalog) -> dict[str, str]:
-        assert catalog.content.solutions is not None
-        folder = catalog.content.solutions / exercise.id
-        model = (folder / exercise.module).read_text(encoding="utf-8")
-        names = {path.read_text(encoding="utf-8"): path.name for path in folder.glob("accepted/*.py")}
+        names = {path.read_text("utf-8"): path.name for path in accepted_files(catalog, exercise)}
         for mutant in mistakes_of(catalog, exercise).wrong:
             with contextlib.suppress(ContentError):  # which the audit reports
-                names[mutant.composed(model, folder)] = mutant.name
-        names[(folder / exercise.module).read_text(encoding="utf-8")] = "solution"
+                names[source_of(catalog, exercise, mutant).decode()] = mutant.name
+        names[solution_path(catalog, exercise).read_text("utf-8")] = "solution"
         names[exercise.stub_path.read_text(encoding="utf-8")] = "stub"
         return names
 
@@ -149,10 +146,10 @@ def run(mini: Path, oracle: Oracle, monkeypatch: pytest.MonkeyPatch) -> Callable
 
 
 @pytest.fixture
-def only_problem(run: Callable[..., AuditReport]) -> Callable[[], AuditProblem]:
+def only_problem(run: Callable[..., AuditReport]) -> Callable[[], AuthorProblem]:
     """Audit the copy; there must be exactly one problem, which is returned."""
 
-    def single() -> AuditProblem:
+    def single() -> AuthorProblem:
         problems = run().problems
         assert len(problems) == 1, [f"{p.where} {p.code} {p.message}" for p in problems]
         return problems[0]

@@ -10,10 +10,15 @@ import msgspec
 import pytest
 
 from course.authoring.audit import audit
-from course.authoring.report import AuditProblem, AuditReport
+from course.authoring.report import AuditReport, AuthorProblem
 from course.catalog.load import Catalog
 from course.scoring.verdict import OURS, Problem, Status, Verdict
 
+CHECKS = "exercises/doubling/checks.py"
+HIDDEN = "graders/doubling/checks.py"
+STUB = "exercises/doubling/doubling.py"
+SOLUTION = "solutions/doubling/doubling.py"
+ADDS = "solutions/doubling/accepted/adds.py"
 MISTAKES = "solutions/doubling/mistakes.py"
 Change = Callable[[Verdict], Verdict]
 
@@ -59,53 +64,35 @@ def with_one_more(verdict: Verdict) -> Verdict:
         (
             "stub",
             with_check("double_of_three", **passing, points=2.0),
-            "exercises/doubling/checks.py:12",
+            f"{CHECKS}:12",
             "stub",
             "the untouched stub passes check double_of_three",
         ),
-        ("stub", ending("ungradable", "It raises."), "exercises/doubling/doubling.py", "stub", "It raises."),
+        ("stub", ending("ungradable", "It raises."), STUB, "stub", "It raises."),
         (
             "solution",
             with_check("double_of_three", **failing, message="No.", expected=6.0, actual=5.0),
-            "solutions/doubling/doubling.py:6",
+            f"{SOLUTION}:6",
             "solution",
             "check double_of_three ends with fail: No. (expected 6.0, got 5.0)",
         ),
-        (
-            "solution",
-            with_check("double_of_three", points=1.0),
-            "solutions/doubling/doubling.py",
-            "solution",
-            "scores 9 of 10",
-        ),
+        ("solution", with_check("double_of_three", points=1.0), SOLUTION, "solution", "scores 9 of 10"),
         (
             "solution",
             without_the_first,
-            "exercises/doubling/checks.py:12",
+            f"{CHECKS}:12",
             "check",
             "check double_of_three is declared, but did not run",
         ),
-        (
-            "solution",
-            with_one_more,
-            "exercises/doubling/checks.py",
-            "check",
-            "check made_by_a_loop ran, but no plain",
-        ),
+        ("solution", with_one_more, CHECKS, "check", "check made_by_a_loop ran, but no plain"),
         (
             "adds.py",
             with_check("double_of_negative", status=Status.TIMEOUT, points=0.0, message="Slow."),
-            "solutions/doubling/accepted/adds.py:4",
+            f"{ADDS}:4",
             "accepted",
             "ends with timeout: Slow.",
         ),
-        (
-            "adds.py",
-            ending("ungradable", "No such module."),
-            "solutions/doubling/accepted/adds.py",
-            "accepted",
-            "No such module.",
-        ),
+        ("adds.py", ending("ungradable", "No such module."), ADDS, "accepted", "No such module."),
         squares(
             with_check("double_of_three", **passing, points=2.0), "mutant double.SQUARES_INSTEAD survives"
         ),
@@ -128,24 +115,22 @@ def with_one_more(verdict: Verdict) -> Verdict:
         ),
         (
             "double.SQUARES_INSTEAD",
-            with_check(
-                "double_of_three", traceback=f"{OURS}KeyError: 3 (graders/doubling/checks.py, line 4)"
-            ),
-            "graders/doubling/checks.py:4",
+            with_check("double_of_three", traceback=f"{OURS}KeyError: 3 ({HIDDEN}, line 4)"),
+            f"{HIDDEN}:4",
             "grader",
             "the diagnosis of check double_of_three breaks on double.SQUARES_INSTEAD: KeyError: 3.",
         ),
         (
             "double.SQUARES_INSTEAD",
             ending("grader_error", "KeyError in a check."),
-            "exercises/doubling/checks.py",
+            CHECKS,
             "grader",
             "the checks break on double.SQUARES_INSTEAD: KeyError in a check.",
         ),
         (
             "doublings.STARTS_LATE",
             with_check("doublings_values", status=Status.GRADER_ERROR, message="ZeroDivisionError"),
-            "graders/doubling/checks.py:30",
+            f"{HIDDEN}:30",
             "grader",
             "breaks: ZeroDivisionError",
         ),
@@ -159,11 +144,11 @@ def test_a_verdict_that_should_be_another_is_reported(
     found = [p for p in problems if (p.where, p.code) == (where, code)]
     assert found, [f"{p.where} {p.code} {p.message}" for p in problems]
     assert says in found[0].message
-    assert found[0].fix
+    assert found[0].help
 
 
 def test_a_mutant_caught_only_by_another_check_is_reported(
-    oracle: Any, only_problem: Callable[[], AuditProblem]
+    oracle: Any, only_problem: Callable[[], AuthorProblem]
 ) -> None:
     def by_the_other(verdict: Verdict) -> Verdict:
         verdict = with_check("double_of_three", **passing, points=2.0)(verdict)
@@ -211,7 +196,7 @@ def test_a_hidden_check_must_not_say_its_values(
 ) -> None:
     oracle.changes["double.SIGN_LOST"] = with_check("double_of_negative", **fields)
     found = [p for p in run().problems if p.code == "leak"]
-    assert [p.where for p in found] == ["graders/doubling/checks.py:12"]
+    assert [p.where for p in found] == [f"{HIDDEN}:12"]
     assert f"shows the number {number}" in found[0].message
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from course.authoring.coverage import as_markdown, check_coverage, read_coverage, written_to
-from course.authoring.report import AuditProblem
+from course.authoring.report import AuthorProblem
 from course.catalog.load import Catalog
 from course.catalog.locate import content
 from course.cli.author.commands import is_command
@@ -42,7 +42,7 @@ def table(mini: Path) -> Path:
     return path
 
 
-def problems(path: Path, old: str = "", new: str = "") -> tuple[AuditProblem, ...]:
+def problems(path: Path, old: str = "", new: str = "") -> tuple[AuthorProblem, ...]:
     """What is wrong with the table after a change of it."""
     text = path.read_text(encoding="utf-8")
     assert old in text
@@ -86,7 +86,7 @@ def test_what_is_wrong_is_said_with_its_line(table: Path, old: str, new: str, sa
         assert problem.file == "docs/coverage.toml"
         assert problem.line
         assert problem.message.split(":")[0] in text[problem.line - 1] or "of the chapter" in problem.message
-        assert problem.fix
+        assert problem.help
 
 
 def test_a_kind_that_there_is_not_is_said(table: Path) -> None:

@@ -60,7 +60,7 @@ def problems(grade: GradeSources = lambda _: ()) -> list[str]:
     """What the audit says by reading alone, unless something grades."""
     forget()
     found = audit(Catalog(), "halving", grade=grade).problems
-    return [f"{one.where}: {one.message} {one.fix}" for one in found]
+    return [f"{one.where}: {one.message} {one.help}" for one in found]
 
 
 def test_what_an_author_writes_is_built_and_right(halving: Path, capsys: pytest.CaptureFixture[str]) -> None:

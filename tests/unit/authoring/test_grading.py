@@ -14,6 +14,7 @@ from course.authoring.exercises.grading import (
     grade_sources,
     mistakes_of,
     solution_path,
+    source_of,
 )
 from course.catalog.load import Catalog
 from course.grading.intake.students import Entry
@@ -46,8 +47,7 @@ def test_every_source_gets_the_verdict_of_all_checks(mini: Path) -> None:
     exercise = catalog.exercise("doubling")
     model = solution_path(catalog, exercise)
     sources = [compose(model, path) for path in accepted_files(catalog, exercise)]
-    text = model.read_text(encoding="utf-8")
-    sources += [one.composed(text, model).encode() for one in mistakes_of(catalog, exercise).wrong]
+    sources += [source_of(catalog, exercise, one) for one in mistakes_of(catalog, exercise).wrong]
     sources += [f"{model.read_text('utf-8').rstrip()}\n\n\n{after}".encode() for after in AFTER.values()]
     sources += [exercise.stub_path.read_bytes(), b"def double(x):\n    return 2 * x\n", b"(", b""]
     found = dict(grade_sources([(exercise, source) for source in sources], graders=2))

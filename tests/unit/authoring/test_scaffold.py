@@ -80,10 +80,10 @@ def test_a_new_exercise_passes_the_audit_once_its_blanks_are_filled(
     new_exercise(Catalog(), "tripling")
     fill(mini)
     (nothing,) = audit(Catalog(), "tripling", grade=lambda _: ()).problems
-    assert nothing.fix == "Run `course author build tripling`."
+    assert nothing.help == "Run `course author build tripling`."
     diagnosis.build(Catalog(), Catalog().exercise("tripling"))
     (nothing,) = audit(Catalog(), "tripling", grade=lambda _: ()).problems
-    assert nothing.fix == "Run `course author build tripling --accept`, and read what it says."
+    assert nothing.help == "Run `course author build tripling --accept`, and read what it says."
     assert diagnosis.accept(Catalog(), Catalog().exercise("tripling")).changes == ()
     assert audit(Catalog(), "tripling").problems == ()
     report = run()
@@ -183,7 +183,7 @@ def test_a_new_lesson_passes_once_it_is_filled_and_listed(
     path.write_text(BLANK.sub("Three times are said here, 2026.", path.read_text()))
     (unknown,) = (p for p in run().problems if p.code == "lesson")
     assert unknown.message == "there is no figure three-times."
-    assert "CONTRIBUTING.md" in unknown.fix
+    assert "CONTRIBUTING.md" in unknown.help
     path.write_text(path.read_text().replace("figure:three-times", "figure:integrators-order"))
     assert [p.message for p in run("three-times").problems] == ["the syllabus does not list this lesson."]
     syllabus = mini / "lessons" / "syllabus.toml"

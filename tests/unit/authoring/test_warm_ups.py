@@ -81,7 +81,7 @@ def problems() -> list[str]:
 
 def test_a_new_warm_up_passes_the_audit_once_its_blanks_are_filled(tripling: Path) -> None:
     report = audit(Catalog(), "tripling")
-    assert [f"{p.where} {p.message} {p.fix}" for p in report.problems] == []
+    assert [f"{p.where} {p.message} {p.help}" for p in report.problems] == []
     assert report.graded == 2 + 2 + 3
     catalog = Catalog()
     assert catalog.exercise_ids() == ("doubling", "halving"), "the exercises are what they were"

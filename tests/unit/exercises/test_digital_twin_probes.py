@@ -59,7 +59,6 @@ def told(task, submission):
     return getattr(PROBES[task](submission), "code", None)
 
 
-STEPS = "bias_random_walk * math.sqrt(dt)"
 DRAWN = "rng.standard_normal(n - 1)"
 #: It remembers, of which single calls show nothing.
 SUMS = [
@@ -79,7 +78,6 @@ SUMS = [
         (None, "imu", [("return true + bias", "return np.float32(true + bias)")]),
         ("BIAS_DRIFTS", "imu", [(DRAWN, "np.full(n - 1, rng.standard_normal())")]),
         ("BIAS_STEPS_RELATED", "imu", [("np.cumsum(steps)", "np.cumsum(np.cumsum(steps))")]),
-        ("STRENGTHS_MIXED", "imu", [(STEPS, "(noise_density + bias_random_walk) * math.sqrt(dt)")]),
         (None, "lidar", [("heading = pose", "heading = 0.0, *pose[1:]")]),  # it moves in one coordinate
         (None, "lidar", [("reshape(-1, 2, 2)", "reshape(-1, 2, 2)[:0]")]),  # it sees no wall at all
         ("GAP_SCALED", "backlash", [("gap / 2", "0.6 * gap")]),

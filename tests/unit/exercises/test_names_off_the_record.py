@@ -44,9 +44,7 @@ def test_a_meeting_that_begins_elsewhere_or_is_rounded(path, code):
     assert bundles.tracks.of_head_on(scene, truth, t, *wrong, 0.1).code == code
 
 
-@pytest.mark.parametrize(
-    ("seconds", "code"), [(0.02, "BIAS0_TIME_TOO_SHORT"), (0.6, None), (20.0, "BIAS0_TIME_TOO_LONG")]
-)
+@pytest.mark.parametrize(("seconds", "code"), [(0.6, None), (20.0, "BIAS0_TIME_TOO_LONG")])
 def test_a_bias_that_is_the_mean_of_another_stretch(seconds, code):
     known = 0.01, 0.002, 0.006, -0.1
     cases = [(scenes.recording(np.random.default_rng(i), 8000, *known), *known) for i in range(4)]

@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 
-from course.authoring.exercises.grading import LocalSubmission, mistakes_of, solution_path
+from course.authoring.exercises.grading import LocalSubmission, mistakes_of, solution_path, source_of
 from course.catalog.load import Catalog
 from course.figures.plots import render
 from course.scoring import kit
@@ -23,9 +23,11 @@ ONE_WRITTEN = "\ndel explicit_euler_step, semi_implicit_euler_step, velocity_ver
 def sections(exercise_id, program=""):
     """Of the model solution, of a known wrong program by its name, or of the solution with more lines."""
     exercise = CATALOG.exercise(exercise_id)
-    path = solution_path(CATALOG, exercise)
-    known = {one.name: one.composed(path.read_text(), path) for one in mistakes_of(CATALOG, exercise).wrong}
-    source = known.get(program, path.read_text() + program)
+    wrong = [one for one in mistakes_of(CATALOG, exercise).wrong if one.name == program]
+    if wrong:
+        source = source_of(CATALOG, exercise, wrong[0]).decode()
+    else:
+        source = solution_path(CATALOG, exercise).read_text() + program
     return kit.companion(exercise_id, "report").report(LocalSubmission(source)).sections
 
 

@@ -24,6 +24,7 @@ from course.sandbox.runs import running
 from course.sandbox.runs.recording import Film, Recording, ffmpeg
 from course.sandbox.runs.running import Run
 from course.sandbox.scene.loading import (
+    GUESS_LIKE,
     NO_GUESS,
     Chosen,
     Comparison,
@@ -290,7 +291,8 @@ def _given_guess(chosen: Chosen, options: PlayOptions) -> float | None:
     asked = chosen.scene.prediction
     guess = guess_of(options.guess, asked.unit if asked is not None else "")
     if guess is None:
-        raise UsageError(f"--guess {options.guess}: {NO_GUESS}", code="bad_parameter")
+        said = f"--guess {options.guess} is not a number, or one too large."
+        raise UsageError(said, help=GUESS_LIKE, code="bad_parameter")
     return guess
 
 

@@ -329,8 +329,9 @@ def _misfit(scene: Scene, numbers: Mapping[str, float], error: str) -> MisfitErr
 # Predict, run, compare: a guess, a formula and a simulation side by side.
 
 
-#: What is said of a text that holds none.
-NO_GUESS = "Not a number: try something like 2.5 (or 2,5) or -1e3, in the unit of the question."
+#: How a guess may be written, and what is said of a text that is none.
+GUESS_LIKE = "Try something like 2.5 (or 2,5) or -1e3, in the unit of the question."
+NO_GUESS = f"This is not a number, or one too large. {GUESS_LIKE}"
 
 
 class Comparison(msgspec.Struct, frozen=True, kw_only=True):

@@ -585,7 +585,7 @@ class View {
     const digits = this.span < 1 ? 3 : 2;
     this.clock.textContent = `${t.toFixed(digits)} s`;
     const slow = !this.state?.paused && pace < 0.8;
-    this.lag.textContent = slow ? `Too much work: ${Math.round(100 * pace)} % of the speed asked for` : "";
+    this.lag.textContent = slow ? `This machine manages ${Math.round(100 * pace)} % of the speed` : "";
     this.body.show();
     const end = this.state.now ?? t;
     this.line.max = String(end);

@@ -58,7 +58,7 @@ def test_without_ffmpeg_an_mp4_says_what_to_do(monkeypatch) -> None:
     monkeypatch.setattr(films.shutil, "which", lambda name: None)
     with pytest.raises(MissingCapabilityError) as caught:
         film.mp4()
-    assert "--gif" in caught.value.help
+    assert "GIF" in caught.value.help
 
 
 def test_ffmpeg_gets_every_frame_and_its_failure_is_told_in_words(monkeypatch, tmp_path) -> None:

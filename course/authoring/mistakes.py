@@ -98,7 +98,8 @@ class Variant:
         for old, new in self.changed.items():
             if (times := text.count(old)) != 1:
                 said = f"{self.name}: {old!r} stands {times} times in {self.of} of the model solution."
-                raise ContentError(file, self.line, said, help="Write a text that stands there once.")
+                advice = "Write a text that stands there once; the docstring counts."
+                raise ContentError(file, self.line, said, help=advice)
             text = text.replace(old, new)
         return text
 

@@ -282,7 +282,8 @@ def expect_length(value: Any, length: int, *, message: str, name: str = "the res
     with _read_for(finding):
         items = as_list(value, name)
     if len(items) != length:
-        fail(message, expected=length, actual=len(items), units="1", **finding)
+        finding = {"quantity": f"length of {name}", "units": "1"} | finding
+        fail(message, expected=length, actual=len(items), **finding)
 
 
 def expect_close(

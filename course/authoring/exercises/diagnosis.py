@@ -548,15 +548,17 @@ def audit_diagnoses(catalog: Catalog, exercise: Exercise, findings: Findings) ->
     if mistakes.words:
         questions = questions_path(exercise.id)
         with blamed(questions):
-            asked = questions.is_file() and questions_of(exercise.id)
+            asked = questions_of(exercise.id) if questions.is_file() else None
         if not asked:
             message = "it asks no QUESTIONS, and there are words: what would tell wrong programs apart?"
             findings.add(questions, None, "words", message, "Write it.")
             return
         path, table = table_path(exercise.readme_path.parent), read_table(exercise.readme_path.parent)
         if table is None or table.made_from != digest(catalog, exercise):
-            for _ in hypotheses_of(catalog, exercise):
-                pass  # what building would refuse comes before the advice to build
+            with blamed(questions):
+                _table_of(
+                    catalog, exercise, asked
+                )  # what building would refuse comes before the advice to build
             message = "it was made from other questions, mistakes or solutions than there are now."
             code, message = ("stale", message) if table else ("words", f"it has nothing on {exercise.id}.")
             findings.add(path, None, code, message, f"Run `course author build {exercise.id}`.")

@@ -443,7 +443,7 @@ def _audit_order(catalog: Catalog, exercise: Exercise, wrong: About) -> None:
         if exercise.is_warm_up and other.lesson != exercise.lesson:
             continue
         problem = f"{other.kind} {other.id} has a lower order, {other.order}, and its {what} comes later."
-        fix = f"Let the orders follow the {what}s: {exercise.id} before {other.id}."
+        fix = f"Give it the order {other.order}, and each {exercise.kind} from {other.id} on one more."
         wrong(("order",), problem, fix)
         return
 
@@ -498,6 +498,10 @@ def _audit_code(catalog: Catalog, exercise: Exercise, findings: Findings) -> Non
             findings.add(exercise.readme_path, None, "readme", problem, fix)
     _audit_imports(exercise, exercise.stub_path, stub, findings)
     _audit_imports(exercise, solution, model, findings)
+    if not exercise.is_warm_up and "\n## What is checked\n" not in read_text(exercise.readme_path):
+        problem = "the README has no section `## What is checked`."
+        fix = "Put there what is looked up beside the work; before it stands what is read first."
+        findings.add(exercise.readme_path, None, "readme", problem, fix)
     for path in accepted_files(catalog, exercise):
         _audit_imports(exercise, path, parse(path), findings)
     mistakes, file = mistakes_of(catalog, exercise), mistakes_path(catalog, exercise)

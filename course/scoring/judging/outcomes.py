@@ -58,6 +58,10 @@ def skipped(check: Check, blocking: str) -> CheckResult:
     )
 
 
+#: How the quantity of what the course counted begins: a fact about it would read as one about the result.
+_COUNTED = ("length of ", "evaluations")
+
+
 def told_more(
     judged: CheckResult, source: bytes, places: Places, args: tuple[Any, ...] | None = None
 ) -> CheckResult:
@@ -81,7 +85,8 @@ def told_more(
         message, advice = said_once(judged.message, found.looks_like), found.advice
         return msgspec.structs.replace(judged, diagnosis=found.code, message=message, help=advice)
     if judged.status is Status.FAIL and public and (unnamed or judged.diagnosis in NOT_FINITE):
-        fact = likeness(judged.actual, judged.expected, judged.input)
+        counted = judged.quantity.startswith(_COUNTED)
+        fact = "" if counted else likeness(judged.actual, judged.expected, judged.input)
         return msgspec.structs.replace(judged, message=f"{judged.message} {fact}".strip())
     return judged
 

@@ -76,6 +76,7 @@ OF_ITSELF = "points(1 + 2)\n@pytest.mark.requires('double_of_three')"
         (TOML, '    "Return x + x.",\n', "", "hints = [", "hints", "has 2 hints, and needs 3"),
         (TOML, '2 = ["SQUARES', '4 = ["SQUARES', "[task.fits]", "content", "no hint number 4"),
         (README, "`double(x) -> float`", "`double` -> float", None, "readme", "signature double(x)"),
+        (README, "## What is checked", "## Checked", None, "readme", "no section `## What is checked`"),
         (STUB, "def double(x)", "def double(y)", None, "signature", "double(y)"),
         (STUB, "def double(x)", "def double(x", "def double", "content", "not valid Python"),
         (STUB, '    """Twice ``x``.', '    x = """Twice ``x``.', "def double", "stub", "no docstring"),

@@ -27,7 +27,9 @@ SOLVED = {
         "Tripling", "Three times.", "Three times a number",
         "What is once more than twice?", "Add three times.", "Return 3 * x.",
     ],
-    "exercises/tripling/README.md": ["Tripling", "gives three times `x`.", "tripling(1.0) is 3.0."],
+    "exercises/tripling/README.md": [
+        "Tripling", "gives three times `x`.", "tripling(1.0) is 3.0.", "Nine digits.",
+    ],
     "exercises/tripling/tripling.py": ["Tripling.", "Three times ``x``, float."],
     "exercises/tripling/checks.py": CHECK,
     "exercises/tripling/questions.py": [""],

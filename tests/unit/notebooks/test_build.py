@@ -119,7 +119,7 @@ def test_the_functions_of_an_exercise_are_those_of_its_notebook(everything: list
             module = one.path.stem.replace("-", "_")
             assert f"from {module} import" not in told
             assert f"in `{module}.py`" not in told
-            assert " in this notebook" in told
+            assert " in this notebook" in told, "its README says nowhere: in `MODULE.py`"
 
 
 def test_links_between_notebooks_lead_to_notebooks(catalog: Catalog, everything: list[Generated]) -> None:

@@ -4,8 +4,6 @@ The record only lists events; this module answers the commands' questions about 
 now, is another hint due, was it ever passed, which lessons were read.
 """
 
-from __future__ import annotations
-
 import ast
 import hashlib
 import math

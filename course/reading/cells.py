@@ -4,8 +4,6 @@ A cell needs the names from the cells before it: those that have not run in thei
 After a cell was interrupted, or its process died, the next run starts a new process and does the same there.
 """
 
-from __future__ import annotations
-
 import ast
 import io
 import sys

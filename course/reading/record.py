@@ -5,8 +5,6 @@ skipped, and later how it did), "cell" (its code as it ran, and what it gave) an
 reached). They are written by a thread of their own: a slow disk must not hold up a key.
 """
 
-from __future__ import annotations
-
 import queue
 import threading
 from bisect import bisect_right

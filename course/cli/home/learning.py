@@ -1,7 +1,5 @@
 """The part of ``course progress`` about learning: predictions, mistakes, sections to read again."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime

@@ -1,7 +1,5 @@
 """``course`` and ``course progress``: where am I, what is next, what have I done."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from course.catalog.load import Catalog

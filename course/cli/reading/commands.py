@@ -1,7 +1,5 @@
 """``course lessons`` and ``course lesson``: the list of lessons, and reading one."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 from collections.abc import Collection

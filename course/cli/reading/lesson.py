@@ -4,8 +4,6 @@ A page ends where a section ends, and after each prediction, since the figure th
 sight; and after each answer, which is compared with what was predicted.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """``course sandbox``: scenes to play with, to run without a view, to film, to replay and to export."""
 
-from __future__ import annotations
-
 import difflib
 import math
 import shlex

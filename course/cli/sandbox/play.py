@@ -1,7 +1,5 @@
 """``course sandbox play``: open a scene in a view, or run it without one and report the events."""
 
-from __future__ import annotations
-
 import contextlib
 import importlib
 import math

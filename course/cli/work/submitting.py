@@ -4,8 +4,6 @@ What goes in is checked before it is written, from the very bytes that go in: wh
 what the public checks of a grading run find in it.
 """
 
-from __future__ import annotations
-
 import hashlib
 import io
 import json

@@ -1,7 +1,5 @@
 """The quiz on the command line: asked, resumed, answered from a file, reviewed, handed in."""
 
-from __future__ import annotations
-
 import io
 import json
 import re

@@ -3,8 +3,6 @@
 Each kind of item knows the keys that matter while it is at hand, and what they do.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import TypeVar
 

@@ -1,7 +1,5 @@
 """What was done and learned, what there is to read, and what this machine can do."""
 
-from __future__ import annotations
-
 import shutil
 from types import SimpleNamespace
 

@@ -1,7 +1,5 @@
 """Warm-ups on the command line: listed by lesson, started, checked, counted; never among the exercises."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import zipfile

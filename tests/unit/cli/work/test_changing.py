@@ -1,7 +1,5 @@
 """How an exercise begins, the stub and newer versions of it; nothing is lost on the way."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

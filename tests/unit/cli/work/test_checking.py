@@ -1,7 +1,5 @@
 """``course check``: what it says, what it records, how it ends."""
 
-from __future__ import annotations
-
 import pytest
 
 from course.handed_in.limits import MAX_FILE

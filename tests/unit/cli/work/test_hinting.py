@@ -1,7 +1,5 @@
 """Help, as much as has been worked for; and a question in prose, answered before the answer is shown."""
 
-from __future__ import annotations
-
 import io
 import json
 

@@ -1,7 +1,5 @@
 """``course report``: the student's functions on public data, through the boundary, in words and figures."""
 
-from __future__ import annotations
-
 import pytest
 
 pytestmark = pytest.mark.usefixtures("sandboxes")

@@ -1,7 +1,5 @@
 """The file that is handed in."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import platform

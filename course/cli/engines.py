@@ -162,8 +162,7 @@ def list_engines() -> int:
     for scenario in SCENARIOS.values():
         console.item(scenario.id, f"{scenario.title}. {scenario.question}", width=15)
     console.note(("Next: course engines compare --quick", "bold"))
-    console.emit(EngineList(engines=states, scenarios=_scenarios(SCENARIOS)))
-    return 0
+    return console.answer(EngineList(engines=states, scenarios=_scenarios(SCENARIOS)))
 
 
 @app.command(epilog="Example: course engines compare --engine mujoco --engine ode --scenario bounce --quick")
@@ -208,7 +207,7 @@ def compare(
     if code:
         console.line(("No engine could be run on this machine.", "bold"))
     shipped = comparison.reference
-    console.emit(
+    return console.answer(
         Engines(
             exit_code=code,
             machine=filled(EngineMachine, comparison.machine),
@@ -222,7 +221,6 @@ def compare(
             csv=table,
         )
     )
-    return code
 
 
 def _plotted(console: Console, comparison: Comparison, plot: Path) -> tuple[WrittenFile, ...]:

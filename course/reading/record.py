@@ -401,7 +401,6 @@ class RecordedPrediction:
     Attributes:
         lesson: where it was asked.
         key: of the question, as ``Question.key``.
-        number: of the question when it was answered, 1 for the first of the lesson.
         text: the prediction; empty if it was skipped.
         at: when, in UTC.
         judged: how it did, by its author's word once the answer was open; None if that was not said.
@@ -409,7 +408,6 @@ class RecordedPrediction:
 
     lesson: str
     key: str
-    number: int
     text: str
     at: datetime
     judged: Judgement | None = None
@@ -427,11 +425,7 @@ def predictions_of(events: Iterable[Event]) -> tuple[RecordedPrediction, ...]:
         data, place = event.data, (event.subject, str(event.data.get("key", "")))
         said, judged = found.get(place), data.get("judged")
         if said is None:
-            number = data.get("number")
-            text = str(data.get("text", ""))
-            found[place] = RecordedPrediction(
-                *place, number if isinstance(number, int) else 0, text, event.at
-            )
+            found[place] = RecordedPrediction(*place, str(data.get("text", "")), event.at)
         elif judged in JUDGEMENTS and said.text:
             found[place] = replace(said, judged=judged)
     return tuple(found.values())
@@ -458,9 +452,7 @@ _BEFORE, _AFTER = 24, 48
 class Hit:
     """A block that holds the words: where it is, and what stands round them."""
 
-    lesson: str
     block: int
-    section: str
     excerpt: str
 
 
@@ -479,7 +471,6 @@ def find(progress: InProgress, wanted: str) -> Iterator[Hit]:
         text = " ".join(words_of(block).split())
         at = text.casefold().find(needle)
         if at >= 0:
-            section = script.section_of(index)
             first, last = max(0, at - _BEFORE), at + len(needle) + _AFTER
             excerpt = ("…" if first else "") + text[first:last] + ("…" if last < len(text) else "")
-            yield Hit(script.lesson.id, index, section.title if section else "", excerpt)
+            yield Hit(index, excerpt)

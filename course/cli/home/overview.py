@@ -187,7 +187,7 @@ def _outside(console: Console, catalog: Catalog) -> int:
     console.line("You are not in a workspace: the folder that holds your own files.")
     console.note("See what it looks like first: course demo")
     console.next(step)
-    console.emit(
+    return console.answer(
         Status(
             course=catalog.ref,
             title=catalog.title,
@@ -198,7 +198,6 @@ def _outside(console: Console, catalog: Catalog) -> int:
             next=NextStep(step),
         )
     )
-    return 0
 
 
 def _inside(console: Console, here: Here) -> int:
@@ -328,11 +327,10 @@ def exercises() -> int:
         step = f"course watch {left.id}"
     if step:
         console.note(f"Next: {step}" if here else f"In a workspace (course init): {step}")
-    console.emit(
+    return console.answer(
         Exercises(
             workspace=str(here.workspace.root) if here else None,
             exercises=states,
             next=NextStep(step) if step else None,
         )
     )
-    return 0

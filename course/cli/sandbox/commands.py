@@ -156,7 +156,7 @@ def replay(file: Annotated[Path, argument("FILE", "A recording.")]) -> int:
         for name, (then, here) in difference.versions.items()
     )
     code = 0 if difference.same else 1
-    console.emit(
+    return console.answer(
         filled(
             SandboxReplay,
             difference,
@@ -167,7 +167,6 @@ def replay(file: Annotated[Path, argument("FILE", "A recording.")]) -> int:
             versions=versions,
         )
     )
-    return code
 
 
 @app.command(epilog="Example: course sandbox export unequal-masses --format mjcf -o world.xml")
@@ -204,8 +203,9 @@ def export(
         folder = shlex.quote(str(target.parent))
         console.note(f"Run it: GZ_SIM_SYSTEM_PLUGIN_PATH={folder} gz sim {shlex.quote(str(target))}")
     text = "" if written else data.decode()
-    console.emit(SandboxExport(scene=chosen.scene.id, format=format_, file=written, beside=beside, text=text))
-    return 0
+    return console.answer(
+        SandboxExport(scene=chosen.scene.id, format=format_, file=written, beside=beside, text=text)
+    )
 
 
 def _list(console: Console, name: str | None) -> None:

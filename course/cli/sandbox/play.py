@@ -405,7 +405,7 @@ def _run_unseen(
         _keep(chosen, done.comparison)
     scene = chosen.scene
     settings = {"step": scene.step, "iterations": float(scene.iterations), "seed": float(scene.seed)}
-    console.emit(
+    return console.answer(
         filled(
             Sandbox,
             done,
@@ -420,7 +420,6 @@ def _run_unseen(
             files=files,
         )
     )
-    return 0
 
 
 def _taker(

@@ -384,7 +384,6 @@ def _cell(scenario: Scenario, row: Row, best: frozenset[int]) -> str:
 
 
 def number(scenario: Scenario, value: float) -> str:
-    """A value with its unit."""
     return _unit(_digits(scenario, value), scenario)
 
 

@@ -427,7 +427,6 @@ class Watcher:
 
     @property
     def paths(self) -> tuple[Path, ...]:
-        """The files to look at."""
         module = self.exercise.module
         names = (self.named,) if self.named else (module, Path(module).with_suffix(NOTEBOOK).name)
         return tuple(self.here.workspace.path(self.exercise.place, name) for name in names)

@@ -39,11 +39,9 @@ class Layout:
     of_exercise: str
 
     def lesson(self, lesson_id: str) -> PurePosixPath:
-        """Where a lesson lies."""
         return PurePosixPath("lessons", f"{lesson_id}.ipynb")
 
     def exercise(self, exercise: Exercise) -> PurePosixPath:
-        """Where an exercise lies."""
         module = exercise.module.removesuffix(".py")
         return PurePosixPath(self.of_exercise.format(id=exercise.id, module=module))
 

@@ -186,7 +186,6 @@ class Sandbox(anywidget.AnyWidget):  # type: ignore[misc]
             self._loop.call_soon_threadsafe(call, *given)
 
     def _hear(self, message: Any) -> None:
-        """Handle a message from a page."""
         if self._page is not None and self._stalled:
             self._page.watching, self._stalled = True, False
         match message:

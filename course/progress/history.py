@@ -402,7 +402,6 @@ class Standing:
         return self._record.events(kind, subject) if self._record is not None else ()
 
     def history(self, exercise: str) -> History:
-        """What was recorded about an exercise or a warm-up."""
         if exercise not in self._histories:
             self._histories[exercise] = history_of(self.events(subject=exercise))
         return self._histories[exercise]
@@ -430,10 +429,8 @@ class Standing:
 
     @cached_property
     def quiz(self) -> QuizHistory:
-        """The attempts at the quiz, and the reviews."""
         return quiz_history(self.events())
 
     @cached_property
     def mistakes(self) -> tuple[Mistake, ...]:
-        """The mistakes that checks recognised, in the order they were first made."""
         return mistakes_of(self.events())

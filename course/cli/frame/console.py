@@ -200,7 +200,6 @@ class Console:
 
     @property
     def json(self) -> bool:
-        """True if the run answers with one JSON object."""
         return self.settings.json
 
     @property

@@ -391,7 +391,6 @@ class Desk:
         return fresh_seed(self.bank, self.history.last_seeds())
 
     def begin(self, seed: int) -> Attempt:
-        """A new attempt, recorded."""
         return begun(self.bank, seed, self.here.catalog.version, self.here.record)
 
     def catch_up(self, attempt: Attempt) -> None:

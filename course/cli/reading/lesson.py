@@ -124,7 +124,6 @@ class PlainPrinter(_Printer):
         self._told_how = False  # to save them: said once
 
     def head(self) -> None:
-        """Title, summary, objectives."""
         lesson = self._lesson
         self._say(f"Lesson: {lesson.title}")
         self._say(f"Reading time: about {counted(lesson.minutes, 'minute')}")
@@ -299,7 +298,6 @@ class FancyPrinter(_Printer):
         self._prose = min(max(20, width - _MARGIN), _PROSE)
 
     def head(self) -> None:
-        """Title, summary, objectives."""
         for shown, above in self._head(f"{self._lesson.id} · "):
             self._print(shown, above=above)
 

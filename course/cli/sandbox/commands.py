@@ -38,7 +38,6 @@ class _Scenes(TyperGroup):
     """`course sandbox SCENE` plays it: no command is named like a scene."""
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        """The command, and what is left of the line."""
         name = args[0]
         if self.get_command(ctx, name) is None and (name.isdecimal() or name in known_scenes()):
             args = ["play", *args]

@@ -162,12 +162,10 @@ class Prediction:
     """A reader's prediction; ``text`` is empty if they skipped it.
 
     Attributes:
-        at: when; None if it was not read from a record.
         judged: how the reader says it did, once the answer was open.
     """
 
     text: str
-    at: datetime | None = None
     judged: Judgement | None = None
 
     @property
@@ -299,7 +297,6 @@ class InProgress:
     # -- cells ---------------------------------------------------------------------------------------
 
     def cell(self, cell: Cell) -> CellState:
-        """A cell's present state."""
         return self._cells.get(cell.key) or CellState(cell.source)
 
     def edit(self, cell: Cell, source: str) -> None:
@@ -310,7 +307,6 @@ class InProgress:
             self._note("cell", {"key": cell.key, "number": cell.number, "source": source})
 
     def ran(self, cell: Cell, source: str, printed: str, error: str, seconds: float) -> None:
-        """Keep what a run gave."""
         now = self.cell(cell)
         self._cells[cell.key] = CellState(now.source, source, printed, error, seconds)
         data: dict[str, Any] = {"key": cell.key, "number": cell.number, "ran": source}
@@ -351,7 +347,7 @@ class InProgress:
         elif event.kind == "prediction" and key in {one.key for one in self.script.questions}:
             said = self._predictions.get(key)
             if said is None:
-                self._predictions[key] = Prediction(str(data.get("text", "")), event.at)
+                self._predictions[key] = Prediction(str(data.get("text", "")))
             elif data.get("judged") in JUDGEMENTS:
                 self._predictions[key] = replace(said, judged=data["judged"])
         elif event.kind == "cell":

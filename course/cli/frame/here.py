@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import csv
 import io
+import itertools
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -357,19 +358,16 @@ def _keep(path: Path, old: bytes, why: str) -> Path:
     except CourseError as error:
         if error.code != "workspace_not_found":
             raise
-    number = 1
-    while True:
+    for number in itertools.count(1):
         copy = path.with_name(f"{path.stem}.old-{number}{path.suffix}")
         try:
-            with copy.open("xb") as file:
+            with suppress(FileExistsError), copy.open("xb") as file:
                 file.write(old)
-        except FileExistsError:
-            number += 1
+                break
         except OSError as error:
             raise UsageError(
                 f"{path} is there, and no copy of it can be kept ({error.strerror or error}).",
                 help="Name another file.",
                 code="not_writable",
             ) from error
-        else:
-            return copy
+    return copy

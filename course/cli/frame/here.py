@@ -102,14 +102,10 @@ class Here:
         )
 
     def started(self) -> tuple[Exercise, ...]:
-        """The exercises that have been started, in the order they are done."""
+        """The exercises that have been started, in the order they are done, and then the warm-ups."""
         names = set(self.workspace.started())
-        return tuple(exercise for exercise in self.catalog.exercises() if exercise.id in names)
-
-    def warm_ups_started(self) -> tuple[Exercise, ...]:
-        """The warm-ups that have been started, in the order of the lessons."""
-        names = set(self.workspace.started())
-        return tuple(one for one in self.catalog.warm_ups() if one.id in names)
+        every = (*self.catalog.exercises(), *self.catalog.warm_ups())
+        return tuple(one for one in every if one.id in names)
 
     def misnamed(self, exercise: Exercise) -> str:
         """A file beside the student's whose name differs in capitals only; "" if there is none."""

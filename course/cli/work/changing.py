@@ -135,7 +135,7 @@ def _agreed(console: Console, shown: str) -> bool:
 
 
 def _updates(here: Here, *, dry_run: bool) -> Iterator[Change]:
-    for exercise in (*here.started(), *here.warm_ups_started()):
+    for exercise in here.started():
         for source in exercise.given:
             yield _update_file(here, exercise, source.name, source.read_bytes(), dry_run=dry_run)
     from course.notebooks.build import WORKSPACE, generate  # a lesson opens without it

@@ -162,8 +162,7 @@ def list_engines() -> int:
     for scenario in SCENARIOS.values():
         console.item(scenario.id, f"{scenario.title}. {scenario.question}", width=15)
     console.note(("Next: course engines compare --quick", "bold"))
-    console.emit(EngineList(engines=states, scenarios=_scenarios(SCENARIOS)))
-    return 0
+    return console.answer(EngineList(engines=states, scenarios=_scenarios(SCENARIOS)))
 
 
 @app.command(epilog="Example: course engines compare --engine mujoco --engine ode --scenario bounce --quick")
@@ -211,7 +210,7 @@ def compare(
             none = "No engine that runs here can do what was asked."
         console.line((none, "bold"))
     shipped = comparison.reference
-    console.emit(
+    return console.answer(
         Engines(
             exit_code=code,
             machine=filled(EngineMachine, comparison.machine),
@@ -225,7 +224,6 @@ def compare(
             csv=table,
         )
     )
-    return code
 
 
 def _plotted(console: Console, comparison: Comparison, plot: Path) -> tuple[WrittenFile, ...]:
@@ -391,7 +389,6 @@ def _cell(scenario: Scenario, row: Row, best: frozenset[int]) -> str:
 
 
 def number(scenario: Scenario, value: float) -> str:
-    """A value with its unit."""
     return _unit(_digits(scenario, value), scenario)
 
 

@@ -151,8 +151,7 @@ def go() -> int:
     console, here = current(), Here.load()
     if console.json:
         step = next_in_course(here.catalog, here.standing())
-        console.emit(Go(next=NextStep(step), why=why(here.catalog, step)))
-        return 0
+        return console.answer(Go(next=NextStep(step), why=why(here.catalog, step)))
     return _Loop(console, here).run()
 
 
@@ -191,8 +190,9 @@ class _Loop:
             self.console.gap()  # the terminal has written ^C
         finally:
             self.console.led = False
-        self.console.emit(Watch(exit_code=code, exercise=name, runs=tuple(self.runs), last=self.last))
-        return code
+        return self.console.answer(
+            Watch(exit_code=code, exercise=name, runs=tuple(self.runs), last=self.last)
+        )
 
     def _work(self, task: Exercise) -> Exercise | None:
         """Work on a task until it passes or the user wants another one, which is returned."""
@@ -408,7 +408,10 @@ class Watcher:
             if key == "v":
                 self.verbose = not self.verbose
             else:
-                self._focus = _following(self._failing(), self._focus)
+                failing = self._failing()
+                # The one after it; the second where none was asked for, since the first is shown.
+                following = failing.index(self._focus) + 1 if self._focus in failing else 1
+                self._focus = failing[following % len(failing)] if failing else ""
             self._show(self._made)
         else:
             return False
@@ -424,7 +427,6 @@ class Watcher:
 
     @property
     def paths(self) -> tuple[Path, ...]:
-        """The files to look at."""
         module = self.exercise.module
         names = (self.named,) if self.named else (module, Path(module).with_suffix(NOTEBOOK).name)
         return tuple(self.here.workspace.path(self.exercise.place, name) for name in names)
@@ -588,13 +590,6 @@ class Watcher:
             self.console.warn(warning)
         self.here.warnings.clear()
         self.console.flush()
-
-
-def _following(names: list[str], now: str) -> str:
-    """The name after ``now``, the first one after the last; "" if there is none."""
-    if not names:
-        return ""
-    return names[(names.index(now) + 1) % len(names)] if now in names else names[min(1, len(names) - 1)]
 
 
 def _has_empty(signature: Signature) -> bool:

@@ -241,8 +241,7 @@ def check(
     for warning in here.warnings if here else ():
         console.warn(warning)
     reply = reply_to(catalog.ref, made.verdict, f"course notebook check {file}")
-    console.emit(NotebookCheck(exit_code=reply.exit_code, file=str(path), result=reply))
-    return reply.exit_code
+    return console.answer(NotebookCheck(exit_code=reply.exit_code, file=str(path), result=reply))
 
 
 # -- writing ---------------------------------------------------------------------------------------------
@@ -291,8 +290,7 @@ def _write(console: Console, catalog: Catalog, folder: Path, notebooks: Iterable
         console.note(f"Open them with: {shlex.join(['jupyter', 'lab', str(folder)])}")
     else:
         console.note("Open them in any program for Jupyter notebooks; `course open` needs JupyterLab.")
-    console.emit(Notebook(course=catalog.ref, folder=str(folder), files=tuple(files)))
-    return 0
+    return console.answer(Notebook(course=catalog.ref, folder=str(folder), files=tuple(files)))
 
 
 def _sentence(folder: Path, file: NotebookFile) -> str:

@@ -132,8 +132,7 @@ def list_simulations(
         _describe(console, simulation, whole=name is not None)
     example = name or CHAPTER[0]
     console.note(("Next: " + (f"course sim run {example}" if name else f"course sim list {example}"), "bold"))
-    console.emit(SimList(simulations=tuple(_entry(simulation) for simulation in simulations)))
-    return 0
+    return console.answer(SimList(simulations=tuple(_entry(simulation) for simulation in simulations)))
 
 
 def _entry(simulation: Simulation) -> SimEntry:
@@ -186,9 +185,7 @@ def run(
         there = f"Known: {', '.join(SIMULATIONS)}."
         more = "`course sim list` says what each shows; --all runs the introduction's four."
         raise UsageError("Which simulation?", help=f"{there} {more}", code="no_name")
-    reply = _run_one(console, name, pairs, plot, csv)
-    console.emit(reply)
-    return 0
+    return console.answer(_run_one(console, name, pairs, plot, csv))
 
 
 def _run_all(console: Console, plot: Path | None, csv: Path | None) -> int:
@@ -202,8 +199,7 @@ def _run_all(console: Console, plot: Path | None, csv: Path | None) -> int:
         console.heading(title)
         for text in lines:
             console.item("-", text) if console.fancy else console.line(f"- {text}", indent=2)
-    console.emit(SimAll(results=tuple(replies), concepts=CONCEPTS, insights=INSIGHTS))
-    return 0
+    return console.answer(SimAll(results=tuple(replies), concepts=CONCEPTS, insights=INSIGHTS))
 
 
 def _run_one(console: Console, name: str, pairs: Sequence[str], plot: Path | None, csv: Path | None) -> Sim:

@@ -12,7 +12,7 @@ from urllib.parse import quote
 from course.catalog import blocks as b
 from course.catalog.load import Catalog
 from course.catalog.markdown import read_blocks
-from course.catalog.models import Exercise, Lesson, Task
+from course.catalog.models import Exercise, Lesson
 from course.errors import NotFoundError
 from course.handed_in.notebook import SETUP, SOLUTION
 from course.notebooks.cells import Cell, code, document, markdown, opening
@@ -39,11 +39,9 @@ class Layout:
     of_exercise: str
 
     def lesson(self, lesson_id: str) -> PurePosixPath:
-        """Where a lesson lies."""
         return PurePosixPath("lessons", f"{lesson_id}.ipynb")
 
     def exercise(self, exercise: Exercise) -> PurePosixPath:
-        """Where an exercise lies."""
         module = exercise.module.removesuffix(".py")
         return PurePosixPath(self.of_exercise.format(id=exercise.id, module=module))
 
@@ -262,7 +260,8 @@ def exercise_cells(exercise: Exercise, source: str) -> list[Cell]:
             cells.append(code(part.text, role=SETUP, exercise=exercise.id))
             continue
         cells += map(markdown, above.get(part.task, ()))
-        cells.append(markdown(_task_heading(tasks[part.task])))
+        task = tasks[part.task]
+        cells.append(markdown(f"### {task.title}: `{task.id}` ({in_points(task.points)})"))
         of = {"exercise": exercise.id, "task": part.task}
         cells.append(code(part.text, role=SOLUTION, **of))
         cells.append(code(f"%course_check {exercise.id} {part.task}", role="check", **of))
@@ -319,10 +318,6 @@ def _placed(sections: list[str], tasks: list[str]) -> tuple[str, dict[str, list[
         at = named[0] if 0 < len(named) <= len(tasks) / 2 else at
         above.setdefault(at, []).append(section)
     return first, above, last
-
-
-def _task_heading(task: Task) -> str:
-    return f"### {task.title}: `{task.id}` ({in_points(task.points)})"
 
 
 # ---
@@ -399,7 +394,7 @@ def _lesson_cells(catalog: Catalog, lesson: Lesson, layout: Layout) -> list[Cell
             case b.Figure(id=name, alt=alt, caption=caption):
                 flush()
                 cells.append(code(f'figure("{name}", lesson="{lesson.id}")', role="figure"))
-                cells.append(markdown(f"*{lowering.inlines(caption)}*\n\n{_described(alt)}"))
+                cells.append(markdown(_CAPTION.format(caption=lowering.inlines(caption), alt=alt)))
             case b.Prediction(blocks=inner):
                 flush()
                 predictions += 1
@@ -428,6 +423,10 @@ _END = """# The end: run this cell, and the lesson counts as read.
 from course.notebooks.predicting import finish
 
 finish("{lesson}")"""
+_CAPTION = """\
+*{caption}*
+
+<details><summary>What the figure shows, in words</summary>{alt}</details>"""
 _FOLDED = """\
 <details><summary>The answer: predict first</summary>
 
@@ -442,10 +441,6 @@ def _head(lesson: Lesson) -> str:
         f"# {lesson.title}\n\n{lesson.summary}\n\n"
         f"About {counted(lesson.minutes, 'minute')}. Afterwards you can:\n\n{objectives}"
     )
-
-
-def _described(alt: str) -> str:
-    return f"<details><summary>What the figure shows, in words</summary>{alt}</details>"
 
 
 def _collapsed(cell: Cell) -> Cell:

@@ -83,12 +83,10 @@ class CheckTable:
 
     @property
     def passed(self) -> bool:
-        """Whether all shown checks pass."""
         return bool(self.checks) and all(check.status == "pass" for check in self.checks)
 
     @property
     def summary(self) -> str:
-        """The outcome in a sentence."""
         if self.verdict.state != "graded":
             problem = self.verdict.error
             return f"{problem.message} {problem.help}" if problem else "Nothing could be checked."

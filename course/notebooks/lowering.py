@@ -54,7 +54,6 @@ class Lowering:
         return text
 
     def blocks(self, blocks: tuple[b.Block, ...]) -> str:
-        """Several blocks, one after the other."""
         return "\n\n".join(self.block(block) for block in blocks)
 
     def boxed(self, kind: str, blocks: tuple[b.Block, ...]) -> str:
@@ -63,7 +62,6 @@ class Lowering:
         return "\n".join(f"> {line}".rstrip() for line in text.split("\n"))
 
     def inlines(self, inlines: b.Inlines) -> str:
-        """Inline pieces as Markdown."""
         return "".join(map(self._inline, inlines))
 
     def _inline(self, inline: b.Inline) -> str:

@@ -29,7 +29,6 @@ T = TypeVar("T")
 
 
 def register(shell: Any) -> None:
-    """Add the course's magics to an IPython shell."""
     shell.course_runs = Runs(shell)
 
     def course_check(line: str, cell: str | None = None) -> CheckTable | None:
@@ -170,7 +169,6 @@ def points(exercise_id: str, task: str) -> float:
 
 
 def _public_points(catalog: Catalog, exercise: Exercise) -> dict[str, float]:
-    """Public points of each task."""
     from course.scoring.checks.collected import CollectedChecks
 
     collected = CollectedChecks(check_files(exercise, catalog, "public"))

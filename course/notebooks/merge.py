@@ -58,8 +58,6 @@ def merged(old: bytes, new: bytes) -> bytes:
 
 @dataclass
 class _Held:
-    """A cell of a file."""
-
     cell: RawCell
 
     @property

@@ -90,7 +90,6 @@ class Marks:
 
     @property
     def summary(self) -> str:
-        """The score in a sentence."""
         verdict = "passed" if self.result.passed else "not passed"
         total = self.result.total
         return f"{self.result.score} of {total} right, {needed(total)} needed: {verdict}."

@@ -121,11 +121,9 @@ class Film:
     @property
     def story(self) -> list[str]:
         """The run in sentences, its energy last."""
-        return [*sentences(self.run.events, _MOST_TOLD), *account(self.run.receipt), *self._compared()]
-
-    def _compared(self) -> list[str]:
         compared = self.run.comparison
-        return [] if compared is None else [compared.verdict, compared.why]
+        ending = [] if compared is None else [compared.verdict, compared.why]
+        return [*sentences(self.run.events, _MOST_TOLD), *account(self.run.receipt), *ending]
 
     def __repr__(self) -> str:
         return "\n".join([self.title, *self.story])

@@ -13,6 +13,7 @@ import anywidget
 
 import course.sandbox.views.web
 from course.notebooks.quiz import Marks
+from course.progress.store import numbered
 from course.sandbox.scene.loading import choose
 from course.sandbox.views.stage import Desk, Stage
 from course.sandbox.views.web.session import SCRIPTS, Page, Session
@@ -130,10 +131,7 @@ def one_module() -> str:
 
 def _save(name: str, data: bytes) -> str:
     """Write a file beside the notebook; one that is there already stays."""
-    path, number = Path(name), 1
-    while path.exists():
-        number += 1
-        path = Path(f"{Path(name).stem}-{number}{Path(name).suffix}")
+    path = next(path for path in numbered(Path(name)) if not path.exists())
     path.write_bytes(data)
     return str(path)
 
@@ -188,7 +186,6 @@ class Sandbox(anywidget.AnyWidget):  # type: ignore[misc]
             self._loop.call_soon_threadsafe(call, *given)
 
     def _hear(self, message: Any) -> None:
-        """Handle a message from a page."""
         if self._page is not None and self._stalled:
             self._page.watching, self._stalled = True, False
         match message:

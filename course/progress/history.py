@@ -4,8 +4,6 @@ The record only lists events; this module answers the commands' questions about 
 now, is another hint due, was it ever passed, which lessons were read.
 """
 
-from __future__ import annotations
-
 import ast
 import hashlib
 import math
@@ -404,7 +402,6 @@ class Standing:
         return self._record.events(kind, subject) if self._record is not None else ()
 
     def history(self, exercise: str) -> History:
-        """What was recorded about an exercise or a warm-up."""
         if exercise not in self._histories:
             self._histories[exercise] = history_of(self.events(subject=exercise))
         return self._histories[exercise]
@@ -432,10 +429,8 @@ class Standing:
 
     @cached_property
     def quiz(self) -> QuizHistory:
-        """The attempts at the quiz, and the reviews."""
         return quiz_history(self.events())
 
     @cached_property
     def mistakes(self) -> tuple[Mistake, ...]:
-        """The mistakes that checks recognised, in the order they were first made."""
         return mistakes_of(self.events())

@@ -6,8 +6,6 @@ question answered in a review; the subject of these two is the question. Events 
 questions follow from the seed. ``course.quizzing.desk`` records them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime

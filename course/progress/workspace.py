@@ -119,7 +119,6 @@ class Workspace:
 
     @property
     def store(self) -> Store:
-        """The record of progress."""
         return Store(self.state / "progress.sqlite")
 
     def path(self, place: str, name: str) -> Path:

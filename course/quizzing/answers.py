@@ -10,8 +10,6 @@ TOML, or JSON of the same shape where the name ends in ``.json``::
     digital-twin = "c"
 """
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib

@@ -88,7 +88,6 @@ class PosedQuestion:
 
     @property
     def key(self) -> Choice:
-        """The choice that is right."""
         return next(choice for choice in self.choices if choice.right)
 
     def choice(self, name: str) -> Choice | None:
@@ -293,8 +292,6 @@ _PATIENCE = 10
 
 @dataclass(frozen=True, slots=True)
 class MarkedQuestion:
-    """A question and its answer."""
-
     posed: PosedQuestion
     chosen: Choice
 

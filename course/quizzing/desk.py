@@ -1,7 +1,5 @@
 """An attempt from its first question to its mark, recorded alike wherever it is taken."""
 
-from __future__ import annotations
-
 import secrets
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ A cell needs the names from the cells before it: those that have not run in thei
 After a cell was interrupted, or its process died, the next run starts a new process and does the same there.
 """
 
-from __future__ import annotations
-
 import ast
 import io
 import sys
@@ -20,7 +18,7 @@ from course.catalog.pack import zip_entry
 from course.isolation.failures import IsolationError, StudentFailure
 from course.isolation.inside import statements
 from course.isolation.inside.wire import CUT
-from course.isolation.levels import Deadline, Level, Spawner
+from course.isolation.levels import Deadline, Spawner
 from course.isolation.probe import open_spawner
 from course.isolation.session import Connection, LoadRefusedError
 from course.printable import printable
@@ -221,11 +219,6 @@ class CellRunner:
         self._ran: dict[str, str] = {}  # key of a cell: the code of it that ran in this process
         self._printed = 0
         self._interrupted = threading.Event()
-
-    @property
-    def level(self) -> Level | None:
-        """How strongly the cells are kept apart; None before anything ran."""
-        return self._spawner.level if self._spawner is not None else None
 
     def prepare(self) -> None:
         """Start the process, so that the first run need not wait for it.

@@ -8,8 +8,6 @@ Predictions and cells are known by a digest of their own words, so that an edit 
 moves and renumbers them, loses no student's answers.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ skipped, and later how it did), "cell" (its code as it ran, and what it gave) an
 reached). They are written by a thread of their own: a slow disk must not hold up a key.
 """
 
-from __future__ import annotations
-
 import queue
 import threading
 from bisect import bisect_right
@@ -164,12 +162,10 @@ class Prediction:
     """A reader's prediction; ``text`` is empty if they skipped it.
 
     Attributes:
-        at: when; None if it was not read from a record.
         judged: how the reader says it did, once the answer was open.
     """
 
     text: str
-    at: datetime | None = None
     judged: Judgement | None = None
 
     @property
@@ -301,7 +297,6 @@ class InProgress:
     # -- cells ---------------------------------------------------------------------------------------
 
     def cell(self, cell: Cell) -> CellState:
-        """A cell's present state."""
         return self._cells.get(cell.key) or CellState(cell.source)
 
     def edit(self, cell: Cell, source: str) -> None:
@@ -312,7 +307,6 @@ class InProgress:
             self._note("cell", {"key": cell.key, "number": cell.number, "source": source})
 
     def ran(self, cell: Cell, source: str, printed: str, error: str, seconds: float) -> None:
-        """Keep what a run gave."""
         now = self.cell(cell)
         self._cells[cell.key] = CellState(now.source, source, printed, error, seconds)
         data: dict[str, Any] = {"key": cell.key, "number": cell.number, "ran": source}
@@ -353,7 +347,7 @@ class InProgress:
         elif event.kind == "prediction" and key in {one.key for one in self.script.questions}:
             said = self._predictions.get(key)
             if said is None:
-                self._predictions[key] = Prediction(str(data.get("text", "")), event.at)
+                self._predictions[key] = Prediction(str(data.get("text", "")))
             elif data.get("judged") in JUDGEMENTS:
                 self._predictions[key] = replace(said, judged=data["judged"])
         elif event.kind == "cell":
@@ -403,7 +397,6 @@ class RecordedPrediction:
     Attributes:
         lesson: where it was asked.
         key: of the question, as ``Question.key``.
-        number: of the question when it was answered, 1 for the first of the lesson.
         text: the prediction; empty if it was skipped.
         at: when, in UTC.
         judged: how it did, by its author's word once the answer was open; None if that was not said.
@@ -411,7 +404,6 @@ class RecordedPrediction:
 
     lesson: str
     key: str
-    number: int
     text: str
     at: datetime
     judged: Judgement | None = None
@@ -429,11 +421,7 @@ def predictions_of(events: Iterable[Event]) -> tuple[RecordedPrediction, ...]:
         data, place = event.data, (event.subject, str(event.data.get("key", "")))
         said, judged = found.get(place), data.get("judged")
         if said is None:
-            number = data.get("number")
-            text = str(data.get("text", ""))
-            found[place] = RecordedPrediction(
-                *place, number if isinstance(number, int) else 0, text, event.at
-            )
+            found[place] = RecordedPrediction(*place, str(data.get("text", "")), event.at)
         elif judged in JUDGEMENTS and said.text:
             found[place] = replace(said, judged=judged)
     return tuple(found.values())
@@ -460,9 +448,7 @@ _BEFORE, _AFTER = 24, 48
 class Hit:
     """A block that holds the words: where it is, and what stands round them."""
 
-    lesson: str
     block: int
-    section: str
     excerpt: str
 
 
@@ -481,7 +467,6 @@ def find(progress: InProgress, wanted: str) -> Iterator[Hit]:
         text = " ".join(words_of(block).split())
         at = text.casefold().find(needle)
         if at >= 0:
-            section = script.section_of(index)
             first, last = max(0, at - _BEFORE), at + len(needle) + _AFTER
             excerpt = ("…" if first else "") + text[first:last] + ("…" if last < len(text) else "")
-            yield Hit(script.lesson.id, index, section.title if section else "", excerpt)
+            yield Hit(index, excerpt)

@@ -1,7 +1,5 @@
 """An author's whole way, on a course of its own: what is new is written, filled in, proved and put to use."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -1,7 +1,5 @@
 """``course demo``, with the real sandbox: what it shows, and what it makes of a line that is typed."""
 
-from __future__ import annotations
-
 import ast
 import io
 import json

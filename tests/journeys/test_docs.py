@@ -4,8 +4,6 @@
 of its own; an ordinary run tries the blocks of the day, and parses every command.
 """
 
-from __future__ import annotations
-
 import itertools
 import re
 import shlex

@@ -3,8 +3,6 @@
 What a student takes hold of runs with every test; the rest is for soak.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

@@ -3,8 +3,6 @@
 What the terminal is sent is kept byte for byte: nothing in it moves a cursor or draws anything again.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import select

@@ -3,8 +3,6 @@
 Needs an environment with nbgrader beside the course's own dependencies; it is no extra of the course.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -4,8 +4,6 @@ What the check in the notebook says, what `submit` says and what a grading run f
 the kernel has run besides.
 """
 
-from __future__ import annotations
-
 import contextlib
 import json
 import os

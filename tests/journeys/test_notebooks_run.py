@@ -1,7 +1,5 @@
 """Generated notebooks run from top to bottom in a fresh kernel, and give the lessons' own numbers."""
 
-from __future__ import annotations
-
 import json
 from importlib.util import find_spec
 from typing import Any

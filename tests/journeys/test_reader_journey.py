@@ -5,8 +5,6 @@ file in an editor and goes on; nothing but the editor is outside the reader. ``C
 screens of the lessons that are read.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import signal

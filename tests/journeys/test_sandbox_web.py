@@ -3,8 +3,6 @@
 Needs Chromium, Debian's or one that CHROMIUM names, and the package playwright, which downloads none.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,7 +1,5 @@
 """A student's whole way, from the wheel: each command as it is typed, each exercise from stub to zip."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import zipfile

@@ -4,8 +4,6 @@ A command is a process where its terminal, its signals or a second program matte
 for each is test_student.py.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -135,21 +135,21 @@ def coverage(write: Annotated[bool, option("--write", "Write docs/coverage.md ag
     _show_coverage(console, table, problems)
     if page:
         console.note(f"Wrote {shown(page, catalog)}.")
-    parts = [
+    parts = tuple(
         filled(CoverageRow, part, section=section.title, kind=section.kind)
         for section in table.section
         for part in section.parts
-    ]
-    reply = filled(
-        AuthorCoverage,
-        table,
-        exit_code=1 if problems else 0,
-        parts=tuple(parts),
-        written=shown(page, catalog) if page else None,
-        problems=problems,
     )
-    console.emit(reply)
-    return reply.exit_code
+    return console.answer(
+        filled(
+            AuthorCoverage,
+            table,
+            exit_code=1 if problems else 0,
+            parts=parts,
+            written=shown(page, catalog) if page else None,
+            problems=problems,
+        )
+    )
 
 
 def _show_coverage(console: Console, table: Coverage, problems: tuple[AuthorProblem, ...]) -> None:
@@ -346,8 +346,7 @@ def _report_new(catalog: Catalog, kind: str, name: str, files: tuple[Path, ...])
     }.get(kind, (f"author check {name}",))
     commands = ", then ".join(f"course {command}" for command in then)
     console.note(f"Fill in the marked blanks, then run: {commands}")
-    console.emit(AuthorNew(kind=kind, id=name, files=written))
-    return 0
+    return console.answer(AuthorNew(kind=kind, id=name, files=written))
 
 
 @app.command(epilog="Example: course author check integrators")
@@ -374,8 +373,7 @@ def check(
         course = CourseRef(id="", version="")  # the syllabus itself is what is wrong, and is reported
     code = 0 if report.ok else 1
     seconds = round(report.seconds, 3)
-    console.emit(filled(AuthorCheck, report, exit_code=code, course=course, seconds=seconds))
-    return code
+    return console.answer(filled(AuthorCheck, report, exit_code=code, course=course, seconds=seconds))
 
 
 def _show_report(console: Console, catalog: Catalog, report: AuditReport) -> None:
@@ -448,8 +446,7 @@ def build(
         console.note(f"The record of {one} is older than its files: course author build {one} --accept")
     if not written and not older:
         console.note("All of it is up to date.")
-    console.emit(AuthorBuild(files=tuple(written)))
-    return 0
+    return console.answer(AuthorBuild(files=tuple(written)))
 
 
 def _say_blanks(catalog: Catalog, exercise: Exercise) -> None:
@@ -497,9 +494,7 @@ def mutants(name: _EachExercise = None) -> int:
     wrong = sum(bool(row.faults) for row in rows)
     said = f"{wrong} not caught as they should be." if wrong else "each is caught as it says."
     console.line(f"{counted(len(rows), 'mutant')}: {said}")
-    code = 1 if wrong else 0
-    console.emit(AuthorMutants(exit_code=code, mutants=tuple(rows)))
-    return code
+    return console.answer(AuthorMutants(exit_code=1 if wrong else 0, mutants=tuple(rows)))
 
 
 def _show_mutants(console: Console, exercise: Exercise, outcomes: tuple[MutantOutcome, ...]) -> None:
@@ -538,8 +533,7 @@ def pack(
     for exercise_id, names in packed.items():
         console.item(exercise_id, ", ".join(names))
     console.note("A student puts it to use with `course solution`, after passing the exercise.")
-    console.emit(AuthorPack(course=catalog.ref, output=str(output), sha256=digest, solutions=packed))
-    return 0
+    return console.answer(AuthorPack(course=catalog.ref, output=str(output), sha256=digest, solutions=packed))
 
 
 app.command(epilog="Example: course author coverage --write")(coverage)

@@ -71,9 +71,7 @@ def pictures(
         known[name] = digest
         write_atomically(folder / _MADE_FROM, f"{json.dumps(known, indent=2)}\n".encode())
         console.line(f"Wrote {path}")
-    ok = not (check and stale)
-    console.emit(AuthorPictures(exit_code=0 if ok else 1, stale=tuple(stale)))
-    return 0 if ok else 1
+    return console.answer(AuthorPictures(exit_code=1 if check and stale else 0, stale=tuple(stale)))
 
 
 def _keep(figures: list[str], folder: Path) -> int:
@@ -89,8 +87,7 @@ def _keep(figures: list[str], folder: Path) -> int:
         write_atomically(folder / f"{name}.png", picture)  # under version control: no copy
         write_atomically(folder / f"{name}.txt", words)
         console.line(f"Wrote {folder / name}.png and .txt")
-    console.emit(AuthorPictures(ok=True, exit_code=0, stale=tuple(kept)))
-    return 0
+    return console.answer(AuthorPictures(stale=tuple(kept)))
 
 
 def _known(folder: Path) -> dict[str, str]:

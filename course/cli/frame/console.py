@@ -153,14 +153,9 @@ _GO_ON = " Enter goes on, q stops: "
 #: Colour repeats what a word already says; it never says anything alone.
 STATUS_STYLE = {
     "pass": "green",
-    "fail": "red",
-    "error": "red",
-    "timeout": "red",
-    "memory": "red",
-    "crash": "red",
     "skip": "yellow",
-    "ungradable": "red",
     "grader_error": "magenta",
+    **dict.fromkeys(("fail", "error", "timeout", "memory", "crash", "ungradable"), "red"),
 }
 
 
@@ -194,7 +189,8 @@ class Console:
         self._out = Stream(stdout or sys.stdout)
         self._err = Stream(stderr or sys.stderr)
         self._human: Stream = self._err if self.settings.json else self._out
-        self.fancy = self._is_fancy()
+        shapeless = self.settings.json or self.settings.plain or self._environ.get("TERM") == "dumb"
+        self.fancy = not shapeless and bool(self._environ.get("FORCE_COLOR") or self._human.isatty())
         self._rich: RichConsole | None = None
         self.emitted = False
         #: Several lines are the answer, and an error may still be the last.
@@ -204,7 +200,6 @@ class Console:
 
     @property
     def json(self) -> bool:
-        """True if the run answers with one JSON object."""
         return self.settings.json
 
     @property
@@ -256,11 +251,6 @@ class Console:
     @property
     def height(self) -> int:
         return shutil.get_terminal_size().lines
-
-    def _is_fancy(self) -> bool:
-        if self.settings.json or self.settings.plain or self._environ.get("TERM") == "dumb":
-            return False
-        return bool(self._environ.get("FORCE_COLOR")) or self._human.isatty()
 
     def rich(self) -> RichConsole:
         """The Rich console behind a fancy run; in the other shapes one without colour or markup."""
@@ -456,6 +446,12 @@ class Console:
             raise InternalError("A command tried to print a second JSON object.")
         self.emitted = True
         self._out.write_bytes(encode(body) + b"\n")
+
+    def answer(self, reply: Any) -> int:
+        """End a command with its ``Envelope``, whose exit code is the command's."""
+        self.emit(reply)
+        code: int = reply.exit_code
+        return code
 
     def emit_line(self, body: msgspec.Struct) -> None:
         """Write one line of JSON Lines, for the two commands that answer with several."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import csv
 import io
+import itertools
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -62,16 +63,19 @@ class Here:
             chosen = self.catalog.exercise_called(wanted.rstrip("/\\"))
             self._say_renumbered(chosen, wanted)
             return chosen
-        known = (*self.catalog.exercise_ids(), *self.catalog.warm_up_ids())
-        for name in (self._folder_name(), self._last_worked_on(), *self._only_started()):
-            if name in known:
-                return self.catalog.exercise(str(name))
+        started = self.workspace.started()
+        for name in (self._folder_name(), self._last_worked_on(), started[0] if len(started) == 1 else ""):
+            if name in self._known:
+                return self.catalog.exercise(name)
         raise self.nothing_started()
 
     def of_folder(self) -> Exercise | None:
         """The exercise or warm-up that the current folder is of."""
-        known = (*self.catalog.exercise_ids(), *self.catalog.warm_up_ids())
-        return self.catalog.exercise(name) if (name := self._folder_name() or "") in known else None
+        return self.catalog.exercise(name) if (name := self._folder_name()) in self._known else None
+
+    @property
+    def _known(self) -> tuple[str, ...]:
+        return (*self.catalog.exercise_ids(), *self.catalog.warm_up_ids())
 
     def _say_renumbered(self, chosen: Exercise, number: str) -> None:
         """Of a number that meant another exercise before 2.0, one that was begun here then: name both."""
@@ -98,24 +102,19 @@ class Here:
         )
 
     def started(self) -> tuple[Exercise, ...]:
-        """The exercises that have been started, in the order they are done."""
+        """The exercises that have been started, in the order they are done, and then the warm-ups."""
         names = set(self.workspace.started())
-        return tuple(exercise for exercise in self.catalog.exercises() if exercise.id in names)
-
-    def warm_ups_started(self) -> tuple[Exercise, ...]:
-        """The warm-ups that have been started, in the order of the lessons."""
-        names = set(self.workspace.started())
-        return tuple(one for one in self.catalog.warm_ups() if one.id in names)
+        every = (*self.catalog.exercises(), *self.catalog.warm_ups())
+        return tuple(one for one in every if one.id in names)
 
     def misnamed(self, exercise: Exercise) -> str:
         """A file beside the student's whose name differs in capitals only; "" if there is none."""
         own = self.workspace.path(exercise.place, exercise.module)
         try:
+            others = [path for path in sorted(own.parent.iterdir()) if path.name != own.name]
+            alike = [path for path in others if path.name.lower() == own.name.lower()]
             # Where capitals do not count, as on Windows and macOS, it is the student's file itself.
-            others = [path for path in sorted(own.parent.iterdir()) if path.name.lower() == own.name.lower()]
-            others = [path for path in others if path.name != own.name]
-            found = (path.name for path in others if not (own.exists() and path.samefile(own)))
-            return next(found, "")
+            return next((path.name for path in alike if not (own.exists() and path.samefile(own))), "")
         except OSError:
             return ""
 
@@ -198,30 +197,23 @@ class Here:
         """End a command: say what was not recorded, print the object of ``--json``, give the exit code."""
         for warning in self.warnings:
             current().warn(warning)
-        current().emit(reply)
-        return reply.exit_code
+        return current().answer(reply)
 
-    def _folder_name(self) -> str | None:
-        """The first folder below the workspace on the way to the current one."""
-        try:
-            parts = cwd().relative_to(self.workspace.root).parts
-        except ValueError:
-            return None
-        inside = parts[1:] if parts[:1] == (WARM_UPS,) else parts
-        return inside[0] if inside else None
+    def _folder_name(self) -> str:
+        """The first folder below the workspace on the way to the current one; "" if there is none."""
+        if not cwd().is_relative_to(self.workspace.root):
+            return ""
+        parts = cwd().relative_to(self.workspace.root).parts
+        return next(iter(parts[1:] if parts[:1] == (WARM_UPS,) else parts), "")
 
-    def _last_worked_on(self) -> str | None:
-        """The exercise last started, checked by name or asked a hint for."""
+    def _last_worked_on(self) -> str:
+        """The exercise last started, checked by name or asked a hint for; "" if there is none."""
         try:
             events = self.workspace.store.events()
         except CourseError:
-            return None
+            return ""
         kinds = {"start", "check", "hint"}
-        return next((e.subject for e in reversed(events) if e.kind in kinds and not e.data.get("all")), None)
-
-    def _only_started(self) -> tuple[str, ...]:
-        started = self.workspace.started()
-        return started if len(started) == 1 else ()
+        return next((e.subject for e in reversed(events) if e.kind in kinds and not e.data.get("all")), "")
 
 
 def cwd() -> Path:
@@ -362,19 +354,16 @@ def _keep(path: Path, old: bytes, why: str) -> Path:
     except CourseError as error:
         if error.code != "workspace_not_found":
             raise
-    number = 1
-    while True:
+    for number in itertools.count(1):
         copy = path.with_name(f"{path.stem}.old-{number}{path.suffix}")
         try:
-            with copy.open("xb") as file:
+            with suppress(FileExistsError), copy.open("xb") as file:
                 file.write(old)
-        except FileExistsError:
-            number += 1
+                break
         except OSError as error:
             raise UsageError(
                 f"{path} is there, and no copy of it can be kept ({error.strerror or error}).",
                 help="Name another file.",
                 code="not_writable",
             ) from error
-        else:
-            return copy
+    return copy

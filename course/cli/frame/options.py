@@ -99,8 +99,6 @@ def option(names: str, help: str | None = None, complete: Any = None, **limits: 
 
 
 def choice_of(*values: str) -> Callable[[str], list[str]]:
-    """Completes a value that is one of a few."""
-
     def complete(incomplete: str) -> list[str]:
         return _beginning(incomplete, values)
 
@@ -138,7 +136,6 @@ scenario_ids = _key_of("course.engines.scenarios", "SCENARIOS")
 
 
 def scene_ids(incomplete: str) -> list[str]:
-    """Scenes of the sandbox whose id begins with what was typed; lists a folder."""
     return _beginning(incomplete, (path.stem for path in _scenes().glob("*.toml")))
 
 
@@ -197,35 +194,31 @@ def submitted_ids(ctx: Any, incomplete: str) -> list[str]:
     return _beginning(incomplete, found)
 
 
-def student_ids(ctx: Any, incomplete: str) -> list[str]:
-    """Students of the grading run on the line."""
-    found = _in_gradebook(ctx, "SELECT student FROM results UNION SELECT student FROM students")
-    return _beginning(incomplete, map(str, found))
+def _column(query: str) -> Callable[[Any, str], list[str]]:
+    """Completes what a query finds in the gradebook on the line; nothing where that cannot be read."""
+
+    def complete(ctx: Any, incomplete: str) -> list[str]:
+        import sqlite3
+
+        from course.strangers import no_programs
+
+        path = Path(_given(ctx, "out"), "gradebook.sqlite").resolve()
+        try:
+            with closing(sqlite3.connect(f"{path.as_uri()}?mode=ro", uri=True)) as book:
+                no_programs(book, millions=5)
+                return _beginning(incomplete, (str(value) for (value,) in book.execute(query)))
+        except (sqlite3.Error, UnicodeDecodeError):
+            return []
+
+    return complete
 
 
-def graded_ids(ctx: Any, incomplete: str) -> list[str]:
-    """Exercises of the grading run on the line, the quiz among them."""
-    return _beginning(incomplete, map(str, _in_gradebook(ctx, "SELECT id FROM exercises")))
-
-
-def run_numbers(ctx: Any, incomplete: str) -> list[str]:
-    """Runs that the gradebook on the line has had, by their numbers."""
-    return _beginning(incomplete, map(str, _in_gradebook(ctx, "SELECT number FROM runs")))
-
-
-def _in_gradebook(ctx: Any, query: str) -> list[Any]:
-    """A column of an existing gradebook; empty if it cannot be read."""
-    import sqlite3
-
-    from course.strangers import no_programs
-
-    path = Path(_given(ctx, "out"), "gradebook.sqlite").resolve()
-    try:
-        with closing(sqlite3.connect(f"{path.as_uri()}?mode=ro", uri=True)) as book:
-            no_programs(book, millions=5)
-            return [value for (value,) in book.execute(query)]
-    except (sqlite3.Error, UnicodeDecodeError):
-        return []
+#: Students of the grading run on the line.
+student_ids = _column("SELECT student FROM results UNION SELECT student FROM students")
+#: Exercises of the grading run on the line, the quiz among them.
+graded_ids = _column("SELECT id FROM exercises")
+#: Runs that the gradebook on the line has had, by their numbers.
+run_numbers = _column("SELECT number FROM runs")
 
 
 def _beginning(incomplete: str, names: Iterable[str]) -> list[str]:

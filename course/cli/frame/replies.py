@@ -153,8 +153,7 @@ def schema(
     console, found = current(), tuple(reply_types())
     if name is None:
         console.table(("Name", "Schema"), [(_short(tag), tag) for tag in found])
-        console.emit(Schemas(schemas=found))
-        return 0
+        return console.answer(Schemas(schemas=found))
     tag = next((tag for tag in found if name in {tag, _short(tag)}), None)
     if tag is None:
         raise NotFoundError(
@@ -164,8 +163,7 @@ def schema(
         )
     document = schema_of(tag)
     console.raw(msgspec.json.format(msgspec.json.encode(document), indent=2).decode() + "\n")
-    console.emit(Schema(name=tag, document=document))
-    return 0
+    return console.answer(Schema(name=tag, document=document))
 
 
 def reply_types() -> dict[str, type[msgspec.Struct]]:

@@ -175,31 +175,25 @@ def late(
             f"{times} says no time zone. If the clock changed near the deadline, an hour may cost or spare"
             f" points of {some(unsure, _SHOWN)}: give their times in a list, with the distance from UTC."
         )
-    if console.json:
-        console.emit(
-            GradeLate(
-                policy=results.policy is not None,
-                late=tuple(found),
-                time_unknown=unknown_time,
-                unknown_names=tuple(unknown),
-                dry_run=dry_run,
-                moved=tuple(moved),
-                dropped=tuple(dropped),
-            )
-        )
-    else:
+    if not console.json:
         _show_late(console, results, found, unknown_time, unknown)
         show_roster(console, people.file if people else "", (), dropped)
-        _show_moved(console, moved, dry_run=dry_run)
-    return 0
-
-
-def _show_moved(console: Console, moved: list[ScoreChange], *, dry_run: bool) -> None:
-    for line in moved_scores(moved):
-        console.line(line, indent=2)
-    if moved or dry_run:
-        would = "would change" if dry_run else "changed"
-        console.line((f"{counted(len(moved), 'score')} {would}.", "bold"))
+        for line in moved_scores(moved):
+            console.line(line, indent=2)
+        if moved or dry_run:
+            would = "would change" if dry_run else "changed"
+            console.line((f"{counted(len(moved), 'score')} {would}.", "bold"))
+    return console.answer(
+        GradeLate(
+            policy=results.policy is not None,
+            late=tuple(found),
+            time_unknown=unknown_time,
+            unknown_names=tuple(unknown),
+            dry_run=dry_run,
+            moved=tuple(moved),
+            dropped=tuple(dropped),
+        )
+    )
 
 
 def _times(
@@ -379,16 +373,16 @@ def assign(
 
         done, left = agreed(console, assigned, yes=yes)
     broke = unjudged(one for item in done for one in broken_checks(item.after))
-    if console.json:
-        shown = tuple(map(_assigned_one, done)), tuple(map(_unsettled_one, left))
-        console.emit(GradeAssign(dry_run=dry_run, assigned=shown[0], unsettled=shown[1], unjudged=broke))
-    else:
+    if not console.json:
         _show_assigned(console, done, dry_run=dry_run)
         show_unjudged(console, broke)
         _show_unsettled(console, left, out, "would be left to settle" if done and dry_run else "to settle")
         if waiting:
             console.note(f"Not graded yet: {counted(waiting, 'student')}. The run goes on with --resume.")
-    return 0
+    assigned_ones, unsettled = tuple(map(_assigned_one, done)), tuple(map(_unsettled_one, left))
+    return console.answer(
+        GradeAssign(dry_run=dry_run, assigned=assigned_ones, unsettled=unsettled, unjudged=broke)
+    )
 
 
 def _assigned_one(item: Assigned) -> AssignedOne:
@@ -469,8 +463,7 @@ def log(
         runs = results.book.runs()
         decisions = results.decisions(student, exercise)
     if console.json:
-        console.emit(GradeLog(runs=tuple(runs), changes=tuple(decisions)))
-        return 0
+        return console.answer(GradeLog(runs=tuple(runs), changes=tuple(decisions)))
     for run in runs:
         graders = str(run.options.get("snapshot", ""))[:12] or "not kept"
         why = f", {run.options['reason']}" if run.options.get("reason") else ""

@@ -278,8 +278,7 @@ def similar(
             for one in found.pairs
         )
         groups = tuple(filled(SimilarGroup, one, share=round(one.share, 4)) for one in found.groups)
-        console.emit(filled(GradeSimilar, found, pairs=pairs, groups=groups, page=str(target)))
-        return 0
+        return console.answer(filled(GradeSimilar, found, pairs=pairs, groups=groups, page=str(target)))
     _show_similar(console, found)
     console.note(f"Side by side: {target}")
     return 0
@@ -350,12 +349,10 @@ def salvage(
             remove_tree(folder)
         elif not any(folder.iterdir()):
             folder.rmdir()
+    if not console.json:
+        _show_salvaged(console, told, to, dry_run=dry_run)
     code = 6 if told.lost else 0
-    if console.json:
-        console.emit(filled(GradeSalvage, told, exit_code=code, dry_run=dry_run, out=str(to)))
-        return code
-    _show_salvaged(console, told, to, dry_run=dry_run)
-    return code
+    return console.answer(filled(GradeSalvage, told, exit_code=code, dry_run=dry_run, out=str(to)))
 
 
 def _show_salvaged(console: Console, told: Salvaged, to: Path, *, dry_run: bool) -> None:

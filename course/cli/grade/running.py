@@ -266,12 +266,10 @@ def rerun(
             return regrade(results, catalog, mine, grade=partial(batch.grade_all, graders=jobs))
 
     done = agreed(console, grading, yes=yes)
-    code = InternalError.exit_code if done.faults else 0
-    if console.json:
-        console.emit(filled(GradeRerun, done, exit_code=code, dry_run=dry_run, grader_error=done.faults))
-    else:
+    if not console.json:
         _show_rerun(console, done, out, dry_run=dry_run)
-    return code
+    code = InternalError.exit_code if done.faults else 0
+    return console.answer(filled(GradeRerun, done, exit_code=code, dry_run=dry_run, grader_error=done.faults))
 
 
 def _show_rerun(console: Console, done: Regraded, out: Path, *, dry_run: bool) -> None:

@@ -1,7 +1,5 @@
 """Which command to suggest next."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The part of ``course progress`` about learning: predictions, mistakes, sections to read again."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import datetime
@@ -138,8 +136,9 @@ def show_learning(console: Console, learning: Learning) -> None:
     """Print what there is; nothing for a student who predicted nothing and made no mistake."""
     if learning.predictions is not None:
         _show_predictions(console, learning.predictions)
-    if learning.mistakes:
-        _show_mistakes(console, learning.mistakes)
+    made, given = ([one for one in learning.mistakes if one.given == of] for of in (False, True))
+    _show_mistakes(console, "Mistakes", "made", made)
+    _show_mistakes(console, "Faults in the programs you were given", "found by a check", given)
     if learning.revisit:
         console.heading("To read again")
         for place in learning.revisit:
@@ -172,17 +171,11 @@ def _show_predictions(console: Console, predictions: PredictionsState) -> None:
             console.line(f"{one.of}: {_in_words(one)}", indent=2)
 
 
-def _show_mistakes(console: Console, mistakes: Sequence[MistakeState]) -> None:
-    _show_some(console, "Mistakes", "made", [one for one in mistakes if not one.given])
-    given = [one for one in mistakes if one.given]
-    _show_some(console, "Faults in the programs you were given", "found by a check", given)
-
-
 #: So many mistakes that are open and so many that are mended are shown, the newest of each.
 _OPEN, _MENDED = 5, 3
 
 
-def _show_some(console: Console, what: str, done: str, mistakes: Sequence[MistakeState]) -> None:
+def _show_mistakes(console: Console, what: str, done: str, mistakes: Sequence[MistakeState]) -> None:
     """How many, and each with the day it was made or fixed."""
     if not mistakes:
         return

@@ -1,7 +1,5 @@
 """``course`` and ``course progress``: where am I, what is next, what have I done."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from course.catalog.load import Catalog
@@ -189,7 +187,7 @@ def _outside(console: Console, catalog: Catalog) -> int:
     console.line("You are not in a workspace: the folder that holds your own files.")
     console.note("See what it looks like first: course demo")
     console.next(step)
-    console.emit(
+    return console.answer(
         Status(
             course=catalog.ref,
             title=catalog.title,
@@ -200,7 +198,6 @@ def _outside(console: Console, catalog: Catalog) -> int:
             next=NextStep(step),
         )
     )
-    return 0
 
 
 def _inside(console: Console, here: Here) -> int:
@@ -330,11 +327,10 @@ def exercises() -> int:
         step = f"course watch {left.id}"
     if step:
         console.note(f"Next: {step}" if here else f"In a workspace (course init): {step}")
-    console.emit(
+    return console.answer(
         Exercises(
             workspace=str(here.workspace.root) if here else None,
             exercises=states,
             next=NextStep(step) if step else None,
         )
     )
-    return 0

@@ -1,7 +1,5 @@
 """Replies of `course`, `course progress` and `course next`."""
 
-from __future__ import annotations
-
 import msgspec
 
 from course.catalog.models import CourseRef

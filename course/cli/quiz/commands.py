@@ -1,7 +1,5 @@
 """``course quiz``: five questions, an explanation of every option, and a review of missed questions."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from datetime import date, datetime
 from pathlib import Path

@@ -292,7 +292,8 @@ def show_attempts(console: Console, attempts: Sequence[QuizAttempt], best: Attem
 def hand_out(console: Console, here: Here, posed: Sequence[PosedQuestion], seed: int, command: str) -> int:
     """Print questions, and below them the file to fill in."""
     step = f"course quiz {command} --answers answers.toml"
-    template = _template(posed, seed)
+    answers = "".join(f'{question.question} = ""\n' for question in posed)
+    template = f"format_version = 1\nseed = {seed}\n\n[answers]\n{answers}"
     for number, question in enumerate(posed, start=1):
         console.blank()
         _show_question(console, question, number, len(posed))
@@ -311,11 +312,6 @@ def hand_out(console: Console, here: Here, posed: Sequence[PosedQuestion], seed:
             warnings=tuple(here.warnings),
         )
     )
-
-
-def _template(posed: Sequence[PosedQuestion], seed: int) -> str:
-    lines = ["format_version = 1", f"seed = {seed}", "", "[answers]"]
-    return "\n".join([*lines, *(f'{question.question} = ""' for question in posed), ""])
 
 
 def _asked(posed: PosedQuestion) -> QuizAsked:
@@ -395,7 +391,6 @@ class Desk:
         return fresh_seed(self.bank, self.history.last_seeds())
 
     def begin(self, seed: int) -> Attempt:
-        """A new attempt, recorded."""
         return begun(self.bank, seed, self.here.catalog.version, self.here.record)
 
     def catch_up(self, attempt: Attempt) -> None:

@@ -3,8 +3,6 @@
 Each line is written once and stays: nothing is drawn again, so a screen reader says it once.
 """
 
-from __future__ import annotations
-
 import bisect
 import contextlib
 import itertools

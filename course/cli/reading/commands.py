@@ -1,7 +1,5 @@
 """``course lessons`` and ``course lesson``: the list of lessons, and reading one."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 from collections.abc import Collection
@@ -76,8 +74,7 @@ def lessons() -> int:
     step = f"course lesson {unread}" if unread else None
     if step:
         console.next(step)
-    console.emit(Lessons(lessons=states, next=NextStep(step) if step else None))
-    return 0
+    return console.answer(Lessons(lessons=states, next=NextStep(step) if step else None))
 
 
 def lesson(
@@ -139,8 +136,7 @@ def lesson(
     for picture in shown.pictures:
         console.note(f"Wrote {picture}")
     console.next(step)
-    console.emit(_reply(chosen, text.getvalue(), tuple(map(str, shown.pictures)), step))
-    return 0
+    return console.answer(_reply(chosen, text.getvalue(), tuple(map(str, shown.pictures)), step))
 
 
 def _reply(chosen: Lesson, text: str, figures: tuple[str, ...] = (), step: str = "") -> LessonReply:
@@ -221,8 +217,7 @@ def _print_code(console: Console, script: Script, number: int) -> int:
         )
     source = cells[number - 1].source
     console.raw(f"{source}\n")
-    console.emit(_reply(script.lesson, source))
-    return 0
+    return console.answer(_reply(script.lesson, source))
 
 
 def _read_by_line(
@@ -322,8 +317,7 @@ def _list(console: Console, lesson: str = "") -> int:
     step = f"course warmup {left.id}" if left else ""
     if step:
         console.note(f"Next: {step}" if here else f"In a workspace (course init): {step}")
-    console.emit(WarmUps(warm_ups=states, next=NextStep(step) if step else None))
-    return 0
+    return console.answer(WarmUps(warm_ups=states, next=NextStep(step) if step else None))
 
 
 def _begin(console: Console, here: Here, chosen: Exercise) -> int:

@@ -4,8 +4,6 @@ A page ends where a section ends, and after each prediction, since the figure th
 sight; and after each answer, which is compared with what was predicted.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterator
@@ -42,13 +40,10 @@ _RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 def value_text(text: str) -> str:
     """A quoted number as people write it: 4.4e8 is 4.4 × 10⁸, a hyphen is a minus sign."""
-    shown = _SCIENTIFIC.sub(lambda m: _power(m[1], m[2]), text)
-    return re.sub(r"^-", "−", shown)
-
-
-def _power(mantissa: str, exponent: str) -> str:
-    power = "10" + str(int(exponent)).translate(_RAISED)
-    return power if mantissa == "1" else f"{mantissa} × {power}"
+    if found := _SCIENTIFIC.match(text):
+        power = "10" + str(int(found[2])).translate(_RAISED)
+        text = (power if found[1] == "1" else f"{found[1]} × {power}") + text[found.end() :]
+    return re.sub(r"^-", "−", text)
 
 
 def value_spoken(text: str) -> str:
@@ -129,7 +124,6 @@ class PlainPrinter(_Printer):
         self._told_how = False  # to save them: said once
 
     def head(self) -> None:
-        """Title, summary, objectives."""
         lesson = self._lesson
         self._say(f"Lesson: {lesson.title}")
         self._say(f"Reading time: about {counted(lesson.minutes, 'minute')}")
@@ -304,7 +298,6 @@ class FancyPrinter(_Printer):
         self._prose = min(max(20, width - _MARGIN), _PROSE)
 
     def head(self) -> None:
-        """Title, summary, objectives."""
         for shown, above in self._head(f"{self._lesson.id} · "):
             self._print(shown, above=above)
 
@@ -573,19 +566,17 @@ def paginate(blocks: tuple[b.Block, ...]) -> tuple[tuple[b.Block, ...], ...]:
     """
     pages: list[tuple[b.Block, ...]] = []
     current: list[b.Block] = []
+    ended = False
     for block in blocks:
         begins = isinstance(block, b.Task) or (isinstance(block, b.Heading) and block.level == 2)
-        if (begins or (current and _ends_page(current[-1]))) and not all(map(is_unseen, current)):
+        if (begins or ended) and not all(map(is_unseen, current)):
             pages.append(tuple(current))
             current = []
         current.append(block)
+        answers = isinstance(block, b.Callout) and block.kind == "answer"
+        ended = answers or isinstance(block, b.Prediction | b.Task)
     if pages and all(map(is_unseen, current)):
         pages[-1] += tuple(current)
     elif current:
         pages.append(tuple(current))
     return tuple(pages)
-
-
-def _ends_page(block: b.Block) -> bool:
-    answers = isinstance(block, b.Callout) and block.kind == "answer"
-    return answers or isinstance(block, b.Prediction | b.Task)

@@ -1,7 +1,5 @@
 """``course sandbox``: scenes to play with, to run without a view, to film, to replay and to export."""
 
-from __future__ import annotations
-
 import difflib
 import math
 import shlex
@@ -40,7 +38,6 @@ class _Scenes(TyperGroup):
     """`course sandbox SCENE` plays it: no command is named like a scene."""
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        """The command, and what is left of the line."""
         name = args[0]
         if self.get_command(ctx, name) is None and (name.isdecimal() or name in known_scenes()):
             args = ["play", *args]
@@ -158,7 +155,7 @@ def replay(file: Annotated[Path, argument("FILE", "A recording.")]) -> int:
         for name, (then, here) in difference.versions.items()
     )
     code = 0 if difference.same else 1
-    console.emit(
+    return console.answer(
         filled(
             SandboxReplay,
             difference,
@@ -169,7 +166,6 @@ def replay(file: Annotated[Path, argument("FILE", "A recording.")]) -> int:
             versions=versions,
         )
     )
-    return code
 
 
 @app.command(epilog="Example: course sandbox export unequal-masses --format mjcf -o world.xml")
@@ -207,8 +203,9 @@ def export(
         folder = shlex.quote(str(target.parent))
         console.note(f"Run it: GZ_SIM_SYSTEM_PLUGIN_PATH={folder} gz sim {shlex.quote(str(target))}")
     text = "" if written else data.decode()
-    console.emit(SandboxExport(scene=chosen.scene.id, format=format_, file=written, beside=beside, text=text))
-    return 0
+    return console.answer(
+        SandboxExport(scene=chosen.scene.id, format=format_, file=written, beside=beside, text=text)
+    )
 
 
 def _list(console: Console, name: str | None) -> None:

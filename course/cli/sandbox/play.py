@@ -1,7 +1,5 @@
 """``course sandbox play``: open a scene in a view, or run it without one and report the events."""
 
-from __future__ import annotations
-
 import contextlib
 import importlib
 import math
@@ -409,7 +407,7 @@ def _run_unseen(
         _keep(chosen, done.comparison)
     scene = chosen.scene
     settings = {"step": scene.step, "iterations": float(scene.iterations), "seed": float(scene.seed)}
-    console.emit(
+    return console.answer(
         filled(
             Sandbox,
             done,
@@ -424,7 +422,6 @@ def _run_unseen(
             files=files,
         )
     )
-    return 0
 
 
 def _taker(

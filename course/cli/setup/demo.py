@@ -109,11 +109,10 @@ def demo() -> int:
     change = _change(mistaken, fixed.source.decode())
     _show_fixed(console, example, before, after, change)
     _say_next(console)
-    course = catalog.ref
-    console.emit(
+    return console.answer(
         Demo(
-            before=reply_to(course, before.verdict),
-            after=reply_to(course, after.verdict),
+            before=reply_to(catalog.ref, before.verdict),
+            after=reply_to(catalog.ref, after.verdict),
             change=change,
             steps=STEPS,
             step_size=STEP,
@@ -121,7 +120,6 @@ def demo() -> int:
             energy_after=after.energy,
         )
     )
-    return 0
 
 
 def _checked(console: Console, session: GradingSession, source: str) -> Attempt:

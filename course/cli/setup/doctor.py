@@ -122,7 +122,7 @@ def doctor(
         console.line(f"{fix.problem} Install it with: {fix.command}")
     console.line(("Everything the course needs is here." if complete else "Something is missing.", "bold"))
     code = 0 if complete else MissingCapabilityError.exit_code
-    console.emit(
+    return console.answer(
         Doctor(
             exit_code=code,
             course=catalog.ref,
@@ -140,7 +140,6 @@ def doctor(
             unserved=unserved,
         )
     )
-    return code
 
 
 def _fact(label: str, words: str) -> None:
@@ -274,8 +273,7 @@ def bug(
         "It contains a traceback." if crash else "No crash of the course was found: it has no traceback."
     )
     console.note("Read it before you pass it on: error messages can quote your own files.")
-    console.emit(Bug(file=written, traceback=crash is not None))
-    return 0
+    return console.answer(Bug(file=written, traceback=crash is not None))
 
 
 def redacted(text: str) -> str:

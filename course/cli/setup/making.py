@@ -222,7 +222,7 @@ def init(
     if root != here:
         console.note(f"Go there: cd {_quoted(root, here)}")
     console.note(f"Then: {step}" if root != here else f"Next: {step}")
-    console.emit(
+    return console.answer(
         Init(
             workspace=str(workspace.root),
             created=created,
@@ -231,7 +231,6 @@ def init(
             files=tuple(written),
         )
     )
-    return 0
 
 
 def _refuse_odd_places(root: Path, catalog: Catalog) -> None:

@@ -44,7 +44,9 @@ def diff(exercise: ExerciseName = None) -> int:
     added = sum(row.startswith("+") for row in rows[2:])
     removed = sum(row.startswith("-") for row in rows[2:])
     if rows:
-        _show_diff(console, rows)
+        styles = {"+": "green", "-": "red", "@": "cyan"}
+        for row in rows:
+            console.line((row, styles.get(row[:1], "")))
         console.note(f"{counted(added, 'line')} added, {removed} removed.")
     else:
         console.line(f"{name} is as it was handed out.")
@@ -85,8 +87,7 @@ def reset(exercise: OneExercise, yes: Annotated[bool, option("--yes -y", "Do not
         why_not = "Nothing was changed."
     if why_not:
         console.line(why_not)
-        console.emit(Reset(exercise=chosen.id, changed=False, backups=(), next=NextStep(step)))
-        return 0
+        return console.answer(Reset(exercise=chosen.id, changed=False, backups=(), next=NextStep(step)))
     backups = []
     if there:
         copy = here.workspace.backup(path, "reset")
@@ -134,7 +135,7 @@ def _agreed(console: Console, shown: str) -> bool:
 
 
 def _updates(here: Here, *, dry_run: bool) -> Iterator[Change]:
-    for exercise in (*here.started(), *here.warm_ups_started()):
+    for exercise in here.started():
         for source in exercise.given:
             yield _update_file(here, exercise, source.name, source.read_bytes(), dry_run=dry_run)
     from course.notebooks.build import WORKSPACE, generate  # a lesson opens without it
@@ -203,12 +204,6 @@ def _sentence(here: Here, change: Change, *, dry_run: bool) -> str:
 
 def _lines(data: bytes) -> list[str]:
     return data.decode("utf-8-sig", "replace").splitlines()
-
-
-def _show_diff(console: Console, rows: list[str]) -> None:
-    styles = {"+": "green", "-": "red", "@": "cyan"}
-    for row in rows:
-        console.line((row, styles.get(row[:1], "")))
 
 
 # ---

@@ -213,15 +213,14 @@ def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int
             console.error(error.message, error.help)
             body = ErrorBody(code=error.code, message=error.message, help=error.help)
             results.append(ErrorReply(schema="course.check/1", exit_code=error.exit_code, error=body))
-    worst = max(result.exit_code for result in results)
     complete = sum(result.ok for result in results)
     pass_ = "passes" if complete == 1 else "pass"
     said = f"{complete} of {counted(len(results), 'exercise')} {pass_} every public check."
     console.line((said, "bold"))
     for warning in dict.fromkeys(here.warnings):
         console.warn(warning)
-    console.emit(CheckAll(exit_code=worst, results=tuple(results)))
-    return worst
+    worst = max(result.exit_code for result in results)
+    return console.answer(CheckAll(exit_code=worst, results=tuple(results)))
 
 
 def _estimate(here: Here, exercise: Exercise) -> str:

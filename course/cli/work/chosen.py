@@ -115,7 +115,7 @@ def chosen_work(here: Here, exercise: Exercise, named: str | None = None) -> Stu
 
 def worked_on(here: Here) -> tuple[Exercise, ...]:
     """The exercises that were started, or whose notebook was edited."""
-    started = {exercise.id for exercise in here.started()}
+    started = here.workspace.started()
     return tuple(
         exercise
         for exercise in here.catalog.exercises()
@@ -133,7 +133,7 @@ def work_of(
     """
     chosen: list[StudentWork] = []
     left_out: list[FileReply] = []
-    started = here.warm_ups_started() if warm_ups else ()
+    started = [one for one in here.started() if one.is_warm_up] if warm_ups else ()
     for exercise in only or (*here.catalog.exercises(), *started):
         there = here.workspace.path(exercise.place, exercise.module).exists()
         module = _module(here, exercise) if there else None

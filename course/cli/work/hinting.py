@@ -5,8 +5,6 @@ next hint fits that check's diagnosis, or else is the mildest one left. The numb
 because students who see a countdown click through it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated

@@ -1,7 +1,5 @@
 """The replies of the commands about an exercise."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any
 
 import msgspec

@@ -1,7 +1,5 @@
 """``course report``: the student's own code on public data, in words, tables and figures."""
 
-from __future__ import annotations
-
 import re
 import shlex
 from pathlib import Path

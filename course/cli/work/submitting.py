@@ -4,8 +4,6 @@ What goes in is checked before it is written, from the very bytes that go in: wh
 what the public checks of a grading run find in it.
 """
 
-from __future__ import annotations
-
 import hashlib
 import io
 import json
@@ -69,7 +67,8 @@ def submit(
         )
     notes = [note for one in goes_in for note in (*one.work.notes, *one.notes)]
     data = _packed(here, works, quiz)
-    backup = _keep_old(here, target, data)
+    replaces = target.exists() and target.read_bytes() != data
+    backup = str(here.workspace.backup(target, "submit")) if replaces else None
     write_atomically(target, data)
     here.record("submit", "", {"output": str(target), "sha256": hashlib.sha256(data).hexdigest()})
     if backup:
@@ -256,10 +255,3 @@ def _score(one: _GoesIn) -> str:
     points = f"{format_points(verdict.score)}/{format_points(verdict.max_score)}"
     mark = f"a pass is {exercise.pass_mark:.0%} of all points, hidden checks included"
     return f"{points} points from the public checks ({mark})"
-
-
-def _keep_old(here: Here, target: Path, data: bytes) -> str | None:
-    """Copy the file that will be replaced, unless the new one is equal."""
-    if not target.exists() or target.read_bytes() == data:
-        return None
-    return str(here.workspace.backup(target, "submit"))

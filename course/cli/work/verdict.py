@@ -4,8 +4,6 @@ What a student can act on comes before the numbers behind it. Failed checks come
 ones, and the summary is last, where the eye is when a terminal has finished scrolling.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterator, Sequence

@@ -42,6 +42,21 @@ class Ran:
         """The one object on standard output; fails if there is anything else."""
         return json.loads(self.out)
 
+    @property
+    def error(self):
+        """Exit code and the error's own code, of a line with ``--json``."""
+        return self.code, self.json["error"]["code"]
+
+    def ends(self, code, *said):
+        """It ended with this exit code and said each of these, on standard output."""
+        assert (self.code, [words for words in said if words not in self.out]) == (code, []), self
+        return self
+
+    def refuses(self, code, *said):
+        """It ended with this exit code and said each of these, on standard error."""
+        assert (self.code, [words for words in said if words not in self.err]) == (code, []), self
+        return self
+
 
 class FakeSession:
     """Grades by reading: a function passes if its body says RIGHT; UNREADABLE makes a file ungradable.

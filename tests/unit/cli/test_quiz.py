@@ -1,7 +1,5 @@
 """The quiz on the command line: asked, resumed, answered from a file, reviewed, handed in."""
 
-from __future__ import annotations
-
 import io
 import json
 import re
@@ -152,10 +150,7 @@ def test_an_attempt_that_was_stopped_goes_on_where_it_was(quiz, bank, types, sto
     assert stopped.code == 130
     assert stopped.err.strip().endswith("Interrupted.")
     types(*letters[2:])
-    ran = quiz("take")
-    assert ran.code == 0
-    assert "2 of 5 answered" in ran.out
-    assert "Question 3 of 5" in ran.out
+    ran = quiz("take").ends(0, "2 of 5 answered", "Question 3 of 5")
     assert "Question 2 of 5" not in ran.out
     assert "5 of 5 right" in ran.out
 
@@ -196,8 +191,7 @@ def test_an_attempt_that_waits_is_not_given_up_without_a_word(quiz, bank, types)
     assert quiz("take", "--questions", "--seed", "11", "--json").json["seed"] == 11
     assert quiz("take", "--questions", "--json").json["seed"] == SEED, "printing changed nothing"
     types("q")
-    ran = quiz("take", "--seed", "12")
-    assert f"the one you left (seed {SEED}, 2 of 5 answered) ends here" in ran.out
+    assert f"the one you left (seed {SEED}, 2 of 5 answered) ends here" in quiz("take", "--seed", "12").out
     assert quiz("take", "--questions", "--json").json["seed"] == 12
     types(*key(bank, seed=12).values())
     assert quiz("take").code == 0
@@ -224,9 +218,7 @@ def test_a_crash_between_the_last_answer_and_the_score_loses_nothing(quiz, bank,
 
 def test_without_a_terminal_nothing_is_asked(quiz):
     for words in (("take",), ("take", "--json"), ("take", "--seed", "3")):
-        ran = quiz(*words)
-        assert ran.code == 2
-        assert "use --answers FILE" in ran.err
+        ran = quiz(*words).refuses(2, "use --answers FILE")
         assert "Question 1" not in ran.out
     assert ran.out == ""
     error = quiz("take", "--json").json
@@ -242,9 +234,7 @@ def test_questions_can_be_printed_and_answered_from_a_file(quiz, bank, tmp_path)
     assert quiz("take", "--questions", "--json").json["seed"] == asked["seed"]
     text, path = asked["template"], tmp_path / "answers.toml"
     path.write_text(text, encoding="utf-8")
-    ran = quiz("take", "--answers", str(path))
-    assert ran.code == 2
-    assert f"{path}:4: 5 answers are missing: why-simulate" in ran.err
+    quiz("take", "--answers", str(path)).refuses(2, f"{path}:4: 5 answers are missing: why-simulate")
     for name, letter in key(bank, seed=asked["seed"]).items():
         text = text.replace(f'{name} = ""', f'{name} = "{letter}"')
     path.write_text(text, encoding="utf-8")
@@ -273,9 +263,7 @@ def test_the_answer_of_a_script_has_everything(quiz, bank, tmp_path):
 
 def test_the_seed_may_be_given_beside_the_file_but_no_other_than_the_files_own(quiz, bank, tmp_path):
     path = save(tmp_path / "a.toml", key(bank))
-    ran = quiz("take", "--answers", path, "--seed", "8")
-    assert ran.code == 2
-    assert f"{path}:1: these answers are for seed 7" in ran.err
+    quiz("take", "--answers", path, "--seed", "8").refuses(2, f"{path}:1: these answers are for seed 7")
     path = tmp_path / "a.json"
     path.write_text(json.dumps({"answers": key(bank)}), encoding="utf-8")
     lost = quiz("take", "--answers", str(path))
@@ -303,8 +291,7 @@ def test_what_cannot_be_used_is_a_sentence(quiz, words):
 
 
 def test_outside_of_a_workspace_or_without_a_quiz_that_is_said(course, workspace, monkeypatch):
-    ran = course("quiz", "history", "--json")
-    assert (ran.code, ran.json["error"]["code"]) == (5, "quiz_not_found")
+    assert course("quiz", "history", "--json").error == (5, "quiz_not_found")
     monkeypatch.delenv("COURSE_CONTENT")
     monkeypatch.chdir(workspace.parent)
     assert course("quiz", "take", "--json").code in {2, 5}
@@ -331,10 +318,7 @@ def test_a_file_may_finish_an_attempt_that_was_begun_and_the_same_seed_counts_on
 
 
 def test_nothing_is_there_before_an_attempt_nor_reviewed_before_something_was_missed(quiz, bank, tmp_path):
-    ran = quiz("history")
-    assert ran.code == 0
-    assert "No attempt yet." in ran.out
-    assert "Next: course quiz take" in ran.out
+    quiz("history").ends(0, "No attempt yet.", "Next: course quiz take")
     assert "take the quiz first" in quiz("review").out
     quiz("take", "--answers", save(tmp_path / "a.toml", key(bank)))
     ran = quiz("review", "--json")
@@ -353,9 +337,7 @@ def test_what_was_missed_comes_back_every_two_days_until_it_is_known(quiz, bank,
         assert asked["mark"] == ""
         letters = key(bank, seed=asked["seed"], only=["digital-twin"])
         types(*letters.values())
-        ran = quiz("review", "--seed", str(asked["seed"]))
-        assert ran.code == 0
-        assert "1 of 1 right." in ran.out
+        quiz("review", "--seed", str(asked["seed"])).ends(0, "1 of 1 right.")
         due = quiz("review", "--json").json["review"]
         assert [entry["rounds"] for entry in due] == ([] if rounds is None else [rounds])
     assert "Nothing is under review" in quiz("review").out
@@ -369,9 +351,7 @@ def test_a_review_explains_at_once_and_asks_another_variant(quiz, bank, tmp_path
     assert all(bank.variant(q["id"], seed) != bank.variant(q["id"], SEED) for q in asked["questions"])
     letters = key(bank, ("which-engine",), seed=seed, only=["digital-twin", "which-engine"])
     types(*letters.values())
-    ran = quiz("review", "--seed", str(seed))
-    assert ran.code == 1
-    assert "1 of 2 right." in ran.out
+    ran = quiz("review", "--seed", str(seed)).ends(1, "1 of 2 right.")
     first, second = bank.pose(seed, only=["digital-twin", "which-engine"])
     assert ran.out.index(first.choices[0].explanation) < ran.out.index(second.prompt)
     assert "due" in ran.out
@@ -407,9 +387,7 @@ def test_attempts_travel_in_a_submission_and_are_scored_again(quiz, bank, course
 
     quiz("take", "--answers", save(tmp_path / "a.toml", key(bank, ("which-engine",))))
     quiz("take", "--questions")
-    ran = course("submit", "-o", str(tmp_path / "mine.zip"))
-    assert ran.code == 0
-    assert "The quiz: 1 attempt, best 4 of 5" in ran.out
+    course("submit", "-o", str(tmp_path / "mine.zip")).ends(0, "The quiz: 1 attempt, best 4 of 5")
     with zipfile.ZipFile(tmp_path / "mine.zip") as archive:
         record = json.loads(archive.read("submission.json"))["quiz"]
     verdict = grade_quiz(bank, record)

@@ -1,7 +1,5 @@
 """``course sandbox`` from the outside: piped, without a terminal, without extras."""
 
-from __future__ import annotations
-
 import csv
 import json
 import os

@@ -129,8 +129,7 @@ def test_a_file_that_is_replaced_is_kept_beside_it_and_said(course, tmp_path):
 
 def test_inside_a_workspace_the_copy_goes_where_all_backups_are(course, workspace):
     (workspace / "fall.csv").write_text("mine\n", encoding="utf-8")
-    ran = course("sim", "run", "free-fall", "--csv", "fall.csv")
-    assert "it is kept at" in ran.out
+    assert "it is kept at" in course("sim", "run", "free-fall", "--csv", "fall.csv").out
     (copy,) = (workspace / ".course" / "backups").rglob("fall.csv")
     assert copy.read_text(encoding="utf-8") == "mine\n"
 
@@ -144,8 +143,7 @@ def test_inside_a_workspace_the_copy_goes_where_all_backups_are(course, workspac
     ],
 )
 def test_a_file_that_cannot_be_written_is_refused_before_anything_runs(course, tmp_path, option, name, words):
-    ran = course("sim", "run", "free-fall", option, str(tmp_path / name))
-    assert ran.code == 2
-    assert f"{option} {tmp_path / name}: " in ran.err
-    assert words in ran.err
+    ran = course("sim", "run", "free-fall", option, str(tmp_path / name)).refuses(
+        2, f"{option} {tmp_path / name}: ", words
+    )
     assert not ran.out

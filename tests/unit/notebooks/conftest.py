@@ -1,7 +1,5 @@
 """The course's own content, and notebooks made of it."""
 
-from __future__ import annotations
-
 import pytest
 
 from course.catalog.load import Catalog

@@ -1,7 +1,5 @@
 """Generated notebooks: valid, without outputs, the same bytes every time, and nothing Jupyter cannot show."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

@@ -1,7 +1,5 @@
 """``%course_check``: what was run in a kernel is checked as a file would be, and recorded as its attempt."""
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Callable

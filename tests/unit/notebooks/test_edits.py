@@ -1,7 +1,5 @@
 """Whatever students and Jupyter do to the cells of a notebook: the same code gets the same score."""
 
-from __future__ import annotations
-
 import ast
 import copy
 import itertools

@@ -1,7 +1,5 @@
 """A newer notebook never costs anybody their work."""
 
-from __future__ import annotations
-
 import copy
 import json
 from collections.abc import Callable

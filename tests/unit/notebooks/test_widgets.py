@@ -1,7 +1,5 @@
 """What lives in a cell, without a page: messages come from another thread, as ipykernel 7 hands them on."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 from pathlib import Path

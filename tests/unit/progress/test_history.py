@@ -1,7 +1,5 @@
 """What the events add up to: when a hint is due, its numbers, the mistakes made, and where a student is."""
 
-from __future__ import annotations
-
 from datetime import UTC, datetime, timedelta
 
 import pytest

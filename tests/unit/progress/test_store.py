@@ -1,7 +1,5 @@
 """The record of progress: only added to, safe with several writers, and honest about damage."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import os

@@ -1,7 +1,5 @@
 """The workspace: found from anywhere inside it, and nothing in it is ever lost."""
 
-from __future__ import annotations
-
 import os
 
 import pytest

@@ -1,7 +1,5 @@
 """A tiny quiz to break: two questions of two variants, one of them with numbers."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Answers from a file: what is accepted, and what is said about what is not."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

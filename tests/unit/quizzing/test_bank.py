@@ -1,7 +1,5 @@
 """What a seed makes of the questions: the mark, the next seed, and when a missed question comes back."""
 
-from __future__ import annotations
-
 import random
 from collections import Counter
 from datetime import datetime, timedelta

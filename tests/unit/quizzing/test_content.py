@@ -1,7 +1,5 @@
 """The course's own questions, and their numbers against the physics."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from functools import cache

@@ -1,7 +1,5 @@
 """Reading question files and the arithmetic in them: every mistake is a sentence with file, line and fix."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

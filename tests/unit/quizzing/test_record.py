@@ -1,7 +1,5 @@
 """Attempts on their way: from the record of progress into a submission, and scored again there."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

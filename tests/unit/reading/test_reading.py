@@ -129,7 +129,6 @@ def test_what_was_done_is_there_when_the_lesson_is_opened_again(lesson, tmp_path
     assert [event.kind for event in events].count("lesson") == 1
     again = InProgress(script, events)
     assert (again.prediction(first).text, again.prediction(first).judged) == ("five", "wrong")
-    assert again.prediction(first).at is not None
     assert again.prediction(second).skipped
     state = again.cell(cell)
     assert (state.source, state.ran, state.printed, state.seconds) == ("print(5)", "print(5)", "5", 0.25)

@@ -1,7 +1,5 @@
 """The full-screen reader: what its keys and the mouse do, and what is found from any page."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar
 
 from textual.app import ComposeResult

@@ -1,7 +1,5 @@
 """Boxes over the page: a prediction, contents, search, code to edit, the keys."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 

@@ -3,8 +3,6 @@
 Each kind of item knows the keys that matter while it is at hand, and what they do.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import TypeVar
 
@@ -63,11 +61,9 @@ class QuestionItem(Item):
     at_once = True
 
     def is_offered(self, page: Page) -> bool:
-        """As long as it is open."""
         return page.progress.asked_by(self.block) is not None
 
     def keys(self, page: Page) -> str:
-        """Those to answer it."""
         return "Enter predict   s skip   ? keys" if self.is_offered(page) else KEYS
 
     def act(self, page: Page) -> None:
@@ -101,7 +97,6 @@ class AnswerItem(Item):
     hint = "were you 1 right, 2 nearly, 3 wrong   Space on"
 
     def is_offered(self, page: Page) -> bool:
-        """As long as the prediction is not judged."""
         question = page.progress.script.answered_at(self.block)
         said = page.progress.prediction(question) if question else None
         return said is not None and said.judged is None
@@ -115,8 +110,6 @@ class AnswerItem(Item):
 
 
 class CellItem(Item):
-    """A cell of code."""
-
     offered = True
     hint = "r run   e change   u undo   c copy   w write   Space on   ? keys"
 
@@ -205,11 +198,9 @@ class TaskItem(Item):
     """A warm-up or an exercise: started, changed and checked in its place. Each save is checked."""
 
     def is_offered(self, page: Page) -> bool:
-        """Until it is done."""
         return not page.practice.of(self.target).done
 
     def keys(self, page: Page) -> str:
-        """Those for how far the student is."""
         now = page.practice.of(self.target)
         if not page.practice.possible:
             return "done in a workspace   Space on   ? keys"
@@ -244,7 +235,6 @@ class TaskItem(Item):
     act = run
 
     def ask_hint(self, page: Page) -> None:
-        """The hint that is due."""
         if not page.practice.of(self.target).file:
             self.run(page)
         elif page.practice.ask(self.target, "hint"):
@@ -274,8 +264,6 @@ class TaskItem(Item):
 
 
 class FigureItem(Item):
-    """A figure."""
-
     hint = "Enter or o: open the figure   Space on   ? keys"
 
     def act(self, page: Page) -> None:

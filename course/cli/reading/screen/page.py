@@ -384,7 +384,6 @@ class Page(Widget):
             item.seen(self)
 
     def keep_place(self) -> None:
-        """Write down where the reader is."""
         place = self.place()
         if place is None:
             return
@@ -406,7 +405,6 @@ class Page(Widget):
 
     @property
     def running(self) -> Cell | None:
-        """The cell that runs."""
         return self.bench.cell if self.bench is not None else None
 
     def at_bench(self) -> Bench:
@@ -543,7 +541,6 @@ class Page(Widget):
                 item.tick(self)
 
     def render_line(self, y: int) -> Strip:
-        """One line of the screen."""
         width, height = self.size
         if y == height - 1:
             return _bar(self._keys, width)

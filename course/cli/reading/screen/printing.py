@@ -4,8 +4,6 @@ It looks like the printed lesson, except that predictions hide what follows them
 here, and links can be followed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any

@@ -73,7 +73,6 @@ class Bench:
             self._submit(self._warm)
 
     def interrupt(self) -> None:
-        """Stop the cell that runs."""
         self._stopped = True
         if self._runner is not None:
             self._runner.interrupt()
@@ -215,7 +214,6 @@ class Practice:
 
     @property
     def busy(self) -> bool:
-        """Whether something is being checked, or asked."""
         return any(one.busy for one in self._standings.values())
 
     def of(self, name: str) -> Standing:
@@ -240,7 +238,6 @@ class Practice:
         self._standings[name] = replace(self.of(name), file=f"{exercise.place}/{exercise.module}")
 
     def source(self, name: str) -> str:
-        """Its file as it is now."""
         return self._path(self._catalog.exercise(name)).read_text(encoding="utf-8", errors="replace")
 
     def write(self, name: str, source: str) -> None:
@@ -273,7 +270,6 @@ class Practice:
         return True
 
     def close(self) -> None:
-        """End what runs."""
         self._closed = True
         if self._process is not None:
             self._process.kill()
@@ -419,7 +415,6 @@ class Drawer:
         self._ask({"figure": figure, "png": True}, take)
 
     def close(self) -> None:
-        """End the drawing process."""
         if self._process is not None:
             with (
                 contextlib.suppress(OSError),

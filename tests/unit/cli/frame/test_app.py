@@ -38,10 +38,7 @@ WHOLE = [name for name, one in registry.COMMANDS.items() if not one.is_group]
 def test_every_command_has_its_own_summary_and_help_with_an_example(course, name):
     entry = registry.COMMANDS[name]
     assert registry.find(entry.module, entry.name).__doc__.splitlines()[0] == entry.summary
-    ran = course(name, "--help")
-    assert ran.code == 0
-    assert entry.summary in ran.out
-    assert f"Example: course {name} {entry.given}".rstrip() in ran.out
+    course(name, "--help").ends(0, entry.summary, f"Example: course {name} {entry.given}".rstrip())
 
 
 def test_the_list_of_commands_names_them_all(course):
@@ -274,9 +271,7 @@ _NAMES = {
 def test_a_name_that_no_file_can_have_is_named(course, workspace, write, line, name):
     (workspace / "loop").symlink_to("loop")
     write("RIGHT", "RIGHT")
-    ran = course(*line.format(name).split())
-    assert ran.code == 2, ran.err
-    assert _NAMES[name] in ran.err
+    course(*line.format(name).split()).refuses(2, _NAMES[name])
 
 
 @needs_setpriv

@@ -51,17 +51,13 @@ def test_help_before_a_command_is_its_help(course):
 
 @pytest.mark.parametrize("word", ["quit", "exit"])
 def test_who_wants_to_leave_is_told_that_nothing_runs(course, word):
-    ran = course(word)
-    assert ran.code == 2
-    assert "every command ends by itself" in ran.err
+    course(word).refuses(2, "every command ends by itself")
     assert json.loads(course(word, "--json").out)["error"]["code"] == "usage"
 
 
 def test_a_choice_that_is_missing_is_shown(course, workspace):
     assert "There are mjcf, sdf." in course("sandbox", "export", "head-on").err
-    ran = course("start")
-    assert ran.code == 2
-    assert "There are doubling" in ran.err
+    course("start").refuses(2, "There are doubling")
 
 
 def test_help_is_grouped_by_use_and_offers_what_works_here(course, students_content, monkeypatch):

@@ -152,8 +152,7 @@ def test_a_late_policy_is_put_in_force_shown_and_taken_out(course, out: Path) ->
     told = course("grade", "late", "out", "--roster", "all.csv", "--times", "eve.csv", "--dry-run").out
     assert "2 have no trusted submission time" in told, "eve handed in nothing"
     assert "1 is late." in told, "so neither is she late, as on the page"
-    ran = course("grade", "late", "out", "--roster", "roster.csv", "--dry-run")
-    assert "1 is late." in ran.out
+    assert "1 is late." in course("grade", "late", "out", "--roster", "roster.csv", "--dry-run").out
     ran = course("grade", "late", "out", "--roster", "roster.csv", "--json")
     assert [(one["student"], one["late"]) for one in ran.json["late"]] == [("ada", 2 * DAY)]
     times = out.parent / "times.csv"
@@ -171,10 +170,9 @@ def test_a_late_policy_is_put_in_force_shown_and_taken_out(course, out: Path) ->
 
 def test_an_export_says_what_it_wrote_and_who_was_left_out(course, out: Path) -> None:
     words = "grade export out --format canvas --roster roster.csv --exercise doubling"
-    ran = course(*words.split(), "--assignment", "doubling=77", "--partial", "-o", "c.csv")
-    assert ran.code == 0, ran.err
-    assert "Wrote c.csv." in ran.out
-    assert "Left out, not in the roster: 2\n  cy\n  dan\n" in ran.out
+    course(*words.split(), "--assignment", "doubling=77", "--partial", "-o", "c.csv").ends(
+        0, "Wrote c.csv.", "Left out, not in the roster: 2\n  cy\n  dan\n"
+    )
     assert (out.parent / "c.csv").read_text("utf-8-sig").splitlines()[2] == '"Ada L","11","","","","10"'
     # The roster is remembered: the next export needs no other.
     ran = course("grade", "export", "out", "--format", "moodle", "--partial", "--json")
@@ -258,9 +256,7 @@ def test_a_regrading_is_told_change_by_change(course, out: Path, monkeypatch: py
 
 
 def test_likeness_is_shown_and_written_as_a_page(course, out: Path) -> None:
-    ran = course("grade", "similar", "out")
-    assert ran.code == 0, ran.err
-    assert "pairs among 4 submissions" in ran.out
+    course("grade", "similar", "out").ends(0, "pairs among 4 submissions")
     assert (out / "similar.html").read_text().startswith("<!DOCTYPE html>")
     assert course("grade", "similar", "out", "--json").json["schema"] == "course.grade-similar/1"
 
@@ -286,8 +282,7 @@ def test_a_share_is_a_part_of_one_or_a_percentage_and_else_refused_with_both_for
 
 def test_a_students_installation_is_told_so(course, students_content, tmp_path: Path) -> None:
     (tmp_path / "class").mkdir()
-    ran = course("grade", "run", "class", "--out", "out", "--json")
-    assert (ran.code, ran.json["error"]["code"]) == (4, "needs_checkout")
+    assert course("grade", "run", "class", "--out", "out", "--json").error == (4, "needs_checkout")
 
 
 @needs_setpriv

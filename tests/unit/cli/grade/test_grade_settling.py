@@ -45,8 +45,7 @@ def here(course, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for student, name in (("ada", "doubling.py"), ("bob", "hw.py"), ("cy", ".notes")):
         (tmp_path / "class" / student).mkdir(parents=True)
         (tmp_path / "class" / student / name).write_text(SOURCE)
-    ran = course("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--json")
-    assert ran.code == 6, ran.err
+    assert course("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--json").code == 6
     return tmp_path
 
 

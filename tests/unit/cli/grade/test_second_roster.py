@@ -206,9 +206,7 @@ def test_scores_are_on_the_scale_of_the_gradebook_that_canvas_gave(course, out: 
     """Canvas would rescale what it gets: its own file says how many points an assignment has there."""
     text = CANVAS.replace("Doubling (4711)", '"Doubling, first try (4711)"').replace(",,10\n", ",,5\n")
     write(out.parent, "canvas.csv", text)
-    ran = course(*TO_CANVAS, "canvas.csv")
-    assert ran.code == 0, ran.err
-    assert "doubling has 10 points here and 5 in Canvas" in ran.out
+    course(*TO_CANVAS, "canvas.csv").ends(0, "doubling has 10 points here and 5 in Canvas")
     head, possible, *rows = (out / "canvas.csv").read_text().splitlines()
     assert head.endswith('"Section","Doubling, first try (4711)"')
     assert possible.endswith('"5"')
@@ -291,8 +289,7 @@ def test_a_roster_in_a_western_code_page_and_a_german_worksheet_are_read(course,
     )
     write(out.parent, "german.csv", sheet)
     words = "grade export out --format moodle-worksheet --exercise doubling --roster german.csv"
-    ran = course(*words.split())
-    assert ran.code == 0, ran.err
+    assert course(*words.split()).code == 0
     head, ada, bob = (out / "moodle-worksheet.csv").read_text("utf-8").splitlines()
     assert head.startswith("ID,Vollständiger Name")
     assert ',"20","20,00",' in ada or ',20,"20,00",' in ada

@@ -1,7 +1,5 @@
 """Numbers instead of ids, the list of exercises, objectives with their evidence, and the one loop."""
 
-from __future__ import annotations
-
 import itertools
 import re
 import shutil

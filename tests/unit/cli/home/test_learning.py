@@ -1,7 +1,5 @@
 """What was done and learned, what there is to read, and what this machine can do."""
 
-from __future__ import annotations
-
 import shutil
 from types import SimpleNamespace
 
@@ -101,10 +99,7 @@ def test_who_did_nothing_yet_reads_nothing_about_it(course, workspace):
 
 
 def test_a_section_that_is_not_there_is_refused_with_those_that_are(course, workspace):
-    ran = course("lesson", "twice-as-much#twice")
-    assert ran.code == 5
-    assert "has no section 'twice'" in ran.err
-    assert "once" in ran.err
+    course("lesson", "twice-as-much#twice").refuses(5, "has no section 'twice'", "once")
 
 
 def test_lesson_without_an_id_goes_on_to_the_next_unread_one(course, workspace):
@@ -150,11 +145,8 @@ def unprobed(monkeypatch):
 def test_doctor_repairs_a_damaged_record_and_keeps_it(course, workspace):
     record = workspace / ".course" / "progress.sqlite"
     record.write_bytes(b"not a database, not at all, no" * 10)
-    damaged = course("doctor")
-    assert damaged.code == 4
-    assert "progress.sqlite" in damaged.out
-    ran = course("doctor", "--repair")
-    assert ran.code == 0
+    course("doctor").ends(4, "progress.sqlite")
+    assert course("doctor", "--repair").code == 0
     assert (workspace / ".course" / "progress.damaged.sqlite").read_bytes().startswith(b"not a database")
     assert Store(record).events() == ()
 

@@ -38,6 +38,13 @@ def write_into(path: Path, *texts: str) -> None:
     path.write_text(json.dumps(notebook), "utf-8")
 
 
+@pytest.fixture
+def notebook(course, workspace) -> Path:
+    """The exercise's notebook beside its stub, as it is generated."""
+    assert course("notebook", "build", "doubling").code == 0
+    return workspace / "doubling" / "doubling.ipynb"
+
+
 def test_build_outside_of_a_workspace_makes_folders(course, tmp_path):
     ran = course("notebook", "build", "--json")
     assert ran.code == 0
@@ -52,29 +59,25 @@ def test_build_outside_of_a_workspace_makes_folders(course, tmp_path):
     }
 
 
-def test_build_and_update_keep_somebodys_work(course, workspace):
-    path = workspace / "doubling" / "doubling.ipynb"
-    course("notebook", "build", "doubling")
-    write_into(path, GOOD)
-    mine = path.read_bytes()
+def test_build_and_update_keep_somebodys_work(course, notebook):
+    write_into(notebook, GOOD)
+    mine = notebook.read_bytes()
     for command in ("build", "update"):
         assert course("notebook", command, "doubling", "--json").json["files"][0]["action"] == "current"
-        assert path.read_bytes() == mine
+        assert notebook.read_bytes() == mine
     older = json.loads(mine)
     older["metadata"]["course"]["version"] = "0"
-    path.write_text(json.dumps(older))
+    notebook.write_text(json.dumps(older))
     (file,) = course("notebook", "update", "--json").json["files"]
     assert file["action"] == "merged"
     assert Path(file["backup"]["backup"]).read_text() == json.dumps(older)
-    assert GOOD in path.read_text("utf-8").encode().decode("unicode_escape")
+    assert GOOD in notebook.read_text("utf-8").encode().decode("unicode_escape")
 
 
 def test_where_merging_is_not_safe_the_newer_one_is_put_beside(course, workspace):
     path = workspace / "doubling" / "doubling.ipynb"
     path.write_text("{}")
-    ran = course("notebook", "build", "doubling")
-    assert "not changed, since" in ran.out
-    assert "doubling/doubling.new.ipynb" in ran.out
+    course("notebook", "build", "doubling").ends(0, "not changed, since", "doubling/doubling.new.ipynb")
     assert path.read_text() == "{}"
     assert json.loads((workspace / "doubling" / "doubling.new.ipynb").read_text())["nbformat"] == 4
 
@@ -91,8 +94,7 @@ def test_where_merging_is_not_safe_the_newer_one_is_put_beside(course, workspace
     ],
 )
 def test_what_cannot_be_used_is_refused(course, tmp_path, words, code, error):
-    ran = course("notebook", *words, "--json")
-    assert (ran.code, ran.json["error"]["code"]) == (code, error)
+    assert course("notebook", *words, "--json").error == (code, error)
 
 
 def test_a_number_is_not_taken_for_a_lesson_or_an_exercise(course):
@@ -100,15 +102,11 @@ def test_a_number_is_not_taken_for_a_lesson_or_an_exercise(course):
     assert said.startswith("A number may be a lesson's or an exercise's: write the name.")
 
 
-def test_check_says_what_is_wrong_and_passes_when_it_is_right(course, workspace):
-    path = workspace / "doubling" / "doubling.ipynb"
-    course("notebook", "build", "doubling")
-    write_into(path, GOOD)
-    ran = course("notebook", "check", str(path))
-    assert ran.code == 1
-    assert "Not written yet" in ran.out
-    write_into(path, GOOD, OTHER)
-    ran = course("notebook", "check", str(path), "--json")
+def test_check_says_what_is_wrong_and_passes_when_it_is_right(course, notebook):
+    write_into(notebook, GOOD)
+    course("notebook", "check", str(notebook)).ends(1, "Not written yet")
+    write_into(notebook, GOOD, OTHER)
+    ran = course("notebook", "check", str(notebook), "--json")
     assert ran.code == 0
     assert ran.json["schema"] == "course.notebook-check/1"
     assert ran.json["result"]["score"] == 4.0
@@ -137,12 +135,10 @@ def handed_in(workspace: Path) -> dict[str, bytes]:
         return {name: archive.read(name) for name in archive.namelist()}
 
 
-def test_submit_hands_in_the_notebook_where_the_module_is_still_the_stub_or_gone(course, workspace):
-    path = workspace / "doubling" / "doubling.ipynb"
-    course("notebook", "build", "doubling")
+def test_submit_hands_in_the_notebook_where_the_module_is_still_the_stub_or_gone(course, workspace, notebook):
     assert course("submit", "--json").json["error"]["code"] == "nothing_to_submit"
-    write_into(path, GOOD, OTHER)
-    course("notebook", "check", str(path))
+    write_into(notebook, GOOD, OTHER)
+    course("notebook", "check", str(notebook))
     for _ in range(2):
         body = course("submit", "--json").json
         assert [file["path"] for file in body["files"]] == ["doubling/doubling.ipynb"]
@@ -150,12 +146,11 @@ def test_submit_hands_in_the_notebook_where_the_module_is_still_the_stub_or_gone
         assert body["left_out"] == []
         sent = json.loads(handed_in(workspace)["doubling/doubling.ipynb"])
         assert all(cell.get("outputs") in (None, []) for cell in sent["cells"])
-        path.with_suffix(".py").unlink(missing_ok=True)
+        notebook.with_suffix(".py").unlink(missing_ok=True)
 
 
-def test_submit_hands_in_the_module_where_both_were_worked_in_and_says_so(course, workspace, write):
-    course("notebook", "build", "doubling")
-    write_into(workspace / "doubling" / "doubling.ipynb", GOOD)
+def test_submit_hands_in_the_module_where_both_were_worked_in_and_says_so(course, workspace, notebook, write):
+    write_into(notebook, GOOD)
     write("RIGHT")
     ran = course("submit")
     assert "Left out: doubling/doubling.ipynb (doubling.py was worked in too, and is handed in)." in ran.out
@@ -163,21 +158,20 @@ def test_submit_hands_in_the_module_where_both_were_worked_in_and_says_so(course
     assert "doubling/doubling.ipynb" not in handed_in(workspace)
 
 
-def test_submit_says_why_a_notebook_cannot_go_in(course, workspace, write, monkeypatch):
+def test_submit_says_why_a_notebook_cannot_go_in(course, notebook, write, monkeypatch):
     """Just below the depth at which the grading run's reader gives up, ours may have given up already."""
 
     def too_deep(_data):
         raise RecursionError
 
-    course("notebook", "build", "doubling")
-    write_into(workspace / "doubling" / "doubling.ipynb", GOOD)
+    write_into(notebook, GOOD)
     with monkeypatch.context() as deep:
         deep.setattr(handing_in, "_without_outputs", too_deep)
         ran = course("submit")
     assert ran.code == 3
     assert "doubling/doubling.ipynb (its outputs cannot be read" in ran.out
     write("RIGHT")
-    (workspace / "doubling" / "doubling.ipynb").write_text("not a notebook")
+    notebook.write_text("not a notebook")
     ran = course("submit", "--json")
     assert ran.code == 0
     assert [file["path"] for file in ran.json["left_out"]] == ["doubling/doubling.ipynb"]
@@ -185,8 +179,7 @@ def test_submit_says_why_a_notebook_cannot_go_in(course, workspace, write, monke
 
 
 def test_nbgrader_notebooks_carry_its_marks(course, tmp_path):
-    ran = course("notebook", "build", "doubling", "--format", "nbgrader", "--out", "site")
-    assert ran.code == 0
+    assert course("notebook", "build", "doubling", "--format", "nbgrader", "--out", "site").code == 0
     path = tmp_path / "site" / "source" / "doubling" / "doubling.ipynb"
     cells = json.loads(path.read_text("utf-8"))["cells"]
     marks = [cell["metadata"]["nbgrader"] for cell in cells if "nbgrader" in cell["metadata"]]
@@ -255,13 +248,11 @@ def test_open_shows_a_page_or_says_how_to_get_to_it(course, workspace, monkeypat
 @needs_jupyterlab
 @pytest.mark.parametrize("wanted", ["doubling", None])
 def test_open_prints_an_address_that_lets_one_in_and_leaves_what_is_there(
-    course, workspace, monkeypatch, wanted
+    course, workspace, notebook, monkeypatch, wanted
 ):
     """The server is asked while the command waits for it to end."""
-    path = workspace / "doubling" / "doubling.ipynb"
-    course("notebook", "build", "doubling")
-    write_into(path, GOOD)
-    mine = path.read_bytes()
+    write_into(notebook, GOOD)
+    mine = notebook.read_bytes()
     said = []
 
     def wait(lab: server.Lab) -> int:
@@ -287,7 +278,7 @@ def test_open_prints_an_address_that_lets_one_in_and_leaves_what_is_there(
     inside = [one["name"] for one in about["content"]] if about["type"] == "directory" else []
     assert names <= {about["name"], *inside}
     assert {file["id"]: file["action"] for file in ran.json["files"]}["doubling"] == "kept"
-    assert path.read_bytes() == mine
+    assert notebook.read_bytes() == mine
     with pytest.raises(urllib.error.URLError):  # it ends with the command
         urllib.request.urlopen(ran.json["address"])
 
@@ -298,21 +289,13 @@ def test_a_jupyterlab_that_does_not_start_is_quoted(course, workspace, monkeypat
     stand_in.write_text("#!/bin/sh\necho 'no room left \033[31m' >&2\nexit 3\n")
     stand_in.chmod(0o755)
     monkeypatch.setattr(server.sys, "executable", str(stand_in))
-    ran = course("open", "doubling")
-    assert ran.code == 70
-    assert "JupyterLab ended before it was ready (exit code 3)." in ran.err
-    assert "It said:\nno room left" in ran.err
+    ran = course("open", "doubling").refuses(
+        70, "JupyterLab ended before it was ready (exit code 3).", "It said:\nno room left"
+    )
     assert "\033[31m" not in ran.err
 
 
 WRONG = "def double(x):\n    'wrong'"
-
-
-@pytest.fixture
-def notebook(course, workspace) -> Path:
-    """The exercise's notebook beside its stub, as it is generated."""
-    assert course("notebook", "build", "doubling").code == 0
-    return workspace / "doubling" / "doubling.ipynb"
 
 
 def attempts(workspace: Path) -> list[dict]:
@@ -321,9 +304,7 @@ def attempts(workspace: Path) -> list[dict]:
 
 def test_check_reads_the_notebook_where_the_module_is_still_the_stub_and_says_so(course, notebook):
     write_into(notebook, GOOD, OTHER)
-    ran = course("check", "doubling")
-    assert ran.code == 0
-    assert "Reading doubling/doubling.ipynb." in ran.out
+    course("check", "doubling").ends(0, "Reading doubling/doubling.ipynb.")
     assert course("check", "--json").json["score"] == 4.0
 
 
@@ -336,9 +317,7 @@ def test_check_reads_the_module_where_nobody_worked_in_the_notebook_while_there_
     assert ran.code == 0
     assert "Reading" not in ran.out + ran.err
     notebook.with_suffix(".py").unlink()
-    ran = course("check", "doubling")
-    assert ran.code == 1
-    assert "Reading doubling/doubling.ipynb." in ran.out
+    course("check", "doubling").ends(1, "Reading doubling/doubling.ipynb.")
 
 
 def test_where_both_were_worked_in_the_module_counts_and_the_other_is_named(course, notebook, write):
@@ -349,9 +328,7 @@ def test_where_both_were_worked_in_the_module_counts_and_the_other_is_named(cour
     assert "Reading doubling/doubling.py." in ran.out
     assert "doubling/doubling.ipynb was worked in too and holds other code" in ran.err
     assert "course check doubling/doubling.ipynb" in ran.err
-    named = course("check", "doubling/doubling.ipynb")
-    assert named.code == 1
-    assert "Reading doubling/doubling.ipynb." in named.out
+    named = course("check", "doubling/doubling.ipynb").ends(1, "Reading doubling/doubling.ipynb.")
     assert "worked in too" not in named.err
     write_into(notebook, GOOD, OTHER)
     notebook.with_suffix(".py").write_text(f'"""Doubling."""\n\n{GOOD}\n\n\n{OTHER}\n')
@@ -370,8 +347,7 @@ def test_a_file_may_be_named_from_anywhere_but_not_one_that_is_no_exercises(cour
 
 def test_a_damaged_notebook_is_not_taken_for_an_untouched_one(course, notebook):
     notebook.write_text("not a notebook")
-    ran = course("check", "doubling", "--json")
-    assert (ran.code, ran.json["error"]["code"]) == (3, "not_a_notebook")
+    assert course("check", "doubling", "--json").error == (3, "not_a_notebook")
     assert course("check", "doubling/doubling.py").code == 1
 
 
@@ -439,18 +415,16 @@ def test_a_diff_of_a_notebook_is_of_its_code(course, notebook):
 
 def test_a_report_on_a_notebook_names_its_cells(course, notebook):
     write_into(notebook, "def double(x):\n    return x + x", "def doublings(x, n):\n    return x / 0")
-    ran = course("report", "doubling", "--plain")
-    assert ran.code == 0
-    assert "Reading doubling/doubling.ipynb." in ran.out
-    assert "number: 2.5; double: 5" in ran.out
+    ran = course("report", "doubling", "--plain").ends(
+        0, "Reading doubling/doubling.ipynb.", "number: 2.5; double: 5"
+    )
     cells = json.loads(notebook.read_text("utf-8"))["cells"]
     number = next(n for n, cell in enumerate(cells, 1) if "x / 0" in "".join(cell["source"]))
     assert f"in cell {number}, line 2 of your notebook" in ran.out
     write_into(notebook, "def double(x):\n    'RIGHT'\n    if x > 0\n        return x")
-    ran = course("report", "doubling", "--plain")
-    assert ran.code == 0
-    assert "Python cannot read `double` in cell " in ran.out
-    assert ", line 3 of your notebook: expected ':'" in ran.out
+    course("report", "doubling", "--plain").ends(
+        0, "Python cannot read `double` in cell ", ", line 3 of your notebook: expected ':'"
+    )
 
 
 def test_a_watch_of_a_notebook_grades_each_save(course, notebook):

@@ -1,7 +1,5 @@
 """The reader driven without a terminal: opened, read off its screen, and left."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import Awaitable, Callable
 from pathlib import Path

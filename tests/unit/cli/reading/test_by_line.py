@@ -1,7 +1,5 @@
 """A lesson by typed lines, and what else is met with ``--plain``: all of it, and each fact once."""
 
-from __future__ import annotations
-
 import io
 import re
 from collections import Counter

@@ -1,7 +1,5 @@
 """The reader on the whole screen, driven by keys as a student presses them."""
 
-from __future__ import annotations
-
 import re
 import signal
 import time

@@ -1,7 +1,5 @@
 """Warm-ups and exercises in the reader: in their place, started, checked, mended, done without leaving it."""
 
-from __future__ import annotations
-
 import signal
 from collections.abc import Awaitable, Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The reader in a real terminal: one lesson as a student reads it, and the line it comes back to."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import signal

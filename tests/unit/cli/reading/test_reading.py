@@ -1,7 +1,5 @@
 """A lesson on the screen and for a screen reader."""
 
-from __future__ import annotations
-
 import io
 import re
 from pathlib import Path

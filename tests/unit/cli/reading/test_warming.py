@@ -1,7 +1,5 @@
 """Warm-ups on the command line: listed by lesson, started, checked, counted; never among the exercises."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import zipfile
@@ -67,15 +65,12 @@ def test_all_are_listed_by_lesson_with_what_is_done(warm, workspace):
     warm("warmup", "adding")
     write(workspace, "adding", "RIGHT", "RIGHT")
     warm("check", "adding")
-    said = warm("warmup")
-    assert "1 of 2 done" in said.out
-    assert "done: 1. One thing adding (adding), 5 min" in said.out
+    warm("warmup").ends(0, "1 of 2 done", "done: 1. One thing adding (adding), 5 min")
     assert warm("warmup", "--json").json["next"]["command"] == "course warmup taking"
 
 
 def test_one_is_started_with_its_text_and_lies_with_the_others(warm, workspace):
-    said = warm("warmup", "adding")
-    assert "first(x) gives one thing" in said.out
+    assert "first(x) gives one thing" in warm("warmup", "adding").out
     assert (workspace / "warm-ups" / "adding" / "adding.py").is_file()
     assert (workspace / "warm-ups" / "adding" / "README.md").is_file()
     assert warm("warmup", "adding", "--json").json["files"][0]["action"] == "kept"
@@ -84,9 +79,7 @@ def test_one_is_started_with_its_text_and_lies_with_the_others(warm, workspace):
 def test_it_is_checked_as_an_exercise_is_and_without_points(warm, workspace):
     warm("start", "adding")
     write(workspace, "adding", "RIGHT", "wrong")
-    said = warm("warmup", "adding", "--check")
-    assert said.code == 1
-    assert "1 of 2 checks passes." in said.out
+    said = warm("warmup", "adding", "--check").ends(1, "1 of 2 checks passes.")
     assert "points" not in said.out
     assert "score" not in said.out
     assert warm("check", "warm-ups/adding/adding.py", "--json").json["exercise"] == "adding"

@@ -1,7 +1,5 @@
 """Findings as annotations and as lines, read back as GitHub's runner and an editor read them."""
 
-from __future__ import annotations
-
 import io
 import json
 import os

@@ -1,7 +1,5 @@
 """The file that is handed in."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import platform
@@ -14,12 +12,11 @@ import pytest
 def test_submit_writes_one_zip_with_checksums(course, workspace, write):
     source = write("RIGHT", "wrong").read_bytes()
     course("check")
-    ran = course("submit")
-    assert ran.code == 0
-    assert "doubling/doubling.py" in ran.out
-    assert "Not started, so not in it: halving.\n" in ran.out
-    assert (
-        "2/4 points from the public checks (a pass is 70% of all points, hidden checks included)" in ran.out
+    course("submit").ends(
+        0,
+        "doubling/doubling.py",
+        "Not started, so not in it: halving.\n",
+        "2/4 points from the public checks (a pass is 70% of all points, hidden checks included)",
     )
     with zipfile.ZipFile(workspace / "mini-submission.zip") as archive:
         assert archive.namelist() == ["doubling/doubling.py", "submission.json"]
@@ -65,8 +62,7 @@ def test_submit_leaves_an_untouched_stub_out_and_says_what_the_checks_say_of_the
 
 
 def test_submit_with_nothing_written_writes_nothing(course, workspace):
-    ran = course("submit", "--json")
-    assert (ran.code, ran.json["error"]["code"]) == (3, "nothing_to_submit")
+    assert course("submit", "--json").error == (3, "nothing_to_submit")
     assert not list(workspace.glob("*.zip"))
     ran = course("submit", "halving")
     assert (ran.code, ran.err) == (3, "You have not started halving.\n`course start halving` begins it.\n")

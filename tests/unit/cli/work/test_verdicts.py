@@ -1,7 +1,5 @@
 """A verdict on the screen."""
 
-from __future__ import annotations
-
 import io
 import re
 

@@ -1,7 +1,5 @@
 """A verdict after every save, however the editor saves."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import os

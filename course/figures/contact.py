@@ -10,10 +10,11 @@ from course.figures.style import METHODS, PALETTE, Array, new_figure, note, titl
 from course.physics.body import Body
 from course.physics.contact import Surface
 from course.physics.contact.models import Constraint, Penalty, SoftConvex, drop, erp_cfm, slide_across
-from course.physics.rotation import ROTATION_STEPPERS, Spin, kinetic_energy
+from course.physics.rotation import ROTATION_STEPPERS, Spin, kinetic_energy, rotate
 from course.physics.simulator import Simulator
 from course.physics.solver import iterations_to, stack_impulses
 from course.physics.state import RigidBodyState
+from course.simulations.experiments.contact import rebounds
 
 #: What the figures show and the captions quote: diameter of the ball, thickness of the wall (m), step (s).
 BALL_M, WALL_M, STEP_S = 0.02, 0.02, 0.01
@@ -143,21 +144,11 @@ def rest() -> Figure:
     return figure
 
 
-def rebounds(model: Constraint, parts: Array = PHASES, h: float = _STEP_S) -> Array:
-    """First rebounds, as shares of the height, of a ball dropped from 1 m and a fraction of a step more."""
-    tops = []
-    for part in parts:
-        height = 1.0 + float(part) * h * math.sqrt(2 * _G)
-        gaps, speeds = drop(model, height, 0.0, h, round(1.1 / h), _G)
-        tops.append(float(np.max(gaps[int(np.argmax(speeds > 0)) :])) / height)
-    return np.array(tops)
-
-
 def phases() -> Figure:
     """The rebound over the phase of the step: exact, looked at once a step, and with correction."""
     figure, (axes,) = new_figure(3.6)
-    plain, corrected = rebounds(Constraint(0.5)), rebounds(Constraint(0.5, erp=0.2))
-    for values, color, line in ((plain, "blue", "-"), (corrected, "vermillion", "--")):
+    for erp, color, line in ((0.0, "blue", "-"), (0.2, "vermillion", "--")):
+        values = rebounds(Constraint(0.5, erp=erp), 1.0, PHASES, _STEP_S, _G)
         # The tooth's edge is a jump, so no line is drawn across it.
         broken = np.where(np.abs(np.diff(values, prepend=values[0])) > 0.02, np.nan, values)
         axes.plot(PHASES, broken, color=PALETTE[color], linestyle=line, linewidth=1.8)
@@ -253,15 +244,9 @@ WORLD_STEP_S, DURATION_S = 0.01, 20.0
 def free_spin(method: str) -> tuple[Array, Array, Array]:
     """Times (n + 1,), angular velocities (n + 1, 3) and quaternion lengths (n + 1,) of a free body."""
     n = round(DURATION_S / WORLD_STEP_S)
-    t = np.linspace(0.0, n * WORLD_STEP_S, n + 1)
-    inertia, no_torque = np.array(INERTIA), np.zeros(3)
-    spin = Spin(np.array([1.0, 0.0, 0.0, 0.0]), np.array(SPIN))
-    spins, lengths = [spin.angular_velocity], [1.0]
-    for _ in range(n):
-        spin = ROTATION_STEPPERS[method].advance(inertia, spin, no_torque, WORLD_STEP_S)
-        spins.append(spin.angular_velocity)
-        lengths.append(float(np.linalg.norm(spin.orientation)))
-    return t, np.array(spins), np.array(lengths)
+    start = Spin(np.array([1.0, 0.0, 0.0, 0.0]), np.array(SPIN))
+    q, w = rotate(ROTATION_STEPPERS[method], np.array(INERTIA), start, WORLD_STEP_S, n)
+    return np.linspace(0.0, n * WORLD_STEP_S, n + 1), w, np.linalg.norm(q, axis=-1)
 
 
 def turning_over() -> Figure:

@@ -6,8 +6,6 @@ the foot is long, and it acts on the state of some time ago.
 """
 
 import math
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,7 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from course.figures.style import PALETTE, Array, new_figure, note, title, word
-from course.physics.dynamics import HandPath, TwoLinkArm
+from course.physics.dynamics import DrivenArm, HandPath, TwoLinkArm
 from course.physics.integrators import RK4, State, trajectory
 
 #: What the figure shows and its caption quotes: tries a side, and the delay of the real robot.
@@ -104,34 +102,13 @@ def _name(axes: Axes, regions: list[tuple[float, float, str]]) -> None:
 START, END, LOAD_KG = (1.2, -0.8), (0.6, 1.2), 0.1
 _ARM_STEP = 0.01  # s
 _ARM = TwoLinkArm()
+#: The arm with a point mass (kg) in its hand.
+loaded = _ARM.carrying
 
 
 def path(duration: float) -> HandPath:
     """The straight path of the hand from START to END, in so many seconds."""
     return HandPath(START, END, duration)
-
-
-def loaded(mass: float) -> TwoLinkArm:
-    """The arm with a point mass (kg) in its hand."""
-    whole = _ARM.mass2 + mass
-    centre = (_ARM.mass2 * _ARM.centre2 + mass * _ARM.length2) / whole
-    spread = _ARM.mass2 * (centre - _ARM.centre2) ** 2 + mass * (_ARM.length2 - centre) ** 2
-    return replace(_ARM, mass2=whole, centre2=centre, inertia2=_ARM.inertia2 + spread)
-
-
-class _Driven:
-    """An arm under the torques planned for the bare arm, with or without feedback, to be integrated."""
-
-    def __init__(self, arm: TwoLinkArm, plan: HandPath, stiffness: float, damping: float) -> None:
-        self.arm, self.plan, self.stiffness, self.damping = arm, plan, stiffness, damping
-
-    def __call__(self, t: float, q: ArrayLike, v: ArrayLike) -> Array:
-        wanted, rate, change = self.plan.joints(_ARM, t)
-        correction = self.stiffness * (wanted - np.asarray(q)) + self.damping * (rate - np.asarray(v))
-        return self.arm.forward(q, v, _ARM.inverse(wanted, rate, change) + correction)
-
-    def params(self) -> dict[str, Any]:
-        return {}
 
 
 def driven(load: float, *, feedback: bool = False) -> Array:
@@ -145,7 +122,9 @@ def driven(load: float, *, feedback: bool = False) -> Array:
     q, v, _ = plan.joints(_ARM, 0.0)
     arm = loaded(load) if load > 0 else _ARM
     gains = (100.0, 20.0) if feedback else (0.0, 0.0)
-    run = trajectory(RK4(), _Driven(arm, plan, *gains), State.of(q, v), _ARM_STEP, round(1.0 / _ARM_STEP))
+    run = trajectory(
+        RK4(), DrivenArm(arm, _ARM, plan, *gains), State.of(q, v), _ARM_STEP, round(1.0 / _ARM_STEP)
+    )
     return arm.hand(run.q)
 
 

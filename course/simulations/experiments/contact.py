@@ -182,15 +182,10 @@ _PHASES = 40  # starts that differ by parts of a step, each in the middle of its
 def _run(p: Mapping[str, Any]) -> Result:
     h, g, e, erp = p["step"], p["gravity"], p["restitution"], p["erp"]
     phases = (np.arange(_PHASES) + 0.5) / _PHASES
-    heights = p["height"] + phases * h * math.sqrt(2 * g * p["height"])
-    models = _models(e, erp)
-    rebound = {
-        name: np.array([_rebound(model, z, h, g) / z for z in heights]) for name, model in models.items()
-    }
-    elastic = _models(1.0, erp)
-    kept = {
-        name: np.array([_rebound(model, z, h, g) / z for z in heights]) for name, model in elastic.items()
-    }
+    rebound, kept = (
+        {name: rebounds(model, p["height"], phases, h, g) for name, model in _models(each, erp).items()}
+        for each in (e, 1.0)
+    )
     thrown = _out_of_an_overlap(p)
     rows = (*_at_rest(p), *thrown, *_of_bounces(rebound, kept, e))
     higher = ", and higher with a smaller step" if erp * p["overlap"] else ""
@@ -269,6 +264,12 @@ def _of_bounces(rebound: Mapping[str, Array], kept: Mapping[str, Array], e: floa
     for name, values in kept.items():
         rows.append(Row(f"energy kept at e = 1, {words[name]}", float(values.mean()), "1", 1.0, "conserved"))
     return tuple(rows)
+
+
+def rebounds(model: ContactModel, height: float, phases: Array, h: float, g: float) -> Array:
+    """First rebounds of a ball that falls from ``height`` (m) and parts of a step more, as shares of that."""
+    heights = height + phases * h * math.sqrt(2 * g * height)
+    return np.array([_rebound(model, z, h, g) / z for z in heights])
 
 
 def _rebound(model: ContactModel, height: float, h: float, g: float) -> float:

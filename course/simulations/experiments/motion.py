@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from course.physics.body import Body
 from course.physics.contact import Surface
 from course.physics.integrators import STEPPERS, State, first_crossing, hermite, trajectory
-from course.physics.rotation import ROTATION_STEPPERS, Spin, angular_momentum, kinetic_energy
+from course.physics.rotation import ROTATION_STEPPERS, Spin, angular_momentum, kinetic_energy, rotate
 from course.physics.simulator import Recording, Simulator, step_count
 from course.physics.state import RigidBodyState
 from course.physics.systems import FreeFall
@@ -277,12 +277,13 @@ _NAMES = {"explicit_euler": "explicit Euler", "rk4": "Runge-Kutta 4", "split": "
 
 def _run_rotation(p: Mapping[str, Any]) -> Result:
     inertia = np.array([p["inertia1"], p["inertia2"], p["inertia3"]])
-    start = RigidBodyState.of(np.zeros(3), angular_velocity=[p["nudge"], p["spin"], p["nudge"]])
-    Body(1.0, start, inertia=inertia)  # refuses moments that no body has
+    state = RigidBodyState.of(np.zeros(3), angular_velocity=[p["nudge"], p["spin"], p["nudge"]])
+    Body(1.0, state, inertia=inertia)  # refuses moments that no body has
+    start = Spin(state.orientation, state.angular_velocity)
     if not start.angular_velocity.any():
         raise ValueError("a body that does not turn has no rotation to show; set spin or nudge.")
     n = step_count(p["duration"], p["step"])
-    runs = {name: _spin(name, inertia, start, p["step"], n) for name in _NAMES}
+    runs = {name: rotate(ROTATION_STEPPERS[name], inertia, start, p["step"], n) for name in _NAMES}
     # Explicit Euler may run away to infinity; that is its result.
     drifts = {
         name: np.nan_to_num(kinetic_energy(inertia, w) / kinetic_energy(inertia, w[0]) - 1.0, nan=np.inf)
@@ -308,18 +309,6 @@ def _run_rotation(p: Mapping[str, Any]) -> Result:
             *(Column.of(f"energy_error_{name}", "1", drift) for name, drift in drifts.items()),
         ),
     )
-
-
-def _spin(name: str, inertia: Array, start: RigidBodyState, h: float, n: int) -> tuple[Array, Array]:
-    """Orientations (n + 1, 4) and angular velocities (n + 1, 3) of a body that no torque acts on."""
-    method = ROTATION_STEPPERS[name]
-    spin = Spin(start.orientation, start.angular_velocity)
-    q, w = np.empty((n + 1, 4)), np.empty((n + 1, 3))
-    q[0], w[0] = spin
-    for i in range(n):
-        spin = method.advance(inertia, spin, np.zeros(3), h)
-        q[i + 1], w[i + 1] = spin
-    return q, w
 
 
 def _energy_rows(drifts: Mapping[str, Array], orientations: Mapping[str, Array]) -> list[Row]:

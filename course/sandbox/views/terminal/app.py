@@ -15,16 +15,15 @@ from textual.geometry import Size
 from course.errors import CourseError, UsageError
 from course.full_screen import FullScreenApp
 from course.sandbox.runs.tape import Filming
-from course.sandbox.scene.loading import guess_of, scenes
+from course.sandbox.scene.loading import NO_GUESS, guess_of, scenes
 from course.sandbox.scene.rules import SETTINGS
 from course.sandbox.views.stage import Desk, Stage
 from course.sandbox.views.story import Experiment
 from course.sandbox.views.terminal.asking import (
     NARROW,
-    ChangeOverlay,
     Gallery,
+    LineOverlay,
     PageOverlay,
-    QuestionOverlay,
     comparison,
     help_pages,
 )
@@ -340,7 +339,16 @@ class SandboxApp(FullScreenApp):
                 self._attempt(lambda: self.stage.guess(guess))
                 self.say(f"Your guess: {guess:g} {'' if unit == '1' else unit}")
 
-        overlay = QuestionOverlay(self.experiment.question, unit, calm=self.calm)
+        def guessed(line: str) -> float:
+            guess = guess_of(line, unit)
+            if guess is None:
+                raise UsageError(NO_GUESS)
+            return guess
+
+        # The question and no more: what is said of the scene stands in its help.
+        page, wanted = [(clean(self.experiment.question), "")], f"a number in {clean(unit)}"
+        below = "Enter: run, compare   Escape: back"
+        overlay = LineOverlay("Before it runs: your guess", page, wanted, below, guessed, calm=self.calm)
         self.push_screen(overlay, answered)
 
     def action_scenes(self) -> None:
@@ -374,7 +382,9 @@ class SandboxApp(FullScreenApp):
             ]
         page += ["", "mine: the scene as a file of your own.", ""]
 
-        self.push_screen(ChangeOverlay(page, lambda line: self._change(line, near)), self._changed)
+        wanted, below = "name and number, for example: angle 45", "Enter: change it   Escape: back"
+        change = partial(self._change, near=near)
+        self.push_screen(LineOverlay("Change a number", page, wanted, below, change), self._changed)
 
     def _changed(self, says: str | None) -> None:
         if says:

@@ -271,25 +271,21 @@ class Canvas(Widget):
         #: Rows sent so far.
         self.sent = 0
         self._colour = colour
-        self._cells: Cells | None = None
+        #: The frame that is shown.
+        self.cells: Cells | None = None
         self._styles: dict[int, Style] = {}
 
     def show(self, cells: Cells) -> None:
         """The next frame."""
-        changes = cells.changes(self._cells)
-        self._cells = cells
+        changes = cells.changes(self.cells)
+        self.cells = cells
         if changes:
             self.sent += len(changes)
             self.refresh(*(Region(first, row, count, 1) for row, first, count in changes))
 
-    @property
-    def cells(self) -> Cells | None:
-        """The frame that is shown."""
-        return self._cells
-
     def render_line(self, y: int) -> Strip:
         """One row of cells."""
-        cells, width = self._cells, self.size.width
+        cells, width = self.cells, self.size.width
         if cells is None or y >= cells.char.shape[0]:
             return Strip.blank(width)
         text = cells.char[y].astype("<u4").tobytes().decode("utf-32-le")

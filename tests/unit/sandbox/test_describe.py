@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from course.sandbox.runs.running import account, run, sentence, sentences
+from course.sandbox.runs.running import account, sentence, sentences
 from course.sandbox.scene.loading import choose
 from course.sandbox.world.accounts import Event, Receipt
 from course.sandbox.world.world import World
@@ -62,13 +62,6 @@ def test_the_account_names_what_the_solver_did() -> None:
     assert "5 %" in made
     caught = account(Receipt(**{**base, "kinetic": 3.5, "rods": 0.5}, residual=0.0, integrator=0.0))
     assert "lost in rods 0.5" in caught[1]
-
-
-def test_a_whole_scene_reads_as_a_story() -> None:
-    done = run(choose("restitution-row"))
-    told = list(sentences(done.events))
-    assert any("ball 4 meets the floor at 4.41 m/s and leaves at 3.53; 36 %" in line for line in told)
-    assert any("ball 0 comes to rest" in line for line in told)
 
 
 def test_what_hands_do_names_bodies_as_sentences_do() -> None:

@@ -16,7 +16,6 @@ from course.sandbox.scene.loading import (
     choose,
     compare,
     guess_of,
-    question,
     read_scene,
     unsaid,
     values_of,
@@ -229,12 +228,6 @@ def test_a_scene_with_a_formula_that_has_no_value_is_refused_with_its_line(
     assert words in caught.value.message
     with pytest.raises(UsageError, match=rf"{name}\.toml:{line}"):
         choose(str(path))
-
-
-def test_a_list_has_the_numbers_of_the_file() -> None:
-    assert question(choose("incline")).startswith(
-        "The slope is 30 degrees steep, and the friction of the pair is 0.4."
-    )
 
 
 @pytest.mark.parametrize(

@@ -101,13 +101,13 @@ class Moment:
 
 @dataclass
 class _Work:
-    """A moment that is being made again."""
+    """A moment that is being made again, and what could be undone and redone ``before``."""
 
     steps: Iterator[float]
     done: Callable[[], None]
     says: str
+    before: tuple[list[Moment], list[Moment]]
     share: float = 0.0
-    stage: dict[str, Any] = field(default_factory=dict)
 
 
 class Stage:
@@ -243,9 +243,9 @@ class Stage:
             self.way = int(on)
 
     def step(self, kind: str = "picture") -> None:
-        """Pause, and go on by one "picture", to the next "contact", or by one step of the "solver"."""
-        if self.at is not None:
-            self.look(self.at + _PICTURE * (1 if kind != "back" else -1))
+        """Pause, and go on by a "picture", to the next "contact", by a step of the "solver", or "back"."""
+        if self.at is not None or kind == "back":
+            self.look(self.t + _PICTURE * (1 if kind != "back" else -1))
             return
         world, began = self.world, self.clock()
         world.paused = True
@@ -296,11 +296,12 @@ class Stage:
             return
         tick = self.tape.ticks[self.tape.at(self.at)]
         count = sum(one.tick <= tick for one in self.recording.inputs)
+        before = list(self._undos), list(self._redos)
         self._push(self._undos, self._now("going on from earlier"))
         self._redos.clear()
         t = self.tape.times[self.tape.at(self.at)]
         there = Moment(self.chosen, self.recording, count, tick, t)
-        self._make(there, f"Going on from {t:.2f} s", paused=False, ghost=True)
+        self._make(there, f"Going on from {t:.2f} s", before, paused=False, ghost=True)
 
     def undo(self) -> None:
         """Back to the moment before the last thing that was done."""
@@ -313,8 +314,7 @@ class Stage:
     def stop_work(self) -> None:
         """Give up what is being made again; everything is as it was."""
         if self._work is not None:
-            kept, self._work = self._work, None
-            self._undos, self._redos = kept.stage["undos"], kept.stage["redos"]
+            (self._undos, self._redos), self._work = self._work.before, None
             self.news.append("Stopped: everything is as it was.")
 
     def set_parameter(self, name: str, value: float) -> None:
@@ -444,21 +444,21 @@ class Stage:
             self.act("release")
         if not stack:
             raise UsageError(f"There is nothing to {which}.", code=f"no_{which}")
-        undos, redos = list(self._undos), list(self._redos)
+        before = list(self._undos), list(self._redos)
         there = stack.pop()
         self._push(other, self._now(there.why))
         self._last = ("", None, -math.inf)
         says = f"{which.capitalize()}: {there.why}, at {there.t:.2f} s"
-        self._make(there, says, paused=True, stacks=(undos, redos))
+        self._make(there, says, before, paused=True)
 
     def _make(
         self,
         there: Moment,
         says: str,
+        before: tuple[list[Moment], list[Moment]],
         *,
         paused: bool,
         ghost: bool = False,
-        stacks: tuple[list[Moment], list[Moment]] | None = None,
     ) -> None:
         """Begin to make a moment again; ``tick`` goes on with it."""
         world, recording, inputs = there.recording.begun(there.count, self.world.version + 1)
@@ -513,8 +513,7 @@ class Stage:
             self.anew += 1
             self.news.append(f"{says}.")
 
-        undos, redos = stacks if stacks else (self._undos[:-1], list(self._redos))
-        self._work = _Work(steps(), done, says, stage={"undos": undos, "redos": redos})
+        self._work = _Work(steps(), done, says, before)
         self._work_on(BUDGET)
 
     def _work_on(self, budget: float) -> None:

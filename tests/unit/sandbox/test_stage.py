@@ -188,6 +188,10 @@ def test_the_run_before_is_a_ghost_and_so_is_what_was_left_behind() -> None:
 
 def test_going_on_shows_how_far_it_is_and_can_be_stopped() -> None:
     stage = make("galton-board")
+    stage.act("set", "gravity", 5.0)
+    stage.undo()
+    stage.finish()
+    stage.run(on=True)
     watch(stage, 2.0)
     before = stage.world.state_hash()
     stage.clock = iter(float(n) for n in range(10**9)).__next__
@@ -201,7 +205,7 @@ def test_going_on_shows_how_far_it_is_and_can_be_stopped() -> None:
     with pytest.raises(UsageError, match="One moment"):
         stage.act("reset")
     stage.stop_work()
-    assert (stage.working, stage.world.state_hash(), stage.undoable()) == (None, before, ("", ""))
+    assert (stage.working, stage.world.state_hash(), stage.undoable()) == (None, before, ("", "set gravity"))
 
 
 @pytest.mark.parametrize("name", ["billiards-break", "newtons-cradle", "robot-boxes", "galton-board"])

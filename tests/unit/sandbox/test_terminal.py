@@ -240,6 +240,19 @@ async def test_the_past_is_looked_at_played_backwards_and_gone_on_from(app, pilo
     assert app.stage.at is None
 
 
+@on("head-on")
+async def test_a_step_while_another_moment_is_being_made_is_refused_in_words(app, pilot, monkeypatch):
+    def busy() -> None:
+        raise UsageError("One moment.")
+
+    app.frames(30)
+    await pilot.press("less_than_sign")
+    monkeypatch.setattr(app.stage, "_must_be_idle", busy)
+    await pilot.press("full_stop")
+    app.frames(1)
+    assert "One moment." in app.keys.text
+
+
 @on(None)
 async def test_the_gallery_opens_any_scene_and_back(app, pilot):
     assert isinstance(app.screen, Gallery)

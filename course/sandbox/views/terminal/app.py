@@ -203,7 +203,7 @@ class SandboxApp(FullScreenApp):
         events = 2 if height < 20 else 3 if height < 30 else 5 if height < 40 else 8
         self._below = 1 + (events if self.events.display else 0)
         self.keys.styles.height, self.events.styles.height = 1, events
-        self._read_at = self._drawn_at = -1.0
+        self.renew()
 
     # -- time ------------------------------------------------------------------------------------
 
@@ -293,11 +293,9 @@ class SandboxApp(FullScreenApp):
             lines[:0] = [(((" " if i == 0 else "   ") + piece, ""),) for i, piece in enumerate(pieces)]
         return lines[-height:] if height else []
 
-    def renew(self, *, layout: bool = False) -> None:
-        """Draw and write everything with the next frame, or give each part its room anew."""
+    def renew(self) -> None:
+        """Draw and write everything with the next frame."""
         self._read_at = self._drawn_at = -1.0
-        if layout:
-            self._lay_out()
 
     def say(self, message: str) -> None:
         """Show something in the last line for a moment."""
@@ -430,11 +428,7 @@ class SandboxApp(FullScreenApp):
 
     def action_step(self, kind: str) -> None:
         """A picture on or back, to the next contact, or one step of the solver; and pause."""
-        stage = self.stage
-        if kind == "back" and stage.at is None:
-            self._attempt(lambda: stage.look(stage.t - 1 / 60))
-        else:
-            stage.step(kind)
+        self._attempt(lambda: self.stage.step(kind))
         self.renew()
 
     def action_jump(self, seconds: float) -> None:
@@ -556,7 +550,7 @@ class SandboxApp(FullScreenApp):
 
     def action_panel(self) -> None:
         self._panel_wanted = not self._panel_wanted
-        self.renew(layout=True)
+        self._lay_out()
 
     def _attempt(self, deed: Callable[[], Any]) -> None:
         try:

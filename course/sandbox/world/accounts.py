@@ -294,7 +294,6 @@ class Clock:
         return self.since + (self.steps - self.at) * self.size
 
     def resize(self, size: float) -> None:
-        """Go on with steps of another size."""
         self.since, self.at = self.t, self.steps
         self.size = size
 

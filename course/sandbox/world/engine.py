@@ -453,7 +453,6 @@ class Space:
         return float(found[key])
 
     def change(self, name: str, key: str, value: float) -> None:
-        """Change one of these."""
         part, body, shape = self._bodies[self._by_name[name]]
         match key:
             case "mass":

@@ -201,7 +201,6 @@ class World:
 
     @property
     def held(self) -> str | None:
-        """The body a hand holds."""
         return self._hand.name if self._hand else None
 
     def state(self) -> Floats:
@@ -209,7 +208,6 @@ class World:
         return self._space.state()
 
     def snapshot(self) -> Snapshot:
-        """Where everything is now."""
         hand = None
         if self._hand is not None:
             place = self._space.body(self._hand.name).local_to_world(self._hand.anchor)

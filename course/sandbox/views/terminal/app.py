@@ -298,7 +298,6 @@ class SandboxApp(FullScreenApp):
         self._read_at = self._drawn_at = -1.0
 
     def say(self, message: str) -> None:
-        """Show something in the last line for a moment."""
         super().say(clean(message))
         self._read_at = -1.0
 

@@ -163,8 +163,6 @@ class Gallery(Overlay[str]):
 
 
 class PageOverlay(TextOverlay):
-    """A page to read."""
-
     BINDINGS: ClassVar[list[Any]] = [Binding("l", "leave", show=False)]
 
     def __init__(

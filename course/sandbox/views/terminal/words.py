@@ -276,7 +276,6 @@ class Canvas(Widget):
         self._styles: dict[int, Style] = {}
 
     def show(self, cells: Cells) -> None:
-        """The next frame."""
         changes = cells.changes(self.cells)
         self.cells = cells
         if changes:
@@ -284,7 +283,6 @@ class Canvas(Widget):
             self.refresh(*(Region(first, row, count, 1) for row, first, count in changes))
 
     def render_line(self, y: int) -> Strip:
-        """One row of cells."""
         cells, width = self.cells, self.size.width
         if cells is None or y >= cells.char.shape[0]:
             return Strip.blank(width)
@@ -334,7 +332,6 @@ class Lines(Widget):
         return "\n".join("".join(piece for piece, _ in line) for line in self._lines)
 
     def show(self, lines: Sequence[Line]) -> None:
-        """Replace the lines."""
         pairs = enumerate(zip_longest(self._lines, lines))
         width, height = self.size
         changed = [row for row, (before, now) in pairs if row < height and before != now]
@@ -343,7 +340,6 @@ class Lines(Widget):
             self.refresh(*(Region(0, row, width, 1) for row in changed))
 
     def render_line(self, y: int) -> Strip:
-        """One line."""
         width = self.size.width
         if y >= len(self._lines):
             return Strip.blank(width, self._base)

@@ -256,19 +256,21 @@ _LOOKS = {
     "model": (PALETTE["vermillion"], "D"),
 }
 
-#: What is wrong -> which kind of mistake it is.
-MISTAKES = {
-    "step of 1 ms": "numerical",
-    "step of 10 ms": "numerical",
-    "speed sensor 1 % off": "sensor",
-    "floor tilted by 1°": "environment",
-    "friction 10 % too high": "model",
-    "delay of 50 ms left out": "model",
+_TILT = math.radians(1.0)
+#: What is wrong -> which kind of mistake it is, what it changes for ``stop``, and what for ``bounce``, where
+#: neither the floor's friction nor a late brake matters.
+MISTAKES: dict[str, tuple[str, dict[str, float], dict[str, float] | None]] = {
+    "step of 1 ms": ("numerical", {"h": 1e-3}, {"h": 1e-3}),
+    "step of 10 ms": ("numerical", {"h": 1e-2}, {"h": 1e-2}),
+    "speed sensor 1 % off": ("sensor", {"speed": 2.0 * 1.01}, {"speed": 3.0 * 1.01}),
+    "floor tilted by 1°": ("environment", {"tilt": _TILT}, {"tilt": _TILT}),
+    "friction 10 % too high": ("model", {"friction": 0.5 * 1.1}, None),
+    "delay of 50 ms left out": ("model", {"delay": 0.05}, None),
 }
 
 
 def stop(
-    h: float, *, speed: float = 2.0, friction: float = 0.5, tilt: float = 0.0, delay: float = 0.0
+    *, h: float = _FINE, speed: float = 2.0, friction: float = 0.5, tilt: float = 0.0, delay: float = 0.0
 ) -> float:
     """Distance that a braking robot slides, m, by semi-implicit Euler.
 
@@ -286,7 +288,7 @@ def stop(
     return distance
 
 
-def bounce(h: float, *, speed: float = 3.0, tilt: float = 0.0) -> float:
+def bounce(*, h: float = _FINE, speed: float = 3.0, tilt: float = 0.0) -> float:
     """Height that a foot of 1 kg rebounds to, m, by semi-implicit Euler; its contact is a spring of 1e5 N/m.
 
     Args:
@@ -304,26 +306,11 @@ def bounce(h: float, *, speed: float = 3.0, tilt: float = 0.0) -> float:
 def budgets() -> dict[str, dict[str, float]]:
     """Question -> mistake -> how far the answer is off, as a share of it."""
     far, high = 2.0**2 / (2 * 0.5 * _GRAVITY), 3.0**2 / (2 * _GRAVITY)
-    distances = [
-        stop(1e-3),
-        stop(1e-2),
-        stop(_FINE, speed=2.0 * 1.01),
-        stop(_FINE, tilt=math.radians(1.0)),
-        stop(_FINE, friction=0.5 * 1.1),
-        stop(_FINE, delay=0.05),
-    ]
-    # Neither the floor's friction nor a late brake matters in a bounce: two answers are right as they are.
-    heights = [
-        bounce(1e-3),
-        bounce(1e-2),
-        bounce(_FINE, speed=3.0 * 1.01),
-        bounce(_FINE, tilt=math.radians(1.0)),
-        high,
-        high,
-    ]
+    stops = {name: stop(**wrong) for name, (_, wrong, _) in MISTAKES.items()}
+    heights = {name: high if wrong is None else bounce(**wrong) for name, (_, _, wrong) in MISTAKES.items()}
     return {
-        "Where does it stop?": dict(zip(MISTAKES, [abs(x / far - 1.0) for x in distances], strict=True)),
-        "How high does it bounce?": dict(zip(MISTAKES, [abs(x / high - 1.0) for x in heights], strict=True)),
+        "Where does it stop?": {name: abs(x / far - 1.0) for name, x in stops.items()},
+        "How high does it bounce?": {name: abs(x / high - 1.0) for name, x in heights.items()},
     }
 
 
@@ -333,7 +320,7 @@ def two_questions() -> Figure:
     figure.subplots_adjust(left=0.27, wspace=0.1)
     for axes, (question, found) in zip(panels, budgets().items(), strict=True):
         for row, (name, share) in enumerate(found.items()):
-            _dot(axes, row, 100.0 * share, *_LOOKS[MISTAKES[name]])
+            _dot(axes, row, 100.0 * share, *_LOOKS[MISTAKES[name][0]])
         axes.set_title(question)
         axes.set(xscale="log", xlim=(0.03, 4e5), ylim=(-0.6, len(MISTAKES) - 0.4))
         axes.set_xticks([0.1, 1, 10, 100, 1000, 10_000], ["0.1", "1", "10", "100", "1000", ""])

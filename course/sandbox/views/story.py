@@ -153,15 +153,11 @@ class Experiment:
             return None
         return max(0.0, self._chosen.scene.duration - self._world.t)
 
-    def passed(self) -> bool:
-        """After time has passed and ``take`` has the events: compare, if the run has reached its end.
-
-        Returns:
-            whether it was.
-        """
+    def passed(self) -> None:
+        """After time has passed and ``take`` has the events: compare, if the run has reached its end."""
         probes, left = self._probes, self.left()
         if probes is None or left is None or left > 1e-9:
-            return False
+            return
         comparison = probes.compared(probes.read(self._events), self.guess)
         self._comparison = msgspec.to_builtins(comparison)
         self.stage = "done"
@@ -169,7 +165,6 @@ class Experiment:
         self._world.on_block[:] = self._listeners
         if self.keep is not None and self.guess is not None and comparison is not None:
             self.keep(comparison)
-        return True
 
     @property
     def question(self) -> str:

@@ -319,8 +319,6 @@ CHAOS = Simulation(
 
 _RADIUS = 0.1  # m
 _GUESS = 0.3  # the friction that is taken to be 10 % lower
-_SHOWN_FRICTION = (0.1, 0.3, 0.6)
-_SHOWN_RESTITUTION = (0.3, 0.5, 0.9)
 #: The whole sweep, as friction of one experiment and restitution of the other.
 _SWEEP = np.round(np.arange(0.05, 1.0001, 0.05), 2)
 
@@ -336,24 +334,12 @@ def _run_environment(p: Mapping[str, Any]) -> Result:
     stops = p["speed"] ** 2 / (2 * _SWEEP * p["gravity"])
     rises = _SWEEP**2 * p["height"]
     rows = [
-        Row(
-            f"sliding to rest, friction {x:g}",
-            float(stopping[_at(x)]),
-            "m",
-            float(stops[_at(x)]),
-            "v² / (2 μ g)",
+        Row(f"{what} {x:g}", float(found[_at(x)]), "m", float(theory[_at(x)]), source)
+        for what, found, theory, source, shown in (
+            ("sliding to rest, friction", stopping, stops, "v² / (2 μ g)", (0.1, 0.3, 0.6)),
+            ("rebound, restitution", rebound, rises, "e² times the drop", (0.3, 0.5, 0.9)),
         )
-        for x in _SHOWN_FRICTION
-    ]
-    rows += [
-        Row(
-            f"rebound, restitution {x:g}",
-            float(rebound[_at(x)]),
-            "m",
-            float(rises[_at(x)]),
-            "e² times the drop",
-        )
-        for x in _SHOWN_RESTITUTION
+        for x in shown
     ]
     guess = _at(_GUESS)
     wrong = float(_slide(p, np.array([0.9 * _GUESS]))[0]) / float(stopping[guess]) - 1

@@ -142,7 +142,8 @@ def test_a_views_question_follows_what_is_set_in_it() -> None:
     experiment.answer(0.04)
     world.run_until(chosen.scene.duration)
     experiment.take(world.drain_events())
-    assert experiment.passed()
+    experiment.passed()
+    assert experiment.stage == "done"
     comparison = experiment.report()["comparison"]
     assert (comparison["simulation"], comparison["guess_right"]) == (pytest.approx(0.04), True)
     assert "0.0004 s" in comparison["question"]

@@ -343,9 +343,14 @@ class SandboxApp(FullScreenApp):
             return guess
 
         # The question and no more: what is said of the scene stands in its help.
-        page, wanted = [(clean(self.experiment.question), "")], f"a number in {clean(unit)}"
-        below = "Enter: run, compare   Escape: back"
-        overlay = LineOverlay("Before it runs: your guess", page, wanted, below, guessed, calm=self.calm)
+        overlay = LineOverlay(
+            "Before it runs: your guess",
+            [(clean(self.experiment.question), "")],
+            guessed,
+            wanted=f"a number in {clean(unit)}",
+            below="Enter: run, compare   Escape: back",
+            calm=self.calm,
+        )
         self.push_screen(overlay, answered)
 
     def action_scenes(self) -> None:
@@ -379,9 +384,14 @@ class SandboxApp(FullScreenApp):
             ]
         page += ["", "mine: the scene as a file of your own.", ""]
 
-        wanted, below = "name and number, for example: angle 45", "Enter: change it   Escape: back"
-        change = partial(self._change, near=near)
-        self.push_screen(LineOverlay("Change a number", page, wanted, below, change), self._changed)
+        overlay = LineOverlay(
+            "Change a number",
+            page,
+            partial(self._change, near=near),
+            wanted="name and number, for example: angle 45",
+            below="Enter: change it   Escape: back",
+        )
+        self.push_screen(overlay, self._changed)
 
     def _changed(self, says: str | None) -> None:
         if says:

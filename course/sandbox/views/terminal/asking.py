@@ -37,9 +37,9 @@ class LineOverlay(Overlay[Any]):
     Dismissed with what was made of the line, or None if it was empty.
 
     Args:
+        take: makes the answer of a line; raises a CourseError if that cannot be done.
         wanted: what to type, in the empty line.
         below: its keys.
-        take: makes the answer of a line; raises a CourseError if that cannot be done.
         calm: nothing blinks.
     """
 
@@ -47,15 +47,15 @@ class LineOverlay(Overlay[Any]):
         self,
         title: str,
         page: Page,
-        wanted: str,
-        below: str,
         take: Callable[[str], Any],
         *,
+        wanted: str,
+        below: str,
         calm: bool = False,
     ) -> None:
         super().__init__()
-        self._title, self._page, self._wanted, self.below = title, page, wanted, below
-        self._take, self._calm = take, calm
+        self._title, self._page, self._take = title, page, take
+        self._wanted, self.below, self._calm = wanted, below, calm
 
     def compose(self) -> ComposeResult:
         with VerticalScroll(classes="box", can_focus=False) as box:

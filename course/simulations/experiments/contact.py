@@ -80,7 +80,7 @@ def _run_collision(p: Mapping[str, Any]) -> Result:
     return Result(
         rows=rows,
         headline=_headline_collision(met, float(energy[0]), float(energy[-1]), end),
-        finding=_finding(p, met, float(energy[0]), float(energy[-1])),
+        finding=_finding_collision(p, met, float(energy[0]), float(energy[-1])),
         columns=(
             Column.of("t", "s", record.t),
             Column.of("x1", "m", x[:, 0]),
@@ -130,7 +130,7 @@ def _kept(before: float, after: float) -> str:
     return "none" if after <= 1e-9 * before else "nearly all" if share == "100 %" else share
 
 
-def _finding(p: Mapping[str, Any], met: float, before: float, after: float) -> str:
+def _finding_collision(p: Mapping[str, Any], met: float, before: float, after: float) -> str:
     if math.isnan(met):
         return f"Within {p['duration']:g} s the two do not touch; momentum and energy do not change."
     centres = p["distance"] / (p["speed1"] - p["speed2"])
@@ -179,7 +179,7 @@ COLLISION = Simulation(
 _PHASES = 40  # starts that differ by parts of a step, each in the middle of its part
 
 
-def _run(p: Mapping[str, Any]) -> Result:
+def _run_contact_models(p: Mapping[str, Any]) -> Result:
     h, g, e, erp = p["step"], p["gravity"], p["restitution"], p["erp"]
     phases = (np.arange(_PHASES) + 0.5) / _PHASES
     rebound, kept = (
@@ -297,7 +297,7 @@ CONTACT_MODELS = Simulation(
         Parameter("gravity", 9.81, "m/s²", "acceleration downwards", low=0.1, high=100.0),
         step(high=0.05),
     ),
-    run=_run,
+    run=_run_contact_models,
 )
 
 

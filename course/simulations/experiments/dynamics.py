@@ -188,7 +188,7 @@ _FEWEST = 40  # steps
 _PENDULUM = TwoLinkArm.double_pendulum()
 
 
-def _run(p: Mapping[str, Any]) -> Result:
+def _run_chaos(p: Mapping[str, Any]) -> Result:
     h = p["step"]
     n = step_count(p["duration"], h)
     if n < _FEWEST:
@@ -215,8 +215,8 @@ def _run(p: Mapping[str, Any]) -> Result:
     )
     return Result(
         rows=rows,
-        headline=_headline(p, large),
-        finding=_finding(p, small, large, coarse, fine),
+        headline=_headline_chaos(p, large),
+        finding=_finding_chaos(p, small, large, coarse, fine),
         columns=(
             Column.of("t", "s", t),
             Column.of("separation", "rad", apart),
@@ -273,13 +273,13 @@ def _crowd(first: float, second: float, h: float, n: int) -> tuple[float, float]
     return means[0], means[1]
 
 
-def _headline(p: Mapping[str, Any], large: float) -> str:
+def _headline_chaos(p: Mapping[str, Any], large: float) -> str:
     if math.isnan(large):
         return f"{p['nudge']:.1g} rad apart at the start, still close after {p['duration']:g} s"
     return f"{p['nudge']:.1g} rad apart at the start, more than 1 rad after {digits(large)} s"
 
 
-def _finding(p: Mapping[str, Any], small: float, large: float, coarse: float, fine: float) -> str:
+def _finding_chaos(p: Mapping[str, Any], small: float, large: float, coarse: float, fine: float) -> str:
     if math.isnan(large):
         return (
             f"Within {p['duration']:g} s the two stay less than 1 rad apart. Start them higher, or run for "
@@ -309,7 +309,7 @@ CHAOS = Simulation(
         duration(15.0, high=100.0),
         step(0.005, high=0.05),
     ),
-    run=_run,
+    run=_run_chaos,
 )
 
 

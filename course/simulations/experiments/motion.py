@@ -123,7 +123,7 @@ FREE_FALL = Simulation(
 # A stone is thrown: how high, how far, and what does leaving the air out of the model cost?
 
 
-def _run(p: Mapping[str, Any]) -> Result:
+def _run_projectile(p: Mapping[str, Any]) -> Result:
     drag, fastest = p["drag"], math.hypot(p["speed_x"], p["speed_z"])
     if drag and (drag * fastest * p["step"] > 1 or math.sqrt(drag * p["gravity"]) * p["step"] > 1):
         raise ValueError("air takes more than the whole speed in one step; take a smaller step or less drag.")
@@ -149,7 +149,7 @@ def _run(p: Mapping[str, Any]) -> Result:
     flight = np.minimum(t, _flight_time(p))
     return Result(
         rows=rows,
-        headline=_headline(p, rows),
+        headline=_headline_projectile(p, rows),
         finding=_finding_projectile(p, rows),
         columns=(
             Column.of("t", "s", t),
@@ -212,7 +212,7 @@ def _landing_rows(p: Mapping[str, Any], record: Recording) -> tuple[Row, Row]:
 _FIRST_ORDER = ("explicit_euler", "semi_implicit_euler")
 
 
-def _headline(p: Mapping[str, Any], rows: tuple[Row, ...]) -> str:
+def _headline_projectile(p: Mapping[str, Any], rows: tuple[Row, ...]) -> str:
     top, far = rows[1].simulated, rows[4]
     if math.isnan(far.simulated):
         return f"Still in the air after {p['duration']:g} s"
@@ -264,7 +264,7 @@ PROJECTILE = Simulation(
         step(),
         METHOD,
     ),
-    run=_run,
+    run=_run_projectile,
 )
 
 
@@ -302,7 +302,7 @@ def _run_rotation(p: Mapping[str, Any]) -> Result:
     return Result(
         rows=rows,
         headline=_headline_rotation(p, flips, float(drifts["explicit_euler"][-1])),
-        finding=_finding(p, flips, drifts),
+        finding=_finding_rotation(p, flips, drifts),
         columns=(
             Column.of("t", "s", t),
             *(Column.of(f"w{k + 1}", "rad/s", w[:, k]) for k in range(3)),
@@ -369,7 +369,7 @@ def _about_axis_2(p: Mapping[str, Any], flips: int) -> str:
     return "Axis 2 is the middle one, but the wobble has not yet had time to flip the body over."
 
 
-def _finding(p: Mapping[str, Any], flips: int, drifts: Mapping[str, Array]) -> str:
+def _finding_rotation(p: Mapping[str, Any], flips: int, drifts: Mapping[str, Array]) -> str:
     angle = abs(p["spin"]) * p["step"]
     if angle > 0.5:
         return (

@@ -7,40 +7,32 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from course.figures.style import METHODS, PALETTE, Array, new_figure, note, title, word
-from course.physics.body import Body
-from course.physics.contact import Surface
 from course.physics.contact.models import Constraint, Penalty, SoftConvex, drop, erp_cfm, slide_across
 from course.physics.rotation import ROTATION_STEPPERS, Spin, kinetic_energy, rotate
-from course.physics.simulator import Simulator
 from course.physics.solver import iterations_to, stack_impulses
-from course.physics.state import RigidBodyState
+from course.simulations.base import run
 from course.simulations.experiments.contact import rebounds
+from course.simulations.registry import get
 
 #: What the figures show and the captions quote: diameter of the ball, thickness of the wall (m), step (s).
 BALL_M, WALL_M, STEP_S = 0.02, 0.02, 0.01
 STACKS = (2, 5, 10, 20)
 
 
-def head_on(restitution: float | None) -> tuple[Array, Array]:
-    """Times (n + 1,) and positions (n + 1, 2), m, of two balls of radius 0.5 m; None: they pass through."""
-    starts = (RigidBodyState.of([x, 0, 0], [v, 0, 0]) for x, v in ((-5.0, 2.0), (5.0, -2.0)))
-    bodies = [Body.sphere(1.0, 0.5, start) for start in starts]
-    surface = Surface(0.0 if restitution is None else restitution)
-    engine = Simulator(
-        bodies, h=0.01, gravity=0.0, ground=None, surface=surface, contacts=restitution is not None
-    )
-    record = engine.run(5.0)
-    return record.t, record.position[:, :, 0]
+def _head_on(restitution: float) -> tuple[Array, Array]:
+    """Times (n + 1,) and positions (n + 1, 2), m, of the two balls of the simulation of a collision."""
+    result = run(get("collision"), [f"restitution={restitution:g}"])
+    return result.column("t"), np.stack([result.column("x1"), result.column("x2")], axis=-1)
 
 
 def pair() -> Figure:
     """Two balls head on: without contact they trade places, with it they part at e times their speed."""
     figure, (left, right) = new_figure(3.6, 1, 2, sharex=True, sharey=True)
-    t, x = head_on(None)
-    _two(left, t, x, "-")
+    t, x = _head_on(1.0)
+    _two(left, t, x[0] + np.array([2.0, -2.0]) * t[:, None], "-")
     left.set_title("No contact: they change sides")
     for e, line in ((1.0, "-"), (0.5, "--"), (0.0, ":")):
-        t, x = head_on(e)
+        t, x = _head_on(e)
         _two(right, t, x, line)
         right.text(4.95, x[-1, 1] + 0.25, f"e = {e:g}", ha="right", fontsize=8.5)
     right.set_title("Contact: they touch and part")

@@ -56,12 +56,6 @@ def test_a_robot_without_delay_stands_only_where_its_reaction_outweighs_gravity(
     assert robots.fate(kp, kd, 0.0).tolist() == [FALLEN, STANDING]
 
 
-@pytest.mark.parametrize(("restitution", "end"), [(None, 5.0), (1.0, -6.0), (0.5, -3.25), (0.0, -0.5)])
-def test_the_pair_passes_or_parts_as_its_restitution_says(restitution: float | None, end: float) -> None:
-    _, x = contact.head_on(restitution)
-    assert x[-1].tolist() == pytest.approx([end, -end], abs=1e-9)
-
-
 def test_a_wall_is_missed_from_the_speed_on_at_which_a_step_spans_wall_and_ball() -> None:
     assert contact.passed(3.9) == 0.0
     assert contact.passed(4.1) > 0.0

@@ -22,7 +22,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Self
+from typing import IO, Any, Self, cast
 
 import msgspec
 
@@ -349,12 +349,11 @@ class EngineProcess:
             started = self._start()
             if started["status"] != "ok":
                 return started
-        process = self._process
-        if process is None or process.stdin is None:
-            return {"status": "failed", "message": "The process could not be started."}
+        process = cast("subprocess.Popen[str]", self._process)
+        asked = cast("IO[str]", process.stdin)
         try:
-            process.stdin.write(json.dumps({**job, "seconds": seconds}) + "\n")
-            process.stdin.flush()
+            asked.write(json.dumps({**job, "seconds": seconds}) + "\n")
+            asked.flush()
         except OSError:
             return self._died()
         return self._read(seconds)
@@ -402,15 +401,14 @@ class EngineProcess:
 
     def _died(self) -> dict[str, Any]:
         """The message about a process that ended by itself."""
-        process, code = self._process, None
-        if process is not None:
-            try:
-                code = process.wait(timeout=5)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                code = process.wait()
+        process = cast("subprocess.Popen[str]", self._process)
+        try:
+            code = process.wait(timeout=5)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            code = process.wait()
         how = f"It ended with exit code {code}."
-        if code is not None and code < 0:
+        if code < 0:
             try:
                 how = f"It was ended by {signal.Signals(-code).name}."
             except ValueError:
@@ -420,8 +418,6 @@ class EngineProcess:
         return {"status": "crash", "message": f"{how} {words}".strip()}
 
     def _last_words(self) -> str:
-        if self._words is None or self._words.closed:
-            return ""
         self._words.seek(0, os.SEEK_END)
         self._words.seek(max(0, self._words.tell() - 4096))
         lines = self._words.read().decode("utf-8", errors="replace").splitlines()

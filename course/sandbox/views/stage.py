@@ -378,8 +378,8 @@ class Stage:
         if world.paused or dt <= 0.0:
             return
         left = self.experiment.left()
-        stop = left is not None and dt * world.speed >= left
-        if stop and left is not None:
+        stop = dt * world.speed >= left
+        if stop:
             dt = left / world.speed
         parts = max(1, math.ceil(dt * world.speed / world.settings["step"] / _CHUNK))
         began, made = self.clock(), parts
@@ -473,15 +473,14 @@ class Stage:
         def halt() -> float:
             """Where the comparison is made, and where what is known from a tape ends."""
             left = experiment.left()
-            ends = math.inf if left is None else world.ticks + math.ceil(left / world.settings["step"] - 1e-6)
+            ends = left if left == math.inf else world.ticks + math.ceil(left / world.settings["step"] - 1e-6)
             return min(ends, known_until if known_until > world.ticks else math.inf)
 
         def steps() -> Iterator[float]:
             skipping, frames = False, 0
             for share in remade(world, inputs, there.tick, halt):
                 # Taking in events books the steps, so it is done with the frames, which do that anyway.
-                left = experiment.left()
-                ended = share == 1.0 or world.ticks == known_until or (left is not None and left <= 1e-9)
+                ended = share == 1.0 or world.ticks == known_until or experiment.left() <= 1e-9
                 if ended or len(tape) != frames:
                     narrator.tell(_heard(world, experiment, tape), world.t)
                     experiment.passed()
@@ -491,7 +490,7 @@ class Stage:
                     tape.take_over(known, index)
                     narrator.forget()
                     skipping = False
-                elif world.ticks < known_until and not skipping and experiment.left() is None:
+                elif world.ticks < known_until and not skipping and experiment.left() == math.inf:
                     world.skip()
                     tape.end()
                     skipping = True

@@ -19,7 +19,7 @@ BALL_M, WALL_M, STEP_S = 0.02, 0.02, 0.01
 STACKS = (2, 5, 10, 20)
 
 
-def _head_on(restitution: float) -> tuple[Array, Array]:
+def head_on(restitution: float) -> tuple[Array, Array]:
     """Times (n + 1,) and positions (n + 1, 2), m, of the two balls of the simulation of a collision."""
     result = run(get("collision"), [f"restitution={restitution:g}"])
     return result.column("t"), np.stack([result.column("x1"), result.column("x2")], axis=-1)
@@ -28,11 +28,11 @@ def _head_on(restitution: float) -> tuple[Array, Array]:
 def pair() -> Figure:
     """Two balls head on: without contact they trade places, with it they part at e times their speed."""
     figure, (left, right) = new_figure(3.6, 1, 2, sharex=True, sharey=True)
-    t, x = _head_on(1.0)
+    t, x = head_on(1.0)
     _two(left, t, x[0] + np.array([2.0, -2.0]) * t[:, None], "-")
     left.set_title("No contact: they change sides")
     for e, line in ((1.0, "-"), (0.5, "--"), (0.0, ":")):
-        t, x = _head_on(e)
+        t, x = head_on(e)
         _two(right, t, x, line)
         right.text(4.95, x[-1, 1] + 0.25, f"e = {e:g}", ha="right", fontsize=8.5)
     right.set_title("Contact: they touch and part")

@@ -18,11 +18,11 @@ import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Self
+from typing import IO, Any, Self, cast
 
 import msgspec
 
@@ -37,7 +37,6 @@ from course.engines.results import (
     Comparison,
     EngineState,
     Row,
-    Status,
     this_machine,
 )
 from course.engines.scenarios import BOXES, DT, SCENARIOS
@@ -206,23 +205,38 @@ def _measure(run: _Run, jobs: Iterable[Row]) -> None:
 
 def _one_engine(run: _Run, jobs: list[Row]) -> None:
     """All accuracy jobs of one engine, in one process as long as it is alive."""
-    unavailable: Row | None = None
+    unavailable: str | None = None
     with EngineProcess(jobs[0].engine) as process:
         for job in jobs:
             if run.stop.is_set():
                 return
             if unavailable is not None:
-                run.keep(_without(job, unavailable.status, unavailable.message))
+                run.keep(msgspec.structs.replace(job, status="unavailable", message=unavailable))
                 continue
             row = _untuned(run, process, job) or _accuracy(run, process, job)
             if row.status == "unavailable":
-                unavailable = row
+                unavailable = row.message
             run.keep(row)
 
 
-def _without(job: Row, status: Status, message: str) -> Row:
+def _without(job: Row, reply: Mapping[str, Any]) -> Row:
     """A row that says why it has no value."""
-    return msgspec.structs.replace(job, status=status, message=message)
+    return msgspec.structs.replace(job, status=reply["status"], message=reply.get("message", ""))
+
+
+def _measured(job: Row, values: Sequence[float], known: Mapping[str, Any], **more: Any) -> Row:
+    """A row with the middle of its values, and with the settings that a reply tells."""
+    return msgspec.structs.replace(
+        job,
+        status=OK,
+        message="",
+        value=statistics.median(values),
+        options=known["options"],
+        why=tuple(known["why"]),
+        repeats=len(values),
+        spread=max(values) - min(values),
+        **more,
+    )
 
 
 def _untuned(run: _Run, process: EngineProcess, job: Row) -> Row | None:
@@ -251,20 +265,9 @@ def _accuracy(run: _Run, process: EngineProcess, job: Row) -> Row:
     for _ in range(run.request.repeat):
         reply = process.ask(message, run.request.deadline)
         if reply["status"] != OK:
-            return _without(job, reply["status"], reply.get("message", ""))
+            return _without(job, reply)
         values.append(reply["value"])
-    return msgspec.structs.replace(
-        job,
-        status=OK,
-        message="",
-        value=statistics.median(values),
-        options=reply["options"],
-        why=tuple(reply["why"]),
-        samples=tuple(reply.get("samples", ())),
-        details=reply["details"],
-        repeats=len(values),
-        spread=max(values) - min(values),
-    )
+    return _measured(job, values, reply, samples=tuple(reply.get("samples", ())), details=reply["details"])
 
 
 def _speed(run: _Run, job: Row) -> Row:
@@ -284,33 +287,24 @@ def _speed(run: _Run, job: Row) -> Row:
             for question in (message, {"do": "chunk", "steps": _TRIAL_STEPS}):
                 reply = process.ask(question, deadline)
                 if reply["status"] != OK:
-                    return _without(job, reply["status"], reply.get("message", ""))
+                    return _without(job, reply)
                 known = reply if "options" in reply else known
             steps.insert(0, max(5, round(_TRIAL_STEPS * stretch / reply["seconds"])))
         for _ in range(pairs):
             for process, n, found in ((other, steps[1], rates[1]), (one, steps[0], rates[0])):
                 reply = process.ask({"do": "chunk", "steps": n}, deadline)
                 if reply["status"] != OK:
-                    return _without(job, reply["status"], reply.get("message", ""))
+                    return _without(job, reply)
                 found.append(n / reply["seconds"])
     ratios = [mine / theirs for mine, theirs in zip(*rates, strict=True)]
-    return msgspec.structs.replace(
-        job,
-        status=OK,
-        message="",
-        value=statistics.median(ratios),
-        options=known["options"],
-        why=tuple(known["why"]),
-        details={
-            "steps_per_second": statistics.median(rates[0]),
-            "slowest": min(rates[0]),
-            "fastest": max(rates[0]),
-            "pymunk_steps_per_second": statistics.median(rates[1]),
-            "contacts": known["contacts"],
-        },
-        repeats=pairs,
-        spread=max(ratios) - min(ratios),
-    )
+    details = {
+        "steps_per_second": statistics.median(rates[0]),
+        "slowest": min(rates[0]),
+        "fastest": max(rates[0]),
+        "pymunk_steps_per_second": statistics.median(rates[1]),
+        "contacts": known["contacts"],
+    }
+    return _measured(job, ratios, known, details=details)
 
 
 #: How long an engine may take to load, s: usually 0.1 to 0.6, several times that from a cold disk.
@@ -355,12 +349,11 @@ class EngineProcess:
             started = self._start()
             if started["status"] != "ok":
                 return started
-        process = self._process
-        if process is None or process.stdin is None:
-            return {"status": "failed", "message": "The process could not be started."}
+        process = cast("subprocess.Popen[str]", self._process)
+        asked = cast("IO[str]", process.stdin)
         try:
-            process.stdin.write(json.dumps({**job, "seconds": seconds}) + "\n")
-            process.stdin.flush()
+            asked.write(json.dumps({**job, "seconds": seconds}) + "\n")
+            asked.flush()
         except OSError:
             return self._died()
         return self._read(seconds)
@@ -408,15 +401,14 @@ class EngineProcess:
 
     def _died(self) -> dict[str, Any]:
         """The message about a process that ended by itself."""
-        process, code = self._process, None
-        if process is not None:
-            try:
-                code = process.wait(timeout=5)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                code = process.wait()
+        process = cast("subprocess.Popen[str]", self._process)
+        try:
+            code = process.wait(timeout=5)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            code = process.wait()
         how = f"It ended with exit code {code}."
-        if code is not None and code < 0:
+        if code < 0:
             try:
                 how = f"It was ended by {signal.Signals(-code).name}."
             except ValueError:
@@ -426,8 +418,6 @@ class EngineProcess:
         return {"status": "crash", "message": f"{how} {words}".strip()}
 
     def _last_words(self) -> str:
-        if self._words is None or self._words.closed:
-            return ""
         self._words.seek(0, os.SEEK_END)
         self._words.seek(max(0, self._words.tell() - 4096))
         lines = self._words.read().decode("utf-8", errors="replace").splitlines()

@@ -2,12 +2,14 @@
 
 import math
 import statistics
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import TypeVar
 
 from course.engines.registry import ENGINES
 from course.engines.results import DEFAULT, TUNED, Row, Setting
 from course.engines.scenarios import DT, IMPACTS, SCENARIOS
 
+T = TypeVar("T")
 #: Two engines whose energies agree to this fraction after ten seconds of chaos use the same algorithm: in
 #: double precision MuJoCo, Bullet 3 and DART agree to 1e-10, and PhysX in single precision to 1 %.
 _SAME = 1e-6
@@ -57,26 +59,31 @@ def fingerprints(rows: Iterable[Row]) -> str:
 
 def same_algorithm(rows: Iterable[Row]) -> str:
     """Engines whose double pendulum ends with the same energy, start by start."""
-    groups: list[tuple[list[float], list[str]]] = []
     rows = list(rows)
-    for setting in (DEFAULT, TUNED):
-        for engine, row in _of(rows, "double-pendulum", setting).items():
-            ends = row.details.get("at_the_end_percent", [])
-            name = ENGINES[engine].name
-            for known, names in groups:
-                if _agree(known, ends):
-                    if name not in names:
-                        names.append(name)
-                    break
-            else:
-                groups.append((ends, [name]))
-    same = [names for _ends, names in groups if len(names) > 1]
+    ends = [
+        (ENGINES[engine].name, row.details.get("at_the_end_percent", []))
+        for setting in (DEFAULT, TUNED)
+        for engine, row in _of(rows, "double-pendulum", setting).items()
+    ]
+    same = [names for names, _ in grouped(ends, _agree) if len(names) > 1]
     if not same:
         return ""
     return (
         "Same algorithm, same number: ten seconds of a chaotic swing end with the same energy, start "
         f"by start, in {'; and in '.join(_list(names) for names in same)}."
     )
+
+
+def grouped(found: Iterable[tuple[str, T]], alike: Callable[[T, T], bool]) -> list[tuple[list[str], T]]:
+    """Names in groups, each with what its first one has: a name joins the first group that is like it."""
+    groups: list[tuple[list[str], T]] = []
+    for name, thing in found:
+        names = next((names for names, known in groups if alike(known, thing)), None)
+        if names is None:
+            groups.append(([name], thing))
+        elif name not in names:
+            names.append(name)
+    return groups
 
 
 def _agree(one: Sequence[float], other: Sequence[float]) -> bool:

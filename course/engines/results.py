@@ -7,11 +7,13 @@ import json
 import os
 import platform
 import subprocess
-import tempfile
 from pathlib import Path
 from typing import Any, Literal
 
 import msgspec
+
+from course.errors import MissingCapabilityError
+from course.progress.workspace import write_atomically
 
 # ---
 # Which machine a measurement was made on, without personal data: no host, no path, no user.
@@ -216,12 +218,8 @@ class Cache:
         """Store a row, if it has a value and the folder can be written."""
         if not row.ok:
             return
-        path = self._path(key)
-        with contextlib.suppress(OSError):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            with tempfile.NamedTemporaryFile("wb", dir=path.parent, delete=False) as file:
-                file.write(msgspec.json.encode(row))
-            Path(file.name).replace(path)
+        with contextlib.suppress(MissingCapabilityError):
+            write_atomically(self._path(key), msgspec.json.encode(row))
 
     def _path(self, key: tuple[Any, ...]) -> Path:
         whole = json.dumps((*key, code_digest(), str(self._machine)))

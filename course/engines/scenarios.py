@@ -9,6 +9,7 @@ import statistics
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
@@ -210,17 +211,8 @@ def _clash(build: Build, dt: float, late: float) -> Outcome:
     return Outcome(change, {"velocities_m_s": after.v[:, 0].tolist(), "momentum_error_kg_m_s": lost})
 
 
-def bounce(build: Build, dt: float, quick: bool) -> Outcome:
-    """How high a ball comes back that falls from 1 m, m; the mean over phases."""
-    return _rebounds(build, dt, quick, 1.0, 1.0)
-
-
-def small_drop(build: Build, dt: float, quick: bool) -> Outcome:
-    """How high a ball comes back that falls from 2 cm, mm; the mean over phases."""
-    return _rebounds(build, dt, quick, 0.02, 1000.0)
-
-
-def _rebounds(build: Build, dt: float, quick: bool, height: float, unit: float) -> Outcome:
+def rebound(build: Build, dt: float, quick: bool, *, height: float, unit: float) -> Outcome:
+    """How high a ball comes back that falls from a height (m), in ``unit`` to the metre; mean over phases."""
     runs = [_rebound(build, dt, height, early, unit) for early in _phases(dt, quick)]
     return _one_of(statistics.fmean, runs)
 
@@ -505,7 +497,7 @@ SCENARIOS: dict[str, Scenario] = {
             0.25,
             "e² h",
             4,
-            bounce,
+            partial(rebound, height=1.0, unit=1.0),
         ),
         Scenario(
             "small-drop",
@@ -516,7 +508,7 @@ SCENARIOS: dict[str, Scenario] = {
             5.0,
             "e² h",
             2,
-            small_drop,
+            partial(rebound, height=0.02, unit=1000.0),
         ),
         Scenario(
             "slide",

@@ -7,36 +7,29 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from course.figures.style import METHODS, PALETTE, Array, new_figure, note, title, word
-from course.physics.body import Body
-from course.physics.contact import Surface
 from course.physics.contact.models import Constraint, Penalty, SoftConvex, drop, erp_cfm, slide_across
-from course.physics.rotation import ROTATION_STEPPERS, Spin, kinetic_energy
-from course.physics.simulator import Simulator
+from course.physics.rotation import ROTATION_STEPPERS, Spin, kinetic_energy, rotate
 from course.physics.solver import iterations_to, stack_impulses
-from course.physics.state import RigidBodyState
+from course.simulations.base import run
+from course.simulations.experiments.contact import rebounds
+from course.simulations.registry import get
 
 #: What the figures show and the captions quote: diameter of the ball, thickness of the wall (m), step (s).
 BALL_M, WALL_M, STEP_S = 0.02, 0.02, 0.01
 STACKS = (2, 5, 10, 20)
 
 
-def head_on(restitution: float | None) -> tuple[Array, Array]:
-    """Times (n + 1,) and positions (n + 1, 2), m, of two balls of radius 0.5 m; None: they pass through."""
-    starts = (RigidBodyState.of([x, 0, 0], [v, 0, 0]) for x, v in ((-5.0, 2.0), (5.0, -2.0)))
-    bodies = [Body.sphere(1.0, 0.5, start) for start in starts]
-    surface = Surface(0.0 if restitution is None else restitution)
-    engine = Simulator(
-        bodies, h=0.01, gravity=0.0, ground=None, surface=surface, contacts=restitution is not None
-    )
-    record = engine.run(5.0)
-    return record.t, record.position[:, :, 0]
+def head_on(restitution: float) -> tuple[Array, Array]:
+    """Times (n + 1,) and positions (n + 1, 2), m, of the two balls of the simulation of a collision."""
+    result = run(get("collision"), [f"restitution={restitution:g}"])
+    return result.column("t"), np.stack([result.column("x1"), result.column("x2")], axis=-1)
 
 
 def pair() -> Figure:
     """Two balls head on: without contact they trade places, with it they part at e times their speed."""
     figure, (left, right) = new_figure(3.6, 1, 2, sharex=True, sharey=True)
-    t, x = head_on(None)
-    _two(left, t, x, "-")
+    t, x = head_on(1.0)
+    _two(left, t, x[0] + np.array([2.0, -2.0]) * t[:, None], "-")
     left.set_title("No contact: they change sides")
     for e, line in ((1.0, "-"), (0.5, "--"), (0.0, ":")):
         t, x = head_on(e)
@@ -143,21 +136,11 @@ def rest() -> Figure:
     return figure
 
 
-def rebounds(model: Constraint, parts: Array = PHASES, h: float = _STEP_S) -> Array:
-    """First rebounds, as shares of the height, of a ball dropped from 1 m and a fraction of a step more."""
-    tops = []
-    for part in parts:
-        height = 1.0 + float(part) * h * math.sqrt(2 * _G)
-        gaps, speeds = drop(model, height, 0.0, h, round(1.1 / h), _G)
-        tops.append(float(np.max(gaps[int(np.argmax(speeds > 0)) :])) / height)
-    return np.array(tops)
-
-
 def phases() -> Figure:
     """The rebound over the phase of the step: exact, looked at once a step, and with correction."""
     figure, (axes,) = new_figure(3.6)
-    plain, corrected = rebounds(Constraint(0.5)), rebounds(Constraint(0.5, erp=0.2))
-    for values, color, line in ((plain, "blue", "-"), (corrected, "vermillion", "--")):
+    for erp, color, line in ((0.0, "blue", "-"), (0.2, "vermillion", "--")):
+        values = rebounds(Constraint(0.5, erp=erp), 1.0, PHASES, _STEP_S, _G)
         # The tooth's edge is a jump, so no line is drawn across it.
         broken = np.where(np.abs(np.diff(values, prepend=values[0])) > 0.02, np.nan, values)
         axes.plot(PHASES, broken, color=PALETTE[color], linestyle=line, linewidth=1.8)
@@ -253,15 +236,9 @@ WORLD_STEP_S, DURATION_S = 0.01, 20.0
 def free_spin(method: str) -> tuple[Array, Array, Array]:
     """Times (n + 1,), angular velocities (n + 1, 3) and quaternion lengths (n + 1,) of a free body."""
     n = round(DURATION_S / WORLD_STEP_S)
-    t = np.linspace(0.0, n * WORLD_STEP_S, n + 1)
-    inertia, no_torque = np.array(INERTIA), np.zeros(3)
-    spin = Spin(np.array([1.0, 0.0, 0.0, 0.0]), np.array(SPIN))
-    spins, lengths = [spin.angular_velocity], [1.0]
-    for _ in range(n):
-        spin = ROTATION_STEPPERS[method].advance(inertia, spin, no_torque, WORLD_STEP_S)
-        spins.append(spin.angular_velocity)
-        lengths.append(float(np.linalg.norm(spin.orientation)))
-    return t, np.array(spins), np.array(lengths)
+    start = Spin(np.array([1.0, 0.0, 0.0, 0.0]), np.array(SPIN))
+    q, w = rotate(ROTATION_STEPPERS[method], np.array(INERTIA), start, WORLD_STEP_S, n)
+    return np.linspace(0.0, n * WORLD_STEP_S, n + 1), w, np.linalg.norm(q, axis=-1)
 
 
 def turning_over() -> Figure:

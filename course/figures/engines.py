@@ -13,7 +13,7 @@ from matplotlib.patheffects import withStroke
 
 from course.engines import reference
 from course.engines.compare import LADDER
-from course.engines.findings import slope
+from course.engines.findings import grouped, slope
 from course.engines.registry import ENGINES
 from course.engines.results import DEFAULT, TUNED, Row, Setting
 from course.engines.scenarios import BOXES, SCENARIOS
@@ -184,33 +184,22 @@ def _steps(rows: Sequence[Row]) -> Figure:
     if len(tests) == 1:  # which has a heading, too
         figure.subplots_adjust(top=figure.subplotpars.top - 0.05)
     for axes, test in zip(panels, tests, strict=True):
-        groups = _alike(_ladders(rows, test))
+        groups = grouped(_ladders(rows, test).items(), _alike)
         for engines, points in groups:
             _curve(axes, engines, points)
         _frame_steps(axes, _TESTS[test], [point for _engines, points in groups for point in points])
     # The names are placed by the limits that both panels share.
     for axes, test in zip(panels, tests, strict=True):
-        _names(figure, axes, _alike(_ladders(rows, test)))
+        _names(figure, axes, grouped(_ladders(rows, test).items(), _alike))
     panels[0].set_ylabel("error (%)")
     title(figure, "The slope is the order of the method: most engines are first order")
     return figure
 
 
-def _alike(
-    ladders: dict[str, list[tuple[float, float]]],
-) -> list[tuple[list[str], list[tuple[float, float]]]]:
-    """Groups of engines whose curves look like one over ten decades."""
-    groups: list[tuple[list[str], list[tuple[float, float]]]] = []
-    for engine, points in ladders.items():
-        for engines, known in groups:
-            if [dt for dt, _ in known] == [dt for dt, _ in points] and np.allclose(
-                [e for _, e in known], [e for _, e in points], rtol=_ALIKE
-            ):
-                engines.append(engine)
-                break
-        else:
-            groups.append(([engine], points))
-    return groups
+def _alike(one: list[tuple[float, float]], other: list[tuple[float, float]]) -> bool:
+    """Whether two curves look like one over ten decades."""
+    (one_dt, one_error), (other_dt, other_error) = zip(*one, strict=True), zip(*other, strict=True)
+    return one_dt == other_dt and np.allclose(one_error, other_error, rtol=_ALIKE)
 
 
 def _curve(axes: Axes, engines: list[str], points: list[tuple[float, float]]) -> None:

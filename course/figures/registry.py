@@ -80,7 +80,6 @@ def build(figure_id: str) -> Figure:
 
 
 def png(figure_id: str) -> bytes:
-    """A figure as a PNG file."""
     from course.figures.style import file_of
 
     return file_of(lambda: build(figure_id), "png")

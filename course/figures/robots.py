@@ -6,8 +6,6 @@ the foot is long, and it acts on the state of some time ago.
 """
 
 import math
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,7 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from course.figures.style import PALETTE, Array, new_figure, note, title, word
-from course.physics.dynamics import HandPath, TwoLinkArm
+from course.physics.dynamics import DrivenArm, HandPath, TwoLinkArm
 from course.physics.integrators import RK4, State, trajectory
 
 #: What the figure shows and its caption quotes: tries a side, and the delay of the real robot.
@@ -104,34 +102,13 @@ def _name(axes: Axes, regions: list[tuple[float, float, str]]) -> None:
 START, END, LOAD_KG = (1.2, -0.8), (0.6, 1.2), 0.1
 _ARM_STEP = 0.01  # s
 _ARM = TwoLinkArm()
+#: The arm with a point mass (kg) in its hand.
+loaded = _ARM.carrying
 
 
 def path(duration: float) -> HandPath:
     """The straight path of the hand from START to END, in so many seconds."""
     return HandPath(START, END, duration)
-
-
-def loaded(mass: float) -> TwoLinkArm:
-    """The arm with a point mass (kg) in its hand."""
-    whole = _ARM.mass2 + mass
-    centre = (_ARM.mass2 * _ARM.centre2 + mass * _ARM.length2) / whole
-    spread = _ARM.mass2 * (centre - _ARM.centre2) ** 2 + mass * (_ARM.length2 - centre) ** 2
-    return replace(_ARM, mass2=whole, centre2=centre, inertia2=_ARM.inertia2 + spread)
-
-
-class _Driven:
-    """An arm under the torques planned for the bare arm, with or without feedback, to be integrated."""
-
-    def __init__(self, arm: TwoLinkArm, plan: HandPath, stiffness: float, damping: float) -> None:
-        self.arm, self.plan, self.stiffness, self.damping = arm, plan, stiffness, damping
-
-    def __call__(self, t: float, q: ArrayLike, v: ArrayLike) -> Array:
-        wanted, rate, change = self.plan.joints(_ARM, t)
-        correction = self.stiffness * (wanted - np.asarray(q)) + self.damping * (rate - np.asarray(v))
-        return self.arm.forward(q, v, _ARM.inverse(wanted, rate, change) + correction)
-
-    def params(self) -> dict[str, Any]:
-        return {}
 
 
 def driven(load: float, *, feedback: bool = False) -> Array:
@@ -145,7 +122,9 @@ def driven(load: float, *, feedback: bool = False) -> Array:
     q, v, _ = plan.joints(_ARM, 0.0)
     arm = loaded(load) if load > 0 else _ARM
     gains = (100.0, 20.0) if feedback else (0.0, 0.0)
-    run = trajectory(RK4(), _Driven(arm, plan, *gains), State.of(q, v), _ARM_STEP, round(1.0 / _ARM_STEP))
+    run = trajectory(
+        RK4(), DrivenArm(arm, _ARM, plan, *gains), State.of(q, v), _ARM_STEP, round(1.0 / _ARM_STEP)
+    )
     return arm.hand(run.q)
 
 
@@ -277,19 +256,21 @@ _LOOKS = {
     "model": (PALETTE["vermillion"], "D"),
 }
 
-#: What is wrong -> which kind of mistake it is.
-MISTAKES = {
-    "step of 1 ms": "numerical",
-    "step of 10 ms": "numerical",
-    "speed sensor 1 % off": "sensor",
-    "floor tilted by 1°": "environment",
-    "friction 10 % too high": "model",
-    "delay of 50 ms left out": "model",
+_TILT = math.radians(1.0)
+#: What is wrong -> which kind of mistake it is, what it changes for ``stop``, and what for ``bounce``, where
+#: neither the floor's friction nor a late brake matters.
+MISTAKES: dict[str, tuple[str, dict[str, float], dict[str, float] | None]] = {
+    "step of 1 ms": ("numerical", {"h": 1e-3}, {"h": 1e-3}),
+    "step of 10 ms": ("numerical", {"h": 1e-2}, {"h": 1e-2}),
+    "speed sensor 1 % off": ("sensor", {"speed": 2.0 * 1.01}, {"speed": 3.0 * 1.01}),
+    "floor tilted by 1°": ("environment", {"tilt": _TILT}, {"tilt": _TILT}),
+    "friction 10 % too high": ("model", {"friction": 0.5 * 1.1}, None),
+    "delay of 50 ms left out": ("model", {"delay": 0.05}, None),
 }
 
 
 def stop(
-    h: float, *, speed: float = 2.0, friction: float = 0.5, tilt: float = 0.0, delay: float = 0.0
+    *, h: float = _FINE, speed: float = 2.0, friction: float = 0.5, tilt: float = 0.0, delay: float = 0.0
 ) -> float:
     """Distance that a braking robot slides, m, by semi-implicit Euler.
 
@@ -307,7 +288,7 @@ def stop(
     return distance
 
 
-def bounce(h: float, *, speed: float = 3.0, tilt: float = 0.0) -> float:
+def bounce(*, h: float = _FINE, speed: float = 3.0, tilt: float = 0.0) -> float:
     """Height that a foot of 1 kg rebounds to, m, by semi-implicit Euler; its contact is a spring of 1e5 N/m.
 
     Args:
@@ -325,26 +306,11 @@ def bounce(h: float, *, speed: float = 3.0, tilt: float = 0.0) -> float:
 def budgets() -> dict[str, dict[str, float]]:
     """Question -> mistake -> how far the answer is off, as a share of it."""
     far, high = 2.0**2 / (2 * 0.5 * _GRAVITY), 3.0**2 / (2 * _GRAVITY)
-    distances = [
-        stop(1e-3),
-        stop(1e-2),
-        stop(_FINE, speed=2.0 * 1.01),
-        stop(_FINE, tilt=math.radians(1.0)),
-        stop(_FINE, friction=0.5 * 1.1),
-        stop(_FINE, delay=0.05),
-    ]
-    # Neither the floor's friction nor a late brake matters in a bounce: two answers are right as they are.
-    heights = [
-        bounce(1e-3),
-        bounce(1e-2),
-        bounce(_FINE, speed=3.0 * 1.01),
-        bounce(_FINE, tilt=math.radians(1.0)),
-        high,
-        high,
-    ]
+    stops = {name: stop(**wrong) for name, (_, wrong, _) in MISTAKES.items()}
+    heights = {name: high if wrong is None else bounce(**wrong) for name, (_, _, wrong) in MISTAKES.items()}
     return {
-        "Where does it stop?": dict(zip(MISTAKES, [abs(x / far - 1.0) for x in distances], strict=True)),
-        "How high does it bounce?": dict(zip(MISTAKES, [abs(x / high - 1.0) for x in heights], strict=True)),
+        "Where does it stop?": {name: abs(x / far - 1.0) for name, x in stops.items()},
+        "How high does it bounce?": {name: abs(x / high - 1.0) for name, x in heights.items()},
     }
 
 
@@ -354,7 +320,7 @@ def two_questions() -> Figure:
     figure.subplots_adjust(left=0.27, wspace=0.1)
     for axes, (question, found) in zip(panels, budgets().items(), strict=True):
         for row, (name, share) in enumerate(found.items()):
-            _dot(axes, row, 100.0 * share, *_LOOKS[MISTAKES[name]])
+            _dot(axes, row, 100.0 * share, *_LOOKS[MISTAKES[name][0]])
         axes.set_title(question)
         axes.set(xscale="log", xlim=(0.03, 4e5), ylim=(-0.6, len(MISTAKES) - 0.4))
         axes.set_xticks([0.1, 1, 10, 100, 1000, 10_000], ["0.1", "1", "10", "100", "1000", ""])

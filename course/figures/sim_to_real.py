@@ -8,9 +8,8 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from course.figures.style import INK, PALETTE, Array, new_figure, note, ring, title, word
-from course.physics.dynamics import PassiveArm, TwoLinkArm
-from course.physics.integrators import RK4, State, trajectory
 from course.physics.solver import Chain
+from course.simulations.experiments.dynamics import from_hanging, swing
 
 _H, _STEPS = 0.005, 600  # s; 3 s altogether
 
@@ -181,7 +180,6 @@ def following() -> Figure:
 NUDGE, STARTS = 1e-9, 400
 #: Angles of both rods from hanging, degrees, and how far apart a crowd starts, rad.
 _LET_GO, _SPREAD = (160.0, -95.0), 1e-3
-_WORK = 16  # sweeps over the chain a frame
 
 
 def fall_error(step: float, kind: type[np.floating], g: float = 9.81) -> float:
@@ -217,45 +215,21 @@ def small_steps() -> Figure:
     return figure
 
 
-@cache
-def splits() -> tuple[tuple[int, int, float], ...]:
-    """Substeps, iterations and the greatest stretch of a link (share): equal work over 2 s."""
-    halves = range(round(math.log2(_WORK)) + 1)
-    pairs = [(2**k, _WORK // 2**k) for k in halves]
-    return tuple((s, i, float(np.max(Chain().stretch(2.0, 1 / 60, s, i)))) for s, i in pairs)
-
-
 def substeps() -> Figure:
-    """Greatest stretch of a chain for five ways to spend sixteen sweeps a frame."""
+    """Greatest stretch of a chain for five ways to spend sixteen sweeps a frame over 2 s."""
     figure, (axes,) = new_figure(3.4)
-    rows = splits()
-    places = range(len(rows))
-    axes.bar(
-        places, [100 * stretch for _, _, stretch in rows], color=PALETTE["sky"], edgecolor=PALETTE["blue"]
-    )
-    for x, (_, _, stretch) in zip(places, rows, strict=True):
-        word(axes, x, 100 * stretch + 0.15, f"{100 * stretch:.1f} %", ha="center")
-    axes.set_xticks(places, [f"{s} × {i}" for s, i, _ in rows])
+    splits = [(1, 16), (2, 8), (4, 4), (8, 2), (16, 1)]
+    stretches = [100 * float(np.max(Chain().stretch(2.0, 1 / 60, *split))) for split in splits]
+    places = range(len(splits))
+    axes.bar(places, stretches, color=PALETTE["sky"], edgecolor=PALETTE["blue"])
+    for x, stretch in zip(places, stretches, strict=True):
+        word(axes, x, stretch + 0.15, f"{stretch:.1f} %", ha="center")
+    axes.set_xticks(places, [f"{s} × {i}" for s, i in splits])
     axes.set(ylim=(0, 9.6))
     axes.grid(visible=False, axis="x")
     axes.set(xlabel="substeps × iterations (number each frame)", ylabel="greatest stretch of a link (%)")
     title(figure, "For the same work, many small steps beat many iterations")
     return figure
-
-
-def swing(starts: Array, step: float, duration: float) -> tuple[Array, Array]:
-    """Release double pendulums, all at once.
-
-    Args:
-        starts: angles of both rods from hanging, rad, shape (..., 2).
-
-    Returns:
-        Times (n + 1,) and the angles from hanging (n + 1, ..., 2).
-    """
-    joints = np.stack([starts[..., 0] - math.pi / 2, starts[..., 1] - starts[..., 0]], axis=-1)
-    pendulum = PassiveArm(TwoLinkArm.double_pendulum())
-    run = trajectory(RK4(), pendulum, State.at_rest(joints), step, round(duration / step))
-    return run.t, np.cumsum(run.q, axis=-1) + math.pi / 2
 
 
 @cache
@@ -265,8 +239,8 @@ def _crowd(step: float) -> tuple[float, ...]:
     By then the paths of different steps have parted; those of different machines, by rounding, have not yet.
     """
     start = np.radians(_LET_GO) + _SPREAD * np.random.default_rng(1).standard_normal((STARTS, 2))
-    t, angles = swing(start, step, 15.0)
-    lower = (angles[t >= 8.0, :, 1] + math.pi) % (2 * math.pi) - math.pi
+    t, joints, _ = swing(start, step, round(15.0 / step))
+    lower = (from_hanging(joints)[t >= 8.0, :, 1] + math.pi) % (2 * math.pi) - math.pi
     counts, _ = np.histogram(lower, bins=18, range=(-math.pi, math.pi))
     return tuple(100 * counts / lower.size)
 
@@ -276,7 +250,8 @@ def chaos() -> Figure:
     figure, (left, right) = new_figure(3.7, 1, 2)
     figure.subplots_adjust(wspace=0.26)
     pair = np.radians(_LET_GO) + np.array([[0.0, 0.0], [NUDGE, 0.0]])
-    t, angles = swing(pair, 0.005, 15.0)
+    t, joints, _ = swing(pair, 0.005, 3000)
+    angles = from_hanging(joints)
     apart = np.max(np.abs(angles[:, 1] - angles[:, 0]), axis=-1)
     left.plot(t[1:], apart[1:], color=PALETTE["blue"], linewidth=1.2)
     for level, text, place in ((1e-3, "a thousandth", (0.4, 3e-2)), (1.0, "1 rad", (4.2, 2.0e1))):

@@ -17,7 +17,7 @@ Algorithms, 2008, chapter 5.
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -63,6 +63,13 @@ class TwoLinkArm:
     def double_pendulum(cls, length: float = 1.0, mass: float = 1.0, g: float = 9.81) -> TwoLinkArm:
         """Two equal point masses at the ends of two equal rods without mass."""
         return cls(length, length, mass, mass, length, length, 0.0, 0.0, g)
+
+    def carrying(self, mass: float) -> TwoLinkArm:
+        """The same arm with a point mass (kg) in its hand."""
+        whole = self.mass2 + mass
+        centre = (self.mass2 * self.centre2 + mass * self.length2) / whole
+        spread = self.mass2 * (centre - self.centre2) ** 2 + mass * (self.length2 - centre) ** 2
+        return replace(self, mass2=whole, centre2=centre, inertia2=self.inertia2 + spread)
 
     def mass_matrix(self, q: ArrayLike) -> Array:
         """The matrix between accelerations and torques at rest, kg m², shape (..., 2, 2)."""
@@ -238,6 +245,33 @@ class HandPath:
             np.linalg.solve(j, (acceleration - inward)[..., None])[..., 0], dtype=np.float64
         )
         return q, v, a
+
+
+@dataclass(frozen=True, slots=True)
+class DrivenArm:
+    """An arm under the torques that were planned for another one, as a system that any stepper can integrate.
+
+    Attributes:
+        arm: the one that moves.
+        planned: the one that the torques along ``path`` were computed for.
+        stiffness, damping: of the feedback, N m/rad and N m s/rad: times the errors of the joints.
+    """
+
+    arm: TwoLinkArm
+    planned: TwoLinkArm
+    path: HandPath
+    stiffness: float = 0.0
+    damping: float = 0.0
+
+    def __call__(self, t: float, q: ArrayLike, v: ArrayLike) -> Array:
+        """Joint accelerations, rad/s², shape (..., 2)."""
+        wanted, rate, change = self.path.joints(self.planned, t)
+        correction = self.stiffness * (wanted - np.asarray(q)) + self.damping * (rate - np.asarray(v))
+        return self.arm.forward(q, v, self.planned.inverse(wanted, rate, change) + correction)
+
+    def params(self) -> dict[str, Any]:
+        """The numbers of the arm that moves, by name."""
+        return asdict(self.arm)
 
 
 def smooth_share(s: ArrayLike) -> tuple[Array, Array, Array]:

@@ -148,6 +148,19 @@ class SplitRotation:
         return Spin(q, (momentum + 0.5 * h * torque) / inertia)
 
 
+def rotate(stepper: RotationStepper, inertia: Array, start: Spin, h: float, n: int) -> tuple[Array, Array]:
+    """n steps of h (s) of a body that no torque acts on.
+
+    Returns:
+        Orientations (n + 1, 4) and angular velocities (n + 1, 3), rad/s, body axes; the start included.
+    """
+    spins = [start]
+    for _ in range(n):
+        spins.append(stepper.advance(inertia, spins[-1], np.zeros(3), h))
+    q, w = (np.array(column) for column in zip(*spins, strict=True))
+    return q, w
+
+
 #: q times the unit quaternion of a body axis is q with its components in this order and with these signs.
 _ORDER = ([1, 0, 3, 2], [2, 3, 0, 1], [3, 2, 1, 0])
 _SIGNS = tuple(np.array(signs) for signs in ([-1.0, 1, 1, -1], [-1.0, -1, 1, 1], [-1.0, 1, -1, 1]))

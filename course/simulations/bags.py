@@ -55,7 +55,35 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class ImuStream:
+class _Timed:
+    """Of every stream: its arrays are float arrays that fit together, its numbers floats."""
+
+    t: Array
+
+    def __post_init__(self) -> None:
+        kind = next(name for name, made in KINDS.items() if made is type(self))
+        t = _array(self.t, kind, "t")
+        if not (np.all(np.isfinite(t)) and np.all(np.diff(t) >= 0) and np.all((t >= 0) & (t < _LATEST))):
+            raise UsageError(
+                f"The times of the stream {kind!r} are not finite, ordered and from 0 on.",
+                help="Give seconds from the start of the recording, in order; a stamp has 31 bits for them.",
+                code="stream_times",
+            )
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.type == "Array":
+                value = _array(value, kind, field.name)
+                if len(value) != len(t):
+                    raise UsageError(
+                        f"The stream {kind!r} has {len(t)} times and {len(value)} of {field.name}.",
+                        help="Give one row for each time.",
+                        code="stream_shape",
+                    )
+            object.__setattr__(self, field.name, float(value) if field.type == "float" else value)
+
+
+@dataclass(frozen=True, eq=False)
+class ImuStream(_Timed):
     """A gyroscope about the vertical axis.
 
     Attributes:
@@ -65,17 +93,13 @@ class ImuStream:
         frame: where the sensor sits.
     """
 
-    t: Array
     angular_velocity_z: Array
     variance: float = 0.0
     frame: str = "base_link"
 
-    def __post_init__(self) -> None:
-        _settle(self, ("angular_velocity_z",))
-
 
 @dataclass(frozen=True, eq=False)
-class ScanStream:
+class ScanStream(_Timed):
     """A planar laser scanner.
 
     Attributes:
@@ -87,19 +111,15 @@ class ScanStream:
         frame: where the scanner sits.
     """
 
-    t: Array
     ranges: Array
     angle_min: float
     angle_increment: float
     range_max: float
     frame: str = "base_link"
 
-    def __post_init__(self) -> None:
-        _settle(self, ("ranges",), dimensions=2)
-
 
 @dataclass(frozen=True, eq=False)
-class OdometryStream:
+class OdometryStream(_Timed):
     """Where the robot believes it is, by its wheels.
 
     Attributes:
@@ -112,7 +132,6 @@ class OdometryStream:
         position_variance, heading_variance: m² and rad²; 0 if they are not known.
     """
 
-    t: Array
     x: Array
     y: Array
     heading: Array
@@ -122,9 +141,6 @@ class OdometryStream:
     child_frame: str = "base_link"
     position_variance: float = 0.0
     heading_variance: float = 0.0
-
-    def __post_init__(self) -> None:
-        _settle(self, ("x", "y", "heading", "speed", "turn_rate"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,33 +203,8 @@ def streams_from(plain: Mapping[str, Mapping[str, Any]]) -> tuple[Stream, ...]:
     return tuple(streams)
 
 
-def _settle(stream: Stream, names: tuple[str, ...], dimensions: int = 1) -> None:
-    """Make the arrays of a stream float arrays that fit together, and its numbers floats."""
-    kind = next(name for name, made in KINDS.items() if made is type(stream))
-    t = _array(stream.t, kind, "t", 1)
-    if not (np.all(np.isfinite(t)) and np.all(np.diff(t) >= 0) and np.all((t >= 0) & (t < _LATEST))):
-        raise UsageError(
-            f"The times of the stream {kind!r} are not finite, ordered and from 0 on.",
-            help="Give seconds from the start of the recording, in order; a stamp has 31 bits for them.",
-            code="stream_times",
-        )
-    object.__setattr__(stream, "t", t)
-    for name in names:
-        array = _array(getattr(stream, name), kind, name, dimensions)
-        if len(array) != len(t):
-            raise UsageError(
-                f"The stream {kind!r} has {len(t)} times and {len(array)} of {name}.",
-                help="Give one row for each time.",
-                code="stream_shape",
-            )
-        object.__setattr__(stream, name, array)
-    for field in fields(stream):
-        if field.type == "float":
-            object.__setattr__(stream, field.name, float(getattr(stream, field.name)))
-
-
-def _array(value: Any, kind: str, name: str, dimensions: int) -> Array:
-    array = np.array(value, dtype=float)
+def _array(value: Any, kind: str, name: str) -> Array:
+    array, dimensions = np.array(value, dtype=float), 2 if name == "ranges" else 1
     if array.ndim != dimensions:
         raise UsageError(
             f"{name} of the stream {kind!r} has {counted(array.ndim, 'dimension')}, not {dimensions}.",

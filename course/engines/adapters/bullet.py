@@ -20,8 +20,6 @@ _ITERATIONS = 10
 
 
 class EngineWorld:
-    """A scene as a Bullet world."""
-
     def __init__(self, scene: Scene, options: Mapping[str, Any]) -> None:
         self._dt = scene.dt
         # A world reads them when it is created; the next one may need others.

@@ -17,8 +17,6 @@ from course.engines.base import Motion, Scene
 
 
 class EngineWorld:
-    """A scene as a MuJoCo model and its data."""
-
     def __init__(self, scene: Scene, options: Mapping[str, Any]) -> None:
         self.model = mujoco.MjModel.from_xml_string(_xml(scene, options))
         self.data = mujoco.MjData(self.model)

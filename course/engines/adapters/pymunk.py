@@ -15,8 +15,6 @@ from course.engines.base import Body, Motion, NotApplicableError, Scene, Wall
 
 
 class EngineWorld:
-    """A scene as a pymunk space."""
-
     def __init__(self, scene: Scene, options: Mapping[str, Any]) -> None:
         if scene.gravity[1] or any(body.velocity[1] for body in scene.bodies):
             raise NotApplicableError("The engine knows two dimensions only.")

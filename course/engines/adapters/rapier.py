@@ -13,8 +13,6 @@ from course.engines.base import Body, Motion, Scene
 
 
 class EngineWorld:
-    """A scene as a Rapier world."""
-
     def __init__(self, scene: Scene, options: Mapping[str, Any]) -> None:
         self.world = world = rapier.PhysicsWorld(gravity=scene.gravity)
         parameters = world.integration_parameters

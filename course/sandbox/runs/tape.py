@@ -201,13 +201,11 @@ class Tape:
                 raise UsageError("The film was stopped.", code="stopped")
         return reel.made(kind, FILM_FPS)
 
-    def mark(self, t: float) -> bool:
-        """A contact; returns whether it is far enough from the last one to be a mark of its own."""
-        gap = max(0.004, (self.times[-1] if self.times else 0.0) / 2000)
-        if self.marks and t - self.marks[-1] < gap:
-            return False
-        self.marks.insert(bisect_left(self.marks, t), t)
-        return True
+    def mark(self, t: float) -> None:
+        """A contact, if it is far enough from the last one to be a mark of its own."""
+        gap = max(0.004, self.times[-1] / 2000)
+        if not self.marks or t - self.marks[-1] >= gap:
+            self.marks.insert(bisect_left(self.marks, t), t)
 
     def _thin(self) -> None:
         """Of the older half every other frame goes."""

@@ -26,7 +26,6 @@ _MOST = 1000
 
 
 def _comb(n: float, k: float) -> float:
-    """How many ways to choose k of n."""
     if not 0 <= k <= n <= _MOST:
         raise ValueError(f"comb needs 0 <= k <= n <= {_MOST}")
     return float(math.comb(round(n), round(k)))

@@ -295,7 +295,6 @@ class Scene(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
     @property
     def materials(self) -> dict[str, Material]:
-        """Materials by name."""
         return {material.name: material for material in self.material}
 
     @property

@@ -101,13 +101,13 @@ class Moment:
 
 @dataclass
 class _Work:
-    """A moment that is being made again."""
+    """A moment that is being made again, and what could be undone and redone ``before``."""
 
     steps: Iterator[float]
     done: Callable[[], None]
     says: str
+    before: tuple[list[Moment], list[Moment]]
     share: float = 0.0
-    stage: dict[str, Any] = field(default_factory=dict)
 
 
 class Stage:
@@ -243,14 +243,14 @@ class Stage:
             self.way = int(on)
 
     def step(self, kind: str = "picture") -> None:
-        """Pause, and go on by one "picture", to the next "contact", or by one step of the "solver".
+        """Pause, and go on by a "picture", to the next "contact", by a step of the "solver", or "back".
 
         What is kept of the past are pictures: there a step of the solver is one of them.
         """
-        if self.at is not None:
-            on = self.at + _PICTURE * (-1 if kind == "back" else 1)
+        if self.at is not None or kind == "back":
+            on = self.t + _PICTURE * (-1 if kind == "back" else 1)
             if kind == "contact":  # the next that was marked, or else now
-                on = next((t for t in self.tape.marks if t > self.at), self.world.t)
+                on = next((t for t in self.tape.marks if t > self.t), self.world.t)
             self.look(on)
             return
         world, began = self.world, self.clock()
@@ -302,11 +302,12 @@ class Stage:
             return
         tick = self.tape.ticks[self.tape.at(self.at)]
         count = sum(one.tick <= tick for one in self.recording.inputs)
+        before = list(self._undos), list(self._redos)
         self._push(self._undos, self._now("going on from earlier"))
         self._redos.clear()
         t = self.tape.times[self.tape.at(self.at)]
         there = Moment(self.chosen, self.recording, count, tick, t)
-        self._make(there, f"Going on from {t:.2f} s", paused=False, ghost=True)
+        self._make(there, f"Going on from {t:.2f} s", before, paused=False, ghost=True)
 
     def undo(self) -> None:
         """Back to the moment before the last thing that was done."""
@@ -319,8 +320,7 @@ class Stage:
     def stop_work(self) -> None:
         """Give up what is being made again; everything is as it was."""
         if self._work is not None:
-            kept, self._work = self._work, None
-            self._undos, self._redos = kept.stage["undos"], kept.stage["redos"]
+            (self._undos, self._redos), self._work = self._work.before, None
             self.news.append("Stopped: everything is as it was.")
 
     def set_parameter(self, name: str, value: float) -> None:
@@ -384,8 +384,8 @@ class Stage:
         if world.paused or dt <= 0.0:
             return
         left = self.experiment.left()
-        stop = left is not None and dt * world.speed >= left
-        if stop and left is not None:
+        stop = dt * world.speed >= left
+        if stop:
             dt = left / world.speed
         parts = max(1, math.ceil(dt * world.speed / world.settings["step"] / _CHUNK))
         began, made = self.clock(), parts
@@ -450,21 +450,21 @@ class Stage:
             self.act("release")
         if not stack:
             raise UsageError(f"There is nothing to {which}.", code=f"no_{which}")
-        undos, redos = list(self._undos), list(self._redos)
+        before = list(self._undos), list(self._redos)
         there = stack.pop()
         self._push(other, self._now(there.why))
         self._last = ("", None, -math.inf)
         says = f"{which.capitalize()}: {there.why}, at {there.t:.2f} s"
-        self._make(there, says, paused=True, stacks=(undos, redos))
+        self._make(there, says, before, paused=True)
 
     def _make(
         self,
         there: Moment,
         says: str,
+        before: tuple[list[Moment], list[Moment]],
         *,
         paused: bool,
         ghost: bool = False,
-        stacks: tuple[list[Moment], list[Moment]] | None = None,
     ) -> None:
         """Begin to make a moment again; ``tick`` goes on with it."""
         world, recording, inputs = there.recording.begun(there.count, self.world.version + 1)
@@ -479,15 +479,14 @@ class Stage:
         def halt() -> float:
             """Where the comparison is made, and where what is known from a tape ends."""
             left = experiment.left()
-            ends = math.inf if left is None else world.ticks + math.ceil(left / world.settings["step"] - 1e-6)
+            ends = left if left == math.inf else world.ticks + math.ceil(left / world.settings["step"] - 1e-6)
             return min(ends, known_until if known_until > world.ticks else math.inf)
 
         def steps() -> Iterator[float]:
             skipping, frames = False, 0
             for share in remade(world, inputs, there.tick, halt):
                 # Taking in events books the steps, so it is done with the frames, which do that anyway.
-                left = experiment.left()
-                ended = share == 1.0 or world.ticks == known_until or (left is not None and left <= 1e-9)
+                ended = share == 1.0 or world.ticks == known_until or experiment.left() <= 1e-9
                 if ended or len(tape) != frames:
                     narrator.tell(_heard(world, experiment, tape), world.t)
                     experiment.passed()
@@ -497,7 +496,7 @@ class Stage:
                     tape.take_over(known, index)
                     narrator.forget()
                     skipping = False
-                elif world.ticks < known_until and not skipping and experiment.left() is None:
+                elif world.ticks < known_until and not skipping and experiment.left() == math.inf:
                     world.skip()
                     tape.end()
                     skipping = True
@@ -519,8 +518,7 @@ class Stage:
             self.anew += 1
             self.news.append(f"{says}.")
 
-        undos, redos = stacks if stacks else (self._undos[:-1], list(self._redos))
-        self._work = _Work(steps(), done, says, stage={"undos": undos, "redos": redos})
+        self._work = _Work(steps(), done, says, before)
         self._work_on(BUDGET)
 
     def _work_on(self, budget: float) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -147,21 +148,17 @@ class Experiment:
         if self.stage in {"ask", "run"} and len(self._events) < _MOST:
             self._events += [event for event in events if event.kind == "contact"]
 
-    def left(self) -> float | None:
-        """Simulated time until the comparison, in s; None if there will be none."""
+    def left(self) -> float:
+        """Simulated time until the comparison, in s; infinite if there will be none."""
         if self.stage not in {"ask", "run"}:
-            return None
+            return math.inf
         return max(0.0, self._chosen.scene.duration - self._world.t)
 
-    def passed(self) -> bool:
-        """After time has passed and ``take`` has the events: compare, if the run has reached its end.
-
-        Returns:
-            whether it was.
-        """
-        probes, left = self._probes, self.left()
-        if probes is None or left is None or left > 1e-9:
-            return False
+    def passed(self) -> None:
+        """After time has passed and ``take`` has the events: compare, if the run has reached its end."""
+        probes = self._probes
+        if probes is None or self.left() > 1e-9:
+            return
         comparison = probes.compared(probes.read(self._events), self.guess)
         self._comparison = msgspec.to_builtins(comparison)
         self.stage = "done"
@@ -169,7 +166,6 @@ class Experiment:
         self._world.on_block[:] = self._listeners
         if self.keep is not None and self.guess is not None and comparison is not None:
             self.keep(comparison)
-        return True
 
     @property
     def question(self) -> str:

@@ -294,7 +294,6 @@ class Clock:
         return self.since + (self.steps - self.at) * self.size
 
     def resize(self, size: float) -> None:
-        """Go on with steps of another size."""
         self.since, self.at = self.t, self.steps
         self.size = size
 
@@ -400,12 +399,12 @@ class Accounts:
         ledger = self.ledger
         had = ledger.given, ledger.contacts, ledger.friction, ledger.rods
         resized = block.first_step == self.clock.at + 1 > 1
-        lost = ledger.settle(block, self.clock.size, by_hand, self._ties, resized=resized)
+        contacts, friction, rods = ledger.settle(block, self.clock.size, by_hand, self._ties, resized=resized)
         ledger.given += float(given.sum())
         ledger.friction += float(rubbed.sum())
         every = max(1, round(_SAMPLE / self.clock.size))
         rows = slice((-block.first_step) % every, None, every)
-        changes = (np.cumsum([given, lost.contacts, lost.friction + rubbed, lost.rods], axis=1).T + had)[rows]
+        changes = (np.cumsum([given, contacts, friction + rubbed, rods], axis=1).T + had)[rows]
         self._remember(block.times[rows], block.states[rows], changes)
 
     def resume(self, sums: tuple[float, ...]) -> None:

@@ -143,7 +143,7 @@ class Ledger:
 
     def settle(
         self, block: Block, step: float, given: Floats | None, tied: Ties | None, *, resized: bool
-    ) -> Losses:
+    ) -> tuple[Floats, Floats, Floats]:
         """Book the losses of a block, each from the impulses of its own kind.
 
         Args:
@@ -153,6 +153,9 @@ class Ledger:
             tied: the joints, if there are any.
             resized: the step before the block had another size. Contacts then begin with the impulses of
                 that step times the ratio of the sizes, and the engine tells them without that factor.
+
+        Returns:
+            What each step lost in contacts, to friction and in rods, (k,) each, in J.
         """
         before, after = block.before, block.states[:, :, 3:]
         mean, half = (before + after) / 2, block.contacts.half
@@ -183,7 +186,7 @@ class Ledger:
         jumps = block.states[-1, :, :2] - block.start - before[:, :, :2].sum(axis=0) * step
         self.integrator += float((before - after).sum(axis=0).ravel() @ self._weight_force) * step / 2
         self.integrator += float(jumps.ravel() @ self._weight_force.reshape(-1, 3)[:, :2].ravel())
-        return Losses(contacts, friction, rods)
+        return contacts, friction, rods
 
     def _levers(self, block: Block, half: Floats) -> Floats:
         """The most that edges can turn each body beyond that, (k, n), in N m s."""
@@ -242,15 +245,6 @@ class Ledger:
 def _by_place(places: Ints, amounts: Floats, count: int) -> Floats:
     """Sums of the amounts that belong to the same place, (count,)."""
     return np.bincount(places, amounts, count).astype(np.float64, copy=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Losses:
-    """What each step lost in contacts, to friction and in rods, (k,) each, in J."""
-
-    contacts: Floats
-    friction: Floats
-    rods: Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -459,7 +453,6 @@ class Space:
         return float(found[key])
 
     def change(self, name: str, key: str, value: float) -> None:
-        """Change one of these."""
         part, body, shape = self._bodies[self._by_name[name]]
         match key:
             case "mass":

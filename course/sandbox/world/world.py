@@ -201,7 +201,6 @@ class World:
 
     @property
     def held(self) -> str | None:
-        """The body a hand holds."""
         return self._hand.name if self._hand else None
 
     def state(self) -> Floats:
@@ -209,7 +208,6 @@ class World:
         return self._space.state()
 
     def snapshot(self) -> Snapshot:
-        """Where everything is now."""
         hand = None
         if self._hand is not None:
             place = self._space.body(self._hand.name).local_to_world(self._hand.anchor)
@@ -295,7 +293,8 @@ class World:
             if self._waiting and self._waiting[-1].appears <= clock.t:
                 self._let_in()
             if pushed or self._hand is not None:
-                self._push()
+                speeds = self.settings.get("left", 0.0), self.settings.get("right", 0.0)
+                self._accounts.push(self._hand, self._wheeled, speeds, self.scene.floor)
             space.space.step(size)
             clock.steps += 1
             self.ticks += 1
@@ -587,10 +586,6 @@ class World:
             self._events.popleft()
             self.dropped += 1
         self._events.append(event)
-
-    def _push(self) -> None:
-        speeds = self.settings.get("left", 0.0), self.settings.get("right", 0.0)
-        self._accounts.push(self._hand, self._wheeled, speeds, self.scene.floor)
 
     def _settle(self) -> None:
         """Book the steps that were only copied so far, and report their contacts."""

@@ -80,7 +80,7 @@ def _run_collision(p: Mapping[str, Any]) -> Result:
     return Result(
         rows=rows,
         headline=_headline_collision(met, float(energy[0]), float(energy[-1]), end),
-        finding=_finding(p, met, float(energy[0]), float(energy[-1])),
+        finding=_finding_collision(p, met, float(energy[0]), float(energy[-1])),
         columns=(
             Column.of("t", "s", record.t),
             Column.of("x1", "m", x[:, 0]),
@@ -130,7 +130,7 @@ def _kept(before: float, after: float) -> str:
     return "none" if after <= 1e-9 * before else "nearly all" if share == "100 %" else share
 
 
-def _finding(p: Mapping[str, Any], met: float, before: float, after: float) -> str:
+def _finding_collision(p: Mapping[str, Any], met: float, before: float, after: float) -> str:
     if math.isnan(met):
         return f"Within {p['duration']:g} s the two do not touch; momentum and energy do not change."
     centres = p["distance"] / (p["speed1"] - p["speed2"])
@@ -179,18 +179,13 @@ COLLISION = Simulation(
 _PHASES = 40  # starts that differ by parts of a step, each in the middle of its part
 
 
-def _run(p: Mapping[str, Any]) -> Result:
+def _run_contact_models(p: Mapping[str, Any]) -> Result:
     h, g, e, erp = p["step"], p["gravity"], p["restitution"], p["erp"]
     phases = (np.arange(_PHASES) + 0.5) / _PHASES
-    heights = p["height"] + phases * h * math.sqrt(2 * g * p["height"])
-    models = _models(e, erp)
-    rebound = {
-        name: np.array([_rebound(model, z, h, g) / z for z in heights]) for name, model in models.items()
-    }
-    elastic = _models(1.0, erp)
-    kept = {
-        name: np.array([_rebound(model, z, h, g) / z for z in heights]) for name, model in elastic.items()
-    }
+    rebound, kept = (
+        {name: rebounds(model, p["height"], phases, h, g) for name, model in _models(each, erp).items()}
+        for each in (e, 1.0)
+    )
     thrown = _out_of_an_overlap(p)
     rows = (*_at_rest(p), *thrown, *_of_bounces(rebound, kept, e))
     higher = ", and higher with a smaller step" if erp * p["overlap"] else ""
@@ -271,6 +266,12 @@ def _of_bounces(rebound: Mapping[str, Array], kept: Mapping[str, Array], e: floa
     return tuple(rows)
 
 
+def rebounds(model: ContactModel, height: float, phases: Array, h: float, g: float) -> Array:
+    """First rebounds of a ball that falls from ``height`` (m) and parts of a step more, as shares of that."""
+    heights = height + phases * h * math.sqrt(2 * g * height)
+    return np.array([_rebound(model, z, h, g) / z for z in heights])
+
+
 def _rebound(model: ContactModel, height: float, h: float, g: float) -> float:
     """Top of the first bounce, m: the highest sample between the first that rises and the next that falls."""
     # Down takes one fall; up again another, or two more where a correction doubles the speed.
@@ -296,7 +297,7 @@ CONTACT_MODELS = Simulation(
         Parameter("gravity", 9.81, "m/s²", "acceleration downwards", low=0.1, high=100.0),
         step(high=0.05),
     ),
-    run=_run,
+    run=_run_contact_models,
 )
 
 

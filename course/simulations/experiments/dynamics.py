@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from course.physics.body import Body
 from course.physics.contact import Surface
-from course.physics.dynamics import HandPath, PassiveArm, TwoLinkArm
+from course.physics.dynamics import DrivenArm, HandPath, PassiveArm, TwoLinkArm
 from course.physics.integrators import RK4, STEPPERS, SemiImplicitEuler, State, trajectory
 from course.physics.invariants import energy, relative_change
 from course.physics.simulator import Simulator, step_count
@@ -37,19 +36,6 @@ Array = NDArray[np.float64]
 # An arm of two links: plan a path (kinematics), find the torques (inverse), let them act (forward).
 
 
-class _Driven:
-    """An arm under the torques that a plan computed for another one: open loop, no feedback."""
-
-    def __init__(self, arm: TwoLinkArm, planned: TwoLinkArm, path: HandPath) -> None:
-        self.arm, self.planned, self.path = arm, planned, path
-
-    def __call__(self, t: float, q: ArrayLike, v: ArrayLike) -> Array:
-        return self.arm.forward(q, v, self.planned.inverse(*self.path.joints(self.planned, t)))
-
-    def params(self) -> dict[str, Any]:
-        return {}
-
-
 def _run_dynamics(p: Mapping[str, Any]) -> Result:
     arm = TwoLinkArm()
     if (p["start_x"], p["start_y"]) == (p["end_x"], p["end_y"]):
@@ -60,8 +46,8 @@ def _run_dynamics(p: Mapping[str, Any]) -> Result:
     t = h * np.arange(n + 1)
     planned, rates, accelerations = path.joints(arm, t)
     torques = arm.inverse(planned, rates, accelerations)
-    real = _with_payload(arm, p["payload"])
-    run = trajectory(RK4(), _Driven(real, arm, path), State.of(planned[0], rates[0]), h, n)
+    real = arm.carrying(p["payload"])
+    run = trajectory(RK4(), DrivenArm(real, arm, path), State.of(planned[0], rates[0]), h, n)
     _refuse_runaway(h, run.q, run.v)
     back = arm.inverse(planned, rates, arm.forward(planned, rates, torques))
     missed = float(np.linalg.norm(real.hand(run.q[-1]) - np.asarray(path.end)))
@@ -94,16 +80,6 @@ def _refuse_runaway(h: float, *values: ArrayLike) -> None:
         raise ValueError(
             f"with a step of {h:g} s the motion runs away beyond all numbers; take a smaller step."
         )
-
-
-def _with_payload(arm: TwoLinkArm, mass: float) -> TwoLinkArm:
-    """The same arm with a point mass in its hand."""
-    whole = arm.mass2 + mass
-    centre = (arm.mass2 * arm.centre2 + mass * arm.length2) / whole
-    inertia = (
-        arm.inertia2 + arm.mass2 * (centre - arm.centre2) ** 2 + mass * (arm.length2 - centre) ** 2
-    )  # about the new centre of mass
-    return replace(arm, mass2=whole, centre2=centre, inertia2=inertia)
 
 
 def _kinematic_rows(p: Mapping[str, Any], arm: TwoLinkArm, path: HandPath, planned: Array) -> tuple[Row, Row]:
@@ -209,9 +185,10 @@ _CROWD = 400  # pendulums whose average is compared between two steps
 _SPREAD = 1e-3  # rad: how far apart they start
 _SEED = 1
 _FEWEST = 40  # steps
+_PENDULUM = TwoLinkArm.double_pendulum()
 
 
-def _run(p: Mapping[str, Any]) -> Result:
+def _run_chaos(p: Mapping[str, Any]) -> Result:
     h = p["step"]
     n = step_count(p["duration"], h)
     if n < _FEWEST:
@@ -222,12 +199,11 @@ def _run(p: Mapping[str, Any]) -> Result:
     if not (first or second):
         raise ValueError("both rods hang straight down and do not swing; set angle1_deg or angle2_deg.")
     pair = np.array([[first, second], [first + p["nudge"], second]])
-    pendulum = TwoLinkArm.double_pendulum()
-    t, q, v = _swing(pendulum, pair, h, n)
-    apart = np.max(np.abs(_from_hanging(q[:, 1]) - _from_hanging(q[:, 0])), axis=-1)
+    t, q, v = swing(pair, h, n)
+    apart = np.max(np.abs(from_hanging(q[:, 1]) - from_hanging(q[:, 0])), axis=-1)
     small, large = _first_above(t, apart, 1e-3), _first_above(t, apart, 1.0)
-    drift = float(np.max(np.abs(relative_change(pendulum.energy(q[:, 0], v[:, 0]) + _OFFSET))))
-    coarse, fine = _crowd(pendulum, first, second, h, n)
+    drift = float(np.max(np.abs(relative_change(_PENDULUM.energy(q[:, 0], v[:, 0]) + _OFFSET))))
+    coarse, fine = _crowd(first, second, h, n)
     _refuse_runaway(h, drift, coarse, fine)
     rows = (
         Row("separation passes 1e-3 rad", small, "s"),
@@ -239,12 +215,12 @@ def _run(p: Mapping[str, Any]) -> Result:
     )
     return Result(
         rows=rows,
-        headline=_headline(p, large),
-        finding=_finding(p, small, large, coarse, fine),
+        headline=_headline_chaos(p, large),
+        finding=_finding_chaos(p, small, large, coarse, fine),
         columns=(
             Column.of("t", "s", t),
             Column.of("separation", "rad", apart),
-            *(Column.of(f"angle{k + 1}_{name}", "rad", _from_hanging(q[:, i])[:, k])
+            *(Column.of(f"angle{k + 1}_{name}", "rad", from_hanging(q[:, i])[:, k])
               for i, name in enumerate(("a", "b")) for k in (0, 1)),
         ),
     )  # fmt: skip
@@ -254,14 +230,21 @@ def _run(p: Mapping[str, Any]) -> Result:
 _OFFSET = 3 * 9.81
 
 
-def _swing(pendulum: TwoLinkArm, hanging: Array, h: float, n: int) -> tuple[Array, Array, Array]:
-    """Let go of pendulums at angles from the downward vertical, shape (..., 2); the arm counts otherwise."""
+def swing(hanging: Array, h: float, n: int) -> tuple[Array, Array, Array]:
+    """Let go of double pendulums, all at once; n steps of h (s).
+
+    Args:
+        hanging: angles of both rods from the downward vertical, rad, shape (..., 2); an arm counts otherwise.
+
+    Returns:
+        Times (n + 1,) in s, and the joints of the arm and their rates, both (n + 1, ..., 2).
+    """
     upper = hanging[..., 0] - math.pi / 2
     joints = np.stack([upper, hanging[..., 1] - hanging[..., 0]], axis=-1)
-    return trajectory(RK4(), PassiveArm(pendulum), State.at_rest(joints), h, n)
+    return trajectory(RK4(), PassiveArm(_PENDULUM), State.at_rest(joints), h, n)
 
 
-def _from_hanging(q: Array) -> Array:
+def from_hanging(q: Array) -> Array:
     """Angles of both rods from the downward vertical, rad."""
     return np.stack([q[..., 0] + math.pi / 2, q[..., 0] + q[..., 1] + math.pi / 2], axis=-1)
 
@@ -280,23 +263,23 @@ def _growth(t: Array, apart: Array, nudge: float) -> float:
     return float(np.polyfit(t[fit], np.log(apart[fit]), 1)[0])
 
 
-def _crowd(pendulum: TwoLinkArm, first: float, second: float, h: float, n: int) -> tuple[float, float]:
+def _crowd(first: float, second: float, h: float, n: int) -> tuple[float, float]:
     """Kinetic energy of the upper bob, averaged over many starts and the second half, at 4 h and at 2 h."""
     starts = np.array([first, second]) + _SPREAD * np.random.default_rng(_SEED).standard_normal((_CROWD, 2))
     means = []
     for longer in (4, 2):
-        _, _, v = _swing(pendulum, starts, h * longer, n // longer)
+        _, _, v = swing(starts, h * longer, n // longer)
         means.append(float(np.mean(0.5 * v[n // longer // 2 :, :, 0] ** 2)))
     return means[0], means[1]
 
 
-def _headline(p: Mapping[str, Any], large: float) -> str:
+def _headline_chaos(p: Mapping[str, Any], large: float) -> str:
     if math.isnan(large):
         return f"{p['nudge']:.1g} rad apart at the start, still close after {p['duration']:g} s"
     return f"{p['nudge']:.1g} rad apart at the start, more than 1 rad after {digits(large)} s"
 
 
-def _finding(p: Mapping[str, Any], small: float, large: float, coarse: float, fine: float) -> str:
+def _finding_chaos(p: Mapping[str, Any], small: float, large: float, coarse: float, fine: float) -> str:
     if math.isnan(large):
         return (
             f"Within {p['duration']:g} s the two stay less than 1 rad apart. Start them higher, or run for "
@@ -326,7 +309,7 @@ CHAOS = Simulation(
         duration(15.0, high=100.0),
         step(0.005, high=0.05),
     ),
-    run=_run,
+    run=_run_chaos,
 )
 
 
@@ -336,8 +319,6 @@ CHAOS = Simulation(
 
 _RADIUS = 0.1  # m
 _GUESS = 0.3  # the friction that is taken to be 10 % lower
-_SHOWN_FRICTION = (0.1, 0.3, 0.6)
-_SHOWN_RESTITUTION = (0.3, 0.5, 0.9)
 #: The whole sweep, as friction of one experiment and restitution of the other.
 _SWEEP = np.round(np.arange(0.05, 1.0001, 0.05), 2)
 
@@ -353,24 +334,12 @@ def _run_environment(p: Mapping[str, Any]) -> Result:
     stops = p["speed"] ** 2 / (2 * _SWEEP * p["gravity"])
     rises = _SWEEP**2 * p["height"]
     rows = [
-        Row(
-            f"sliding to rest, friction {x:g}",
-            float(stopping[_at(x)]),
-            "m",
-            float(stops[_at(x)]),
-            "v² / (2 μ g)",
+        Row(f"{what} {x:g}", float(found[_at(x)]), "m", float(theory[_at(x)]), source)
+        for what, found, theory, source, shown in (
+            ("sliding to rest, friction", stopping, stops, "v² / (2 μ g)", (0.1, 0.3, 0.6)),
+            ("rebound, restitution", rebound, rises, "e² times the drop", (0.3, 0.5, 0.9)),
         )
-        for x in _SHOWN_FRICTION
-    ]
-    rows += [
-        Row(
-            f"rebound, restitution {x:g}",
-            float(rebound[_at(x)]),
-            "m",
-            float(rises[_at(x)]),
-            "e² times the drop",
-        )
-        for x in _SHOWN_RESTITUTION
+        for x in shown
     ]
     guess = _at(_GUESS)
     wrong = float(_slide(p, np.array([0.9 * _GUESS]))[0]) / float(stopping[guess]) - 1

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from course.physics.body import Body
 from course.physics.contact import Surface
 from course.physics.integrators import STEPPERS, State, first_crossing, hermite, trajectory
-from course.physics.rotation import ROTATION_STEPPERS, Spin, angular_momentum, kinetic_energy
+from course.physics.rotation import ROTATION_STEPPERS, Spin, angular_momentum, kinetic_energy, rotate
 from course.physics.simulator import Recording, Simulator, step_count
 from course.physics.state import RigidBodyState
 from course.physics.systems import FreeFall
@@ -123,7 +123,7 @@ FREE_FALL = Simulation(
 # A stone is thrown: how high, how far, and what does leaving the air out of the model cost?
 
 
-def _run(p: Mapping[str, Any]) -> Result:
+def _run_projectile(p: Mapping[str, Any]) -> Result:
     drag, fastest = p["drag"], math.hypot(p["speed_x"], p["speed_z"])
     if drag and (drag * fastest * p["step"] > 1 or math.sqrt(drag * p["gravity"]) * p["step"] > 1):
         raise ValueError("air takes more than the whole speed in one step; take a smaller step or less drag.")
@@ -149,7 +149,7 @@ def _run(p: Mapping[str, Any]) -> Result:
     flight = np.minimum(t, _flight_time(p))
     return Result(
         rows=rows,
-        headline=_headline(p, rows),
+        headline=_headline_projectile(p, rows),
         finding=_finding_projectile(p, rows),
         columns=(
             Column.of("t", "s", t),
@@ -212,7 +212,7 @@ def _landing_rows(p: Mapping[str, Any], record: Recording) -> tuple[Row, Row]:
 _FIRST_ORDER = ("explicit_euler", "semi_implicit_euler")
 
 
-def _headline(p: Mapping[str, Any], rows: tuple[Row, ...]) -> str:
+def _headline_projectile(p: Mapping[str, Any], rows: tuple[Row, ...]) -> str:
     top, far = rows[1].simulated, rows[4]
     if math.isnan(far.simulated):
         return f"Still in the air after {p['duration']:g} s"
@@ -264,7 +264,7 @@ PROJECTILE = Simulation(
         step(),
         METHOD,
     ),
-    run=_run,
+    run=_run_projectile,
 )
 
 
@@ -277,12 +277,13 @@ _NAMES = {"explicit_euler": "explicit Euler", "rk4": "Runge-Kutta 4", "split": "
 
 def _run_rotation(p: Mapping[str, Any]) -> Result:
     inertia = np.array([p["inertia1"], p["inertia2"], p["inertia3"]])
-    start = RigidBodyState.of(np.zeros(3), angular_velocity=[p["nudge"], p["spin"], p["nudge"]])
-    Body(1.0, start, inertia=inertia)  # refuses moments that no body has
+    state = RigidBodyState.of(np.zeros(3), angular_velocity=[p["nudge"], p["spin"], p["nudge"]])
+    Body(1.0, state, inertia=inertia)  # refuses moments that no body has
+    start = Spin(state.orientation, state.angular_velocity)
     if not start.angular_velocity.any():
         raise ValueError("a body that does not turn has no rotation to show; set spin or nudge.")
     n = step_count(p["duration"], p["step"])
-    runs = {name: _spin(name, inertia, start, p["step"], n) for name in _NAMES}
+    runs = {name: rotate(ROTATION_STEPPERS[name], inertia, start, p["step"], n) for name in _NAMES}
     # Explicit Euler may run away to infinity; that is its result.
     drifts = {
         name: np.nan_to_num(kinetic_energy(inertia, w) / kinetic_energy(inertia, w[0]) - 1.0, nan=np.inf)
@@ -301,25 +302,13 @@ def _run_rotation(p: Mapping[str, Any]) -> Result:
     return Result(
         rows=rows,
         headline=_headline_rotation(p, flips, float(drifts["explicit_euler"][-1])),
-        finding=_finding(p, flips, drifts),
+        finding=_finding_rotation(p, flips, drifts),
         columns=(
             Column.of("t", "s", t),
             *(Column.of(f"w{k + 1}", "rad/s", w[:, k]) for k in range(3)),
             *(Column.of(f"energy_error_{name}", "1", drift) for name, drift in drifts.items()),
         ),
     )
-
-
-def _spin(name: str, inertia: Array, start: RigidBodyState, h: float, n: int) -> tuple[Array, Array]:
-    """Orientations (n + 1, 4) and angular velocities (n + 1, 3) of a body that no torque acts on."""
-    method = ROTATION_STEPPERS[name]
-    spin = Spin(start.orientation, start.angular_velocity)
-    q, w = np.empty((n + 1, 4)), np.empty((n + 1, 3))
-    q[0], w[0] = spin
-    for i in range(n):
-        spin = method.advance(inertia, spin, np.zeros(3), h)
-        q[i + 1], w[i + 1] = spin
-    return q, w
 
 
 def _energy_rows(drifts: Mapping[str, Array], orientations: Mapping[str, Array]) -> list[Row]:
@@ -380,7 +369,7 @@ def _about_axis_2(p: Mapping[str, Any], flips: int) -> str:
     return "Axis 2 is the middle one, but the wobble has not yet had time to flip the body over."
 
 
-def _finding(p: Mapping[str, Any], flips: int, drifts: Mapping[str, Array]) -> str:
+def _finding_rotation(p: Mapping[str, Any], flips: int, drifts: Mapping[str, Array]) -> str:
     angle = abs(p["spin"]) * p["step"]
     if angle > 0.5:
         return (

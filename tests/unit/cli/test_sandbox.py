@@ -103,6 +103,7 @@ def test_question_answer_and_reason_have_the_numbers_that_were_set(tmp_path: Pat
 def test_describe_tells_the_run(tmp_path: Path) -> None:
     out = sandbox("play", "restitution-row", "--describe", cwd=tmp_path).stdout
     assert "0.45 s: ball 4 meets the floor at 4.41 m/s and leaves at 3.53; 36 %" in out
+    assert "ball 0 comes to rest" in out
     assert "0.004167 s in 1 step\n" in sandbox("head-on", "--duration", "0.004", cwd=tmp_path).stdout
 
 

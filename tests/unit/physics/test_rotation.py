@@ -18,6 +18,7 @@ from course.physics.rotation import (
     cross,
     product,
     quaternion,
+    rotate,
     turn,
     turn_back,
 )
@@ -28,9 +29,8 @@ START = Spin(np.array([1.0, 0.0, 0.0, 0.0]), np.array([0.01, 5.0, 0.01]))
 
 
 def march(method: str, spin: Spin, h: float, n: int, inertia: np.ndarray = BODY) -> Spin:
-    for _ in range(n):
-        spin = ROTATION_STEPPERS[method].advance(inertia, spin, np.zeros(3), h)
-    return spin
+    q, w = rotate(ROTATION_STEPPERS[method], inertia, spin, h, n)
+    return Spin(q[-1], w[-1])
 
 
 @given(vectors, vectors)

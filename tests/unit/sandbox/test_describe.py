@@ -64,13 +64,6 @@ def test_the_account_names_what_the_solver_did() -> None:
     assert "lost in rods 0.5" in caught[1]
 
 
-def test_a_whole_scene_reads_as_a_story() -> None:
-    done = run(choose("restitution-row"))
-    told = list(sentences(done.events))
-    assert any("ball 4 meets the floor at 4.41 m/s and leaves at 3.53; 36 %" in line for line in told)
-    assert any("ball 0 comes to rest" in line for line in told)
-
-
 def test_what_hands_do_names_bodies_as_sentences_do() -> None:
     world = World(choose("head-on").scene)
     world.copy("left-puck")

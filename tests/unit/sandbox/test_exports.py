@@ -179,12 +179,18 @@ def test_what_a_file_cannot_say_is_refused(name: str, write) -> None:
         write(choose(name))
 
 
-@pytest.mark.parametrize("name", EXPORTED)
-def test_mujoco_loads_every_export_and_steps_it(name: str) -> None:
+def in_mujoco(chosen: Chosen):
+    """MuJoCo, and the exported world in it: the model, and its data at the start."""
     mujoco = pytest.importorskip("mujoco")
-    model = mujoco.MjModel.from_xml_string(mjcf(choose(name)).decode())
+    model = mujoco.MjModel.from_xml_string(mjcf(chosen).decode())
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
+    return mujoco, model, data
+
+
+@pytest.mark.parametrize("name", EXPORTED)
+def test_mujoco_loads_every_export_and_steps_it(name: str) -> None:
+    mujoco, model, data = in_mujoco(choose(name))
     for _ in range(50):
         mujoco.mj_step(model, data)
     assert abs(data.qvel).max() < 1e3
@@ -195,11 +201,8 @@ def test_mujoco_loads_every_export_and_steps_it(name: str) -> None:
     [("head-on", {}, 0.02), ("unequal-masses", {}, 0.02), ("head-on", {"restitution": 0.7}, 0.05)],
 )
 def test_mujoco_and_this_engine_agree_on_a_collision_of_two(name, settings, within: float) -> None:
-    mujoco = pytest.importorskip("mujoco")
     chosen = choose(name, settings)
-    model = mujoco.MjModel.from_xml_string(mjcf(chosen).decode())
-    data = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco, model, data = in_mujoco(chosen)
     while data.time < chosen.scene.duration:
         mujoco.mj_step(model, data)
     world = World(chosen.scene, chosen.settings)
@@ -237,7 +240,11 @@ def test_the_end_errors_in_the_docs_are_those_of_the_exported_worlds(engine: str
         chosen = choose(name)
         seconds = chosen.scene.duration
         if engine == "mujoco":
-            found = in_mujoco(mjcf(chosen), seconds)
+            mujoco, model, data = in_mujoco(chosen)
+            for _ in range(round(seconds / model.opt.timestep)):
+                mujoco.mj_step(model, data)
+            mujoco.mj_kinematics(model, data)
+            found = {model.body(i).name: data.xpos[i] for i in range(1, model.nbody)}
         else:
             from tests.unit.sandbox import in_dart
 
@@ -255,16 +262,3 @@ def test_the_end_errors_in_the_docs_are_those_of_the_exported_worlds(engine: str
             assert off > 500, name
         else:
             assert off == pytest.approx(error_mm, rel=0.05, abs=1.0), name
-
-
-def in_mujoco(world_file: bytes, seconds: float) -> dict[str, list[float]]:
-    """Where each body is after a time, (x, y, z) in m."""
-    import mujoco
-
-    model = mujoco.MjModel.from_xml_string(world_file.decode())
-    data = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, data, 0)
-    for _ in range(round(seconds / model.opt.timestep)):
-        mujoco.mj_step(model, data)
-    mujoco.mj_kinematics(model, data)
-    return {model.body(i).name: list(data.xpos[i]) for i in range(1, model.nbody)}

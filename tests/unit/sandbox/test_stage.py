@@ -24,6 +24,12 @@ def watch(stage: Stage, seconds: float) -> None:
         stage.tick(1 / 60, budget=60.0)
 
 
+def go_on_from(stage: Stage, t: float) -> None:
+    stage.look(t)
+    stage.go_on()
+    stage.finish()
+
+
 def meddle(stage: Stage, chance: random.Random) -> None:
     """Anything that hands can do."""
     world = stage.world
@@ -67,9 +73,7 @@ def test_going_on_from_any_moment_gives_the_same_states_to_the_last_bit(name: st
     meddle(stage, chance)
     watch(stage, 0.7)
     middle = stage.world.t - 0.2 * stage.world.speed
-    stage.look(middle)
-    stage.go_on()
-    stage.finish()
+    go_on_from(stage, middle)
     assert not stage.world.paused
     assert stage.world.state_hash() == seen[stage.world.ticks]
     end = max(seen)
@@ -139,9 +143,7 @@ def test_what_is_played_is_a_recording_that_replays_after_undo_reset_and_going_o
     watch(stage, 0.3)
     stage.act("reset")
     watch(stage, 0.5)
-    stage.look(0.25)
-    stage.go_on()
-    stage.finish()
+    go_on_from(stage, 0.25)
     watch(stage, 0.5)
     file = tmp_path / "run.jsonl"
     file.write_bytes(stage.recording.encode())
@@ -180,14 +182,16 @@ def test_the_run_before_is_a_ghost_and_so_is_what_was_left_behind() -> None:
     stage.act("reset")
     assert stage.ghost.frame_at(0.25)[2] == pytest.approx(0.25, abs=0.02)
     watch(stage, 0.2)
-    stage.look(0.1)
-    stage.go_on()
-    stage.finish()
+    go_on_from(stage, 0.1)
     assert stage.ghost.times[-1] == pytest.approx(0.2, abs=0.02)
 
 
 def test_going_on_shows_how_far_it_is_and_can_be_stopped() -> None:
     stage = make("galton-board")
+    stage.act("set", "gravity", 5.0)
+    stage.undo()
+    stage.finish()
+    stage.run(on=True)
     watch(stage, 2.0)
     before = stage.world.state_hash()
     stage.clock = iter(float(n) for n in range(10**9)).__next__
@@ -201,7 +205,7 @@ def test_going_on_shows_how_far_it_is_and_can_be_stopped() -> None:
     with pytest.raises(UsageError, match="One moment"):
         stage.act("reset")
     stage.stop_work()
-    assert (stage.working, stage.world.state_hash(), stage.undoable()) == (None, before, ("", ""))
+    assert (stage.working, stage.world.state_hash(), stage.undoable()) == (None, before, ("", "set gravity"))
 
 
 @pytest.mark.parametrize("name", ["billiards-break", "newtons-cradle", "robot-boxes", "galton-board"])
@@ -219,9 +223,7 @@ def test_going_on_after_a_long_run_takes_what_is_known_from_its_tape(name: str, 
     old, there = stage.tape, stage.tape.at(15.0)
     until = [mark for mark in old.marks if mark < 12.9]
     played = len(booked)
-    stage.look(old.times[there])
-    stage.go_on()
-    stage.finish()
+    go_on_from(stage, old.times[there])
     assert stage.world.ticks == old.ticks[there]
     assert stage.tape.ticks == old.ticks[: there + 1]
     for mine, kept in zip(stage.tape.frames, old.frames, strict=False):
@@ -272,9 +274,7 @@ def test_no_run_ends_and_the_comparison_is_made_on_the_way() -> None:
     assert stage.world.t > 3.5
     assert not stage.world.paused
     assert [one.guess for one in kept] == [2.0]
-    stage.look(3.0)
-    stage.go_on()
-    stage.finish()
+    go_on_from(stage, 3.0)
     assert stage.experiment.stage == "done"
     assert len(kept) == 1, "the same run is not kept twice"
 
@@ -285,9 +285,7 @@ def test_going_on_compares_the_same_moment_as_the_run_that_was_seen(name: str) -
     watch(stage, stage.chosen.scene.duration + 1.0)
     seen = stage.experiment.report()["comparison"]
     assert seen is not None
-    stage.look(stage.world.t - 0.3)
-    stage.go_on()
-    stage.finish()
+    go_on_from(stage, stage.world.t - 0.3)
     assert stage.experiment.report()["comparison"] == seen
 
 

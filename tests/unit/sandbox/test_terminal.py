@@ -17,7 +17,7 @@ from course.sandbox.scene.loading import choose, scene_ids
 from course.sandbox.views.stage import Desk, Stage
 from course.sandbox.views.terminal import view as terminal
 from course.sandbox.views.terminal.app import SandboxApp
-from course.sandbox.views.terminal.asking import ChangeOverlay, Gallery, PageOverlay, QuestionOverlay
+from course.sandbox.views.terminal.asking import Gallery, LineOverlay, PageOverlay
 
 
 class Played(SandboxApp):
@@ -240,6 +240,19 @@ async def test_the_past_is_looked_at_played_backwards_and_gone_on_from(app, pilo
     assert app.stage.at is None
 
 
+@on("head-on")
+async def test_a_step_while_another_moment_is_being_made_is_refused_in_words(app, pilot, monkeypatch):
+    def busy() -> None:
+        raise UsageError("One moment.")
+
+    app.frames(30)
+    await pilot.press("less_than_sign")
+    monkeypatch.setattr(app.stage, "_must_be_idle", busy)
+    await pilot.press("full_stop")
+    app.frames(1)
+    assert "One moment." in app.keys.text
+
+
 @on(None)
 async def test_the_gallery_opens_any_scene_and_back(app, pilot):
     assert isinstance(app.screen, Gallery)
@@ -265,7 +278,7 @@ async def test_the_gallery_opens_any_scene_and_back(app, pilot):
 async def test_a_line_changes_a_parameter_a_setting_or_a_body_and_makes_the_scene_ones_own(app, pilot):
     async def say(line: str) -> None:
         await pilot.press("slash")
-        assert isinstance(app.screen, ChangeOverlay)
+        assert isinstance(app.screen, LineOverlay)
         app.screen.query_one(Input).value = line
         await pilot.press("enter")
         app.frames(1)
@@ -417,7 +430,7 @@ async def test_the_box_for_a_guess_holds_the_question_alone_and_the_help_what_th
     for scene in ("newtons-cradle", "unequal-masses"):
         app.put_on(app.desk.stage(scene))
         await pilot.press("p")
-        assert isinstance(app.screen, QuestionOverlay)
+        assert isinstance(app.screen, LineOverlay)
         said = " ".join(str(one.content) for one in app.screen.query("Static").results(Static)).split()
         assert said == app.experiment.question.split()
         assert len(said) < 45
@@ -432,13 +445,13 @@ async def test_a_guess_starts_the_run_and_the_comparison_is_a_line_while_time_go
     app.frames(5)
     assert app.world.t > 0, "nothing is asked before it runs"
     await pilot.press("p")
-    assert isinstance(app.screen, QuestionOverlay)
+    assert isinstance(app.screen, LineOverlay)
     app.screen.query_one(Input).value = "two"
     await pilot.press("enter")
-    assert isinstance(app.screen, QuestionOverlay)
+    assert isinstance(app.screen, LineOverlay)
     app.screen.query_one(Input).value = "2,0"
     await pilot.press("enter")
-    assert not isinstance(app.screen, QuestionOverlay)
+    assert not isinstance(app.screen, LineOverlay)
     app.frames(63)
     assert app.world.t > 2.0
     assert "Your guess is right" in app.keys.text
@@ -472,7 +485,7 @@ async def test_a_run_that_a_hand_was_in_is_compared_with_nothing_and_goes_on(app
     assert not isinstance(app.screen, PageOverlay)
     await pilot.press("p")
     app.frames(1)
-    assert isinstance(app.screen, QuestionOverlay), "a guess begins anew"
+    assert isinstance(app.screen, LineOverlay), "a guess begins anew"
 
 
 @on("newtons-cradle")

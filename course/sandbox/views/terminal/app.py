@@ -15,16 +15,15 @@ from textual.geometry import Size
 from course.errors import CourseError, UsageError
 from course.full_screen import FullScreenApp
 from course.sandbox.runs.tape import Filming
-from course.sandbox.scene.loading import guess_of, scenes
+from course.sandbox.scene.loading import NO_GUESS, guess_of, scenes
 from course.sandbox.scene.rules import SETTINGS
 from course.sandbox.views.stage import Desk, Stage
 from course.sandbox.views.story import Experiment
 from course.sandbox.views.terminal.asking import (
     NARROW,
-    ChangeOverlay,
     Gallery,
+    LineOverlay,
     PageOverlay,
-    QuestionOverlay,
     comparison,
     help_pages,
 )
@@ -204,7 +203,7 @@ class SandboxApp(FullScreenApp):
         events = 2 if height < 20 else 3 if height < 30 else 5 if height < 40 else 8
         self._below = 1 + (events if self.events.display else 0)
         self.keys.styles.height, self.events.styles.height = 1, events
-        self._read_at = self._drawn_at = -1.0
+        self.renew()
 
     # -- time ------------------------------------------------------------------------------------
 
@@ -296,14 +295,11 @@ class SandboxApp(FullScreenApp):
             lines[:0] = [(((" " if i == 0 else "   ") + piece, ""),) for i, piece in enumerate(pieces)]
         return lines[-height:] if height else []
 
-    def renew(self, *, layout: bool = False) -> None:
-        """Draw and write everything with the next frame, or give each part its room anew."""
+    def renew(self) -> None:
+        """Draw and write everything with the next frame."""
         self._read_at = self._drawn_at = -1.0
-        if layout:
-            self._lay_out()
 
     def say(self, message: str) -> None:
-        """Show something in the last line for a moment."""
         super().say(clean(message))
         self._read_at = -1.0
 
@@ -342,7 +338,21 @@ class SandboxApp(FullScreenApp):
                 self._attempt(lambda: self.stage.guess(guess))
                 self.say(f"Your guess: {guess:g} {'' if unit == '1' else unit}")
 
-        overlay = QuestionOverlay(self.experiment.question, unit, calm=self.calm)
+        def guessed(line: str) -> float:
+            guess = guess_of(line, unit)
+            if guess is None:
+                raise UsageError(NO_GUESS)
+            return guess
+
+        # The question and no more: what is said of the scene stands in its help.
+        overlay = LineOverlay(
+            "Before it runs: your guess",
+            [(clean(self.experiment.question), "")],
+            guessed,
+            wanted=f"a number in {clean(unit)}",
+            below="Enter: run, compare   Escape: back",
+            calm=self.calm,
+        )
         self.push_screen(overlay, answered)
 
     def action_scenes(self) -> None:
@@ -376,7 +386,14 @@ class SandboxApp(FullScreenApp):
             ]
         page += ["", "mine: the scene as a file of your own.", ""]
 
-        self.push_screen(ChangeOverlay(page, lambda line: self._change(line, near)), self._changed)
+        overlay = LineOverlay(
+            "Change a number",
+            page,
+            partial(self._change, near=near),
+            wanted="name and number, for example: angle 45",
+            below="Enter: change it   Escape: back",
+        )
+        self.push_screen(overlay, self._changed)
 
     def _changed(self, says: str | None) -> None:
         if says:
@@ -422,11 +439,7 @@ class SandboxApp(FullScreenApp):
 
     def action_step(self, kind: str) -> None:
         """A picture on or back, to the next contact, or one step of the solver; and pause."""
-        stage = self.stage
-        if kind == "back" and stage.at is None:
-            self._attempt(lambda: stage.look(stage.t - 1 / 60))
-        else:
-            stage.step(kind)
+        self._attempt(lambda: self.stage.step(kind))
         self.renew()
 
     def action_jump(self, seconds: float) -> None:
@@ -548,7 +561,7 @@ class SandboxApp(FullScreenApp):
 
     def action_panel(self) -> None:
         self._panel_wanted = not self._panel_wanted
-        self.renew(layout=True)
+        self._lay_out()
 
     def _attempt(self, deed: Callable[[], Any]) -> None:
         try:

@@ -18,7 +18,7 @@ from textual.widgets.option_list import Option
 from course.errors import CourseError
 from course.full_screen import Field, Overlay, TextOverlay
 from course.sandbox.runs.tape import preview
-from course.sandbox.scene.loading import NO_GUESS, guess_of, unchanged
+from course.sandbox.scene.loading import unchanged
 from course.sandbox.scene.model import Scene
 from course.sandbox.views.terminal.picture import Camera, Picture
 from course.sandbox.views.terminal.picture import Overlay as Drawn
@@ -31,74 +31,51 @@ NARROW = 60
 Page = Sequence[str | tuple[str, str]]
 
 
-class QuestionOverlay(Overlay[float]):
-    """The scene's question and no more: what is said of the scene stands in its help.
+class LineOverlay(Overlay[Any]):
+    """A page, and below it a line to type, which stays while it cannot be taken.
 
-    Dismissed with the guess, or None to run without one.
+    Dismissed with what was made of the line, or None if it was empty.
+
+    Args:
+        take: makes the answer of a line; raises a CourseError if that cannot be done.
+        wanted: what to type, in the empty line.
+        below: its keys.
+        calm: nothing blinks.
     """
 
-    below = "Enter: run, compare   Escape: back"
-
-    def __init__(self, question: str, unit: str, *, calm: bool) -> None:
+    def __init__(
+        self,
+        title: str,
+        page: Page,
+        take: Callable[[str], Any],
+        *,
+        wanted: str,
+        below: str,
+        calm: bool = False,
+    ) -> None:
         super().__init__()
-        self._question, self._unit, self._calm = question, unit, calm
+        self._title, self._page, self._take = title, page, take
+        self._wanted, self.below, self._calm = wanted, below, calm
 
     def compose(self) -> ComposeResult:
         with VerticalScroll(classes="box", can_focus=False) as box:
-            box.border_title = "Before it runs: your guess"
-            yield Static(Text(clean(self._question), style="bold"))
-            entry = Field(placeholder=f"a number in {clean(self._unit)}", id="guess")
+            box.border_title = self._title
+            for piece in self._page:
+                yield Static(_shaped(piece))
+            entry = Field(placeholder=self._wanted)
             entry.cursor_blink = not self._calm
             yield entry
             yield Static("", id="wrong", markup=False)
 
     def on_mount(self) -> None:
-        """Focus the field, and keep the question in sight in a low window."""
+        """Focus the line, and keep the page in sight in a low window."""
         self.query_one(Input).focus()
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Take a number; an empty line means no guess."""
-        if not event.value.strip():
-            self.close(None)
-            return
-        guess = guess_of(event.value, self._unit)
-        if guess is None:
-            self.query_one("#wrong", Static).update(NO_GUESS)
-            return
-        self.close(guess)
-
-
-class ChangeOverlay(Overlay[str]):
-    """Numbers to change, and a line to type one in, which stays while it cannot be done.
-
-    Dismissed with what is to be said of the change.
-
-    Args:
-        change: does what a line asks for; raises a CourseError if that cannot be done.
-    """
-
-    below = "Enter: change it   Escape: back"
-
-    def __init__(self, page: Page, change: Callable[[str], str]) -> None:
-        super().__init__()
-        self._page, self._change = page, change
-
-    def compose(self) -> ComposeResult:
-        with VerticalScroll(classes="box", can_focus=False) as box:
-            box.border_title = "Change a number"
-            for piece in self._page:
-                yield Static(_shaped(piece))
-            yield Field(placeholder="name and number, for example: angle 45")
-            yield Static("", id="wrong", markup=False)
-
-    def on_mount(self) -> None:
-        self.query_one(Input).focus()
-
-    def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Do it and close, or say why not; an empty line means no change."""
+        """Take the line and close, or say why not."""
         line = event.value.strip()
         try:
-            self.close(self._change(line) if line else None)
+            self.close(self._take(line) if line else None)
         except CourseError as error:
             self.query_one("#wrong", Static).update(clean(error.message))
 
@@ -186,8 +163,6 @@ class Gallery(Overlay[str]):
 
 
 class PageOverlay(TextOverlay):
-    """A page to read."""
-
     BINDINGS: ClassVar[list[Any]] = [Binding("l", "leave", show=False)]
 
     def __init__(

@@ -336,7 +336,6 @@ class Picture:
         return np.asarray((py * camera.columns + px)[inside])
 
     def _dotted(self, over: Overlay) -> NDArray[np.int64]:
-        """The pixels of the dots."""
         camera = self.camera
         x, y = camera.pixels(over.dots[:, 0], over.dots[:, 1])
         inside = (x >= 0) & (x < camera.columns) & (y >= 0) & (y < 2 * camera.rows)

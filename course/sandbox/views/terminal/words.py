@@ -283,25 +283,19 @@ class Canvas(Widget):
         #: Rows sent so far.
         self.sent = 0
         self._colour = colour
-        self._cells: Cells | None = None
+        #: The frame that is shown.
+        self.cells: Cells | None = None
         self._styles: dict[int, Style] = {}
 
     def show(self, cells: Cells) -> None:
-        """The next frame."""
-        changes = cells.changes(self._cells)
-        self._cells = cells
+        changes = cells.changes(self.cells)
+        self.cells = cells
         if changes:
             self.sent += len(changes)
             self.refresh(*(Region(first, row, count, 1) for row, first, count in changes))
 
-    @property
-    def cells(self) -> Cells | None:
-        """The frame that is shown."""
-        return self._cells
-
     def render_line(self, y: int) -> Strip:
-        """One row of cells."""
-        cells, width = self._cells, self.size.width
+        cells, width = self.cells, self.size.width
         if cells is None or y >= cells.char.shape[0]:
             return Strip.blank(width)
         text = cells.char[y].astype("<u4").tobytes().decode("utf-32-le")
@@ -350,7 +344,6 @@ class Lines(Widget):
         return "\n".join("".join(piece for piece, _ in line) for line in self._lines)
 
     def show(self, lines: Sequence[Line]) -> None:
-        """Replace the lines."""
         pairs = enumerate(zip_longest(self._lines, lines))
         width, height = self.size
         changed = [row for row, (before, now) in pairs if row < height and before != now]
@@ -359,7 +352,6 @@ class Lines(Widget):
             self.refresh(*(Region(0, row, width, 1) for row in changed))
 
     def render_line(self, y: int) -> Strip:
-        """One line."""
         width = self.size.width
         if y >= len(self._lines):
             return Strip.blank(width, self._base)

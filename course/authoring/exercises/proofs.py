@@ -219,10 +219,13 @@ class Prover:
         if raised is not None and (self._findings.root / raised["file"]).is_file():
             path, line = self._findings.root / raised["file"], int(raised["line"])
             said = said[: raised.start()]
+            check = ""  # a line that several checks share is named once
         if (check, path, line) in self._breaks:
             return
         self._breaks.add((check, path, line))
         fix = "Look at a value before computing with it: whatever a student's function returns is a finding."
+        if "there are no words for" in said:
+            fix = "Write the code as `mistakes.py` has it, or give it words there."
         problem, fix = _told(f"{what}: {said.rstrip('.')}.", fix, self._findings.root)
         self._findings.add(path, line, "grader", problem, fix)
 
@@ -437,7 +440,7 @@ def judge(mutant: Variant, check: str, verdict: Verdict) -> tuple[Fault, ...]:
         Fault(
             f"fails check {check.id} of task {check.task}, and should break {mutant.task} only"
             f" ({check.status}: {check.message or check.blocked_by}).",
-            "Let each check call only its own task's function, or narrow the mutant.",
+            "No check and no function of the solution may call another task's. Or narrow the mutant.",
         )
         for check in failed
         if check.task != mutant.task

@@ -147,6 +147,19 @@ def test_a_verdict_that_should_be_another_is_reported(
     assert found[0].help
 
 
+def test_a_line_that_breaks_several_checks_is_named_once(
+    oracle: Any, only_problem: Callable[[], AuthorProblem]
+) -> None:
+    def broken(verdict: Verdict) -> Verdict:
+        said = f"{OURS}KeyError: there are no words for SQUARE ({HIDDEN}, line 4)"
+        for check in ("double_of_three", "double_of_negative"):
+            verdict = with_check(check, traceback=said)(verdict)
+        return verdict
+
+    oracle.changes["double.SQUARES_INSTEAD"] = broken
+    assert "as `mistakes.py` has it" in only_problem().help
+
+
 def test_a_mutant_caught_only_by_another_check_is_reported(
     oracle: Any, only_problem: Callable[[], AuthorProblem]
 ) -> None:

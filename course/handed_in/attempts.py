@@ -110,7 +110,7 @@ def attempt_in(session: GradingSession, submission: Submission, begin: float, on
     if only and only not in known:
         raise NotFoundError(
             f"{exercise.id} has no public check called {only!r}.",
-            help=meant(only, known, f"There are: {', '.join(known)}."),
+            help=meant(only, known, f"Known: {', '.join(known)}."),
             code="check_not_found",
         )
     verdict = session.grade(submission, only=[only] if only else ())

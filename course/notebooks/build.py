@@ -150,7 +150,7 @@ def _unknown(wanted: str, known: Sequence[str]) -> NotFoundError:
     number = "A number may be a lesson's or an exercise's: write the name. " if wanted.isdecimal() else ""
     return NotFoundError(
         f"There is no lesson and no exercise called {wanted[:80]!r}.",
-        help=meant(wanted, names, f"{number}There are: {', '.join(names)}."),
+        help=meant(wanted, names, f"{number}Known: {', '.join(names)}."),
         code="notebook_not_found",
     )
 

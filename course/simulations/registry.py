@@ -36,7 +36,7 @@ def get(name: str) -> Simulation:
     if name not in SIMULATIONS:
         raise NotFoundError(
             f"There is no simulation {name!r}.",
-            help=f"{meant(name, SIMULATIONS)} There are {', '.join(SIMULATIONS)}.".lstrip(),
+            help=f"{meant(name, SIMULATIONS)} Known: {', '.join(SIMULATIONS)}.".lstrip(),
             code="simulation_not_found",
         )
     module = import_module(f"course.simulations.experiments.{SIMULATIONS[name]}")

@@ -264,7 +264,7 @@ def _usage(console: Console, line: Line, error: Any) -> int:
     for theirs, ours in (("a valid float", "a number"), ("a valid integer", "a whole number")):
         message = message.replace(f"is not {theirs}", f"is not {ours}")
     choices = _choices(error, context)
-    known = f"There {'is' if len(choices) == 1 else 'are'} {', '.join(choices)}. " if choices else ""
+    known = f"Known: {', '.join(choices)}. " if choices else ""
     return _say(console, line, UsageError.exit_code, "usage", message, f"{known}See `{path} --help`.")
 
 

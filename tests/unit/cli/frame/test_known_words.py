@@ -56,8 +56,8 @@ def test_who_wants_to_leave_is_told_that_nothing_runs(course, word):
 
 
 def test_a_choice_that_is_missing_is_shown(course, workspace):
-    assert "There are mjcf, sdf." in course("sandbox", "export", "head-on").err
-    course("start").refuses(2, "There are doubling")
+    assert "Known: mjcf, sdf." in course("sandbox", "export", "head-on").err
+    course("start").refuses(2, "Known: doubling")
 
 
 def test_help_is_grouped_by_use_and_offers_what_works_here(course, students_content, monkeypatch):

@@ -88,7 +88,7 @@ def test_what_is_missing_is_said_in_full_and_nothing_is_said_where_there_is_noth
     course, out: Path
 ) -> None:
     for words in (("explain", "out", "ada"), ("override", "out", "ada", "--score", "1")):
-        assert "There are doubling, halving." in course("grade", *words).err
+        assert "Known: doubling, halving." in course("grade", *words).err
     with (out.parent / "more.csv").open("w", encoding="utf-8") as file:
         file.write(ROSTER + "eve,Eve,,13,,\n")
     assert course("grade", "late", "out", "--roster", "more.csv").code == 0

@@ -111,12 +111,12 @@ def unjudged(returned: tuple[str, Any] | None, *, proven: bool) -> Finding:
     return Finding(message=f"This check could not judge {what}.{doubt}", help=advice, diagnosis=NOT_JUDGED)
 
 
-def load_problem(refused: LoadRefusedError, places: Places) -> Problem:
+def load_problem(refused: LoadRefusedError, places: Places, exercise: str) -> Problem:
     failure = refused.failure
     module = places.module
     where = places.heading(failure.line) if failure.line else module
     if refused.stage == "syntax":
-        return Problem("syntax_error", *_unreadable(refused, where))
+        return Problem("syntax_error", *_unreadable(refused, where, exercise))
     if refused.stage == "timeout":
         loop = " The loop that begins on that line was still running." if failure.type == LOOP else ""
         return Problem(
@@ -153,7 +153,7 @@ def left_out_notes(remote: RemoteSubmission, places: Places, tasks: Collection[s
     notes = []
     missing = frozenset(tasks) - frozenset(remote.functions)
     if remote.without is not None:
-        problem = load_problem(remote.without, places)
+        problem = load_problem(remote.without, places, "")
         notes.append(f"{problem.message} Only what your functions need was loaded.")
     faults = [one for one in remote.faults if one.stage != "syntax" or missing.isdisjoint(one.names)]
     told = [note for fault in faults if (note := _left_out(fault, remote.faults, places))]
@@ -200,7 +200,7 @@ def _after(sentence: str) -> str:
     return f" {sentence}" if sentence else ""
 
 
-def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
+def _unreadable(refused: LoadRefusedError, where: str, exercise: str) -> tuple[str, str]:
     """The finding for a file that is not valid Python."""
     failure = refused.failure
     # A MemoryError, which is what deep nesting ends in, says nothing, or that the parser has no room left.
@@ -211,7 +211,7 @@ def _unreadable(refused: LoadRefusedError, where: str) -> tuple[str, str]:
     if encoded or not failure.line:
         said = "it is saved in another encoding than UTF-8, or it is no text" if encoded else reason
         message = f"{where}{': this' if failure.line else ''} is not Python source: {said}."
-        stub = "`course reset EXERCISE` puts the stub back, and keeps a copy."
+        stub = f"`course reset {exercise}` puts the stub back, and keeps a copy."
         if not encoded and "encoding" not in reason:
             return message, f"Was something else saved under its name? {stub}"
         # Python says the same of a letter in another encoding, which is likelier, and of what is no text.

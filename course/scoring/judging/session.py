@@ -169,7 +169,9 @@ class GradingSession:
             remote = self._load(submission)
         except LoadRefusedError as refused:
             self.printed = beginning(refused.printed, _PRINTED)
-            return self._verdict("ungradable", error=load_problem(refused, self._places(submission)))
+            return self._verdict(
+                "ungradable", error=load_problem(refused, self._places(submission), self.exercise.id)
+            )
         except IsolationError as error:
             return self._grader_error(str(error))
         try:
@@ -204,7 +206,7 @@ class GradingSession:
         if fault is None:
             return no_functions(self.exercise)
         refused = LoadRefusedError(fault.stage, fault.failure, fault.text, fault.code)
-        return load_problem(refused, self._places(submission))
+        return load_problem(refused, self._places(submission), self.exercise.id)
 
     def using(self, submission: Submission, use: Callable[[RemoteSubmission], T]) -> T:
         """The result of ``use`` on a submission, loaded as for a check; one deadline applies to all of it.
@@ -217,7 +219,7 @@ class GradingSession:
             try:
                 remote = self._load(submission)
             except LoadRefusedError as refused:
-                problem = load_problem(refused, self._places(submission))
+                problem = load_problem(refused, self._places(submission), self.exercise.id)
                 raise UngradableError(problem.message, help=problem.help, code=problem.code) from None
             except IsolationError as error:
                 raise InternalError(f"The submission could not be run: {error}.") from None

@@ -298,6 +298,7 @@ class Stage:
 
     def go_on(self) -> None:
         """Go on from the moment that is looked at: what came after it becomes the ghost."""
+        self._must_be_idle()
         if self.at is None:
             return
         tick = self.tape.ticks[self.tape.at(self.at)]

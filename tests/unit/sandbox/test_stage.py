@@ -202,8 +202,9 @@ def test_going_on_shows_how_far_it_is_and_can_be_stopped() -> None:
         stage.tick(1 / 60)
         shares.append(stage.working[1])
     assert 0 < shares[0] < shares[-1] < 1
-    with pytest.raises(UsageError, match="One moment"):
-        stage.act("reset")
+    for busy in (lambda: stage.act("reset"), stage.go_on):
+        with pytest.raises(UsageError, match="One moment"):
+            busy()
     stage.stop_work()
     assert (stage.working, stage.world.state_hash(), stage.undoable()) == (None, before, ("", "set gravity"))
 

@@ -283,7 +283,7 @@ def _show(console: Console, comparison: Comparison, findings: Sequence[str]) -> 
         if rows:
             _scenario(console, scenario, rows, best)
     if best and not console.quiet:
-        console.line("best: nearest the truth, and what is as near within half the range of the nearest.")
+        console.line("best: nearest the truth, or where more is better the most; ties within half its range.")
     _troubles(console, comparison)
     _origins(console, comparison)
     if findings:

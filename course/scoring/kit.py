@@ -58,7 +58,7 @@ from course.scoring.values import (
     as_vector,
     plain,
 )
-from course.scoring.verdict import Divergence, Finding, Tolerance
+from course.scoring.verdict import ENTRIES, EVALUATIONS, Divergence, Finding, Tolerance
 
 __all__ = [
     "SAME",
@@ -282,7 +282,7 @@ def expect_length(value: Any, length: int, *, message: str, name: str = "the res
     with _read_for(finding):
         items = as_list(value, name)
     if len(items) != length:
-        finding = {"quantity": f"length of {name}", "units": "1"} | finding
+        finding = {"quantity": f"{ENTRIES}{name}", "units": "1"} | finding
         fail(message, expected=length, actual=len(items), **finding)
 
 
@@ -473,7 +473,7 @@ def expect_evaluations(count: int, allowed: Collection[int], *, message: str, **
             message,
             expected=list(allowed) if len(allowed) > 1 else next(iter(allowed)),
             actual=count,
-            quantity="evaluations",
+            quantity=EVALUATIONS,
             tolerance=Tolerance(abs=0.0, source="counted by the grader"),
             **finding,
         )

@@ -288,6 +288,8 @@ class Places:
 # Measured and expected values as text for a reader.
 
 
+#: How the quantity of what a check counted begins. A fact about it would read as one about the result.
+ENTRIES, EVALUATIONS = "entries in ", "evaluations"
 #: Beginning of the traceback in a result whose check, or whose probe, raised an exception on a student's
 #: value.
 OURS = "In the check's own code: "

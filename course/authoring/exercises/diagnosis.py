@@ -555,10 +555,8 @@ def audit_diagnoses(catalog: Catalog, exercise: Exercise, findings: Findings) ->
             return
         path, table = table_path(exercise.readme_path.parent), read_table(exercise.readme_path.parent)
         if table is None or table.made_from != digest(catalog, exercise):
-            with blamed(questions):
-                _table_of(
-                    catalog, exercise, asked
-                )  # what building would refuse comes before the advice to build
+            with blamed(questions):  # what building would refuse comes before the advice to build
+                _table_of(catalog, exercise, asked)
             message = "it was made from other questions, mistakes or solutions than there are now."
             code, message = ("stale", message) if table else ("words", f"it has nothing on {exercise.id}.")
             findings.add(path, None, code, message, f"Run `course author build {exercise.id}`.")

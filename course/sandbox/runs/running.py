@@ -180,7 +180,7 @@ class Run(msgspec.Struct, frozen=True, kw_only=True):
         dropped: events that were too many to keep.
         receipt: at the end.
         momentum_before, momentum_after: along x and y in kg m/s, and angular in kg m²/s.
-        momentum_least, momentum_most: along x and y, of the last minute.
+        momentum_least, momentum_most: along x and y, on the way.
         probes: what the scene's probes read.
         comparison: the prediction's, if the scene asks for one.
         samples: time in s, and the state (n, 6) then, with the names of its rows.
@@ -231,20 +231,25 @@ def run(
         watch(world)
     until = chosen.scene.duration if duration is None else duration
     before = world.momentum
+    least = most = np.array(before[:2])
+    at_px = SAMPLED.index("px")
     events: list[Event] = []
     samples: list[tuple[float, tuple[str, ...], Floats]] = []
     moving = sum(not part.fixed for part in world.parts) or 1
     for t, is_sample, is_frame in _stops(until, every, fps if on_frame else 0.0, also_at):
+        since = world.t
         world.run_until(t)
         events += world.drain_events()
+        # The world keeps a minute of samples, and is asked at least once a second.
+        rows = [row[at_px : at_px + 2] for row in world.samples(since)]
+        momenta = np.array([least, most, *rows, world.momentum[:2]])
+        least, most = momenta.min(axis=0), momenta.max(axis=0)
         if is_sample and len(samples) * moving < _MOST_ROWS:
             free = [i for i, part in enumerate(world.parts) if not part.fixed]
             samples.append((world.t, tuple(world.parts[i].name for i in free), world.state()[free]))
         if is_frame and on_frame is not None:
             on_frame(world, world.snapshot())
     answers = probes.read(events)
-    sampled = (row[SAMPLED.index("px") :] for row in world.samples())
-    momenta = np.array([before, *sampled, world.momentum])[:, :2]
     return Run(
         duration=world.t,
         steps=world.steps,
@@ -253,8 +258,8 @@ def run(
         receipt=world.receipt,
         momentum_before=before,
         momentum_after=world.momentum,
-        momentum_least=tuple(momenta.min(axis=0).tolist()),
-        momentum_most=tuple(momenta.max(axis=0).tolist()),
+        momentum_least=tuple(least.tolist()),
+        momentum_most=tuple(most.tolist()),
         probes=answers,
         comparison=probes.compared(answers, guess),
         samples=tuple(samples),

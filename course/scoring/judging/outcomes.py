@@ -20,7 +20,16 @@ from course.scoring.explain.story import NOT_FINITE, said_once
 from course.scoring.judging.submission import Submission
 from course.scoring.remote import RemoteSubmission
 from course.scoring.values import kind_of, plain
-from course.scoring.verdict import CheckResult, Finding, Places, Problem, Status, Visibility
+from course.scoring.verdict import (
+    ENTRIES,
+    EVALUATIONS,
+    CheckResult,
+    Finding,
+    Places,
+    Problem,
+    Status,
+    Visibility,
+)
 
 #: Diagnosis of a check that broke on a student's value and not on the model solution's.
 NOT_JUDGED = "NOT_JUDGED"
@@ -58,10 +67,6 @@ def skipped(check: Check, blocking: str) -> CheckResult:
     )
 
 
-#: How the quantity of what the course counted begins: a fact about it would read as one about the result.
-_COUNTED = ("length of ", "evaluations")
-
-
 def told_more(
     judged: CheckResult, source: bytes, places: Places, args: tuple[Any, ...] | None = None
 ) -> CheckResult:
@@ -85,7 +90,7 @@ def told_more(
         message, advice = said_once(judged.message, found.looks_like), found.advice
         return msgspec.structs.replace(judged, diagnosis=found.code, message=message, help=advice)
     if judged.status is Status.FAIL and public and (unnamed or judged.diagnosis in NOT_FINITE):
-        counted = judged.quantity.startswith(_COUNTED)
+        counted = judged.quantity.startswith((ENTRIES, EVALUATIONS))
         fact = "" if counted else likeness(judged.actual, judged.expected, judged.input)
         return msgspec.structs.replace(judged, message=f"{judged.message} {fact}".strip())
     return judged

@@ -94,6 +94,18 @@ def test_a_new_exercise_passes_the_audit_once_its_blanks_are_filled(
     assert Catalog().exercise("tripling").order == 3
 
 
+def test_a_question_that_raises_is_named_with_its_line(mini: Path) -> None:
+    new_exercise(Catalog(), "tripling")
+    fill(mini)
+    solution = mini / "solutions" / "tripling" / "tripling.py"
+    called = "    if callable(x):\n        x = x(1.0)\n    return 3 * x"
+    solution.write_text(solution.read_text("utf-8").replace("    return 3 * x", called), "utf-8")
+    asked = mini / "exercises" / "tripling" / "questions.py"
+    asked.write_text('QUESTIONS = {\n    "tripling": [\n        (lambda t: t / 0,),\n    ]\n}\n', "utf-8")
+    problems = audit(Catalog(), "tripling", grade=lambda _: ()).problems
+    assert "exercises/tripling/questions.py:3" in [one.where for one in problems], problems
+
+
 def test_the_audit_names_every_blank_with_its_line(mini: Path) -> None:
     files = new_exercise(Catalog(), "tripling")
     expected = {

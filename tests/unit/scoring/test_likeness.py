@@ -143,7 +143,7 @@ def test_a_fact_is_said_of_a_public_check_without_a_name_and_of_no_other() -> No
     told = told_more(judged(**numbers), b"", PLACES)
     assert told.message == "It is wrong. Here your result is twice the right one."
     assert told_more(judged(**numbers, diagnosis="NAMED"), b"", PLACES).message == "It is wrong."
-    length = judged(**numbers, quantity="length of angles")
+    length = judged(**numbers, quantity="entries in angles")
     assert told_more(length, b"", PLACES).message == "It is wrong."  # not of what they hold
     hidden = judged(**numbers, visibility=Visibility.HIDDEN)
     assert told_more(hidden, b"", PLACES).message == "It is wrong."

@@ -6,117 +6,18 @@ are finite, so every case a student can ever meet can be gone through beforehand
 ``docs/quiz-format.md`` describes the files for authors.
 """
 
-import ast
 import itertools
 import math
-import operator
 import re
-from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 import msgspec
 
 from course.catalog.reading import Document, Keys, read_document, refuse_blanks
+from course.formulas import FormulaError, read_formula
 from course.ids import SLUG, QuestionId
 from course.printable import counted
-
-# ---
-# Arithmetic that a content file may contain: numbers, names, + - * / ** and a few functions.
-#
-# A formula is parsed and walked once; nothing of it is ever executed as Python.
-#
-#     >>> Formula("9.81 * h * t / 2").value({"h": 0.01, "t": 2})
-#     0.0981
-
-
-_BINARY: dict[type[ast.operator], Callable[[float, float], float]] = {
-    ast.Add: operator.add,
-    ast.Sub: operator.sub,
-    ast.Mult: operator.mul,
-    ast.Div: operator.truediv,
-    ast.Pow: math.pow,  # a float: it neither takes for ever nor turns complex
-}
-
-#: ``round`` and ``ceil`` give whole numbers, which are shown without decimals.
-FUNCTIONS: dict[str, Callable[[float], float]] = {
-    "abs": abs,
-    "ceil": math.ceil,
-    "exp": math.exp,
-    "log": math.log,
-    "round": round,
-    "sqrt": math.sqrt,
-}
-
-#: The value of a formula, or of a part of it, from those of its names.
-_Computed: TypeAlias = "Callable[[Mapping[str, float]], float]"
-
-
-class FormulaError(ValueError):
-    """A formula that cannot be read or has no finite value; the text says why."""
-
-
-class Formula:
-    """One formula.
-
-    Args:
-        text: for example ``"2 * sqrt(m / k)"``.
-
-    Attributes:
-        names: the names whose values it needs.
-
-    Raises:
-        FormulaError: it is not arithmetic.
-    """
-
-    def __init__(self, text: str) -> None:
-        try:
-            body = ast.parse(text.strip(), mode="eval").body
-        except (SyntaxError, ValueError, RecursionError, MemoryError):
-            raise FormulaError("it is not arithmetic") from None
-        self._computed, self.names = _compiled(body)
-
-    def value(self, given: Mapping[str, float]) -> float:
-        """The value; an int where only whole numbers and ``round`` or ``ceil`` were involved.
-
-        Raises:
-            FormulaError: there is no finite real value.
-        """
-        try:
-            result = self._computed(given)
-            if math.isfinite(result):
-                return result
-        except ZeroDivisionError:
-            raise FormulaError("it divides by zero") from None
-        except (ValueError, OverflowError):
-            pass
-        raise FormulaError("it has no finite value")
-
-
-def _compiled(node: ast.expr) -> tuple[_Computed, frozenset[str]]:
-    """What a part of a formula computes, and the names in it; a part that is not allowed is refused."""
-    match node:
-        case ast.Constant(value=bool()):
-            pass
-        case ast.Constant(value=int() | float() as number):
-            return lambda _: number, frozenset()
-        case ast.Name(id=name):
-            return lambda given: given[name], frozenset({name})
-        case ast.UnaryOp(op=ast.UAdd(), operand=operand):
-            return _compiled(operand)
-        case ast.UnaryOp(op=ast.USub(), operand=operand):
-            value, names = _compiled(operand)
-            return lambda given: -value(given), names
-        case ast.BinOp(left=left, op=op, right=right) if type(op) in _BINARY:
-            operate, (one, ones), (other, others) = _BINARY[type(op)], _compiled(left), _compiled(right)
-            return lambda given: operate(one(given), other(given)), ones | others
-        case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in FUNCTIONS:
-            function, (value, names) = FUNCTIONS[name], _compiled(argument)
-            return lambda given: function(value(given)), names
-    raise FormulaError(
-        f"{ast.unparse(node)[:60]!r} is not one of: numbers, names, + - * / **, {', '.join(FUNCTIONS)}"
-    )
-
 
 #: Options of every question. Five questions of four options are passed by guessing in 1.6 % of attempts.
 OPTIONS = 4
@@ -287,9 +188,9 @@ def _check_numbers(document: Document[Question], where: Keys, variant: Variant) 
 
 def _check_formula(document: Document[Question], where: Keys, text: str, known: set[str]) -> None:
     try:
-        formula = Formula(text)
+        formula = read_formula(text)
     except FormulaError as error:
-        document.fail(where, f"`formula` cannot be read: {error}.", fix="Write for example: 2 * sqrt(m / k)")
+        document.fail(where, f"`formula` {error}.", fix="Write for example: 2 * sqrt(m / k)")
     unknown = sorted(formula.names - known)
     if unknown:
         problem = f"`formula` uses {unknown[0]}, which is not given above it."
@@ -312,7 +213,7 @@ def _check_placeholders(document: Document[Question], where: Keys, variant: Vari
         used.update(names)
     for number in variant.number:
         if number.formula:
-            used |= Formula(number.formula).names
+            used |= read_formula(number.formula).names
     for index, number in enumerate(variant.number):
         if number.name not in used:
             fix = "Use it in a text or a formula, or remove it."

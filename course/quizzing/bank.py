@@ -21,9 +21,10 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from course.catalog.load import Catalog
-from course.catalog.questions import Formula, FormulaError, Question, Variant, read_questions
+from course.catalog.questions import Question, Variant, read_questions
 from course.catalog.reading import Document
 from course.errors import NotFoundError, UsageError
+from course.formulas import FormulaError, read_formula
 from course.printable import counted
 
 MAX_SEED = 2**31 - 1
@@ -215,12 +216,12 @@ def _numbers(document: Document[Question], variant_index: int, case: int) -> dic
             shown[number.name] = f"{number.values[place]:,}"
             continue
         try:
-            values[number.name] = Formula(number.formula).value(values)
+            values[number.name] = read_formula(number.formula).value(values)
         except FormulaError as error:
             given = ", ".join(f"{name} = {value:g}" for name, value in values.items())
             document.fail(
                 ("variant", variant_index, "number", index, "formula"),
-                f"`formula` of {number.name} fails for {given}: {error}.",
+                f"`formula` of {number.name} fails for {given}: it {error}.",
                 fix="Change the formula, or the values it is computed from.",
             )
         shown[number.name] = significant(values[number.name], number.digits)

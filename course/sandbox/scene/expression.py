@@ -1,60 +1,13 @@
-"""Arithmetic in a scene's text: ``sqrt(2 * g * drop)``.
-
-A scene is data, and a student's own scene may come from anywhere, so a formula in it is read as a syntax tree
-of numbers, names, ``+ - * / **`` and a handful of functions, and never handed to ``eval``.
-"""
+"""The formulas of a scene, and the texts that hold them: ``course.formulas`` with a scene's own refusals."""
 
 from __future__ import annotations
 
-import ast
-import math
-import operator
 import re
 import string
-import warnings
-from collections.abc import Callable, Iterator, Mapping
-from functools import lru_cache
+from collections.abc import Iterator, Mapping
 
 from course.errors import UsageError
-
-_MAX_LENGTH = 300
-#: Longest chain of operations; a deeper tree is not a formula that a person wrote.
-_MAX_DEPTH = 40
-
-#: Largest n of a binomial coefficient: beyond about a thousand the result is too large for a float.
-_MOST = 1000
-
-
-def _comb(n: float, k: float) -> float:
-    if not 0 <= k <= n <= _MOST:
-        raise ValueError(f"comb needs 0 <= k <= n <= {_MOST}")
-    return float(math.comb(round(n), round(k)))
-
-
-_BINARY: dict[type[ast.operator], Callable[[float, float], float]] = {
-    ast.Add: operator.add,
-    ast.Sub: operator.sub,
-    ast.Mult: operator.mul,
-    ast.Div: operator.truediv,
-    ast.Pow: math.pow,
-}
-_FUNCTIONS: dict[str, Callable[..., float]] = {
-    "abs": abs,
-    "atan": math.atan,
-    "atan2": math.atan2,
-    "comb": _comb,
-    "cos": math.cos,
-    "degrees": math.degrees,
-    "exp": math.exp,
-    "log": math.log,
-    "max": max,
-    "min": min,
-    "radians": math.radians,
-    "sin": math.sin,
-    "sqrt": math.sqrt,
-    "tan": math.tan,
-}
-_CONSTANTS = {"pi": math.pi}
+from course.formulas import Formula, FormulaError, read_formula
 
 
 def evaluate(text: str, values: Mapping[str, float]) -> float:
@@ -67,17 +20,14 @@ def evaluate(text: str, values: Mapping[str, float]) -> float:
     Raises:
         UsageError: it is not a formula, names something unknown, or has no value (a division by zero, say).
     """
-    tree, used_names = _read(text)
-    known = _CONSTANTS | {name: float(values[name]) for name in used_names if name in values}
-    for name in sorted(used_names - known.keys()):
+    read = _read(text)
+    for name in sorted(read.names - values.keys()):
         help_ = f"Known: {', '.join(sorted(values))}."
         raise _refused(name, "is not a name that this scene knows", help=help_)
     try:
-        return _value(tree, known)
-    except (ArithmeticError, ValueError, OverflowError, TypeError) as error:
-        raise _refused(
-            text, f"has no value ({error})", help="Choose other numbers, or correct it."
-        ) from error
+        return float(read.value(values))
+    except FormulaError as error:
+        raise _refused(text, str(error), help="Choose other numbers, or correct it.") from error
 
 
 def names(text: str) -> frozenset[str]:
@@ -86,61 +36,14 @@ def names(text: str) -> frozenset[str]:
     Raises:
         UsageError: it is no formula.
     """
-    return _read(text)[1] - _CONSTANTS.keys()
+    return _read(text).names
 
 
-@lru_cache(maxsize=256)  # reading a scene asks for each of its formulas a dozen times
-def _read(text: str) -> tuple[ast.expr, frozenset[str]]:
-    """The tree of a formula, in which there is nothing but arithmetic, and the names in it."""
-    if len(text) > _MAX_LENGTH:
-        raise _refused(text[:40] + "...", f"is longer than {_MAX_LENGTH} letters")
+def _read(text: str) -> Formula:
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # about odd escapes in what will be refused anyway
-            tree = ast.parse(text.strip(), mode="eval").body
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise _refused(text, "is not a formula") from None
-    return tree, frozenset(_names_in(tree, text))
-
-
-def _names_in(node: ast.expr, text: str, level: int = 1) -> Iterator[str]:
-    """The names in a tree; everything but arithmetic is refused."""
-    if level > _MAX_DEPTH:
-        raise _refused(text, "is nested too deeply")
-    below: list[ast.expr] = []
-    match node:
-        case ast.Constant(value=bool()):
-            raise _refused(text, "may hold numbers, not True or False")
-        case ast.Constant(value=int() | float()):
-            pass
-        case ast.Name(id=name):
-            yield name
-        case ast.Attribute(value=ast.Name(id=name), attr=field):
-            yield f"{name}.{field}"
-        case ast.UnaryOp(op=ast.USub() | ast.UAdd(), operand=inner):
-            below = [inner]
-        case ast.BinOp(left=left, op=sign, right=right) if type(sign) in _BINARY:
-            below = [left, right]
-        case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]) if name in _FUNCTIONS:
-            below = arguments
-        case _:
-            raise _refused(text, f"may use + - * / **, numbers, names and {', '.join(sorted(_FUNCTIONS))}")
-    for inner in below:
-        yield from _names_in(inner, text, level + 1)
-
-
-def _value(node: ast.expr, values: Mapping[str, float]) -> float:
-    """The value of a tree that ``_names_in`` let pass."""
-    match node:
-        case ast.Constant(value=number):
-            return float(number)  # type: ignore[arg-type]
-        case ast.UnaryOp(op=sign, operand=inner):
-            return _value(inner, values) * (-1 if isinstance(sign, ast.USub) else 1)
-        case ast.BinOp(left=left, op=sign, right=right):
-            return float(_BINARY[type(sign)](_value(left, values), _value(right, values)))
-        case ast.Call(func=ast.Name(id=name), args=arguments):
-            return float(_FUNCTIONS[name](*(_value(argument, values) for argument in arguments)))
-    return values[ast.unparse(node)]
+        return read_formula(text)
+    except FormulaError as error:
+        raise _refused(text if len(text) <= 300 else text[:40] + "...", str(error)) from None
 
 
 def _refused(text: str, why: str, help: str = "Write plain arithmetic: sqrt(2 * g * drop).") -> UsageError:  # noqa: A002

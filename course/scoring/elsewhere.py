@@ -273,14 +273,15 @@ _CURES: tuple[tuple[str, str], ...] = (
         "A list of n values has the indices 0 to n - 1. Which index is it here?",
     ),
     (r"IndexError.*out of bounds", "An axis of n values has the indices 0 to n - 1. Which index is it here?"),
-    (r"ZeroDivisionError", "What is divided by is zero for this input. Which value makes it so?"),
+    (r"ZeroDivisionError", "What is divided by is zero here. Which value makes it so?"),
     (
         r"ValueError: (?:math domain error|expected a (?:non-?negative|positive) (?:input|number))",
         "It is the root or the logarithm of a negative number, or an arc sine of more than 1: print it.",
     ),
     (
         r"TypeError: only (?:size-1|length-1|0-dimensional) arrays",
-        "`math` takes one number at a time. For arrays use numpy's function of the same name.",
+        "An array came where one number is needed. `math` and `float()` take one at a time; numpy's "
+        "functions take arrays. In a call, look at the order of the arguments too.",
     ),
     (
         r"ValueError: The truth value of an array",

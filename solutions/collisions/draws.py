@@ -327,6 +327,14 @@ def early(rng):
     return scene, round(n * h, 3), h
 
 
+def touching(rng):
+    """A pair that touches exactly and approaches: the impact comes at once."""
+    radius, (va, vb) = 0.25, rng.uniform((0.5, -2.0), (2.0, -0.5)).tolist()
+    left = float(rng.integers(-4, 5)) / 2
+    places = left, left + 2 * radius
+    return paths.HeadOn(masses(rng), places, (va, vb), radius, float(rng.uniform(0.2, 0.8))), 0.5, 0.05
+
+
 # -- exact and slow, where limits show ------------------------------------------------------------------
 
 

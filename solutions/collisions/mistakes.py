@@ -100,6 +100,12 @@ mistakes(
         depth = r - abs((x - point) @ normal)
         return bool(depth >= 0), normal, depth
     """,
+).body(
+    "detect_sphere_plane",
+    """
+        height = (x - point) @ normal
+        return bool(abs(height) <= r), normal if height >= 0 else -normal, r - abs(height)
+    """,
 )
 mistakes(
     "PLANE_POINT_IGNORED",
@@ -348,7 +354,7 @@ mistakes(
 ).edit("resolve_with_friction", {"across / speed * slip": "across * np.sign(slip)"})
 mistakes(
     "FRICTION_PER_AXIS",
-    "Each coordinate of the slip is limited separately, which turns Coulomb's cone into a box: friction is then too strong along the diagonals.",
+    "Friction is worked out for each coordinate of the slip by itself, which turns Coulomb's cone into a box: it is then too strong along the diagonals.",
     "Limit the length of the tangential impulse, and keep its direction, which is against vt.",
 ).body(
     "resolve_with_friction",
@@ -699,6 +705,19 @@ mistakes(
         impulse = 2 * closing / (1 / ma + 1 / mb) * normal
         return restitution * (va - impulse / ma), restitution * (vb + impulse / mb)
     """,
+).body(
+    "resolve",
+    """
+        closing = (va - vb) @ normal
+        if closing <= 0:
+            return va, vb
+        impulse = 2 * closing / (1 / ma + 1 / mb)
+        a, b = va @ normal, vb @ normal
+        return (
+            va + (restitution * (a - impulse / ma) - a) * normal,
+            vb + (restitution * (b + impulse / mb) - b) * normal,
+        )
+    """,
 ).edit(
     "simulate_head_on",
     {
@@ -803,6 +822,37 @@ mistakes(
             s = np.maximum(t - t[np.argmax(still)], 0.0)
             z, v = z - g * s * s / 2, v - g * s
         return t, z, v
+    """,
+)
+mistakes(
+    "RESTS_ABOVE_G_H",
+    "The ball is put to rest by a speed at the floor that is above g h.",
+    "Compare with g times h the speed that it has at the floor: not its square, and not that at the end of the step.",
+).edit("simulate_drop", {"up <= g * h": "up * up <= 2 * g * h"}).edit(
+    "simulate_drop", {"up <= g * h": "up <= g"}
+).body(
+    "simulate_drop",
+    """
+        n = round(t_end / h)
+        z, v = float(z0), float(v0)
+        rest = z <= radius and v == 0
+        zs, vs = [z], [v]
+        for i in range(n):
+            left = h
+            while not rest:
+                speed = math.sqrt(max(0.0, v * v + 2 * g * (z - radius)))
+                wait = (v + speed) / g
+                if wait > left:
+                    z, v = z + v * left - g * left * left / 2, v - g * left
+                    break
+                left -= wait
+                z, v = radius, restitution * speed
+                rest = abs(v - g * left) <= g * h
+            if rest:
+                z, v = radius, 0.0
+            zs.append(z)
+            vs.append(v)
+        return h * np.arange(n + 1), np.array(zs), np.array(vs)
     """,
 )
 mistakes(
@@ -1200,35 +1250,6 @@ mistakes(
     """,
 )
 mistakes(
-    "REST_BY_STEP_END",
-    "Whether the ball rests is decided by its speed at the end of the step, and not at the contact.",
-    "It rests if it touches the floor with at most g h: compare the speed that it has at the contact.",
-).body(
-    "simulate_drop",
-    """
-        n = round(t_end / h)
-        z, v = float(z0), float(v0)
-        rest = z <= radius and v == 0
-        zs, vs = [z], [v]
-        for i in range(n):
-            left = h
-            while not rest:
-                speed = math.sqrt(max(0.0, v * v + 2 * g * (z - radius)))
-                wait = (v + speed) / g
-                if wait > left:
-                    z, v = z + v * left - g * left * left / 2, v - g * left
-                    break
-                left -= wait
-                z, v = radius, restitution * speed
-                rest = abs(v - g * left) <= g * h
-            if rest:
-                z, v = radius, 0.0
-            zs.append(z)
-            vs.append(v)
-        return h * np.arange(n + 1), np.array(zs), np.array(vs)
-    """,
-)
-mistakes(
     "MISS_IS_A_NUMBER",
     "Where the bodies do not touch within the step, the result is something other than None.",
     "Return None there: a number would be read as a time, and infinity as one that never comes.",
@@ -1253,7 +1274,7 @@ mistakes(
             x, v = x0 + t[:, None] * v0, np.broadcast_to(v0, x.shape).copy()
         return t, x, v
     """,
-)
+).edit("simulate_head_on", {"0 < closing and gap <=": "0 < closing and 0 < xb - xa - 2 * radius <="})
 mistakes(
     "LAUNCH_IGNORED",
     "A ball that starts on the floor and moves upwards does not fly.",
@@ -2206,6 +2227,18 @@ mistakes(
         return t, v, z
     """,
 )
+mistakes(
+    "VELOCITIES_UNSIGNED",
+    "The velocities have lost their signs.",
+    "A velocity downwards, or to the left, is negative: store it as it is, without abs().",
+).edit("simulate_head_on", {"return t, x, v": "return t, x, np.abs(v)"}).edit(
+    "simulate_drop", {"return t, z, v": "return t, z, np.abs(v)"}
+)
+mistakes(
+    "BOUNCE_SPEED_KEPT",
+    "In the step of a bounce the stored velocity is the one with which the ball leaves the floor, not the one at the end of the step.",
+    "It flies on for the rest of the step, and gravity slows it: v = up - g * left.",
+).edit("simulate_drop", {"up - g * left\n": "up\n"})
 mistakes(
     "ROWS_NOT_WRITTEN",
     "The last rows, or the last one, hold nothing but zeros.",

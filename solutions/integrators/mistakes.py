@@ -1661,6 +1661,26 @@ mistakes(
     "The largest modulus decides, because that part of the motion prevails after many steps.",
 )
 mistakes(
+    "FIRST_EIGENVALUE",
+    "The limits are those of the first of the two eigenvalues, and the second may be larger.",
+    "np.linalg.eigvals gives them in no special order: take the largest modulus, max(abs(np.linalg.eigvals(M))).",
+).edit("max_stable_step", {"max(abs(np.linalg.eigvals(matrix)))": "abs(np.linalg.eigvals(matrix)[0])"})
+mistakes(
+    "MODULUS_BY_SUM",
+    "The limits are those of |Re| + |Im| of the eigenvalues, which is more than the modulus.",
+    "The modulus of a + b i is sqrt(a**2 + b**2): abs() of a complex number, or math.hypot(a, b).",
+).edit(
+    "max_stable_step",
+    {
+        "max(abs(np.linalg.eigvals(matrix)))": "max(abs(one.real) + abs(one.imag) for one in np.linalg.eigvals(matrix))"
+    },
+)
+mistakes(
+    "ONE_START_DECIDES",
+    "The limits are those of one column of the matrix: how far one step takes a single start.",
+    "Make the whole matrix, from (1, 0) and from (0, omega). The largest modulus of its eigenvalues says what many steps do.",
+).edit("max_stable_step", {"max(abs(np.linalg.eigvals(matrix)))": "np.linalg.norm(np.array(matrix)[:, 0])"})
+mistakes(
     "STABILITY_BY_ENTRY",
     "The limits are those of entries of the matrix, not of its eigenvalues.",
     "A step is stable if the largest modulus of the eigenvalues is at most 1 + 1e-8: max(abs(np.linalg.eigvals(M))).",
@@ -2017,7 +2037,9 @@ def _norm(order):
 _SEARCH = {
     "size": (
         *(("STABILITY_BY_NORM", _norm(order)) for order in (2, np.inf, 1, "fro")),
+        ("STABILITY_BY_NORM", lambda m: np.linalg.norm(m, axis=0).max()),
         ("STABILITY_BY_DETERMINANT", lambda m: abs(np.linalg.det(m))),
+        ("STABILITY_BY_DETERMINANT", lambda m: math.sqrt(abs(np.linalg.det(m)))),
         ("STABILITY_BY_TRACE", lambda m: abs(np.trace(m)) / 2),
         ("STABILITY_BY_TRACE", lambda m: np.trace(m) / 2),
         ("EIGENVALUES_WITHOUT_MODULUS", lambda m: np.linalg.eigvals(m).real.max()),
@@ -2025,6 +2047,10 @@ _SEARCH = {
         ("EIGENVALUES_WITHOUT_MODULUS", lambda m: abs(np.linalg.eigvals(m).max())),
         ("EIGENVALUES_OF_SYMMETRIC", lambda m: max(abs(np.linalg.eigvalsh(m)))),
         ("SMALLEST_EIGENVALUE", lambda m: min(abs(np.linalg.eigvals(m)))),
+        ("FIRST_EIGENVALUE", lambda m: abs(np.linalg.eigvals(m)[0])),
+        ("MODULUS_BY_SUM", lambda m: max(abs(e.real) + abs(e.imag) for e in np.linalg.eigvals(m))),
+        ("ONE_START_DECIDES", lambda m: np.linalg.norm(m[:, 0])),
+        ("ONE_START_DECIDES", lambda m: np.linalg.norm(m[:, 1])),
         ("STABILITY_BY_ENTRY", lambda m: abs(m[0, 0])),
         ("STABILITY_BY_ENTRY", lambda m: np.abs(m).max()),
     ),

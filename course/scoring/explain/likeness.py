@@ -38,8 +38,8 @@ _TIMES = {
     9.81: "the right one times 9.81",
     1 / 9.81: "the right one over 9.81",
 }
-_TIMES |= {float(n): f"{n} times the right one" for n in (3, 4, 5, 6, 8, 9, 10, 12, 16, 100, 1000)}
-_TIMES |= {1 / n: f"the right one over {n}" for n in (5, 6, 8, 9, 10, 12, 16, 100, 1000)}
+_TIMES |= {float(n): f"{n} times the right one" for n in (3, 4, 6, 10, 12, 100, 1000)}
+_TIMES |= {1 / n: f"the right one over {n}" for n in (6, 10, 12, 100, 1000)}
 #: Inputs that are whole numbers below it are not compared with a simple factor: too many things are 2.
 _BY_CHANCE = 20
 _PLACES = ("first", "second", "third", "fourth", "fifth", "sixth")

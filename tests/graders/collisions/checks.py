@@ -260,7 +260,10 @@ def test_moment_any_speed(submission, rng):
     bundles.expect_formula(
         submission,
         bundles.MOMENT,
-        [*(draws.shot(rng, 10.0**power) for power in (*np.linspace(0.0, 5.0, 11), -2.4)), draws.late(rng)],
+        [
+            *(draws.shot(rng, 10.0**power) for power in (*np.linspace(0.0, 5.0, 11), -2.4, -3.1)),
+            draws.late(rng),
+        ],
         "A contact is missed or comes at the wrong time.",
         "At any speed the first moment of contact is the smaller root of the quadratic, if it is at most dt; "
         "nothing needs to be sampled.",
@@ -339,6 +342,7 @@ def test_head_on_drawn(submission, rng):
 def test_head_on_large_steps(submission, rng):
     """Fast balls, long steps, and a meeting in the first step"""
     cases = [*(draws.fast_pair(rng, jump) for jump in (3.0, 30.0, 1000.0)), draws.early(rng), draws.slim(rng)]
+    cases.append(draws.touching(rng))
     values = submission.call_each(bundles.HEAD_ON, [scene.args(t_end, h) for scene, t_end, h in cases])
     for (scene, t_end, h), truth, value in zip(cases, bundles.meetings(cases), values, strict=True):
         bundles.expect_head_on(

@@ -293,7 +293,7 @@ def test_observed_order_least_squares(submission, rng):
     """Points that scatter, fitted by least squares"""
     hs = 0.3 * np.cumprod(rng.uniform(0.4, 0.8, 7))
     errors = rng.uniform(0.1, 10.0) * hs ** rng.uniform(0.8, 4.5) * np.exp(rng.normal(0.0, 0.2, 7))
-    message = "Through points that scatter, observed_order is not the least-squares slope."
+    message = "observed_order is not the least-squares slope of these points."
     points = [(hs, errors), *bundles.cases.scattered(rng)]
     bundles.expect_slopes(submission, [(*given, message) for given in points])
 
@@ -386,7 +386,7 @@ def test_stable_step_edges(submission, rng):
     beyond = bundles.cases.slow_growth(rng.uniform(10.3, 12.0))
     # The search begins at h omega = 0.05: what is unstable there has no stable step, and what is so soon has.
     before, soon = rng.uniform((0.03, 0.06), (0.045, 0.09)).tolist()
-    early = "For a map that becomes unstable early, the result is not its limit, or zero below 0.05/omega."
+    early = "The largest stable step of a map that becomes unstable early is wrong."
     bundles.expect_limits(
         submission,
         [

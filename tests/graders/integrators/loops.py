@@ -29,7 +29,7 @@ def expect_times(submission, rng):
         abs=1e-6,
         source="the contract's 1e-9, and rounding where the times are read off the path",
         units="s",
-        quantity="t given to the step",
+        quantity="start of the step, as your path shows it",
         input=given,
         message="The path of a step that depends on its time is wrong.",
         help="Step number i starts at i * h.",
@@ -136,7 +136,7 @@ def _arrays(submission, value, n, args, given):
             n + 1,
             name=name,
             input=given,
-            message="An array that integrate returns has not N + 1 rows, with N = round(t_end / h).",
+            message="An array that integrate returns does not have N + 1 rows, with N = round(t_end / h).",
             help="Take N = round(t_end / h) steps. Row 0 is the initial state, and each step adds a row.",
             diagnose=lambda name=name: probes.of_count(submission, n, args[5], q) if name == "t" else None,
         )

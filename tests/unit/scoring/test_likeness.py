@@ -31,7 +31,7 @@ PLACES = Places(module="work.py")
         (2.4, 0.24 * 0.07, {"x": 3.0, "y": 0.07, "z": 0.1}, ""),
         (4.8, 2.4, {"m": 2.0}, "Here your result is twice the right one."),
         (4.8, 2.4, {"values": [0.5, 3.1]}, "Here your result is twice the right one."),
-        (0.48, 2.4, {"e": 0.2, "v": 3.7}, "the right one over 5 (`e` is 0.2)"),
+        (0.48, 2.4, {"e": 0.2, "v": 3.7}, "the right one times `e`"),
         (2.4 * 0.07, 2.4, {"h": 0.07}, "the right one times `h`"),
         (2.4 / 0.07**2, 2.4, {"h": 0.07}, "the right one over `h` squared"),
         (3.7, 2.4, {"v": 3.7}, "the same as `v`"),

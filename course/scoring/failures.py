@@ -231,8 +231,9 @@ _ENDED = {
 }
 _NOT_PLAIN = "Your function returned, or passed on, something that is not plain data, or far too much of it."
 _AS_ASKED = (
-    "Return what the README asks for as plain data: real numbers, texts, None, or lists, tuples, dicts "
-    "and arrays of them, and no generator."
+    "Return, and hand over, what the README asks for as plain data: real numbers, texts, None, or lists, "
+    "tuples, dicts and arrays of them. A generator is none, and an array of dtype object neither: make a "
+    "list of it."
 )
 
 

@@ -100,8 +100,8 @@ mistakes(
 )
 mistakes(
     "SYMPLECTIC_STEP_TOO_SMALL",
-    "Engines that lose area pass the test. The step is so small that the loss hides in the threshold.",
-    "Take the one step with h = 0.5/omega, as the README says.",
+    "Engines that lose area pass the test: what they lose in the step that is looked at lies within what the test allows.",
+    "Take one step with h = 0.5/omega, and compare |det - 1| with 1e-6: a kept energy is not a kept area.",
     kind="consequence",
 ).around(
     "characterise",
@@ -583,7 +583,7 @@ mistakes("WRONG_KEYS").around(
 mistakes(
     "MEASURED_AS_NONE",
     "",
-    "If you measure it already, perhaps an exception that you catch became None, or `x or None` turned a 0 into None.",
+    "If you measure it already, perhaps an exception that you catch became None, `x or None` turned a 0 into None, or what you wait for never came: a body that stops dead has v = 0.",
     kind="fact",
 ).around(
     "characterise",
@@ -1462,7 +1462,7 @@ mistakes(
 mistakes(
     "DAMPING_SIGN",
     "For at least one engine the rate is negative.",
-    "The rate is ln(v0/v) over the time between the two speeds, v0 at the start and v at the end.",
+    "The rate is ln(v0/v) over the time between the two speeds, v0 at the start and v at the end. In too short a time the jitter is larger than the loss: take about dt/10.",
 )
 mistakes(
     "DAMPING_AS_FORCE",

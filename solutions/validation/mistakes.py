@@ -1238,8 +1238,8 @@ mistakes(
 )
 mistakes(
     "PEAK_NOT_LARGEST",
-    "The peak is that of a curve through the samples, or a percentile of them.",
-    "A peak is the largest sample, not a point of a curve through it nor a percentile.",
+    "The peak is that of a curve through the samples, an average of some, or a percentile.",
+    "A peak is the largest sample, as it was recorded.",
     kind="consequence",
 ).body(
     "contact_force_error",
@@ -1741,7 +1741,7 @@ mistakes(
 mistakes(
     "AN_END_LEFT_OUT",
     "Of a short series, the first or the last sample occurs in none of many resamples.",
-    "Draw each start from 0 to N - block, both included: rng.integers(0, N - block + 1) leaves out its upper end.",
+    "Draw each start from 0 to N - block, both included: rng.integers(0, N - block + 1) leaves out its upper end. Blocks that go on at the start take their indices modulo N.",
     kind="fact",
 ).edit("block_bootstrap_ci", {"n - block + 1": "n - block"})
 mistakes(
@@ -2331,7 +2331,7 @@ mistakes(
 mistakes(
     "REASON_TOO_MANY",
     "A reason does not apply: the right interval lies inside its margin.",
-    "Compare each interval, both of its ends, with its own margin.",
+    "Compare each interval with its own margin: of the rmse the upper end, of the others both.",
     kind="consequence",
 )
 mistakes(

@@ -154,7 +154,7 @@ class _Handed:
                 help="Call engine.run(scene, q0, v0, h, n, force): a scene's name, as many coordinates as it "
                 "has in q0, v0 and force, a positive step, a whole number of steps up to 20000.",
                 diagnose="ENGINE_MISUSED",
-                expected=f"arguments that run accepts, but {str(error)[:200]}",
+                expected=f"arguments that run accepts: {str(error)[:200]}",
                 actual=[*args, *kwargs.values()],
             )
         if len(case.runs) < MOST_NOTED:

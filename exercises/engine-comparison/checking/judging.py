@@ -29,11 +29,12 @@ HELP = {
     "order": "Over one time like 1.3/omega take 16, 32 and 64 steps. With the ends y = (q, v/omega), the "
     "order is log2(|y1 - y2| / |y2 - y3|), rounded.",
     "symplectic": "Columns of the matrix are the states after one step of 0.5/omega. Is |det - 1| < 1e-6?",
-    "linear_damping": "Give a free body a speed v0, and take n very small steps: the rate is ln(v0/v)/(n h).",
+    "linear_damping": "Give a free body a speed v0, and take n small steps, together about dt/10: the rate "
+    "is ln(v0/v)/(n h).",
     "max_stable_step": "From 0.05/omega up, where does an eigenvalue of the step on (q, v/omega) first have "
     "a modulus above 1 + 1e-8?",
     "friction_anisotropy": "From where the body has settled, bisect the least force that makes it faster "
-    "than 0.01 m/s within 0.5 s: along x, and along the diagonal.",
+    "than 0.01 m/s within 0.5 s, from 0 to 5 mu m g: along x, and along the diagonal.",
     "rest_penetration": "Put the body down at z = radius, and report max(0, radius - z) five seconds later.",
     "restitution": "Let the body meet the wall at 2 m/s. Divide its speed in the first sample after the hit "
     "by that in the last one before it.",

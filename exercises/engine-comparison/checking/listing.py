@@ -94,7 +94,7 @@ def _expect_kind(entry: dict[str, Any]) -> None:
             kit.fail("A default step is not a positive number of seconds.", help=_STEP, actual=value)
     else:
         text = kit.as_text(value, name)
-        if field == "default_integrator" and text not in INTEGRATORS:
+        if field == "default_integrator" and text.strip().lower() not in INTEGRATORS:
             kit.fail(
                 "A default integrator is not one of those that the README lists.",
                 help=f"Use one of {', '.join(INTEGRATORS)}.",

@@ -148,7 +148,9 @@ def of_band(submission, setting, ends, right):
     # That of a chi-square lies higher by far more than rounding: (2/9 z² - 2/3)/runs and the like.
     if abs(sum(ends) / 2 - dof) < 1e-9 * dof and ends[0] < ends[1]:
         return named("NORMAL_BAND")
-    if dof * runs > 40 and all(_right_for_forty(submission, *size, alpha) for size in _FEWER):
+    # At several levels: a band made by chance is right at one or two of them.
+    levels = (alpha, 0.01, 0.2)
+    if dof * runs > 40 and all(_right_for_forty(submission, *size, one) for size in _FEWER for one in levels):
         return named("FEW_DEGREES_ONLY")
     return named("ROUGH_QUANTILES") if np.allclose(ends, right, rtol=0.2) else None
 

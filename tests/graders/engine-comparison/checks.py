@@ -210,7 +210,7 @@ def test_facts_defaults(submission):
     entries = listing.entries(submission)
     for engine in listing.ENGINES:
         entry = listing.expect_pair(entries, (engine, "default_integrator"))
-        integrator = kit.as_text(entry["value"], "a default integrator")
+        integrator = facts.plain(kit.as_text(entry["value"], "a default integrator"))
         if integrator != facts.INTEGRATOR:
             option = (engine, integrator) in {("mujoco", "rk4"), ("mujoco", "implicit_euler")}
             slip = "OPTION_TAKEN_FOR_DEFAULT" if option else None

@@ -71,7 +71,7 @@ def test_the_hidden_engines_are_the_same_for_every_submission_of_a_run_noise_inc
 def test_a_run_with_senseless_arguments_is_a_finding_that_says_how_to_call_it(wrong):
     with pytest.raises(kit.CheckFailed) as failed:
         bench.engine(bench.Case("anvil", boxes.ANVIL, {}))["$methods"]["run"](*wrong)
-    assert failed.value.finding.expected.startswith("arguments that run accepts, but ")  # then, what is wrong
+    assert failed.value.finding.expected.startswith("arguments that run accepts: ")  # then, what is wrong
 
 
 def test_an_engine_that_brings_the_measurement_down_does_not_take_the_others_with_it():

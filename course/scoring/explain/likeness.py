@@ -42,6 +42,8 @@ _TIMES |= {float(n): f"{n} times the right one" for n in (3, 4, 6, 10, 12, 100, 
 _TIMES |= {1 / n: f"the right one over {n}" for n in (6, 10, 12, 100, 1000)}
 #: Inputs that are whole numbers below it are not compared with a simple factor: too many things are 2.
 _BY_CHANCE = 20
+#: A result with fewer significant digits is a rounded one, or the value of an input, by chance.
+_DIGITS = 2
 _PLACES = ("first", "second", "third", "fourth", "fifth", "sixth")
 
 
@@ -80,8 +82,8 @@ def _of_kinds(actual: Any, expected: Any, a: Array | None, given: Mapping[str, A
 
 def _of_numbers(actual: float, expected: float, given: Mapping[str, Any]) -> str:
     if actual == expected and type(actual) is not type(expected):
-        kinds = f"of the type {type(actual).__name__}, and {type(expected).__name__} is asked for"
-        return f"The number is right, but it is {kinds}."
+        kinds = type(actual).__name__, type(expected).__name__
+        return "Its value is right; its type is {}, and {} is asked for.".format(*kinds)
     if isinstance(expected, int) and abs(actual - expected) != 1:  # a count or an index has no factor
         return ""
     said = _of_two_numbers(float(actual), float(expected), given)
@@ -137,8 +139,12 @@ def _of_two_numbers(a: float, e: float, given: Mapping[str, Any]) -> str:
 
 def _taken(a: float, inputs: Sequence[tuple[str, float]]) -> str:
     """The input that a number is; "" if it is none. A one among several values is so by chance."""
-    chosen = ((n, v) for n, v in inputs if v != 0.0 and (n[0] == "`" or abs(v) != 1.0))
-    return next((name for name, value in chosen if _same(a, value)), "")
+    return next((name for name, value in inputs if _digits(value) >= _DIGITS and _same(a, value)), "")
+
+
+def _digits(value: float) -> int:
+    """How many significant digits a number has, as it is written."""
+    return len(f"{abs(value):.12e}".partition("e")[0].replace(".", "").rstrip("0"))
 
 
 def _inputs(given: Mapping[str, Any]) -> list[tuple[str, float]]:
@@ -161,7 +167,10 @@ def _of_ratio(a: float, e: float, inputs: Sequence[tuple[str, float]]) -> str:
         also = [
             n
             for n, v in inputs
-            if n[0] == "`" and not _is_small(v) and (_same(v, abs(ratio)) or _same(v * abs(ratio), 1.0))
+            if n[0] == "`"
+            and v
+            and not (_is_small(v) or _is_small(1.0 / v))
+            and (_same(v, abs(ratio)) or _same(v * abs(ratio), 1.0))
         ]
         turned = ", with the other sign" if ratio < 0 else ""
         return known + turned + (f" ({also[0]} is {dict(inputs)[also[0]]:g})" if len(also) == 1 else "")
@@ -198,6 +207,8 @@ def _of_powers(a: float, e: float) -> str:
 def _of_digits(a: float, e: float) -> str:
     if abs(a) == 1.0:  # a ratio is one for many reasons
         return ""
+    if _digits(a) <= _DIGITS:
+        return ""
     if a == math.trunc(e):
         return "the right one without its decimals"
     places = next((n for n in range(7) if a == round(e, n)), None)
@@ -223,7 +234,9 @@ def _of_order(a: Array, e: Array) -> str:
         return "Your matrix is the right one with rows and columns exchanged."
     if _same(a, e[::-1]) and len(e) > 1:
         return (
-            "The two are right, but exchanged." if len(e) == 2 else "The values are right, in reverse order."
+            "Each of the two stands in the other's place."
+            if len(e) == 2
+            else "The values are right, in reverse order."
         )
     if e.ndim == 1 and _same(np.sort(a), np.sort(e)):
         return "The values are right, in another order."

@@ -1024,7 +1024,7 @@ mistakes(
 mistakes(
     "DENSITY_FROM_DIFFERENCES",
     "The noise density is too large by about the square root of two.",
-    "With white noise, a difference of two samples, or of two means, has twice the variance of one: divide the mean square by two before you take the root.",
+    "With white noise, a difference of two samples, or of two means, has twice the variance of one: divide the mean square by two before you take the root. If you do, look at the factor of N**2: it is 1/T.",
 ).around(
     "fit_noise",
     """

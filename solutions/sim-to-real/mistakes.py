@@ -1156,7 +1156,7 @@ mistakes(
 mistakes(
     "EXCITATION_NOT_FULL",
     "The force stays below u_max. In at least one of the checks the same signal, scaled up to it, would show enough.",
-    "Scale the finished signal so that its largest absolute value is u_max: the noise stays the same.",
+    "Scale the finished signal so that its largest absolute value is u_max: the noise stays the same. Most of it should be near that: rare peaks show little.",
 ).around(
     "design_excitation",
     """

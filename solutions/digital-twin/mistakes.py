@@ -13,7 +13,9 @@ mistakes(
     "TRUNCATES_TOWARD_ZERO",
     "The fraction is cut off, towards zero, so the count around zero is twice as wide as any other.",
     "int() and astype(int) cut towards zero. Use np.floor or np.rint first.",
-).edit("encoder", {"np.floor(np.asarray(theta)": "(theta"})
+).edit("encoder", {"np.floor(np.asarray(theta)": "(theta"}).edit(
+    "encoder", {"np.floor(np.asarray(theta)": "np.trunc(0.5 + np.asarray(theta)"}
+)
 mistakes(
     "COUNTS_AS_FLOATS",
     "The counts are right, but their type is not a signed integer type.",
@@ -462,6 +464,11 @@ mistakes(
         return np.array([x + way * math.cos(heading), y + way * math.sin(heading), heading + turn])
     """,
 )
+mistakes(
+    "SPEEDS_WITHOUT_SIGN",
+    "A wheel that rolls backwards counts as one that rolls forwards.",
+    "The chord has the mean of the two wheel speeds in it, each with its sign.",
+).edit("diff_drive_step", {"(v_left + v_right) / 2": "(abs(v_left) + abs(v_right)) / 2"})
 mistakes(
     "MIDPOINT_ODOMETRY",
     "The robot moves the whole length of the arc in a straight line, but the chord is shorter than its arc.",
@@ -1019,6 +1026,26 @@ mistakes(
     """
         found = _right(still, dt)
         return {**found, "bias0": abs(found["bias0"])}
+    """,
+)
+mistakes(
+    "CURVE_READ_AT_ONE_TIME",
+    "The noise density is the Allan deviation at 1 s, in which some of the walk is, too.",
+    "Noise and walk are both in every averaging time: take the variances of many times, and fit N**2 / T + K**2 T / 3 to them.",
+).body(
+    "fit_noise",
+    """
+        total = np.concatenate([[0.0], np.cumsum(still)])
+
+        def deviation(T):
+            size = max(1, round(T / dt))
+            means = (total[size:] - total[:-size]) / size
+            return math.sqrt(np.mean((means[size:] - means[:-size]) ** 2) / 2)
+
+        density, walk = deviation(1.0), deviation(3.0)
+        window = max(1, min(len(still), round(math.sqrt(3) * density / (walk * dt))))
+        bias0 = float(np.mean(still[:window]))
+        return {"noise_density": density, "bias_random_walk": walk, "bias0": bias0}
     """,
 )
 mistakes(

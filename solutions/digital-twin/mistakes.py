@@ -278,7 +278,7 @@ mistakes(
 ).edit("lidar", {"segments[:, 0] - (x, y)": "(x, y) - segments[:, 0]"})
 mistakes(
     "WALLS_BEHIND_SEEN",
-    "A beam that points away from the only wall does not read r_max.",
+    "With one wall alone, a beam that points away from it does not read r_max.",
     "A beam goes in one direction only: a hit counts only at a distance of zero or more.",
 ).program(
     "lidar",
@@ -922,7 +922,7 @@ mistakes("STATE_KEPT").program(
 )
 mistakes(
     "GENERATOR_COPIED",
-    "Your code makes a deep copy of rng, the generator that is passed in. A copy gives the numbers that rng itself gives next, so the same numbers come again: in this call, or in a later one with the same generator.",
+    "A copy gives the numbers that rng itself gives next, so the same numbers come again: in this call, or in a later one with the same generator.",
     "Draw from rng itself, which moves on with each number. It is the one argument that a call may change.",
     kind="fact",
 ).program(

@@ -62,7 +62,7 @@ mistakes(
 )
 mistakes(
     "INTEGER_STATE",
-    "Fractions are lost, or the code fails on whole numbers. An array made of whole numbers has no room for fractions.",
+    "An array made of whole numbers has no room for fractions: they are lost, or the code fails.",
     "Start from np.array(q, dtype=float), and write a = a * h and not a *= h. Make float arrays before you store values in them: np.zeros(...) makes floats, but np.zeros_like(q0) takes the type of q0.",
 ).body(
     "explicit_euler_step",
@@ -715,7 +715,7 @@ mistakes(
 )
 mistakes(
     "ACCEL_BY_KEYWORD",
-    "accel gets its arguments by name. That works only where they have these very names.",
+    "That works only where its arguments have these very names.",
     "Call it by position: accel(t, q, v).",
     kind="fact",
 ).body(

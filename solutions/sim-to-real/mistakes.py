@@ -1293,7 +1293,7 @@ mistakes(
 )
 mistakes(
     "PARAMETER_OF_ANOTHER_SOURCE",
-    "A parameter does not belong to the source given with it.",
+    "It belongs to another one.",
     "The README's table says which parameters go with each source: b and Fc with friction, latency and lag with delay.",
     kind="fact",
 )

@@ -653,7 +653,7 @@ mistakes(
 )
 mistakes(
     "WHOLE_ARRAYS",
-    "Your code passes energy more than one position and one velocity.",
+    "More than one of each is passed at once.",
     "Loop over the samples: energy(q[i], v[i]) returns one number.",
     kind="fact",
 ).body(
@@ -1656,7 +1656,7 @@ mistakes(
 )
 mistakes(
     "ROUGH_QUANTILES",
-    "The band is roughly right, but off by more than 1 %.",
+    "The band is roughly right.",
     "Check the levels, alpha/2 and 1 - alpha/2, and the degrees of freedom, dof * runs. If they are right, find the quantiles more exactly: `course hint validation --task consistency_band` shows ways.",
     kind="consequence",
 ).body(

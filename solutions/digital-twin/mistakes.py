@@ -1029,26 +1029,6 @@ mistakes(
     """,
 )
 mistakes(
-    "CURVE_READ_AT_ONE_TIME",
-    "The noise density is the Allan deviation at 1 s, in which some of the walk is, too.",
-    "Noise and walk are both in every averaging time: take the variances of many times, and fit N**2 / T + K**2 T / 3 to them.",
-).body(
-    "fit_noise",
-    """
-        total = np.concatenate([[0.0], np.cumsum(still)])
-
-        def deviation(T):
-            size = max(1, round(T / dt))
-            means = (total[size:] - total[:-size]) / size
-            return math.sqrt(np.mean((means[size:] - means[:-size]) ** 2) / 2)
-
-        density, walk = deviation(1.0), deviation(3.0)
-        window = max(1, min(len(still), round(math.sqrt(3) * density / (walk * dt))))
-        bias0 = float(np.mean(still[:window]))
-        return {"noise_density": density, "bias_random_walk": walk, "bias0": bias0}
-    """,
-)
-mistakes(
     "DENSITY_FROM_DIFFERENCES",
     "The noise density is too large by about the square root of two.",
     "With white noise, a difference of two samples, or of two means, has twice the variance of one: divide the mean square by two before you take the root. If you do, look at the factor of N**2: it is 1/T.",
@@ -1524,7 +1504,7 @@ mistakes(
 mistakes(
     "DENSITY_TOO_LARGE",
     "For more than half of the recordings here, the noise density is too large.",
-    "To compare: N² is half the mean square of the differences of neighbouring samples, times dt. A variance of the samples or block means themselves contains the drift as well.",
+    "To compare: N² is half the mean square of the differences of neighbouring samples, times dt. A variance of the samples or block means themselves contains the drift as well, and so does the Allan variance at a single averaging time, such as 1 s: fit both terms to many.",
 )
 mistakes(
     "DENSITY_TOO_SMALL",

@@ -13,12 +13,17 @@ def test_budgets(submission):
         submission,
         "total_error",
         ("errors",),
-        [(([3.0, 4.0],), 5.0), (([0.2, 0.5, 0.1],), 0.547722557505), (([1.0, 1.0, 1.0, 1.0],), 2.0)],
-        quantity="total error",
+        [
+            (([3.0, 4.0],), 5.0),
+            (([0.2, 0.5, 0.1],), 0.547722557505),
+            (([1.0, 1.0, 1.0, 1.0],), 2.0),
+            (([0.1, 0.2, 0.2],), 0.3),
+        ],
+        quantity="the total error",
         message="The total is wrong.",
         help="Two errors of 3 and 4 make 5.",
     )
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {"total_error": [([3.0, 4.0],), ([0.2, 0.5, 0.1],), ([1.0, 1.0, 1.0, 1.0],)]}
+QUESTIONS = {"total_error": [([3.0, 4.0],), ([0.2, 0.5, 0.1],), ([1.0, 1.0, 1.0, 1.0],), ([0.1, 0.2, 0.2],)]}

@@ -9,6 +9,13 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_budgets(submission):
     """Budgets of two, three and four errors"""
+    kit.expect_accepts(
+        lambda: submission.call("total_error", [3.0, 4.0]),
+        "ValueError",
+        input={"errors": [3.0, 4.0]},
+        message="Your code stops with a ValueError.",
+        help="The list may be of any length: does your code expect a certain one?",
+    )
     kit.expect_cases(
         submission,
         "total_error",

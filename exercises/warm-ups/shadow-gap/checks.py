@@ -25,7 +25,10 @@ def gap(submission, cases):
             units="m",
             input=dict(zip(("a", "b", "direction"), args, strict=True)),
             message="The gap of the shadows is wrong.",
-            help="Mark on the line where each shadow begins and ends. Which ends face each other?",
+            help=(
+                "Mark on the line where each shadow begins and ends. Which ends face each other? Where they"
+                " overlap there are two ways out, and the shorter one counts."
+            ),
         )
 
 

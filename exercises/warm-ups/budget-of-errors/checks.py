@@ -9,16 +9,28 @@ from course.scoring import kit
 @pytest.mark.points(1)
 def test_budgets(submission):
     """Budgets of two, three and four errors"""
+    kit.expect_accepts(
+        lambda: submission.call("total_error", [3.0, 4.0]),
+        "ValueError",
+        input={"errors": [3.0, 4.0]},
+        message="Your code stops with a ValueError.",
+        help="The list may be of any length: does your code expect a certain one?",
+    )
     kit.expect_cases(
         submission,
         "total_error",
         ("errors",),
-        [(([3.0, 4.0],), 5.0), (([0.2, 0.5, 0.1],), 0.547722557505), (([1.0, 1.0, 1.0, 1.0],), 2.0)],
-        quantity="total error",
+        [
+            (([3.0, 4.0],), 5.0),
+            (([0.2, 0.5, 0.1],), 0.547722557505),
+            (([1.0, 1.0, 1.0, 1.0],), 2.0),
+            (([0.1, 0.2, 0.2],), 0.3),
+        ],
+        quantity="the total error",
         message="The total is wrong.",
         help="Two errors of 3 and 4 make 5.",
     )
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {"total_error": [([3.0, 4.0],), ([0.2, 0.5, 0.1],), ([1.0, 1.0, 1.0, 1.0],)]}
+QUESTIONS = {"total_error": [([3.0, 4.0],), ([0.2, 0.5, 0.1],), ([1.0, 1.0, 1.0, 1.0],), ([0.1, 0.2, 0.2],)]}

@@ -13,12 +13,12 @@ def test_constant_force(submission):
         submission,
         "final_speed",
         ("mass", "force", "h", "n"),
-        [((2.0, 3.0, 0.1, 10), 1.5), ((0.5, 9.81, 0.01, 200), 39.24)],
+        [((2.0, 3.0, 0.1, 10), 1.5), ((2.0, -3.0, 0.1, 10), -1.5), ((0.5, 9.81, 0.01, 200), 39.24)],
         source=(
             "a constant force: speed is force times time over mass, whatever the step; the "
             "loop's rounding is far below nine digits"
         ),
-        quantity="speed",
+        quantity="the speed",
         units="m/s",
         message="The speed after n steps is wrong.",
         help="Print the sum of the forces in every step: it should be the same each time.",
@@ -27,5 +27,11 @@ def test_constant_force(submission):
 
 #: Calls that tell wrong programs apart.
 QUESTIONS = {
-    "final_speed": [(2.0, 3.0, 0.1, 10), (0.5, 9.81, 0.01, 7), (1.3, -2.0, 0.2, 1), (1.3, -2.0, 0.2, 2)]
+    "final_speed": [
+        (2.0, 3.0, 0.1, 10),
+        (0.5, 9.81, 0.01, 7),
+        (1.3, -2.0, 0.2, 1),
+        (1.3, -2.0, 0.2, 2),
+        (2.0, -3.0, 0.1, 10),
+    ]
 }

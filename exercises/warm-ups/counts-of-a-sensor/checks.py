@@ -19,7 +19,7 @@ def test_within(submission):
             ((0.7, 0.25, 2.0), 0.75),
             ((2.6, 0.5, 7.0), 2.5),
         ],
-        quantity="reading",
+        quantity="the reading",
         units="m",
         message="A reading within reach is wrong.",
         help=(
@@ -32,15 +32,23 @@ def test_within(submission):
 @pytest.mark.points(1)
 def test_beyond(submission):
     """Distances beyond the limit"""
+    names = ("distance", "resolution", "limit")
+    kit.expect_true(
+        submission.call("reading", 7.3, 0.01, 4.0) is not None,
+        "You give None beyond reach.",
+        expected=4.0,
+        input=dict(zip(names, (7.3, 0.01, 4.0), strict=True)),
+        help="Beyond reach the sensor reads the limit itself.",
+    )
     kit.expect_cases(
         submission,
         "reading",
-        ("distance", "resolution", "limit"),
+        names,
         [((7.3, 0.01, 4.0), 4.0), ((2.2, 0.25, 2.0), 2.0), ((0.31, 0.01, 0.29), 0.29)],
-        quantity="reading",
+        quantity="the reading",
         units="m",
         message="A reading beyond reach is wrong.",
-        help="The reading never exceeds the limit.",
+        help="Beyond reach the sensor reads the limit itself.",
     )
 
 

@@ -18,7 +18,7 @@ def test_slopes(submission):
             (([0.1, 1.0, 2.0], [0.4, 1.9, 4.2]), 2.06387225549),
             (([-1.0, 0.5, 3.0, 2.0], [-2.5, 1.0, 5.5, 4.4]), 1.98596491228),
         ],
-        quantity="damping",
+        quantity="the damping",
         units="N s/m",
         message="The slope is wrong.",
         help="Write down the sum of (f - b v)^2, and ask where it is smallest in b.",

@@ -15,7 +15,7 @@ def test_factors(submission):
         ("k", "m", "h"),
         [((4.0, 1.0, 0.05), 1.01), ((100.0, 2.5, 0.1), 1.4), ((0.3, 6.0, 1.0), 1.05)],
         source="the squares of the two new values, added up: the mixed terms cancel exactly",
-        quantity="energy factor of a step",
+        quantity="the energy factor of a step",
         message="The factor of one step is wrong.",
         help="Square x + h v and v - h (k/m) x, weight them as in the energy, and add.",
     )

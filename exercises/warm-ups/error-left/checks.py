@@ -20,7 +20,7 @@ def test_errors(submission):
             ((1.0, 1.255, 4.0, 4.0), -0.001),
             ((7.0, 6.0, 10.0, 1.5), 0.0326554320337),
         ],
-        quantity="error left",
+        quantity="the error left",
         message="That is not the error that is left.",
         help="Say the exact result is 0 and fine is 1. What is coarse then, with this factor and order?",
     )

@@ -18,10 +18,13 @@ def test_known_falls(submission):
             ((20.0,), 2.01927510938),  # on earth, unless another g is given
             ((300.0, 9.81), 7.82061887006),
         ],
-        quantity="time of the fall",
+        quantity="the time of the fall",
         units="s",
         message="The time of the fall is wrong.",
-        help="Start from the height after a time t, and ask when it is zero.",
+        help=(
+            "Write down the height after a time t, and solve for the t at which it is zero. Steps in time"
+            " are not exact enough."
+        ),
     )
 
 
@@ -34,7 +37,7 @@ def test_on_the_moon(submission):
         "fall_time",
         ("height", "g"),
         [((20.0, 1.62), 4.96903995)],
-        quantity="time of the fall",
+        quantity="the time of the fall",
         units="s",
         message="The time of a fall on the Moon is wrong.",
         help="Use the g that was given.",

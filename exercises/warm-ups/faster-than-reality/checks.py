@@ -13,8 +13,13 @@ def test_factors(submission):
         submission,
         "real_time_factor",
         ("steps", "h", "wall"),
-        [((1000, 0.001, 0.5), 2.0), ((24000, 0.0025, 3.0), 20.0), ((300, 0.01, 12.0), 0.25)],
-        quantity="real-time factor",
+        [
+            ((1000, 0.001, 0.5), 2.0),
+            ((24000, 0.0025, 3.0), 20.0),
+            ((300, 0.01, 12.0), 0.25),
+            ((313, 0.013, 12.7), 0.320393700787),
+        ],
+        quantity="the real-time factor",
         message="The real-time factor is wrong.",
         help="Work out first how much time passed inside the simulation.",
     )

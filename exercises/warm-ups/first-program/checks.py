@@ -18,6 +18,7 @@ def test_gap_is_a_number(submission):
         (first, second, 0, 5.0),
         (first, second, 1, 1.5),
         (second, first, 0, 5.0),
+        ([[-5.0, 2.0], [-3.0, 2.0]], [[5.0, -2.0], [4.0, -2.0]], 1, 7.0),
     ):
         kit.expect_close(
             kit.expect_accepts(
@@ -30,11 +31,11 @@ def test_gap_is_a_number(submission):
             expected,
             rel=1e-9,
             source=ROUNDING,
-            quantity="gap",
+            quantity="the gap",
             units="m",
             input={"first": one, "second": other, "k": k},
             message="The distance of two balls is wrong.",
-            help="A run is a list of pairs (position, velocity); the distance is between two positions.",
+            help="A run is a list of pairs (position, velocity); take the two positions at sample k.",
         )
 
 
@@ -48,7 +49,7 @@ def test_run_begins_at_the_start(submission):
         [10.0, 2.0],
         rel=1e-9,
         source="the first sample is what was given",
-        quantity="first position and velocity",
+        quantity="the first pair of position and velocity",
         input={"x": 10.0, "v": 2.0, "a": -9.81, "n": 3},
         message="The first sample of a run is not its start.",
         help="What is in the list before the first step has been taken?",
@@ -68,7 +69,7 @@ def test_run_begins_at_the_start(submission):
         [x + v * n * h + a * (n * h) ** 2 / 2, v + a * n * h],
         abs=abs(a) * n * h**2,
         source="a method of first order is off by a t h / 2",
-        quantity="position and velocity after a second",
+        quantity="the pair of position and velocity after a second",
         input={"x": x, "v": v, "a": a, "n": n},
         message="The steps were right in the program as it was given. Now they are not.",
         help="Only what is in the list at the beginning is missing.",
@@ -84,14 +85,23 @@ def test_landing_is_where_the_ground_is(submission):
         ([1.0, 0.6, 0.0, -0.9], 0.02),
         ([0.4, -0.1, 0.3, 0.1], 0.01),
         ([0.0, -0.1, -0.3], 0.0),
+        ([0.5, 0.004, -0.3], 0.02),
     ):
+        found = submission.call("landing_time", heights)
+        kit.expect_true(
+            found is not None or heights[0] > 0.0,
+            "You give None where the first sample is on the ground.",
+            expected=expected,
+            input={"heights": heights},
+            help="The first sample has k = 0, which Python takes for false: ask for the height, not for k.",
+        )
         kit.expect_close(
-            submission.call("landing_time", heights),
+            found,
             expected,
             rel=1e-9,
             abs=1e-12,
             source=ROUNDING,
-            quantity="time of the landing",
+            quantity="the time of the landing",
             units="s",
             input={"heights": heights},
             message="The fall does not end at the ground.",
@@ -116,7 +126,7 @@ def test_balls_bounce(submission):
             after,
             rel=1e-9,
             source="momentum and energy are both kept; masses are equal",
-            quantity="velocities afterwards",
+            quantity="the pair of velocities afterwards",
             units="m/s",
             input={"v1": before[0], "v2": before[1]},
             message="The two balls do not collide as equal elastic balls do.",
@@ -134,7 +144,7 @@ def test_euler_uses_old_rates(submission):
         [x + h * v, v + h * a],
         rel=1e-9,
         source=ROUNDING,
-        quantity="position and velocity",
+        quantity="the pair of position and velocity",
         input={"x": x, "v": v, "a": a, "h": h},
         message="This is not a step of explicit Euler.",
         help="Both values move with their old rates, and both new ones are returned.",
@@ -144,7 +154,7 @@ def test_euler_uses_old_rates(submission):
 @pytest.mark.task("error_at_end")
 @pytest.mark.points(1)
 def test_error_is_taken_at_one_moment(submission):
-    """The error of the exact positions themselves"""
+    """The errors of exact positions, and of wrong ones"""
     for omega, n in ((2.0, 50), (3.0, 7)):
         exact = [math.cos(omega * 0.01 * k) for k in range(n + 1)]
         kit.expect_close(
@@ -152,30 +162,39 @@ def test_error_is_taken_at_one_moment(submission):
             0.0,
             abs=1e-12,
             source="the positions are exact: rounding of a cosine, some 1e-16",
-            quantity="error",
+            quantity="the error",
             units="m",
             input={"omega": omega, "samples": n + 1},
             message="Exact positions get an error that is not zero.",
             help=f"The first of the {n + 1} positions belongs to t = 0. To which time does the last belong?",
         )
-    kit.expect_close(
-        submission.call("error_at_end", [1.0, math.cos(0.02) + 0.25], 2.0),
-        0.25,
-        rel=1e-9,
-        source=ROUNDING,
-        quantity="error",
-        units="m",
-        input={"omega": 2.0, "samples": 2},
-        message="The error of a position that is off by a quarter of a metre is wrong.",
-        help="Take the size of the difference between the last position and the exact one.",
-    )
+    for positions, expected in (
+        ([1.0, math.cos(0.02) + 0.25], 0.25),
+        ([0.5, -1.0, -0.25], math.cos(0.04) + 0.25),
+    ):
+        kit.expect_close(
+            submission.call("error_at_end", positions, 2.0),
+            expected,
+            rel=1e-9,
+            source=ROUNDING,
+            quantity="the error",
+            units="m",
+            input={"positions": positions, "omega": 2.0},
+            message="The error of positions that are not exact is wrong.",
+            help="Take the size of the difference between the last position and cos(omega t).",
+        )
 
 
 # Calls that tell wrong programs apart.
 _FIRST, _SECOND = [[0.0, 1.0], [1.5, 1.25]], [[5.0, -2.0], [3.0, -2.5]]
 
 QUESTIONS = {
-    "gap": [(_FIRST, _SECOND, 0), (_FIRST, _SECOND, 1), (_SECOND, _FIRST, 1)],
+    "gap": [
+        (_FIRST, _SECOND, 0),
+        (_FIRST, _SECOND, 1),
+        (_SECOND, _FIRST, 1),
+        ([[-5.0, 2.0]], [[5.0, -2.0]], 0),
+    ],
     "run": [(10.0, 2.0, -9.81, 3), (0.5, -1.0, 4.0, 1), (0.5, -1.0, 4.0, 0)],
     "landing_time": [
         ([0.5, 0.2, -0.2, -0.7, -1.3],),
@@ -183,8 +202,14 @@ QUESTIONS = {
         ([2.0, 1.5],),
         ([0.4, -0.1, 0.3, 0.1],),
         ([0.0, -0.1, -0.3],),
+        ([0.5, 0.004, -0.3],),
     ],
     "after_contact": [(2.0, -2.0), (3.0, 1.0), (0.5, -1.5)],
     "euler_step": [(1.0, 0.5, -4.0, 0.1), (0.3, -2.0, 1.0, 0.5)],
-    "error_at_end": [([1.0, 0.9, 0.7], 2.0), ([1.0, 0.5], 3.0), ([1.0, 1.2, 1.0, 1.1, 1.5], 20.0)],
+    "error_at_end": [
+        ([1.0, 0.9, 0.7], 2.0),
+        ([1.0, 0.5], 3.0),
+        ([1.0, 1.2, 1.0, 1.1, 1.5], 20.0),
+        ([0.5, -1.0, -0.25], 2.0),
+    ],
 }

@@ -18,7 +18,7 @@ def test_slides(submission):
             ((1.5, 1.2), 0.0955657492355),  # on earth, unless another g is given
             ((1.0, 0.8, 1.62), 0.385802469136),
         ],
-        quantity="coefficient of friction",
+        quantity="the coefficient of friction",
         message="The coefficient is wrong.",
         help="Energy at the start equals force times distance.",
     )

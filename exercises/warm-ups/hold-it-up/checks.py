@@ -21,7 +21,7 @@ def test_torques(submission):
             ((0.5, 2.0, -2.5, 1.62), -0.648926328593),
             ((2.0, 1.0, 0.0), 9.81),  # on earth, unless another g is given
         ],
-        quantity="torque",
+        quantity="the torque",
         units="N m",
         message="The torque is wrong.",
         help=("Where does gravity act on a uniform bar, and how far to the side of the motor is that?"),

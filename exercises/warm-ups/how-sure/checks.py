@@ -18,7 +18,7 @@ def test_samples(submission):
             (([2.0, 4.0, 4.0, 6.0],), 0.816496580928),
             (([9.8, 9.9, 9.7, 9.8, 10.1, 9.6, 9.8, 9.9, 9.7],), 0.0484322104838),
         ],
-        quantity="standard error",
+        quantity="the standard error",
         message="The standard error is wrong.",
         help=(
             "Print two numbers: the standard deviation of the values, with n - 1, and the root of n."

@@ -22,6 +22,7 @@ def test_readings(submission):
             (([0.0, 1.0, 2.0], [5.0, 6.0, 7.0], 0.5, 1.25), 5.0),
             (([0.0, 1.0], [6.0, 5.0], 0.5, 4.0), 5.0),
             (([0.0, 1.0, 2.0], [3.0, 0.0, -1.0], 0.25, 2.0), 0.0),
+            (([0.0, 1.0, 5.0], [1.0, 2.0, 3.0], 0.5, 4.0), 2.0),
         ],
         expect=kit.expect_equal,
         message="That is not the newest value that has arrived.",

@@ -19,7 +19,7 @@ def test_accelerations(submission):
             ((-1.0, 0.5, 0.6, -1.0, 1.62), -18.8548910054),
             ((1.5, 2.0, 1.0, 2.5, 9.81), 14.0388283028),
         ],
-        quantity="angular acceleration",
+        quantity="the angular acceleration",
         units="rad/s^2",
         message="The angular acceleration is wrong.",
         help="Add the torques first, then divide by the moment of inertia about the end.",

@@ -18,7 +18,7 @@ def test_paths(submission):
             (([1.0, 2.0, 3.0], [1.1, 1.8, 3.2]), 0.173205080757),
             (([0.0, 0.0, 0.0, 0.0, 0.0], [1.0, -1.0, 2.0, -2.0, 0.5]), 1.43178210633),
         ],
-        quantity="root mean square",
+        quantity="the root mean square",
         units="m",
         message="The root mean square is wrong.",
         help="Go through its name backwards: square, mean, root. What is squared is each difference itself.",

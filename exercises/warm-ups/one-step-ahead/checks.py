@@ -19,7 +19,7 @@ def test_steps(submission):
             ((10.0, 1.0, 1.0, 1.0), [11.0, 2.0]),
         ],
         expect=kit.expect_array,
-        quantity="position and velocity",
+        quantity="the pair of position and velocity",
         message="The state after a step is wrong.",
         help="Write down x, v and a before the step, and use only these.",
     )

@@ -18,8 +18,9 @@ def test_orders(submission):
             ((0.1, 0.04, 0.05, 0.01), 2.0),
             ((0.1, 0.01, 0.025, 3.90625e-05), 4.0),
             ((0.2, 0.3, 0.06, 0.05), 1.48820593189),
+            ((0.1, 0.01, 0.05, 0.02), -1.0),
         ],
-        quantity="order",
+        quantity="the order",
         message="The order is wrong.",
         help="By which factor did the step shrink, and by which the error?",
     )
@@ -32,5 +33,6 @@ QUESTIONS = {
         (0.1, 0.04, 0.05, 0.01),
         (0.1, 0.01, 0.025, 3.9e-05),
         (0.2, 0.3, 0.06, 0.05),
+        (0.1, 0.01, 0.05, 0.02),
     ]
 }

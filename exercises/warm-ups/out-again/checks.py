@@ -16,7 +16,7 @@ def test_deep(submission):
         [((0.017, 0.01, 0.2, 0.002), 0.3), ((0.05, 0.004, 0.1, 0.01), 1.0)],
         abs=1e-12,
         source="closed form; absolute 1e-12 m/s where it is zero",
-        quantity="separating speed",
+        quantity="the separating speed",
         units="m/s",
         message="The speed that pushes out is wrong.",
         help=(
@@ -37,7 +37,7 @@ def test_within_slop(submission):
         [((0.001, 0.01, 0.2, 0.002), 0.0), ((-0.03, 0.01, 0.2, 0.002), 0.0)],
         abs=1e-12,
         source="closed form; absolute 1e-12 m/s where it is zero",
-        quantity="separating speed",
+        quantity="the separating speed",
         units="m/s",
         message="Bodies that overlap by no more than the slop are moved.",
         help="Within the slop nothing is pushed: the speed is zero, neither positive nor negative.",

@@ -20,10 +20,10 @@ def test_depths(submission):
             (([0.5, 1.0], [-0.7, 0.1], 0.9, 1.1), 0.5),
             (([-0.3, -0.4], [-0.3, -0.4], 0.2, 0.3), 0.5),
         ],
-        quantity="depth",
+        quantity="the depth",
         units="m",
         message="The depth is wrong.",
-        help="Draw the two balls on a line: three lengths have to be compared.",
+        help="How far is p from q, in the plane? Compare that with the two radii.",
     )
 
 
@@ -34,5 +34,6 @@ QUESTIONS = {
         ([1.0, -2.0], [4.0, 2.0], 1.5, 2.0),
         ([0.2, 0.1], [0.2, 0.3], 0.5, 0.1),
         ([0.5, 1.0], [-0.7, 0.1], 0.9, 1.1),
+        ([0.3, -0.2], [0.4, 0.5], 0.7, 0.6),
     ]
 }

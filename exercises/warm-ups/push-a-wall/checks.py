@@ -20,7 +20,7 @@ def test_masses(submission):
             ((3.0, 1.0, 0.4, 0.5), 2.58283010797),
             ((0.5, 2.0, 1.5, -1.0), 2.31125891244),
         ],
-        quantity="mass felt",
+        quantity="the mass felt",
         units="kg",
         message="That is not the mass that the wall feels.",
         help="Work from the right: x with M x = Jᵀ, then J x, then one over it. The length must cancel.",

@@ -23,7 +23,7 @@ def test_corrections(submission):
         ],
         abs=1e-12,
         source="closed form; absolute 1e-12 N s where it is zero",
-        quantity="correction applied",
+        quantity="the correction applied",
         units="N s",
         message="The correction is wrong.",
         help="Look at the sum after the correction, not at the correction.",

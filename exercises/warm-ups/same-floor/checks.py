@@ -13,7 +13,7 @@ def _expect(submission, args, expected, message, help):
         list(expected),
         rel=1e-9,
         source="closed form, written down to twelve digits: only rounding is allowed",
-        quantity="ERP and CFM",
+        quantity="the pair of ERP and CFM",
         input=dict(zip(NAMES, args, strict=True)),
         message=message,
         help=help,

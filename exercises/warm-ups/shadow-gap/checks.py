@@ -9,6 +9,8 @@ FAR = [(2.5, -0.5), (3.5, -0.5), (3.5, 0.5), (2.5, 0.5)]
 TURNED = [(0.95, 0.25), (1.65, 0.95), (0.95, 1.65), (0.25, 0.95)]
 WEDGE = [(-2.0, 0.25), (0.25, 0.0), (-0.5, 1.0)]
 LONG = [(-2.0, -1.0), (1.25, -1.0), (1.25, 1.0), (-2.0, 1.0)]
+SLOPE = [(0.0, 0.0), (3.0, 0.0), (0.0, 1.0)]
+BRICK = [(0.9, 0.0), (1.6, 0.0), (1.6, 1.0), (0.9, 1.0)]
 
 
 def gap(submission, cases):
@@ -19,11 +21,14 @@ def gap(submission, cases):
             rel=1e-9,
             abs=1e-12,
             source="closed form, written down to twelve digits: only rounding is allowed",
-            quantity="gap",
+            quantity="the gap",
             units="m",
             input=dict(zip(("a", "b", "direction"), args, strict=True)),
             message="The gap of the shadows is wrong.",
-            help="Mark on the line where each shadow begins and ends. Which ends face each other?",
+            help=(
+                "Mark on the line where each shadow begins and ends. Which ends face each other? Where they"
+                " overlap there are two ways out, and the shorter one counts."
+            ),
         )
 
 
@@ -57,6 +62,7 @@ def test_overlapping(submission):
             ((SQUARE, WEDGE, (1.0, 0.0)), -0.75),
             ((FAR, SQUARE, (3.0, -4.0)), 0.4),
             ((SQUARE, LONG, (1.0, 0.0)), -1.75),
+            ((SLOPE, BRICK, (1.0, 0.0)), -1.6),
             ((SQUARE, [(0.5, 0.0), (1.5, 0.0), (1.0, 1.0)], (1.0, 0.0)), 0.0),
         ],
     )

@@ -20,7 +20,7 @@ def test_corrections(submission):
             ((3.0, 8.0, 0.1), 3.5),
             ((2.5, -1.5, 0.0), 2.5),
         ],
-        quantity="position",
+        quantity="the position",
         units="m",
         message="The corrected position is wrong.",
         help="With the share 0 the prediction must come out, with 1 the measurement.",
@@ -28,4 +28,6 @@ def test_corrections(submission):
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {"corrected": [(1.0, 1.4, 0.25), (2.0, 1.0, 0.9), (-0.5, 0.7, 1.0), (3.0, 8.0, 0.1)]}
+QUESTIONS = {
+    "corrected": [(1.0, 1.4, 0.25), (2.0, 1.0, 0.9), (-0.5, 0.7, 1.0), (3.0, 8.0, 0.1), (2.5, -1.5, 0.0)]
+}

@@ -49,6 +49,7 @@ def test_singular_poses(submission):
         ((1.5707963267948966, 2.0, 0.3, 0.0), True),
         ((4.71238898038469, 1.0, 0.0, 1.0), True),
         ((-4.71238898038469, 1.5, 0.3, 0.4), True),
+        ((1.5707963262948966, 3.0, 0.3, 0.4), True),
         ((1.57, 2.0, 0.3, 0.4), False),
         ((0.0, 2.0, 0.3, 0.4), False),
         ((0.4, 2.0, 0.0, 0.0), False),
@@ -56,7 +57,7 @@ def test_singular_poses(submission):
         found = submission.call("joint_speeds", *args)
         kit.expect_true(
             (found is None) == singular,
-            "You give speeds in a pose in which the tip can only move along the rail."
+            "You do not give None in a pose in which the tip can only move along the rail."
             if singular
             else "You give None in a pose in which the tip can move in every direction.",
             expected=None if singular else "a pair",

@@ -1,4 +1,4 @@
-"""A pose that cannot go on"""
+"""A pose that cannot go on."""
 
 
 def joint_speeds(angle, length, vx, vy):

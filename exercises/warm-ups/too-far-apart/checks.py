@@ -14,7 +14,7 @@ def test_distances(submission):
         "distance_in_doubts",
         ("simulated", "doubt_s", "measured", "doubt_m"),
         [((1.2, 0.03, 1.25, 0.04), 1.0), ((5.0, 0.2, 4.0, 0.1), 4.472135955), ((0.0, 1.0, 2.6, 2.4), 1.0)],
-        quantity="distance in doubts",
+        quantity="the distance in doubts",
         message="The difference in units of its uncertainty is wrong.",
         help="What is the uncertainty of a difference of two uncertain numbers?",
     )

@@ -46,7 +46,7 @@ def test_both_places(submission):
             quantity="the pair of places",
             units="m",
             input=dict(zip(("x", "y", "length"), args, strict=True)),
-            message="The carriage stands in the wrong place.",
+            message="The places of the carriage are wrong.",
             help="Check it backwards: from each of your places, is the point one rod length away?",
         )
 

@@ -1,4 +1,4 @@
-"""Two ways to one point"""
+"""Two ways to one point."""
 
 
 def carriages(x, y, length):

@@ -21,7 +21,7 @@ def test_rules(submission):
             ((1.2, 0.5, "product"), 0.6),
             ((0.2, 0.6, "mean"), 0.4),
         ],
-        quantity="coefficient",
+        quantity="the coefficient",
         message="The coefficient of a pair is wrong.",
         help="Apply exactly the rule that is given.",
     )

@@ -13,7 +13,7 @@ def moves(submission, cases, message, help_):
             rel=1e-9,
             abs=1e-12,
             source="closed form; absolute 1e-12 m where it is zero",
-            quantity="dx and dy",
+            quantity="the pair (dx, dy)",
             units="m",
             input=dict(zip(("x", "y", "width", "height"), args, strict=True)),
             message=message,

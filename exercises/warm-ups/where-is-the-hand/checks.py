@@ -21,7 +21,7 @@ def test_positions(submission):
         expect=kit.expect_array,
         abs=1e-12,
         source="closed form; absolute 1e-12 m where it is zero",
-        quantity="x and y of the hand",
+        quantity="the pair of x and y of the hand",
         units="m",
         message="The position of the hand is wrong.",
         help="Draw the arm with a1 = 90 degrees and a2 = 0: where does the second link point?",

@@ -21,7 +21,7 @@ def test_energy_stays(submission):
             low=0.9,
             high=1.1,
             source="with a step of a tenth of sqrt(m/k) the right loop stays within 8 % of where it began",
-            quantity="energy over the energy at the start",
+            quantity="the energy over the energy at the start",
             input={"k": k, "m": m, "h": h, "n": n},
             message="The energy of the swing does not stay where it began.",
             help=(
@@ -35,9 +35,22 @@ def test_energy_stays(submission):
 @pytest.mark.points(1)
 @pytest.mark.requires("energy_stays")
 def test_quarter(submission):
-    """Let go at rest: a quarter of the period"""
+    """One short step, and a quarter of the period"""
     k, m = 9.0, 2.0
     omega = math.sqrt(k / m)
+    x, v, h = 0.3, 0.4 * omega, 0.01 / omega
+    found = kit.as_vector(submission.call("swing", x, v, k, m, h, 1), 2, "position and velocity")
+    kit.expect_array(
+        [found[0], found[1] / omega],
+        [0.3 * math.cos(0.01) + 0.4 * math.sin(0.01), 0.4 * math.cos(0.01) - 0.3 * math.sin(0.01)],
+        abs=0.0002,
+        source="a loop of first order is off by 0.00005 at most after this step, no step at all by 0.003",
+        quantity="the position, and the velocity over omega",
+        units="m",
+        input={"x": x, "v": v, "k": k, "m": m, "h": h, "n": 1},
+        message="After one short step the mass is not where a mass on a spring would be.",
+        help="How often does the loop run with n = 1? Each time it takes one step of h.",
+    )
     n = 1000
     h = 0.5 * math.pi / omega / n
     x, v = kit.as_vector(submission.call("swing", 0.3, 0.0, k, m, h, n), 2, "position and velocity")
@@ -46,7 +59,7 @@ def test_quarter(submission):
         [0.0, -0.3],
         abs=0.001,
         source="0.3 cos(omega t); a loop of first order is off by 0.3 h omega / 2, about 0.0003",
-        quantity="position, and velocity over omega",
+        quantity="the position, and the velocity over omega",
         units="m",
         input={"k": k, "m": m, "h": h, "n": n},
         message="After a quarter of a period the mass is not where a mass on a spring would be.",

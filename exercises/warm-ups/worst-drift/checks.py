@@ -18,8 +18,9 @@ def test_drifts(submission):
             (([-5.0, -4.0, -5.5, -5.0],), 0.2),
             (([10.0, 10.0, 9.0, 8.5],), 0.15),
             (([1.0, 5.0, 1.5],), 4.0),
+            (([2.0, -1.5, 2.1],), 1.75),
         ],
-        quantity="worst drift",
+        quantity="the worst drift",
         message="The worst drift is wrong.",
         help="Which of the values is furthest from the first?",
     )

@@ -58,6 +58,22 @@ mistakes(
     "Only the first two errors count.",
     "The list may be longer: go through all of it.",
 ).edit("total_error", {"for error in errors": "for error in errors[:2]"})
+mistakes(
+    "EQUAL_ONES_ONCE",
+    "Errors of the same size count only once.",
+    "A set keeps one of several equal numbers: go through the list itself.",
+).edit("total_error", {"for error in errors": "for error in set(errors)"})
+mistakes(
+    "THREE_ONLY",
+    "Your function takes exactly three errors.",
+    "The list may be of any length: go through all of it.",
+).body(
+    "total_error",
+    """
+        step, model, sensor = errors
+        return math.sqrt(step**2 + model**2 + sensor**2)
+    """,
+)
 
 mistakes.accept(
     "With hypot",

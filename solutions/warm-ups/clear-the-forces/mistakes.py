@@ -48,6 +48,27 @@ mistakes(
     "The force acts for a whole second in each step.",
     "Multiply by h, as the file did.",
 )
+mistakes(
+    "MASS_LOST",
+    "The mass is not used.",
+    "The acceleration is force over mass: divide by the mass, as the file did.",
+).edit("final_speed", {"h * summed / mass": "h * summed"})
+mistakes(
+    "CLEARED_ONCE",
+    "Only the first step clears the sum, and the forces of the later steps still push.",
+    "Set the sum to zero in every step.",
+).body(
+    "final_speed",
+    """
+        speed = summed = 0.0
+        for k in range(n):
+            summed += force
+            speed += h * summed / mass
+            if k == 0:
+                summed = 0.0
+        return speed
+    """,
+)
 
 mistakes.accept(
     "Clears the sum at the end of the step",

@@ -115,9 +115,20 @@ def counted(distance, resolution, limit):
     return limit if count * resolution > limit else count
 
 
+def none_beyond(distance, resolution, limit):
+    return None if distance > limit else round(distance / resolution) * resolution
+
+
+def begins_again(distance, resolution, limit):
+    """Counts on from zero beyond the limit."""
+    return round(distance / resolution) % (round(limit / resolution) + 1) * resolution
+
+
 @mistakes.more
 def hypotheses():
     yield "reading", ("COUNTS_NOT_METRES",), counted
+    yield "reading", ("NOTHING_BEYOND",), none_beyond
+    yield "reading", ("NOTHING_BEYOND",), begins_again
     yield from with_terms(
         "reading",
         reading_of,

@@ -79,6 +79,25 @@ mistakes(
     "You took the slope between the first point and the last.",
     "Use all points, and a line through zero: make the sum of (f - b v)^2 smallest.",
 ).body("damping", "return (forces[-1] - forces[0]) / (speeds[-1] - speeds[0])")
+mistakes(
+    "POSITIVE_SPEEDS_ONLY",
+    "You leave out the points whose speed is negative.",
+    "They count as much: the products v f and v v have the right sign there, too.",
+).edit(
+    "damping",
+    {"zip(speeds, forces)": "zip(speeds, forces) if v > 0", "for v in speeds": "for v in speeds if v > 0"},
+)
+mistakes(
+    "FASTEST_POINT",
+    "You take the slope of the fastest point alone.",
+    "Use all points: make the sum of (f - b v)^2 smallest.",
+).body(
+    "damping",
+    """
+        v, f = max(zip(speeds, forces), key=lambda point: abs(point[0]))
+        return f / v
+    """,
+)
 
 mistakes.accept(
     "Two dot products",

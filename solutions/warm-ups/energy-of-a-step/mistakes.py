@@ -59,6 +59,16 @@ mistakes(
     "You took the root of k / m where k / m itself belongs.",
     "The angular frequency is squared here, and its square is k / m.",
 )
+mistakes(
+    "EXPONENTIAL",
+    "Your result is the exponential of h^2 k / m.",
+    "One step adds up two squares, and no more: the factor has two terms.",
+).edit("growth", {"1.0 + h * h * k / m": "2.718281828459045 ** (h * h * k / m)"})
+mistakes(
+    "NEW_VELOCITY",
+    "You moved the position with the new velocity, from x = 1 and v = 0.",
+    "In an explicit Euler step the position moves with the old one.",
+).edit("growth", {"1.0 + h * h * k / m": "(1.0 - h * h * k / m) ** 2 + h * h * k / m"})
 
 mistakes.accept(
     "By way of the angular frequency",

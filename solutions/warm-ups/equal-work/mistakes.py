@@ -6,7 +6,7 @@ mistakes = Mistakes()
 
 mistakes(
     "LESS_WORK_LONGER_STEPS",
-    "The quotient is upside down: the engine with fewer iterations gets longer steps, and so does even less.",
+    "The quotient is upside down: the engine with fewer iterations gets longer steps, and then does even less work.",
     "An engine that makes fewer iterations in a step has to take more steps, so its step is shorter.",
 ).edit("fair_step", {"other / iterations": "iterations / other"})
 mistakes(
@@ -39,6 +39,16 @@ mistakes(
     "Your result is the number of iterations that A makes in a second.",
     "B's step is `other` over that number.",
 ).edit("fair_step", {"h * other / iterations": "iterations / h"})
+mistakes(
+    "STEP_OF_A_NOT_USED",
+    "The step of A is not used: your result is only a ratio.",
+    "Multiply the ratio by h.",
+).edit("fair_step", {"h * other / iterations": "other / iterations"})
+mistakes(
+    "NEVER_LONGER",
+    "Your step of B is never longer than that of A.",
+    "An engine that makes more iterations in a step may take longer ones.",
+).edit("fair_step", {"h * other / iterations": "min(h, h * other / iterations)"})
 
 mistakes.accept(
     "By the passes in a second",

@@ -94,6 +94,11 @@ mistakes(
     "The power has the wrong sign.",
     "factor is above 1 already: the coarse error is factor**order times the fine one.",
 ).edit("error_left", {"factor**order -": "factor**-order -"})
+mistakes(
+    "ALWAYS_THREE",
+    "You divided by 3, whatever factor and order are.",
+    "3 is right for factor 2 and order 2. In general it is factor**order - 1.",
+).edit("error_left", {"(factor**order - 1)": "3"})
 
 mistakes.accept(
     "First finds the exact result",

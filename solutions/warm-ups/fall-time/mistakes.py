@@ -6,7 +6,7 @@ mistakes = Mistakes()
 
 mistakes(
     "HALF_MISSING",
-    "You took the drop as g t^2, without the half.",
+    "It is as if the drop were g t^2, without the half.",
     "The speed grows from zero, so the mean speed is half of the last: the drop is g t^2 / 2.",
 ).edit("fall_time", {"(2.0 * height": "(height"})
 mistakes(

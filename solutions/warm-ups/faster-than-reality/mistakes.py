@@ -44,6 +44,11 @@ mistakes(
     "You took the length of one step for the time inside the simulation.",
     "Multiply it by the number of steps.",
 ).edit("real_time_factor", {"steps * h": "h"})
+mistakes(
+    "ONE_SUBTRACTED",
+    "One is subtracted from the quotient: your result is 0 where the simulation just keeps up.",
+    "Divide robot time by waiting time, and subtract nothing.",
+).edit("real_time_factor", {"steps * h / wall": "(steps * h - wall) / wall"})
 
 mistakes.accept(
     "Adds the steps up one by one",

@@ -216,6 +216,24 @@ mistakes(
         return None
     """,
 )
+mistakes(
+    "SIZES_OF_THE_POSITIONS",
+    "You subtract the sizes of the two positions, so balls on either side of the origin come out too close.",
+    "Subtract the positions with their signs, and take the size of the difference.",
+).edit("gap", {"abs(second[k][0] - first[k][0])": "abs(abs(second[k][0]) - abs(first[k][0]))"})
+mistakes(
+    "LAST_ABOVE",
+    "Your result is the time of the last sample above the ground.",
+    "The first one at or below it counts, which is the next.",
+).body(
+    "landing_time",
+    """
+        for k in range(len(heights) - 1):
+            if heights[k] > 0.0 >= heights[k + 1]:
+                return k * H
+        return None
+    """,
+)
 
 mistakes.accept(
     "Arrays instead of lists",
@@ -339,3 +357,12 @@ def hypotheses():
 def the_other_way():
     yield "euler_step", ("STEP_MISSING",), lambda x, v, a, h: (x + v, v + h * a)
     yield "after_contact", ("ASSIGNED_IN_TURN",), lambda v1, v2: (v1, v1)
+
+
+@mistakes.more
+def nearest_of_a_fall_that_ends():
+    def landing_time(heights):
+        nearest = min(range(len(heights)), key=lambda k: abs(heights[k]))
+        return nearest * H if min(heights) <= 0.0 else None
+
+    yield "landing_time", ("NEAREST_TO_THE_GROUND",), landing_time

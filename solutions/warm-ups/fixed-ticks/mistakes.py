@@ -67,6 +67,25 @@ mistakes(
     "The time left is in steps, not in seconds.",
     "A part of a step times h is a time.",
 ).edit("ticks", {"account - steps * h": "account / h - steps"})
+mistakes(
+    "EXACTLY_ONE_REFUSED",
+    "An account of exactly h makes no step.",
+    "A whole h is enough: compare with >=.",
+).body(
+    "ticks",
+    """
+        account, steps = frame + left, 0
+        while account > h:
+            account -= h
+            steps += 1
+        return steps, account
+    """,
+)
+mistakes(
+    "AT_LEAST_ONE_STEP",
+    "You take at least one step in each frame, even if its time is not there.",
+    "A short frame may have no step: its time stays in the account.",
+).edit("ticks", {"int(account // h)": "max(1, int(account // h))"})
 
 mistakes.accept(
     "Divides with remainder and returns a list",
@@ -109,3 +128,13 @@ mistakes.terms(
         "rest": {"REST_THROWN_AWAY": lambda *_: 0.0, "OLD_REST_KEPT": lambda a, n, h, left: left},
     },
 )
+
+
+@mistakes.more
+def at_least_one():
+    def ticks(frame, h, left):
+        account = frame + left
+        steps = max(1, int(account // h))
+        return steps, max(0.0, account - steps * h)
+
+    yield "ticks", ("AT_LEAST_ONE_STEP",), ticks

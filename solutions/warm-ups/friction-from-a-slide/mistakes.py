@@ -6,8 +6,8 @@ mistakes = Mistakes()
 
 mistakes(
     "HALF_MISSING",
-    "You took the energy as m v^2: it is twice too large.",
-    "Kinetic energy is half of that.",
+    "The half is missing, as if the energy were m v^2, or the mean speed v.",
+    "Kinetic energy is m v^2 / 2, and the mean speed of a slide is v / 2.",
 ).edit("friction_coefficient", {"/ (2.0 * g *": "/ (g *"})
 mistakes(
     "SPEED_NOT_SQUARED",

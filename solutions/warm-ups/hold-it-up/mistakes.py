@@ -56,6 +56,14 @@ mistakes(
     "You let the weight act at a third of the length.",
     "It acts in the middle of a uniform bar. The third belongs to its moment of inertia.",
 ).edit("holding_torque", {"0.5 * m * g * l": "m * g * l / 3"})
+mistakes(
+    "NEVER_NEGATIVE",
+    "Your torque is never negative.",
+    "Beyond upright the weight is on the other side: there the motor must pull the other way.",
+).edit(
+    "holding_torque",
+    {"return 0.5 * m * g * l * math.cos(angle)": "return max(0.0, 0.5 * m * g * l * math.cos(angle))"},
+)
 
 mistakes.accept(
     "As a cross product",

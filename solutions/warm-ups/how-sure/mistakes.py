@@ -1,5 +1,7 @@
 """Mistakes in `how-sure`: words beside the programs that they are true of."""
 
+import math
+
 from course.authoring.mistakes import Mistakes
 
 mistakes = Mistakes()
@@ -31,7 +33,7 @@ mistakes(
 ).edit("standard_error", {"math.sqrt(len(values))": "math.sqrt(len(values) - 1)"})
 mistakes(
     "MEAN_OF_THE_SIZES",
-    "You took the mean distance from the mean for the standard deviation.",
+    "You took the sizes of the distances from the mean, and did not square them.",
     "Square the distances, add, divide by n - 1, and take the root.",
 ).body(
     "standard_error",
@@ -58,6 +60,11 @@ mistakes(
     "standard_error",
     {"statistics.stdev(values) / math.sqrt(len(values))": "statistics.variance(values) / len(values)"},
 )
+mistakes(
+    "TWO_STANDARD_ERRORS",
+    "Your result is about two standard errors, as for an interval of 95 %.",
+    "Give the standard error itself.",
+).edit("standard_error", {"return ": "return 1.96 * "})
 
 mistakes.accept(
     "Written out",
@@ -97,3 +104,14 @@ mistakes.terms(
         "root": {"VARIANCE": 1.0},
     },
 )
+
+
+@mistakes.more
+def factors():
+    yield "standard_error", ("TWO_STANDARD_ERRORS",), lambda values: 2 * error_of()(values)
+    yield "standard_error", ("MEAN_OF_THE_SIZES",), sizes_over_n_minus_one
+
+
+def sizes_over_n_minus_one(values):
+    n, mean = len(values), sum(values) / len(values)
+    return sum(abs(value - mean) for value in values) / (n - 1) / math.sqrt(n)

@@ -8,7 +8,7 @@ mistakes = Mistakes()
 
 mistakes(
     "PYRAMID",
-    "Each component is limited by itself. That is a pyramid: it allows too much along its edges and changes the direction.",
+    "Each component is limited by itself, which changes the direction.",
     "Compare the length of the vector with the limit, and shorten both components alike.",
 ).body(
     "friction",
@@ -104,6 +104,25 @@ mistakes(
     "Beyond the limit you multiply wanted by mu.",
     "Give it the length of the limit there, whatever its own length is.",
 ).edit("friction", {"part * most / size": "part * mu"})
+mistakes(
+    "AGAINST_WANTED",
+    "Your impulse points against wanted, within the limit and beyond it.",
+    "wanted is the impulse of friction itself, and already points against the motion: keep its direction.",
+)
+mistakes(
+    "ZERO_BY_ZERO",
+    "Where wanted is (0, 0) you divide zero by zero, which gives nan.",
+    "Divide by the length only where it is beyond the limit.",
+).body(
+    "friction",
+    """
+        import numpy as np
+
+        size = np.float64(math.hypot(*wanted))
+        with np.errstate(all="ignore"):
+            return np.asarray(wanted) / size * min(size, mu * normal)
+    """,
+)
 
 mistakes.accept(
     "By way of length and angle",
@@ -125,10 +144,11 @@ mistakes.accept(
 )
 
 
-def friction_of(length=math.hypot, beyond=1.0, most=lambda normal, mu: mu * normal):
+def friction_of(length=math.hypot, beyond=1.0, sign=1.0, most=lambda normal, mu: mu * normal):
     def friction(wanted, normal, mu):
         limit, size = most(normal, mu), length(*wanted)
-        return list(wanted) if size <= limit else [beyond * part * limit / size for part in wanted]
+        factor = 1.0 if size <= limit else beyond * limit / size
+        return [sign * factor * part for part in wanted]
 
     return friction
 
@@ -143,6 +163,18 @@ mistakes.terms(
             "LENGTH_SQUARED": lambda x, y: x * x + y * y,
         },
         "beyond": {"NOTHING_BEYOND": 0.0, "TURNED_ROUND": -1.0},
+        "sign": {"AGAINST_WANTED": -1.0},
         "most": {"NORMAL_FORGOTTEN": lambda normal, mu: mu},
     },
 )
+
+
+@mistakes.more
+def other_limits():
+    yield "friction", ("COMPARED_WITH_NORMAL",), friction_of(most=lambda normal, mu: normal)
+    yield "friction", ("PYRAMID",), smaller_pyramid
+
+
+def smaller_pyramid(wanted, normal, mu):
+    most = mu * normal / math.sqrt(2)
+    return [max(-most, min(most, part)) for part in wanted]

@@ -27,7 +27,7 @@ mistakes(
 mistakes(
     "ARRIVAL_NOT_COUNTED",
     "A value that arrives exactly now is not counted.",
-    "Compare with <=.",
+    "Count it: compare with <=, or look its place up with bisect_right.",
 ).edit(
     "seen",
     {
@@ -134,6 +134,28 @@ mistakes(
     "Your result is the time of the sample, not its value.",
     "Give the value that was taken at that time.",
 ).edit("seen", {"value for time": "time for time"})
+mistakes(
+    "INTERPOLATED",
+    "You give a number between two values, which the sensor has not measured.",
+    "Give the last value that has arrived, as it is.",
+).body(
+    "seen",
+    """
+        import numpy as np
+
+        return float(np.interp(now - latency, times, values)) if now >= times[0] + latency else None
+    """,
+)
+mistakes(
+    "ONLY_WHAT_ARRIVES_NOW",
+    "You give None unless a value arrives exactly now.",
+    "An earlier one still counts: give the last that has arrived.",
+).body(
+    "seen",
+    """
+        return {time + latency: value for time, value in zip(times, values)}.get(now)
+    """,
+)
 
 mistakes.accept(
     "Goes from the newest to the oldest",
@@ -198,3 +220,12 @@ def hypotheses():
             "none": {"LAST_FOR_NONE": lambda values: values[-1], "FIRST_FOR_NONE": lambda values: values[0]},
         },
     )
+
+
+@mistakes.more
+def one_too_far():
+    def seen(times, values, latency, now):
+        place = sum(time + latency <= now for time in times)
+        return values[min(place, len(values) - 1)] if place else None
+
+    yield "seen", ("ONE_TOO_LATE",), seen

@@ -78,14 +78,19 @@ mistakes(
 ).edit("angular_acceleration", {" / (m * l * l / 3.0)": ""})
 mistakes(
     "LENGTH_NOT_SQUARED",
-    "In the moment of inertia the length is not squared.",
-    "It is m l^2 / 3.",
+    "The length in the moment of inertia is not squared, or your result is the acceleration of the end in m/s^2.",
+    "The moment of inertia is m l^2 / 3, and the torque over it is the result, in rad/s^2.",
 ).edit("angular_acceleration", {"(m * l * l / 3.0)": "(m * l / 3.0)"})
 mistakes(
     "BRACKETS_MISSING",
     "You multiply by what stands behind the first slash: brackets are missing.",
     "Put brackets round the moment of inertia: torque / (m * l**2 / 3).",
 ).edit("angular_acceleration", {"(m * l * l / 3.0)": "m * l * l / 3.0"})
+mistakes(
+    "MOTOR_FORGOTTEN",
+    "The motor's torque is not used.",
+    "Add it to gravity's before you divide.",
+)
 
 mistakes.accept(
     "The moment of inertia by the parallel axis theorem",
@@ -105,9 +110,9 @@ mistakes.accept(
 )
 
 
-def acceleration(inertia=1 / 3, turned=1.0, arm=0.5, turn=math.cos, unit=float, gravity=-1.0):
+def acceleration(inertia=1 / 3, turned=1.0, arm=0.5, turn=math.cos, unit=float, gravity=-1.0, motor=1.0):
     return lambda torque, m, l, angle, g=9.81: (
-        turned * (torque + gravity * arm * m * g * l * turn(unit(angle))) / (inertia * m * l * l)
+        turned * (motor * torque + gravity * arm * m * g * l * turn(unit(angle))) / (inertia * m * l * l)
     )
 
 
@@ -136,5 +141,6 @@ def hypotheses():
             },
             "unit": {"DEGREES": math.radians},
             "gravity": {"GRAVITY_UPWARDS": 1.0, "GRAVITY_FORGOTTEN": 0.0},
+            "motor": {"MOTOR_FORGOTTEN": 0.0},
         },
     )

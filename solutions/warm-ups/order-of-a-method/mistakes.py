@@ -85,6 +85,16 @@ mistakes(
     "You subtracted the logarithm of the steps from that of the errors.",
     "Divide: the order is how many times one goes into the other.",
 ).edit("observed_order", {") / math.log(h": ") - math.log(h"})
+mistakes(
+    "NEVER_NEGATIVE",
+    "Your order is never negative.",
+    "Leave out the abs: where the error grows while the step shrinks, the order is negative.",
+).edit("observed_order", {"return ": "return abs(", "h / h_small)": "h / h_small))"})
+mistakes(
+    "ONE_RUN",
+    "Only one of the two runs is used.",
+    "Compare both: divide the logarithm of error / error_small by that of h / h_small.",
+).edit("observed_order", {"error / error_small": "error_small", "h / h_small": "h_small"})
 
 mistakes.accept(
     "Slope of a line in logarithms",
@@ -123,3 +133,8 @@ mistakes.terms(
         },
     },
 )
+
+
+@mistakes.more
+def the_other_run():
+    yield "observed_order", ("ONE_RUN",), lambda h, error, *_: math.log(error) / math.log(h)

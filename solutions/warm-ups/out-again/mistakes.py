@@ -54,6 +54,11 @@ mistakes(
     "You took the depth without its sign, so bodies that are apart are pushed.",
     "A negative depth is a gap: there the speed is zero.",
 ).edit("push_out", {"max(depth": "max(abs(depth)"})
+mistakes(
+    "SLOP_AFTER_BETA",
+    "You subtract the whole slop from the share beta of the depth.",
+    "Subtract the slop from the depth first, then take the share.",
+).edit("push_out", {"beta / h * max(depth - slop, 0.0)": "max(beta * depth - slop, 0.0) / h"})
 
 mistakes.accept(
     "Two cases",

@@ -63,9 +63,14 @@ mistakes(
 ).edit("overlap", {"r1 + r2 - math.dist(p, q)": "abs(r1 + r2 - math.dist(p, q))"})
 mistakes(
     "ONE_COORDINATE",
-    "Only one coordinate counts in your distance.",
+    "Only one coordinate counts in your distance, or only the larger difference.",
     "The balls lie in a plane: the distance of their centres is math.dist(p, q).",
 )
+mistakes(
+    "FROM_THE_ORIGIN",
+    "You subtract how far p and q are from the origin.",
+    "Subtract the coordinates first: the distance of the centres is math.dist(p, q).",
+).edit("overlap", {"math.dist(p, q)": "abs(math.hypot(*p) - math.hypot(*q))"})
 
 mistakes.accept(
     "Pythagoras by hand",
@@ -116,3 +121,4 @@ def one_radius():
 @mistakes.more
 def only_across():
     yield "overlap", ("ONE_COORDINATE",), lambda p, q, r1, r2: r1 + r2 - abs(p[1] - q[1])
+    yield "overlap", ("ONE_COORDINATE",), depth(lambda p, q: max(abs(p[0] - q[0]), abs(p[1] - q[1])))

@@ -6,8 +6,8 @@ mistakes = Mistakes()
 
 mistakes(
     "ONE_OVER_FORGOTTEN",
-    "You give A itself, which is one over the mass.",
-    "A is an acceleration for each newton. The mass is one over it.",
+    "You give J M⁻¹ Jᵀ itself.",
+    "It is an acceleration for each newton. The mass is one over it.",
 ).edit("felt_mass", {"1.0 / (row @ np.linalg.solve(mass, row)": "row @ np.linalg.solve(mass, row"})
 mistakes(
     "M_NOT_INVERTED",
@@ -102,6 +102,11 @@ mistakes(
     "You added up M⁻¹ Jᵀ, which holds accelerations of two different things.",
     "Multiply with J from the left: it says how much of each arrives at the tip.",
 ).edit("felt_mass", {"/ (row @ np.": "/ np.sum(np."})
+mistakes(
+    "J_WITHOUT_LENGTH",
+    "The length is missing in J.",
+    "J's second entry is -length sin(angle).",
+).edit("felt_mass", {"[1.0, lever]": "[1.0, lever / length]"})
 
 mistakes.accept(
     "The matrix is inverted by hand",

@@ -41,7 +41,7 @@ mistakes(
 ).edit("applied", {"max(total + wanted, 0.0) - total": "wanted if total + wanted >= 0 else total + wanted"})
 mistakes(
     "ONLY_WHAT_IS_LEFT",
-    "You compare the correction with the sum as if it took from it.",
+    "Your correction is never larger than the sum so far.",
     "A correction may add as much as it wants. Only total + wanted must not be below zero.",
 ).edit("applied", {"max(total + wanted, 0.0) - total": "min(total, wanted)"})
 mistakes(
@@ -71,4 +71,5 @@ mistakes.accept(
 @mistakes.more
 def hypotheses():
     yield "applied", ("TAKES_WITH_A_PLUS",), lambda total, wanted: total if total + wanted < 0 else wanted
+    yield "applied", ("ONLY_WHAT_IS_LEFT",), lambda total, wanted: max(-total, min(total, wanted))
     yield "applied", ("NOTHING_TAKEN",), lambda total, wanted: 0.0 if total + wanted < 0 else wanted

@@ -91,6 +91,16 @@ mistakes(
     "Your ERP is 1 - (1 - erp)**(new_h / h): the error decays as fast as before, but on another floor.",
     "Compute the spring and the damper, and from them the ERP at the new step.",
 )
+mistakes(
+    "SPRING_WITHOUT_THE_STEP",
+    "You took erp / cfm for the stiffness of the spring.",
+    "erp / cfm is h k: divide it by the old step, too.",
+).edit("same_floor", {"erp / (cfm * h)": "erp / cfm"})
+mistakes(
+    "CFM_OVER_THE_STEP",
+    "You took the CFM as one over h (h k + c).",
+    "In s/kg it is one over h k + c.",
+).edit("same_floor", {"1 / whole": "h / (new_h * whole)"})
 
 mistakes.accept(
     "Solves two equations for the spring and the damper",

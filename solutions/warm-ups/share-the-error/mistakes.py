@@ -57,6 +57,19 @@ mistakes(
     "You take the same share of the prediction and of the measurement.",
     "If the measurement has a share, the prediction has what is left of 1.",
 ).edit("corrected", {"predicted + share * (measured - predicted)": "share * predicted + share * measured"})
+mistakes(
+    "ZERO_NOT_TAKEN",
+    "You do not take a share of 0 as it is given.",
+    "Python takes 0 for false in `or` and in `if share`. With the share 0 the prediction must come out.",
+).edit("corrected", {"+ share *": "+ (share or 0.5) *"})
+mistakes(
+    "DIVIDED_BY_THE_WEIGHTS",
+    "You give the prediction the weight 1 and the measurement the share, and divide by both.",
+    "The weights are 1 - share and share, which are 1 together.",
+).edit(
+    "corrected",
+    {"predicted + share * (measured - predicted)": "(predicted + share * measured) / (1.0 + share)"},
+)
 
 mistakes.accept(
     "Starts from the other end",

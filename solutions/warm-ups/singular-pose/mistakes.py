@@ -157,6 +157,11 @@ mistakes(
     "The rod's share in x is not multiplied by the rate of turning.",
     "The derivative of cos(angle) is -sin(angle) times the rate.",
 ).edit("joint_speeds", {"math.sin(angle) * turn": "math.sin(angle)"})
+mistakes(
+    "NONE_IN_A_PAIR",
+    "In a singular pose you give a pair of two None.",
+    "Give None itself, not a pair: return None.",
+)
 
 mistakes.accept(
     "Solves J v = (vx, vy)",
@@ -200,6 +205,20 @@ mistakes.terms(
         "length_of": {"LENGTH_FORGOTTEN": lambda length: 1.0},
         "order": {"ORDER_SWAPPED": -1},
         "singular": {"EXACTLY_ZERO": lambda c: c == 0.0},
-        "none": {"STANDS_STILL": (0.0, 0.0), "NAN_FOR_NONE": (math.nan, math.nan)},
+        "none": {
+            "STANDS_STILL": (0.0, 0.0),
+            "NAN_FOR_NONE": (math.nan, math.nan),
+            "NONE_IN_A_PAIR": (None, None),
+        },
     },
 )
+
+
+@mistakes.more
+def length_in_neither():
+    def joint_speeds(angle, length, vx, vy):
+        if abs(math.cos(angle)) < 1e-9:
+            return None
+        return vx + math.tan(angle) * vy, vy / math.cos(angle)
+
+    yield "joint_speeds", ("LENGTH_FORGOTTEN",), joint_speeds

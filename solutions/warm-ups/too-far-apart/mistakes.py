@@ -61,6 +61,19 @@ mistakes(
     "You divide by the root of the product of the uncertainties.",
     "Add their squares and take the root.",
 ).edit("distance_in_doubts", {"math.hypot(doubt_s, doubt_m)": "math.sqrt(doubt_s * doubt_m)"})
+mistakes(
+    "SQUARES_SUBTRACTED",
+    "You subtract the squares of the uncertainties.",
+    "The uncertainty of a difference is larger than either: add the squares and take the root.",
+).edit("distance_in_doubts", {"math.hypot(doubt_s, doubt_m)": "math.sqrt(abs(doubt_s**2 - doubt_m**2))"})
+mistakes(
+    "ARGUMENTS_EXCHANGED",
+    "You took the arguments in another order.",
+    "Their order is: simulated, doubt_s, measured, doubt_m.",
+).edit(
+    "distance_in_doubts",
+    {"simulated - measured": "simulated - doubt_s", "math.hypot(doubt_s, ": "math.hypot(measured, "},
+)
 
 mistakes.accept(
     "The root of a quotient",

@@ -133,6 +133,16 @@ mistakes(
         return tuple(sorted({x - aside, x + aside}))
     """,
 )
+mistakes(
+    "BELOW_ONLY",
+    "You find no place for points above the rail.",
+    "The rod can turn in the whole plane. It reaches up as far as down: compare |y| with the length.",
+)
+mistakes(
+    "SQUARE_AGAINST_THE_LENGTH",
+    "You compare the square of y with the length.",
+    "Compare |y| with the length, or the squares of both.",
+).edit("carriages", {"if abs(y) > length:": "if y**2 > length:"})
 
 mistakes.accept(
     "Solves (x - s)^2 + y^2 = length^2",
@@ -181,5 +191,6 @@ mistakes.terms(
         "order": {"LARGER_FIRST": -1},
         "start": {"X_FORGOTTEN": 0.0},
         "out": {"NAN_FOR_NONE": (math.nan, math.nan)},
+        "high": {"BELOW_ONLY": lambda y: math.inf if y > 0 else -y},
     },
 )

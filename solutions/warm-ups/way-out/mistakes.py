@@ -1,5 +1,7 @@
 """Mistakes in `way-out`: words beside the programs that they are true of."""
 
+import math
+
 from course.authoring.mistakes import Mistakes
 
 mistakes = Mistakes()
@@ -234,3 +236,12 @@ def without_sizes(x, y, width, height):
 @mistakes.more
 def no_sizes_and_no_signs():
     yield "way_out", ("NO_SIZE_OF_X", "ALWAYS_FORWARDS"), without_sizes
+
+
+@mistakes.more
+def without_asking():
+    def way_out(x, y, width, height):
+        along, across = width - abs(x), height - abs(y)
+        return (math.copysign(along, x), 0.0) if along < across else (0.0, math.copysign(across, y))
+
+    yield "way_out", ("NOT_ASKED",), way_out

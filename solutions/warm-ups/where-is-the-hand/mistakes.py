@@ -87,6 +87,11 @@ mistakes(
     "In one of the two coordinates you measure the second angle from the x axis.",
     "Use a1 + a2 in both.",
 ).edit("hand", {"sin(a1 + a2)": "sin(a2)"})
+mistakes(
+    "ANGLE_BETWEEN_THE_LINKS",
+    "You took a2 as the angle between the two links: with a2 = 0 your arm is folded.",
+    "a2 is how far the second link turns from the direction of the first: add it to a1.",
+).edit("hand", {"cos(a1 + a2)": "cos(a1 + math.pi - a2)", "sin(a1 + a2)": "sin(a1 + math.pi - a2)"})
 
 mistakes.accept(
     "Turns of complex numbers",
@@ -130,6 +135,7 @@ def stretched(a1, a2, l1, l2):
 @mistakes.more
 def hypotheses():
     yield "hand", ("ONE_LONG_LINK",), stretched
+    yield "hand", ("ANGLE_BETWEEN_THE_LINKS",), hand_of(lambda a1, a2: a1 + a2 - math.pi)
     yield from with_terms(
         "hand",
         hand_of,

@@ -97,6 +97,16 @@ mistakes(
     "You divide the step into smaller ones, and the swing still grows, only slower.",
     "Leave the step as it is: let one of the two lines use the value that the other has just computed.",
 )
+mistakes(
+    "VELOCITY_FIRST",
+    "The velocity comes first in your pair.",
+    "The position comes first: return x, v.",
+).edit("swing", {"return x, v": "return v, x"})
+mistakes(
+    "FORCE_TAKEN_ONCE",
+    "The force is computed once, before the loop, and stays what it was at the start.",
+    "Compute it in every step: it changes with the position.",
+).edit("swing", {"for _": "a = -k / m * x\n    for _", "(-k / m * x)": "a"})
 
 mistakes.accept(
     "Half a kick on either side of the move",
@@ -181,3 +191,17 @@ def other_loops():
     yield "swing", ("SMALLER_STEPS",), smaller(10)
     yield "swing", ("MASS_LOST",), moves_first(mass=lambda m: 1.0)
     yield "swing", ("FORCE_AWAY",), moves_first(sign=1.0)
+
+
+@mistakes.more
+def swapped_or_constant():
+    yield "swing", ("VELOCITY_FIRST",), lambda *given: moves_first()(*given)[::-1]
+    yield "swing", ("FORCE_TAKEN_ONCE",), pushed_alike
+
+
+def pushed_alike(x, v, k, m, h, n):
+    a = -k / m * x
+    for _ in range(n):
+        x += h * v
+        v += h * a
+    return x, v

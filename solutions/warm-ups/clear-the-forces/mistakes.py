@@ -26,7 +26,7 @@ mistakes(
 )
 mistakes(
     "SPEED_CLEARED",
-    "The speed starts from zero in every step, so only the last step counts.",
+    "The speed is that of a single step: the others are lost.",
     "Clear only the forces. The speed is part of the body's state and stays.",
 ).body(
     "final_speed",

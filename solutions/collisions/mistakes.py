@@ -694,7 +694,7 @@ mistakes(
 )
 mistakes(
     "VELOCITIES_SCALED",
-    "The velocities are those after an impact without loss, each multiplied by e.",
+    "Along the normal the velocities are those after an impact without loss, each multiplied by e.",
     "e is the speed of parting over that of approach: it belongs in the factor 1 + e of J, and nowhere else.",
 ).body(
     "resolve",
@@ -1263,8 +1263,8 @@ mistakes(
 )
 mistakes(
     "FIRST_STEP_MISSED",
-    "A contact within the first step is missed, and the bodies go through each other.",
-    "In every step, including the first, ask before you move the bodies whether the gap closes within it.",
+    "A contact in the first step, or at its very start, is missed, and the bodies go through each other.",
+    "In every step, including the first, ask before you move the bodies whether the gap closes within it. A gap of zero has closed already.",
 ).around(
     "simulate_head_on",
     """

@@ -14,7 +14,7 @@ from course.catalog.markdown import read_task
 from course.catalog.models import Exercise, Lesson
 from course.cli.frame.console import MAX_WIDTH, Console, current
 from course.cli.frame.here import Here, here_or_outside
-from course.cli.frame.options import LessonName, WarmUpName, option
+from course.cli.frame.options import LessonName, Verbose, WarmUpName, option
 from course.cli.frame.replies import Envelope, NextStep, filled
 from course.cli.home.advice import after_lesson
 from course.cli.home.learning import day
@@ -249,6 +249,7 @@ _PLAIN_MARKS = {"done": "done", "started": "begun", "new": "to do"}
 def warmup(
     name: WarmUpName = None,
     check: Annotated[bool, option("--check", "Check it, as `course check` does.")] = False,
+    verbose: Verbose = False,
 ) -> int:
     """Do a lesson's small tasks.
 
@@ -257,6 +258,8 @@ def warmup(
     exercises are; they count for nothing.
     """
     console = current()
+    if verbose and not check:
+        raise UsageError("--verbose goes with --check.", help="Example: course warmup 3 --check --verbose")
     lesson = name if name and name in here_or_outside()[1].lesson_ids() else ""  # a number is a warm-up's
     if name is None or lesson:
         if check:
@@ -264,7 +267,7 @@ def warmup(
         return _list(console, lesson)
     here = Here.load()
     chosen = _warm_up(here.catalog, name)
-    return check_work(chosen.id) if check else _begin(console, here, chosen)
+    return check_work(chosen.id, verbose=verbose) if check else _begin(console, here, chosen)
 
 
 def _warm_up(catalog: Catalog, name: str) -> Exercise:

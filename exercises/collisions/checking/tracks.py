@@ -34,12 +34,14 @@ def of_head_on(scene, truth, t, x, v, h):
         return named("INFINITE_MASS_NAN") if math.inf in scene.m else None
     if _nearly(t, x, v, scene.at(t, truth.contact, truth.after), [truth.contact]):
         return named("PRECISION_LOST")
-    if not np.allclose(x[0], scene.x0, atol=1e-9) or not np.allclose(v[0], scene.v0, atol=1e-9):
+    if not np.allclose(x[0], scene.x0, rtol=1e-9, atol=1e-9) or not np.allclose(
+        v[0], scene.v0, rtol=1e-9, atol=1e-9
+    ):
         return named(_first_row((x, v), scene.x0, scene.at([h], truth.contact, truth.after)[0][0], scene.v0))
     if not x[-1].any() and not v[-1].any():  # balls with radii are not both at 0
         return named("ROWS_NOT_WRITTEN")
     straight, _ = scene.at(t, math.inf, None)
-    if np.allclose(x, straight, atol=1e-9) and truth.contact < t[-1]:
+    if np.allclose(x, straight, rtol=1e-9, atol=1e-9) and truth.contact < t[-1]:
         # Scenes that meet later come before, and were right.
         return named("FIRST_STEP_MISSED" if truth.contact < h else "PASSES_THROUGH")
     code = _of_meeting(scene, truth, t, x, v, h)
@@ -54,9 +56,9 @@ def _of_meeting(scene, truth, t, x, v, h):
     if np.allclose(x, scene.at(t, truth.contact, truth.after)[0], rtol=1e-9, atol=1e-8):
         return _of_timing(scene, truth, t, x, v, h)
     code = _of_reach(scene, truth, t, x) or _of_wait(scene, truth, t, x, h)
-    if not code and not np.allclose(v[-1], truth.after, atol=1e-8):
+    if not code and not np.allclose(v[-1], truth.after, rtol=1e-9, atol=1e-8):
         before = t < truth.contact - 1e-9
-        came = np.allclose(x[before], scene.at(t, math.inf, None)[0][before], atol=1e-8)
+        came = np.allclose(x[before], scene.at(t, math.inf, None)[0][before], rtol=1e-9, atol=1e-8)
         return _of_speeds(scene, v, came)
     return code or _of_timing(scene, truth, t, x, v, h)
 
@@ -78,7 +80,7 @@ def _first_row(states, start, later, speeds):
     same = all(np.array_equal(rows, np.broadcast_to(rows[-1], rows.shape)) for rows in states)
     if len(x) > 2 and same and not np.allclose(x[0], start):
         return "ROWS_ALL_THE_SAME"
-    missing = np.allclose(x[0], later, atol=1e-8) or not np.any(x[0])
+    missing = np.allclose(x[0], later, rtol=1e-9, atol=1e-8) or not np.any(x[0])
     return "INITIAL_STATE_MISSING" if missing else "INITIAL_STATE_WRONG"
 
 
@@ -137,11 +139,13 @@ def _of_timing(scene, truth, t, x, v, h):
     if np.allclose(x, path, rtol=1e-9, atol=1e-8):
         first = (t > truth.contact + 1e-9) & (t <= truth.contact + h + 1e-9)
         rest = np.where(t[:, None] <= truth.contact, scene.v0, truth.after)[~first]
-        late = np.allclose(v[first], scene.v0, atol=1e-8) and np.allclose(v[~first], rest, atol=1e-8)
+        late = np.allclose(v[first], scene.v0, rtol=1e-9, atol=1e-8) and np.allclose(
+            v[~first], rest, rtol=1e-9, atol=1e-8
+        )
         return "VELOCITIES_LATE" if late else "VELOCITIES_APART"
     later = t > truth.contact + h + 1e-9
     off = (x - path)[later]
-    if not len(off) or not np.allclose(off, off[0], atol=1e-8):
+    if not len(off) or not np.allclose(off, off[0], rtol=1e-9, atol=1e-8):
         return None
     # Another moment of the impact moves each ball by its change of velocity, another rest of the step
     # by its velocity after it.
@@ -159,7 +163,7 @@ def _of_timing(scene, truth, t, x, v, h):
 def _share(off, way):
     """How often ``way`` fits into ``off``; None if they do not lie along one another, or nothing is off."""
     share = float(off @ way) / (float(way @ way) or 1.0)
-    fits = np.allclose(off, share * way, atol=1e-8) and abs(share) > 1e-9
+    fits = np.allclose(off, share * way, rtol=1e-9, atol=1e-8) and abs(share) > 1e-9
     return share if fits else None
 
 
@@ -217,11 +221,11 @@ def _drop_start(scene, truth, t, z, v, h):
     before = t < (truth.times[0] if truth.times else math.inf)
     fall = scene.z0 + scene.v0 * t - scene.g * t * t / 2
     off = z - fall
-    if before.sum() > 2 and not np.allclose(off[before], 0.0, atol=1e-8):
+    if before.sum() > 2 and not np.allclose(off[before], 0.0, rtol=1e-9, atol=1e-8):
         return _drop_flight(scene, t, z, v, h, before, off) or _drop_early(v, off)
     path, _ = scene.at(t, truth.times, truth.speeds)
-    if np.allclose(z, path, atol=1e-8) and not np.allclose(
-        v[before], (scene.v0 - scene.g * t)[before], atol=1e-8
+    if np.allclose(z, path, rtol=1e-9, atol=1e-8) and not np.allclose(
+        v[before], (scene.v0 - scene.g * t)[before], rtol=1e-9, atol=1e-8
     ):
         return "VELOCITIES_APART"
     if np.allclose(z, fall, rtol=1e-9, atol=1e-8):
@@ -347,9 +351,9 @@ def _drop_speeds(scene, truth, t, z, v):
     path, speed = scene.at(t, truth.times, truth.speeds)
     lies = (np.abs(z - scene.radius) < 1e-9) & (speed == 0.0) & (t > truth.may + 1e-7)
     near = np.any(np.abs(t[:, None] - np.array(truth.times)) < 1e-7, axis=1)
-    if not np.allclose(z, path, atol=1e-8):
+    if not np.allclose(z, path, rtol=1e-9, atol=1e-8):
         return None
-    if not np.allclose(v[~lies & ~near], speed[~lies & ~near], atol=1e-8):
+    if not np.allclose(v[~lies & ~near], speed[~lies & ~near], rtol=1e-9, atol=1e-8):
         return "VELOCITIES_APART"
     return "REST_KEEPS_SPEED" if np.any(v[lies] != 0.0) else None
 

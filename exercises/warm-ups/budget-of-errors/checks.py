@@ -8,13 +8,13 @@ from course.scoring import kit
 @pytest.mark.task("total_error")
 @pytest.mark.points(1)
 def test_budgets(submission):
-    """Budgets of two, three and four errors"""
+    """Budgets of one error and of several"""
     kit.expect_accepts(
         lambda: submission.call("total_error", [3.0, 4.0]),
         "ValueError",
         input={"errors": [3.0, 4.0]},
         message="Your code stops with a ValueError.",
-        help="The list may be of any length: does your code expect a certain one?",
+        help="The list may have any length: does your code expect a certain one?",
     )
     kit.expect_cases(
         submission,
@@ -25,6 +25,7 @@ def test_budgets(submission):
             (([0.2, 0.5, 0.1],), 0.547722557505),
             (([1.0, 1.0, 1.0, 1.0],), 2.0),
             (([0.1, 0.2, 0.2],), 0.3),
+            (([0.25],), 0.25),
         ],
         quantity="the total error",
         message="The total is wrong.",

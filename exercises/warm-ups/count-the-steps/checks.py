@@ -20,6 +20,7 @@ def test_quotients_beside_a_whole_number(submission):
             ((2.0, 0.01), 200),
             ((1.0, 0.1), 10),
             ((0.25, 0.25), 1),
+            ((16.391, 0.001), 16391),
         ],
         expect=kit.expect_equal,
         message="The number of steps is wrong.",

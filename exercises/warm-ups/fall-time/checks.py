@@ -40,7 +40,7 @@ def test_on_the_moon(submission):
         quantity="the time of the fall",
         units="s",
         message="The time of a fall on the Moon is wrong.",
-        help="Use the g that was given.",
+        help="Use the g that was given, in a formula without steps.",
     )
 
 

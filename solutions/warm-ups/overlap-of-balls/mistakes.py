@@ -24,7 +24,7 @@ mistakes(
 mistakes(
     "GAP_CUT_OFF",
     "A gap gives zero here.",
-    "A gap should be negative: leave the max out.",
+    "A gap should be negative: give the radii less the distance there, too.",
 ).edit("overlap", {"r1 + r2 - math.dist(p, q": "max(0.0, r1 + r2 - math.dist(p, q)"})
 mistakes(
     "SIZES_ADDED",

@@ -18,7 +18,7 @@ mistakes(
 ).edit("worst_drift", {"abs(energy - energies[0])": "energy - energies[0]"})
 mistakes(
     "RANGE_NOT_DRIFT",
-    "Your result is the distance from the smallest to the largest value.",
+    "You measure from the smallest to the largest value.",
     "Measure from the first value: the energy should have stayed there.",
 ).edit(
     "worst_drift", {"max(abs(energy - energies[0]) for energy in energies": "(max(energies) - min(energies)"}

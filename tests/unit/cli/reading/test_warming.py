@@ -96,7 +96,7 @@ def test_one_thing_at_a_time_is_told_and_a_hint_is_due_after_an_attempt(warm, wo
     assert said.out.count("Write RIGHT.") == 1
     assert "--verbose shows all" in said.out + said.err
     assert "Your code printed:" in warm("warmup", "adding", "--check", "--verbose").out
-    warm("warmup", "adding", "--verbose").ends(2, "--verbose goes with --check.")
+    assert "--verbose goes with --check." in warm("warmup", "adding", "--verbose").err
     assert warm("hint", "adding", "--json").json["hint"] == "Think."
 
 

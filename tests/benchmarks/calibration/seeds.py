@@ -54,7 +54,7 @@ from course.scoring.judging.submission import Submission, Terms  # noqa: E402
 from course.scoring.verdict import Status, Verdict  # noqa: E402
 
 LOG = Path(__file__).with_suffix(".jsonl")
-#: Seeds without a fault that make an ordinary run take a program's word; `.ci/release` asks for 200 and more.
+#: Seeds without a fault that make an ordinary run take a program's word; `.ci/release` asks for 200.
 LEAST = 20
 #: Gradings of a program that ends its worker: each takes the whole deadline.
 _ENDING = 10

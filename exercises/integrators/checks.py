@@ -281,8 +281,8 @@ def test_observed_order_scattered(submission, draw):
     for value, (hs, errors) in zip(values, points, strict=True):
         kit.expect_close(
             value,
-            round(invariants.convergence_order(hs, errors), 12)
-            + 0.0,  # rounding leaves 1e-16 of a slope of zero
+            # rounding leaves 1e-16 of a slope of zero
+            round(invariants.convergence_order(hs, errors), 12) + 0.0,
             abs=1e-8,
             source="rounding: the least-squares slope is one number",
             quantity="order",

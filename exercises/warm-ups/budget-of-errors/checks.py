@@ -14,7 +14,7 @@ def test_budgets(submission):
         "ValueError",
         input={"errors": [3.0, 4.0]},
         message="Your code stops with a ValueError.",
-        help="The list may have any length: does your code expect a certain one?",
+        help="The list may have any number of errors: does your code expect a certain one?",
     )
     kit.expect_cases(
         submission,

@@ -174,6 +174,23 @@ def test_a_hand_is_answered_before_the_next_frame_is_due(monkeypatch) -> None:
     asyncio.run(asyncio.wait_for(go(), 3))
 
 
+def test_a_world_ends_though_a_request_comes_in_the_same_moment(monkeypatch) -> None:
+    monkeypatch.setattr("course.sandbox.views.web.session._FPS", 0.2)
+
+    async def go() -> bool:
+        made = Session(Stage(choose("head-on")))
+        page = made.join()
+        task = asyncio.create_task(made.run())
+        await asyncio.sleep(0.05)  # now it waits for the next frame
+        send(made, page, "pause", on=True)
+        await asyncio.sleep(0)
+        task.cancel()
+        await asyncio.wait({task}, timeout=10)
+        return task.cancelled()
+
+    assert asyncio.run(go())
+
+
 def test_a_world_that_is_too_much_work_runs_slower_and_says_so() -> None:
     clock = Clock(each=0.002)
     made, page = make("head-on", clock=clock, settings={"step": 1e-5})

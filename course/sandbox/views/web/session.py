@@ -477,8 +477,10 @@ class Session:
             self._wake.clear()
             # At least a moment for everybody else, and hands are answered at once.
             await asyncio.sleep(_MOMENT)
+            # Not ``wait_for``: before Python 3.12 it goes on where it is cancelled as what it waits for happens.
             with contextlib.suppress(TimeoutError):
-                await asyncio.wait_for(self._wake.wait(), max(due - self._clock(), 0.0))
+                async with asyncio.timeout(max(due - self._clock(), 0.0)):
+                    await self._wake.wait()
                 due = self._clock()
 
     def _moves(self) -> bool:

@@ -477,7 +477,7 @@ class Session:
             self._wake.clear()
             # At least a moment for everybody else, and hands are answered at once.
             await asyncio.sleep(_MOMENT)
-            # Not ``wait_for``: before Python 3.12 it goes on where it is cancelled as what it waits for happens.
+            # Not ``wait_for``: before Python 3.12 it swallows a cancelling that comes with what it waits for.
             with contextlib.suppress(TimeoutError):
                 async with asyncio.timeout(max(due - self._clock(), 0.0)):
                     await self._wake.wait()

@@ -830,31 +830,7 @@ mistakes(
     "Compare with g times h the speed that it has at the floor: not its square, and not that at the end of the step.",
 ).edit("simulate_drop", {"up <= g * h": "up * up <= 2 * g * h"}).edit(
     "simulate_drop", {"up <= g * h": "up <= g"}
-).body(
-    "simulate_drop",
-    """
-        n = round(t_end / h)
-        z, v = float(z0), float(v0)
-        rest = z <= radius and v == 0
-        zs, vs = [z], [v]
-        for i in range(n):
-            left = h
-            while not rest:
-                speed = math.sqrt(max(0.0, v * v + 2 * g * (z - radius)))
-                wait = (v + speed) / g
-                if wait > left:
-                    z, v = z + v * left - g * left * left / 2, v - g * left
-                    break
-                left -= wait
-                z, v = radius, restitution * speed
-                rest = abs(v - g * left) <= g * h
-            if rest:
-                z, v = radius, 0.0
-            zs.append(z)
-            vs.append(v)
-        return h * np.arange(n + 1), np.array(zs), np.array(vs)
-    """,
-)
+).edit("simulate_drop", {"up <= g * h": "abs(up - g * left) <= g * h"})
 mistakes(
     "RESTS_TOO_EARLY",
     "The ball is put to rest while it should still move.",
@@ -867,6 +843,26 @@ mistakes(
         late = t > (v0 + speed) / g + 2 * restitution * speed / g
         return t, np.where(late, radius, z), np.where(late, 0.0, v)
     """,
+)
+mistakes(
+    "RESTS_IN_THE_AIR",
+    "The ball stops in the air where it is slow, as at the top of its flight.",
+    "Slow is not enough: it rests where it touches the floor with a speed of at most g h, and flies on everywhere else.",
+).edit(
+    "simulate_drop",
+    {
+        "        if resting:\n            z[i + 1], v[i + 1] = radius, 0.0\n": "        if resting or abs(v[i]) <= g * h:\n            z[i + 1], v[i + 1] = z[i], 0.0\n"
+    },
+).edit(
+    "simulate_drop",
+    {
+        "        if resting:\n            z[i + 1], v[i + 1] = radius, 0.0\n": "        if resting or (abs(v[i]) <= g * h and z[i] < 0.9 * z0):\n            z[i + 1], v[i + 1] = z[i], 0.0\n"
+    },
+).edit(
+    "simulate_drop",
+    {
+        "    return t, z, v": "    slow = np.abs(v) <= g * h\n    slow[0] = False\n    if slow.any():\n        z[np.argmax(slow) :], v[np.argmax(slow) :] = z[np.argmax(slow)], 0.0\n    return t, z, v"
+    },
 )
 mistakes(
     "RADII_NOT_SQUARED",
@@ -1200,54 +1196,8 @@ mistakes(
     "REST_BY_TIME_LEFT",
     "Whether the ball rests is decided with what is left of the step in place of h.",
     "The limit is g h, with all of the step h, wherever in the step the ball touches.",
-).body(
-    "simulate_drop",
-    """
-        n = round(t_end / h)
-        z, v = float(z0), float(v0)
-        rest = z <= radius and v == 0
-        zs, vs = [z], [v]
-        for i in range(n):
-            left = h
-            while not rest:
-                speed = math.sqrt(max(0.0, v * v + 2 * g * (z - radius)))
-                wait = (v + speed) / g
-                if wait > left:
-                    z, v = z + v * left - g * left * left / 2, v - g * left
-                    break
-                left -= wait
-                z, v = radius, restitution * speed
-                rest = speed <= g * left
-            if rest:
-                z, v = radius, 0.0
-            zs.append(z)
-            vs.append(v)
-        return h * np.arange(n + 1), np.array(zs), np.array(vs)
-    """,
-).body(
-    "simulate_drop",
-    """
-        n = round(t_end / h)
-        z, v = float(z0), float(v0)
-        rest = z <= radius and v == 0
-        zs, vs = [z], [v]
-        for i in range(n):
-            left = h
-            while not rest:
-                speed = math.sqrt(max(0.0, v * v + 2 * g * (z - radius)))
-                wait = (v + speed) / g
-                if wait > left:
-                    z, v = z + v * left - g * left * left / 2, v - g * left
-                    break
-                left -= wait
-                z, v = radius, restitution * speed
-                rest = restitution * speed <= g * left
-            if rest:
-                z, v = radius, 0.0
-            zs.append(z)
-            vs.append(v)
-        return h * np.arange(n + 1), np.array(zs), np.array(vs)
-    """,
+).edit("simulate_drop", {"up <= g * h": "up <= g * left"}).edit(
+    "simulate_drop", {"up <= g * h": "restitution * up <= g * left"}
 )
 mistakes(
     "MISS_IS_A_NUMBER",

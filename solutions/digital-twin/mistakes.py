@@ -1894,6 +1894,21 @@ mistakes(
     "The output at time k*dt is the signal of the time k*dt - latency.",
 )
 mistakes(
+    "DELAY_AS_LAG",
+    "The signal is smoothed, as behind a lag with the time constant latency, and not delayed.",
+    "A delay keeps the shape of the signal: the output at time k*dt is the signal of the time k*dt - latency.",
+).body(
+    "delay_line",
+    """
+        y, value = np.zeros(len(x)), 0.0
+        share = 1 - math.exp(-dt / latency) if latency > 0 else 1.0
+        for k in range(len(x)):
+            value += share * (x[k] - value)
+            y[k] = value
+        return y
+    """,
+)
+mistakes(
     "DELAY_COVERS_START",
     "The signal is zero at first, but then it comes without a delay.",
     "The first sample comes at the time latency, and all others as much later: y at k*dt is x at k*dt - latency.",

@@ -265,6 +265,25 @@ def _circle(x, dt, latency):
     return np.interp(t - latency, t, x, period=dt * len(x))
 
 
+def _lagging(share, first):
+    """``share(dt, latency)`` of the way to each sample, from 0 or from the ``first`` sample."""
+
+    def delay_line(x, dt, latency):
+        part = share(dt, latency) if latency > 0 else 1.0
+        y, value = np.zeros(len(x)), first * x[0]
+        for k in range(len(x)):
+            value += part * (x[k] - value)
+            y[k] = value
+        return y
+
+    return delay_line
+
+
+_SHARES = (
+    lambda dt, latency: 1 - math.exp(-dt / latency),
+    lambda dt, latency: min(dt / latency, 1.0),
+    lambda dt, latency: dt / (latency + dt),
+)
 _COUNTS = (lambda s: int(s + 1e-9), round, lambda s: math.ceil(s - 1e-9))
 
 # -- differential drive ---------------------------------------------------------------------------------
@@ -518,6 +537,7 @@ OTHERS = {
         (("DELAY_SHARE_NEGATIVE",), _beyond_the_nearest(lambda rest: 1 - rest)),
         (("DELAY_COVERS_START",), lambda x, dt, latency: np.where(dt * np.arange(len(x)) >= latency, x, 0.0)),
         (("DELAY_WRAPS",), _circle),
+        *((("DELAY_AS_LAG",), _lagging(share, first)) for share in _SHARES for first in (0.0, 1.0)),
     ],
     "diff_drive_step": [
         (("EULER_ODOMETRY",), _arc(**_EULER)),

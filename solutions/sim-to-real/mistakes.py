@@ -1123,7 +1123,7 @@ mistakes(
 ).edit("tune", {"estimate[name][0] * np.exp": "np.exp"})
 mistakes(
     "FAILURES_LEFT_OUT",
-    "With these gains more than half of the carts count as 3 s. They are about the best for the soonest cart alone, or for a mean that leaves out every cart that counts as 3 s.",
+    "With these gains more than half of the carts count as 3 s, and the soonest cart, or the mean of those that settle, is about as soon as with any gains. So it is with a mean that leaves out every cart that counts as 3 s, and by chance with gains for other carts.",
     "Take the mean over all carts, with 3 s for each that fails. If you do, look at the carts: each parameter is the estimate's value times a factor drawn from the box.",
     kind="fact",
 ).body(

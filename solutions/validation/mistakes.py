@@ -232,6 +232,13 @@ mistakes(
     "nis", {"squared_distance(nu, S)": "squared_distance(nu, S) / nu.shape[1]"}
 )
 mistakes(
+    "ROWS_CENTRED",
+    "The mean over the rows is subtracted first, and a constant error no longer counts.",
+    "Weigh each row as it is: a constant error is just what the test has to show.",
+).edit("nees", {"squared_distance(err, P)": "squared_distance(err - np.mean(err, axis=0), P)"}).edit(
+    "nis", {"squared_distance(nu, S)": "squared_distance(nu - np.mean(nu, axis=0), S)"}
+)
+mistakes(
     "DIAGONAL_ONLY",
     "Your code uses only the variances, not how two components are correlated.",
     "Use the whole matrix: solve P w = err for w, then sum err * w.",
@@ -701,6 +708,20 @@ mistakes(
         f_sim, f_real = np.asarray(f_sim), np.asarray(f_real)
         peak, impulse = np.max(f_real), np.sum(f_real) * dt
         return {"peak": np.max(f_sim) / peak - 1, "impulse": np.sum(np.abs(f_sim - f_real)) * dt / impulse}
+    """,
+)
+mistakes(
+    "IMPULSE_WHILE_BOTH",
+    "Your code integrates only over the samples at which both forces are above zero.",
+    "Integrate each force over its whole recording: the two impacts need not be at the same time.",
+    kind="consequence",
+).body(
+    "contact_force_error",
+    """
+        f_sim, f_real = np.asarray(f_sim), np.asarray(f_real)
+        both = (f_sim > 0) & (f_real > 0)
+        impulse = np.sum(f_sim[both]) / np.sum(f_real[both])
+        return {"peak": np.max(f_sim) / np.max(f_real) - 1, "impulse": impulse - 1}
     """,
 )
 mistakes(

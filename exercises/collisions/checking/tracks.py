@@ -182,6 +182,7 @@ def of_drop(scene, truth, t, z, v, h):
         return named(_first_row((z[:, None], v[:, None]), scene.z0, later, scene.v0))
     code = (
         _drop_empty(scene, truth, t, z, v)
+        or _drop_hangs(scene, truth, t, z, v, h)
         or _drop_floor(scene, t, z, v)
         or _drop_start(scene, truth, t, z, v, h)
         or _drop_later(scene, truth, t, z, v)
@@ -197,6 +198,17 @@ def _drop_empty(scene, truth, t, z, v):
     last = filled[-1]
     rests = v[last] == 0.0 and math.isclose(z[last], scene.radius, abs_tol=1e-9)
     return "ROWS_NOT_WRITTEN" if rests or t[last + 1] < truth.may else None
+
+
+def _drop_hangs(scene, truth, t, z, v, h):
+    """Whether all is right until the ball is slow in the air, and from there on it does not move."""
+    path, speed = scene.at(t, truth.times, truth.speeds)
+    off = np.abs(z - path) > 1e-8
+    k = int(np.argmax(off))
+    if not off.any() or t[k] > truth.may or z[k] < scene.radius + 1e-6:
+        return None
+    still = np.all(z[k:] == z[k - 1]) and np.all(v[k:] == 0.0)
+    return "RESTS_IN_THE_AIR" if still and abs(speed[k - 1]) <= 2 * scene.g * h else None
 
 
 def _drop_floor(scene, t, z, v):

@@ -299,7 +299,8 @@ def _ends_as_it_begins(samples):
 
 
 def _one_block(samples):
-    return len(samples) == _BLOCK and len(_beginnings(samples)) == 1
+    """Also one that goes on at the start of the series, which is 1."""
+    return len(samples) == _BLOCK and bool(np.all((np.diff(samples) == 1) | (samples[1:] == 1)))
 
 
 def _repeats_its_block(samples):

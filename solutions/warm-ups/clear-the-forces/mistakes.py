@@ -49,6 +49,18 @@ mistakes(
     "Multiply by h, as the file did.",
 )
 mistakes(
+    "IMPULSE_TAKEN_OUT",
+    "After each step you take h times the force out of the sum: most of it stays.",
+    "Set the sum to zero.",
+).edit(
+    "final_speed",
+    {
+        "speed = 0.0": "speed = summed = 0.0",
+        "        summed = 0.0": "",
+        "h * summed / mass": "h * summed / mass\n        summed -= h * force",
+    },
+)
+mistakes(
     "MASS_LOST",
     "The mass is not used.",
     "The acceleration is force over mass: divide by the mass, as the file did.",

@@ -16,12 +16,12 @@ mistakes(
 )
 mistakes(
     "QUOTIENT_OF_SUMS",
-    "The sums are divided. Speeds of opposite sign would cancel.",
+    "You divided the sum of the forces by the sum of the speeds, with their signs or without.",
     "Multiply each force by its speed before adding.",
 ).edit(
     "damping",
     {"(v * f for v, f in zip(speeds, forces)) / sum(v * v for v in speeds": "(forces) / sum(speeds"},
-)
+).edit("damping", {"v * f for v": "abs(f) for v", "v * v for v in speeds": "abs(v) for v in speeds"})
 mistakes(
     "LINE_WITH_AN_OFFSET",
     "You fitted a line with an offset; the model has none.",

@@ -84,6 +84,11 @@ mistakes(
     """,
 )
 mistakes(
+    "SIZES_OF_COSTS",
+    "You compare the sizes of the costs, without their signs.",
+    "A cost below zero is better than zero: compare the costs as they are.",
+).edit("robust", {"max(row) for": "max(map(abs, row)) for"})
+mistakes(
     "COSTS_NOT_INDEX",
     "Your result is the list of the controller's costs, not its index.",
     "Give its place in the list.",

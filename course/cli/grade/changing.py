@@ -154,7 +154,7 @@ def late(
                 book.set_meta(late_policy=text)
             dropped = []
             if people is not None:
-                joined = merged(Results(book), people)
+                joined = merged(Results(book), people, lasting=True)
                 book.set_meta(roster=joined.roster.dump())
                 dropped = joined.dropped
             known = _times(Results(book), listed, exercise)
@@ -201,7 +201,7 @@ def _times(
 ) -> list[SubmittedAt]:
     """The times in a list; those of a worksheet need an exercise and its deadline."""
     if not isinstance(listed, Worksheet):
-        return listed
+        return [msgspec.structs.replace(one, student=results.called(one.student)) for one in listed]
     ids = [item.id for item in results.exercises() if item.id != "quiz"]
     name = exercise or (ids[0] if len(ids) == 1 else "")
     if name not in ids:
@@ -355,7 +355,7 @@ def assign(
             waiting = len({item.student for item in results.all() if item.waiting})
     else:
         level, at_least = levels(isolation)
-        reason = reason or ("the match that was proposed" if accept_names else "")
+        reason = reason or ("the match that was proposed" if accept_names else "a trial" if dry_run else "")
         grade = partial(batch.grade_all, graders=jobs)
 
         def assigned(accepted: str) -> tuple[list[Assigned], list[Unsettled]]:
@@ -462,6 +462,11 @@ def log(
         student = None if student is None else results.called(student)
         runs = results.book.runs()
         decisions = results.decisions(student, exercise)
+        if student is not None and not decisions:  # who left the roster may have some
+            overriding.must_have(results, student)
+        known = [item.id for item in results.exercises()]
+        if exercise is not None and not decisions and exercise not in known:
+            raise overriding.no_exercise(exercise, known)
     if console.json:
         return console.answer(GradeLog(runs=tuple(runs), changes=tuple(decisions)))
     for run in runs:
@@ -471,7 +476,8 @@ def log(
         console.item(f"{run.kind} {run.number}", one_line(words), width=10)
     for decision in decisions:
         about = one_line(" ".join(part for part in (decision.student, decision.exercise) if part))
-        words = f"{decision.at}, {decision.who}, {about or 'the class'}: {decision.reason}"
+        words = f"{decision.at}, {decision.who}, {about or 'the class'}"
+        words += f": {decision.reason}" if decision.reason else ""
         console.item(decision.kind, one_line(words), width=10)
         before, after = (in_words(one, student, exercise) for one in (decision.before, decision.after))
         if decision.kind == "lift":  # what is kept has no score: the graders' counts, whatever it is then

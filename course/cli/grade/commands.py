@@ -157,7 +157,7 @@ def _print_lines(console: Console, results: Results, options: ExportOptions) -> 
     for effective in selection.each():
         console.emit_line(grade_line(effective, results.course))
     for student in selection.written.unmatched:
-        console.warn(f"Left out, not in the roster: {one_line(student)}")
+        console.warn(f"Left out, without a row or an id in the roster: {one_line(student)}")
 
 
 def _assignments(given: list[str]) -> dict[str, str]:
@@ -196,14 +196,17 @@ def _show(console: Console, name: str, written: Written, out: Path | None, found
     if STDOUT in written.paths:  # what else there is to say must not get into the file
         for text in (
             *written.notes,
-            *(f"Left out, not in the roster: {one_line(one)}" for one in written.unmatched),
+            *(
+                f"Left out, without a row or an id in the roster: {one_line(one)}"
+                for one in written.unmatched
+            ),
         ):
             console.warn(text)
         return
     for path in written.paths:
         console.line((f"Wrote {path}.", "bold"))
     for label, listed in (
-        ("Left out, not in the roster", written.unmatched),
+        ("Left out, without a row or an id in the roster", written.unmatched),
         (
             f"Without a score, a fault of the grader; run {command('grade', 'rerun', out)}",
             written.without_grade,

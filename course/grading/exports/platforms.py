@@ -31,7 +31,7 @@ from course.grading.exports.selection import (
 from course.grading.results.effective import Effective, Results
 from course.grading.results.roster import Column, Person, in_english, moodle_key, read_text
 from course.printable import counted, one_line, some
-from course.scoring.verdict import CheckResult, Problem, Status, Visibility, finite, in_points
+from course.scoring.verdict import CheckResult, Problem, Status, Visibility, finite, format_points, in_points
 
 _CANVAS = Needs(
     ("canvas_id", "sis_user_id"), "Canvas", "Give Canvas' gradebook export with --roster, or add the column."
@@ -47,33 +47,12 @@ _MOODLE = Needs(
 def write_canvas(path: Path, results: Results, options: ExportOptions) -> Written:
     """A file for Canvas' gradebook import.
 
-    Canvas finds a column by the assignment's id, and makes a new assignment of a title without one; so every
-    exercise needs its id. An empty cell leaves Canvas' own value.
+    Canvas finds a column by its heading, and makes a new assignment of one without an id; so every exercise
+    needs its own. An empty cell takes away what Canvas has, an excuse too: where we have no score, what its
+    gradebook says is written back.
     """
     selection = select(results, options, usable=_has_canvas_id, needs=_CANVAS)
-    missing = [name for name in selection.exercises if name not in options.assignments]
-    if missing:
-        raise UsageError(
-            f"Canvas needs the id of the assignment for {missing[0]}.",
-            help="Add --assignment EXERCISE=ID (the number at the end of the assignment's address), or "
-            "--exercise to export fewer.",
-            code="needs_assignment",
-        )
-    for name, assignment in options.assignments.items():
-        if not (assignment.isascii() and assignment.isdigit()):
-            raise UsageError(
-                f"The assignment's id for {name} is {assignment!r}, not a number.",
-                help="It is the number at the end of the assignment's address in Canvas.",
-                code="needs_assignment",
-            )
-        if options.columns and assignment not in options.columns:
-            named = one_line(", ".join(column.heading for column in options.columns.values()))
-            raise UsageError(
-                f"Canvas' gradebook has no assignment {assignment}, which was given for {name}. Nothing was"
-                " written.",
-                help=f"It has {named}.",
-                code="needs_assignment",
-            )
+    _check_assignments(selection, options)
     check_settled(selection, options)
     most = {exercise.id: exercise.max_points for exercise in results.exercises()}
     columns, possible, notes = [], [], selection.written.notes
@@ -94,38 +73,80 @@ def write_canvas(path: Path, results: Results, options: ExportOptions) -> Writte
             )
     if not options.columns:
         notes.append(
-            "Canvas takes a score as points of its own assignment. Give its gradebook with --roster, and the"
-            " scores are written on its scale."
+            "Canvas takes a score as points of its own assignment, and an empty cell takes away the score or"
+            " the excuse (EX) that it has. Give its gradebook with --roster: scores are written on its scale"
+            " then, and what Canvas has stays where we have no score."
         )
     headings = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", *(one.heading for one in columns)]
     rows = [["    Points Possible", "", "", "", "", *map(number, possible)]]
     scales = {name: points / most[name] for name, points in zip(selection.exercises, possible, strict=True)}
     for student, scores in _table(selection, scales).items():
         person = selection.people[student]
-        if not options.overwrite:
-            _keep_excuses(selection, student, columns, scores)
+        _keep_theirs(selection, student, columns, scores, overwrite=options.overwrite)
         login = person.login if person.canvas_id and is_safe(person.login) else ""  # as Canvas wrote it
         ids = person.canvas_id, person.sis_user_id, login
         rows.append([person.name or student, *ids, person.section, *scores])
     if selection.written.kept:
-        notes.append(f"Excused in Canvas (EX), and {_kept(selection.written)}")
+        notes.append(f"Who is excused in Canvas {_kept(selection.written)}")
     # Ruby's CSV reader, which Canvas uses, fails on a quote after a byte order mark.
     write_bytes(path, csv_bytes(headings, rows, mark=False))
     selection.written.paths.append(path)
     return selection.written
 
 
-def _keep_excuses(selection: Selection, student: str, columns: list[Column], scores: list[str]) -> None:
-    """Leave out the scores of assignments from which Canvas excuses the student."""
+def _check_assignments(selection: Selection, options: ExportOptions) -> None:
+    """Refuse exercises without an assignment of their own, and assignments that Canvas has not."""
+    missing = [name for name in selection.exercises if name not in options.assignments]
+    if missing:
+        raise UsageError(
+            f"Canvas needs the id of the assignment for {missing[0]}.",
+            help="Add --assignment EXERCISE=ID (the number at the end of the assignment's address), or "
+            "--exercise to export fewer.",
+            code="needs_assignment",
+        )
+    given: dict[str, str] = {}
+    for name in selection.exercises:
+        other = given.setdefault(options.assignments[name], name)
+        if other != name:
+            raise UsageError(
+                f"{other} and {name} have one assignment, {options.assignments[name]}: Canvas would take one"
+                " of them and drop the other.",
+                help="Give each its own assignment's number, or add --exercise to export fewer.",
+                code="needs_assignment",
+            )
+    for name, assignment in options.assignments.items():
+        if not (assignment.isascii() and assignment.isdigit()):
+            raise UsageError(
+                f"The assignment's id for {name} is {assignment!r}, not a number.",
+                help="It is the number at the end of the assignment's address in Canvas.",
+                code="needs_assignment",
+            )
+        if options.columns and assignment not in options.columns:
+            named = one_line(", ".join(column.heading for column in options.columns.values()))
+            raise UsageError(
+                f"Canvas' gradebook has no assignment {assignment}, which was given for {name}. Nothing was"
+                " written.",
+                help=f"It has {named}.",
+                code="needs_assignment",
+            )
+
+
+def _keep_theirs(
+    selection: Selection, student: str, columns: list[Column], scores: list[str], *, overwrite: bool
+) -> None:
+    """Write back what Canvas has where we have no score, and where it excuses the student."""
     for at, column in enumerate(columns):
-        if scores[at] and selection.people[student].canvas_id in column.excused:
-            scores[at] = ""
+        theirs = column.cells.get(selection.people[student].canvas_id, "")
+        excused = theirs.upper() == "EX" and not overwrite
+        if excused and scores[at]:
             selection.written.kept.append(f"{student} {selection.exercises[at]} (EX)")
+        if excused or not scores[at]:
+            scores[at] = theirs
 
 
 def _kept(written: Written) -> str:
     listed = some([one_line(one) for one in written.kept], SHOWN)
-    return f"nothing was changed there: {listed}. --overwrite writes ours in their place."
+    return f"stays so: {listed}. --overwrite writes ours in their place."
 
 
 def _has_canvas_id(person: Person) -> bool:
@@ -256,7 +277,7 @@ def write_worksheet(path: Path, results: Results, options: ExportOptions) -> Wri
     if kept:
         written.kept = kept
         rows_have = "1 row has" if len(kept) == 1 else f"{len(kept)} rows have"
-        written.notes.append(f"{rows_have} a grade or feedback already, and {_kept(written)}")
+        written.notes.append(f"What {rows_have} already, a grade or feedback, {_kept(written)}")
     if locked:
         written.notes.append(
             f"{counted(len(locked), 'grade')} cannot be changed in Moodle, which says so in the worksheet."
@@ -315,7 +336,7 @@ def _feedback(effective: Effective) -> str:
     """A result for its student, on one line; of a hidden check only that it failed."""
     verdict = effective.verdict
     problem = problem_for_student(verdict)
-    told = [f"{number(effective.score)} of {in_points(effective.max_score)}."]
+    told = [f"{format_points(effective.score or 0.0)} of {in_points(effective.max_score)}."]
     if effective.penalty:
         told.append(f"Lateness cost {in_points(effective.penalty)}.")
     if effective.override is not None:

@@ -8,6 +8,8 @@ that only the stored roster has goes.
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
+import msgspec
+
 from course.grading.results.effective import Results, ScoreChange
 from course.grading.results.roster import COLUMNS, Person, Roster
 
@@ -31,8 +33,13 @@ class Merged:
     moved: list[ScoreChange] = field(default_factory=list)
 
 
-def merged(results: Results, new: Roster) -> Merged:
-    """The new roster, completed from the one of the results."""
+def merged(results: Results, new: Roster, *, lasting: bool = False) -> Merged:
+    """The new roster, completed from the one of the results.
+
+    Args:
+        lasting: it is to be stored. A Moodle worksheet's numbers are those of one assignment, and do not take
+            the place of what a student is known by in Moodle.
+    """
     old, graded = results.roster, results.present()
     if old is None:
         return Merged(new)
@@ -45,7 +52,10 @@ def merged(results: Results, new: Roster) -> Merged:
         before = earlier.get(row.student)
         if before is not None:
             student = _called(before, row, results, graded, own=own, known=before.student in known)
-            people.append(_joined(before, row, new, student))
+            joined = _joined(before, row, new, student)
+            if lasting and "Identifier" in new.headings and not before.moodle_key.isdigit():
+                joined = msgspec.structs.replace(joined, moodle_key=before.moodle_key or joined.moodle_key)
+            people.append(joined)
         else:
             people.append(row)
     columns = {**{name: name for name in old.columns}, **new.columns}

@@ -5,7 +5,7 @@ A roster is a CSV file with a heading row, of one of four kinds, known by the he
     our own             student (the name of the folder a student's work is graded from), and as far as they
                         are needed name, email, canvas_id, sis_user_id, section, moodle_key, extension_days
     Canvas' gradebook   Student, or LastName and FirstName; ID, SIS User ID, SIS Login ID, Section, then its
-                        assignments; semicolons may part its cells
+                        assignments
     Moodle's worksheet  Identifier, Full name, Email address, ... as "Download grading worksheet" gives it;
                         names and addresses are not in it where Moodle grades anonymously
     Gradescope's        First Name and Last Name, or Name; SID, Email, and Role if there is one
@@ -87,12 +87,12 @@ class Person(msgspec.Struct, frozen=True, omit_defaults=True):
 
 @dataclass(frozen=True)
 class Column:
-    """An assignment's column in Canvas' gradebook: its heading, its points if the file says them, and the
-    ids of the students whom it excuses."""
+    """An assignment's column in Canvas' gradebook: its heading, its points if the file says them, and what
+    stands there, by the student's id."""
 
     heading: str
     points: float | None
-    excused: frozenset[str] = frozenset()
+    cells: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass
@@ -226,6 +226,9 @@ def read_roster(path: Path) -> Roster:
     reader = csv_reader(read_text(path))
     try:
         headings = headings_of(reader)
+        lower = [heading.casefold() for heading in headings]
+        if "student" in lower and set(lower) <= set(COLUMNS):
+            reader.fieldnames = headings = lower
         kind, columns = _kind(path, headings)
         rows = [_cells(path, reader.line_num, row) for row in reader if any(map(_some, row.values()))]
     except csv.Error as error:
@@ -239,12 +242,12 @@ def read_roster(path: Path) -> Roster:
 
 
 def csv_reader(text: str) -> csv.DictReader[str]:
-    """A reader of rows whose cells commas or semicolons part, as the language of whoever exports has it.
+    """A reader of rows whose cells commas, semicolons or tabs part, as whoever exports has it.
 
     Where it raises csv.Error, the row that begins on the line after ``line_num`` is wrong.
     """
     first = text.partition("\n")[0]
-    delimiter = ";" if first.count(";") > first.count(",") else ","
+    delimiter = max(",;\t", key=first.count)
     return csv.DictReader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
 
 
@@ -355,8 +358,8 @@ def _assignments(headings: list[str], rows: list[dict[str, str]]) -> dict[str, C
             points = [
                 float(cell.replace(",", ".")) for key, cell in cells if not key and _POINTS.fullmatch(cell)
             ]
-            excused = frozenset(key for key, cell in cells if key and cell.upper() == "EX")
-            found[id_[1]] = Column(heading, points[0] if points else None, excused)
+            theirs = {key: cell for key, cell in cells if key and cell}
+            found[id_[1]] = Column(heading, points[0] if points else None, theirs)
     return found
 
 

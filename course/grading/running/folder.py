@@ -67,10 +67,10 @@ def begin(out: Path, submissions: Path, *, resume: bool) -> Gradebook:
         )
         if not begun:
             what = "has no gradebook" if resume and out.is_dir() else "exists already"
-            fix = "Name a new folder, or add --resume to finish the run that is there."
+            there = ", or add --resume to finish the run that is there" if path.exists() else ""
             raise UsageError(
                 f"{out} {what}; nothing was touched.",
-                help=rescue(path, "Name the folder of the run.") if resume else fix,
+                help=rescue(path, "Name the folder of the run.") if resume else f"Name a new folder{there}.",
                 code="out_exists",
             ) from None
         for draft in out.iterdir():
@@ -150,7 +150,7 @@ def previewed(out: Path) -> Iterator[Results]:
 
 def remember(book: Gradebook, new: Roster) -> Merged:
     """Merge a roster into the stored one; the scores that change by it (an extension) are recorded."""
-    found = merged(Results(book), new)
+    found = merged(Results(book), new, lasting=True)
     text, before = found.roster.dump(), book.meta().get("roster")
     if text == before:
         return found

@@ -1,6 +1,7 @@
 """A grading run from folder to gradebook: what ``course grade run`` does, without the words."""
 
 import contextlib
+import math
 import os
 import secrets
 import time
@@ -43,7 +44,7 @@ from course.printable import one_line
 from course.quizzing.bank import Bank, needed
 from course.scoring.graders import grader_version
 from course.scoring.judging.submission import Terms
-from course.scoring.verdict import OURS
+from course.scoring.verdict import OURS, format_points, in_points
 
 GradeAll = Callable[[Iterable[Entry], Terms], Iterator[Graded]]
 
@@ -146,6 +147,23 @@ class Summary:
                     Ungraded(effective.student, effective.exercise, verdict.state, error.code, error.message)
                 )
         self.unjudged = unjudged(broken)
+
+
+def check_worth(graded: Graded) -> None:
+    """Refuse a score out of other points than the exercise's: every share and every export would be wrong.
+
+    Raises:
+        ContentError: the checks are worth other points than ``exercise.toml`` says.
+    """
+    exercise, verdict = graded.entry.exercise, graded.verdict
+    worth = verdict.max_score
+    if verdict.state == "graded" and not math.isclose(worth, exercise.max_points, abs_tol=1e-6):
+        raise ContentError(
+            Path(exercise.folder) / "exercise.toml",
+            None,
+            f"it says {in_points(exercise.max_points)}, and the checks are worth {format_points(worth)}.",
+            help=f"`course author build {exercise.id}` writes it anew. What was graded before is kept.",
+        )
 
 
 def broken_checks(result: Effective) -> list[tuple[str, str, str]]:
@@ -309,6 +327,7 @@ class _Run:
         self.done = 0
         self._open: Counter[str] = Counter()
         self._scored: deque[tuple[Result, dict[str, bytes]]] = deque()
+        _check_assignment(members, book, out=book.path.parent)
         self._found = set(book.found())
         self._assigned = _assigned(book)
         before, looked = book.waiting(), book.looked()
@@ -346,6 +365,7 @@ class _Run:
             self._options.terms, seed=self.summary.seed, graders=self.summary.graders
         )
         for graded in grade(self._left_to_do(), terms):
+            check_worth(graded)
             yield from self._quizzes()
             submission = graded.entry.submission
             yield (
@@ -554,6 +574,28 @@ def _exercises(catalog: Catalog, wanted: tuple[str, ...]) -> tuple[Exercise, ...
         except ContentError as error:
             raise _unfinished(f"Exercise {exercise.id}", error, catalog, "it") from None
     return chosen
+
+
+def _check_assignment(members: ClassList, book: Gradebook, out: Path) -> None:
+    """Refuse the download of a second assignment of Moodle's, which would double the class.
+
+    Moodle gives each student another number in each assignment, and folders are called after it.
+
+    Raises:
+        UsageError: students of the gradebook have other numbers in this download.
+    """
+    known = {one.key: name for name, one in book.students().items() if one.source == "moodle"}
+    called = {one.name: known[one.key] for one in book.students().values() if one.source == "moodle"}
+    new = {who.name: one for who in members.students if (one := who.identity) and one.source == "moodle"}
+    again = [(called[one.name], name) for name, one in new.items() if one.name in called]
+    if again and not any(one.key in known for one in new.values()):
+        was, now = again[0]
+        raise UsageError(
+            f"This is another assignment of Moodle's than the one in {out}: there {one_line(was)} has another"
+            f" number ({one_line(now)} here), and the class would be in it twice. Nothing was changed.",
+            help="Grade each assignment of Moodle's into a folder of its own: --out ANOTHER.",
+            code="other_assignment",
+        )
 
 
 def _members(folder: Path, options: RunOptions) -> ClassList:

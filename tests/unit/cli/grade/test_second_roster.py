@@ -243,11 +243,76 @@ def test_points_are_read_in_every_language_and_said_where_there_are_none(
 def test_whom_canvas_excuses_stays_excused(course, out: Path) -> None:
     write(out.parent, "canvas.csv", CANVAS.replace(",bob,A,", ",bob,A,EX"))
     ran = course(*TO_CANVAS, "canvas.csv")
-    assert '"bob","A",""' in (out / "canvas.csv").read_text()
-    assert "Excused in Canvas (EX), and nothing was changed there: bob doubling (EX)." in ran.out
+    assert '"bob","A","EX"' in (out / "canvas.csv").read_text(), "an empty cell takes the excuse away"
+    assert "Who is excused in Canvas stays so: bob doubling (EX)." in ran.out
     assert course(*TO_CANVAS, "canvas.csv", "--json").json["kept"] == ["bob doubling (EX)"]
     assert course(*TO_CANVAS, "canvas.csv", "--overwrite").code == 0
     assert '"bob","A","10"' in (out / "canvas.csv").read_text()
+
+
+def test_what_canvas_has_and_we_have_not_is_written_back(course, out: Path) -> None:
+    write(out.parent, "canvas.csv", CANVAS.replace(",gus,A,", ',gus,A,"7,50"'))
+    assert course(*TO_CANVAS, "canvas.csv", "--overwrite").code == 0
+    assert '"gus","A","7,50"' in (out / "canvas.csv").read_text()
+    assert course(*TO_CANVAS[:-1], "--partial").code == 0
+    ran = course(*TO_CANVAS[:-1])
+    assert "an empty cell takes away the score or the excuse (EX)" in " ".join(ran.out.split())
+
+
+def test_another_assignment_of_moodle_s_is_refused_before_it_doubles_the_class(
+    course, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(batch, "grade_all", lambda entries, terms, graders=1: right(entries, terms))
+    for folder, number in (("first", 52001), ("second", 63007)):
+        for at, name in enumerate(("Ada Lovelace", "Bob Byrne")):
+            where = f"{folder}/{name}_{number + at}_assignsubmission_file_/doubling.py"
+            write(tmp_path, where, "def double(x):\n    return x + x\n")
+    run = ("--out", "out", "--exercise", "doubling")
+    assert course("grade", "run", "first", *run).code == 0
+    before = (tmp_path / "out" / "grades.csv").read_bytes()
+    ran = course("grade", "run", "second", *run, "--resume")
+    assert ran.code == 2
+    assert "there Ada Lovelace_52001 has another number (Ada Lovelace_63007 here)" in ran.err
+    assert (tmp_path / "out" / "grades.csv").read_bytes() == before
+    assert course("grade", "run", "first", *run, "--resume").code == 0
+
+
+def test_who_is_not_there_has_no_log(course, out: Path) -> None:
+    assert course("grade", "log", "out", "nobody").code == 5
+    assert course("grade", "log", "out", "ada", "no-such").code == 5
+    assert course("grade", "log", "out", "ada", "doubling").code == 0
+
+
+def test_a_roster_from_a_spreadsheet_is_read(tmp_path: Path) -> None:
+    text = "Student\tName\tE-mail\nada\tAda Lovelace\tada@x.org\n"
+    (tmp_path / "r.txt").write_bytes(text.replace("E-mail", "EMAIL").encode("utf-16"))
+    (person,) = read_roster(tmp_path / "r.txt").people
+    assert (person.student, person.name, person.email) == ("ada", "Ada Lovelace", "ada@x.org")
+
+
+def test_a_time_names_a_student_as_a_score_by_hand_does(course, out: Path) -> None:
+    write(out.parent, "named.csv", "student,name\nada,Ada Lovelace\nbob,Bob Byrne\n")
+    write(
+        out.parent, "times.csv", "student,exercise,submitted_at\nAda Lovelace,doubling,2031-01-01T00:00:00Z\n"
+    )
+    assert course("grade", "late", "out", "--roster", "named.csv", "--policy", "late.toml").code == 0
+    ran = course("grade", "late", "out", "--times", "times.csv", "--json")
+    assert ran.json["unknown_names"] == []
+    assert "ada" in {one["student"] for one in ran.json["late"]}
+
+
+def test_a_worksheet_s_numbers_are_not_what_a_student_is_known_by(course, out: Path) -> None:
+    write(out.parent, "own.csv", "student,name,moodle_key\nada,Ada Lovelace,ada@uni.example\n")
+    sheet = (
+        "Identifier,Full name,Grade,Maximum Grade,Last modified (grade)\nParticipant 500,Ada Lovelace,,10,-\n"
+    )
+    write(out.parent, "sheet.csv", sheet)
+    for kind, file in (("moodle", "own.csv"), ("moodle-worksheet", "sheet.csv"), ("moodle", None)):
+        roster = ("--roster", file) if file else ()
+        words = ("--format", kind, "--exercise", "doubling", "--partial", *roster)
+        assert course("grade", "export", "out", *words).code == 0
+    assert "ada@uni.example" in (out / "moodle.csv").read_text()
+    assert ",10," in (out / "moodle-worksheet.csv").read_text()
 
 
 def test_the_student_for_tests_stops_no_export(course, tmp_path: Path) -> None:

@@ -366,6 +366,7 @@ def test_what_a_platform_needs_is_asked_for(results: Results, tmp_path: Path) ->
     for options, code in (
         (ExportOptions(("doubling",)), "needs_assignment"),
         (ExportOptions(("doubling",), {"doubling": "4a"}), "needs_assignment"),
+        (ExportOptions(("doubling", "halving"), {"doubling": "47", "halving": "47"}), "needs_assignment"),
         (ExportOptions(("nothing",)), "exercise_not_found"),
         (ExportOptions((), {"nothing": "1"}), "exercise_not_found"),
     ):

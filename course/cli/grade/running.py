@@ -234,6 +234,7 @@ class GradeRerun(Envelope, tag="course.grade-rerun/1", frozen=True, kw_only=True
     changes: tuple[Change, ...]
     graders: str = ""
     unjudged: tuple[str, ...] = ()
+    rescaled: tuple[str, ...] = ()
 
 
 def rerun(
@@ -283,6 +284,8 @@ def _show_rerun(console: Console, done: Regraded, out: Path, *, dry_run: bool) -
         console.note(f"Without a submission in the gradebook, and unchanged: {done.kept}.")
     show_faults(console, done, out)
     show_unjudged(console, done.unjudged)
+    for told in done.rescaled:
+        console.warn(told)
     if dry_run and done.changes:
         console.note(
             "Nothing was changed. Without --dry-run the scores change, and the old results are kept."

@@ -31,12 +31,15 @@ from course.grading.running.run import (
     unjudged,
 )
 from course.grading.running.snapshot import Snapshot, Unpacked, fresh, frozen, kept
+from course.printable import some
 from course.quizzing.bank import Bank
 from course.scoring.judging.submission import Submission, Terms
-from course.scoring.verdict import CheckResult, Verdict
+from course.scoring.verdict import CheckResult, Verdict, format_points, in_points
 
 #: Characters of a snapshot's digest that name it.
 _LEAST_DIGITS = 6
+#: Students who are named in a sentence.
+_NAMED = 20
 
 
 @dataclass(frozen=True)
@@ -100,6 +103,8 @@ class Regraded(msgspec.Struct, frozen=True):
         troubled: these.
         graders: digest of the snapshot that judged.
         unjudged: checks whose own code broke on a submission, a sentence each.
+        rescaled: exercises that are worth other points now, and whose scores by hand are out of these, a
+            sentence each.
     """
 
     regraded: int
@@ -110,6 +115,7 @@ class Regraded(msgspec.Struct, frozen=True):
     graders: str = ""
     troubled: tuple[Ungraded, ...] = ()
     unjudged: tuple[str, ...] = ()
+    rescaled: tuple[str, ...] = ()
 
 
 def rerun(
@@ -136,6 +142,7 @@ def rerun(
     regraded = 0
     with frozen(snapshot) as graders:
         task = _Rerun(results, graders, recorded, options)
+        rescaled = _rescaled(results, graders.catalog)
         for before, after in task.pairs(grade):
             regraded += 1
             broken += broken_checks(after)
@@ -155,7 +162,24 @@ def rerun(
         graders=snapshot.sha256,
         troubled=tuple(troubled),
         unjudged=unjudged(broken),
+        rescaled=rescaled,
     )
+
+
+def _rescaled(results: Results, catalog: Catalog) -> tuple[str, ...]:
+    known = {*catalog.exercise_ids(), *catalog.warm_up_ids()}
+    told = []
+    for noted in results.exercises():
+        now = catalog.exercise(noted.id).max_points if noted.id in known else noted.max_points
+        set_ones = [one for one in results.all(exercise=noted.id) if one.override is not None]
+        if set_ones and now != noted.max_points:
+            was, of = format_points(noted.max_points), format_points(now)
+            names = some([results.named(one.student) for one in set_ones], _NAMED)
+            told.append(
+                f"{noted.id} is worth {in_points(now)} and was worth {was}: scores by hand stay as they are,"
+                f" and are out of {of} now: {names}."
+            )
+    return tuple(told)
 
 
 def _graders(results: Results, catalog: Catalog, options: RerunOptions) -> tuple[Snapshot, dict[str, Any]]:
@@ -267,7 +291,8 @@ class _Rerun:
             if not self._begun:
                 self._begin()
             self._results.book.add(result)
-            if (before.verdict.state, before.score) != (verdict.state, after.score):
+            was, now = ((one.verdict.state, one.score, one.max_score) for one in (before, after))
+            if was != now:
                 told = self._options.reason or "graded again", counted(before), counted(after)
                 self._results.book.note(Decision("", "", "rerun", key.student, key.exercise, *told))
         return before, after

@@ -119,6 +119,21 @@ def test_a_warm_up_is_graded_again_like_any_exercise(tmp_path: Path, monkeypatch
         assert edited_since(Results(book), catalog) == []
 
 
+def test_scores_by_hand_out_of_other_points_are_named_and_the_others_in_the_log(
+    tmp_path: Path, catalog: Catalog
+) -> None:
+    with make_book(tmp_path, {"ada": WRONG, "bob": WRONG}) as book:
+        noted = [msgspec.structs.replace(one, max_points=8.0) for one in book.exercises()]
+        book.set_exercises(noted)
+        override(Results(book), "ada", "doubling", 1.5, "oral")
+        done = rerun(Results(book), catalog, RerunOptions(), grade=Graders())
+        assert done.rescaled == (
+            "doubling is worth 10 points and was worth 8: scores by hand stay as they are, and are out of 10"
+            " now: ada.",
+        )
+        assert rerun(Results(book), catalog, RerunOptions(everything=True), grade=Graders()).rescaled == ()
+
+
 def test_what_was_not_handed_in_stays_as_it_is(tmp_path: Path, catalog: Catalog) -> None:
     with make_book(tmp_path, {}) as book:
         book.add(Result(key("cy"), REFUSED))

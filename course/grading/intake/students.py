@@ -277,8 +277,8 @@ def _no_file(exercise: Exercise, found: tuple[Candidate, ...], typed: tuple[str,
     return Problem(
         "no_file",
         message,
-        f"Put it at {exercise.module} or {exercise.id}/{exercise.module} in the student's folder, or hand in "
-        "the zip that `course submit` writes.",
+        f"It is to be handed in as {exercise.module} or {exercise.id}/{exercise.module}, or as the zip that"
+        " `course submit` writes.",
     )
 
 

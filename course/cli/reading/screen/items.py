@@ -131,7 +131,8 @@ class CellItem(Item):
         progress = page.progress
 
         def keep(source: str) -> None:
-            progress.edit(cell, source.rstrip("\n"))
+            if source != before:
+                progress.edit(cell, source.rstrip("\n"))
 
         def done(run: bool | None) -> None:
             if run is not None:
@@ -139,7 +140,8 @@ class CellItem(Item):
             if run:
                 self.run(page)
 
-        page.app.push_screen(Edit(f"Cell {cell.number}", progress.cell(cell).source, keep, "run"), done)
+        before = progress.cell(cell).source
+        page.app.push_screen(Edit(f"Cell {cell.number}", before, keep, "run"), done)
 
     def undo(self, page: Page) -> None:
         cell = self._cell(page)
@@ -251,7 +253,8 @@ class TaskItem(Item):
                 return
 
         def keep(source: str) -> None:
-            practice.write(self.target, source)
+            if told := practice.write(self.target, source):
+                page.reader.say(told)
 
         def done(check: bool | None) -> None:
             if check:
@@ -259,7 +262,12 @@ class TaskItem(Item):
             if check is not None:
                 page.rebuild(self.block)
 
-        now, source = practice.of(self.target), practice.source(self.target)
+        now = practice.of(self.target)
+        try:
+            source = practice.source(self.target)
+        except OSError as error:
+            page.reader.say(f"{now.file} cannot be read: {error.strerror}.")
+            return
         page.app.push_screen(Edit(now.file, source, keep, "check", line_to_mend(now, source)), done)
 
 

@@ -187,6 +187,11 @@ class Standing:
     fixed: tuple[str, ...] = ()
 
 
+def _text(data: bytes) -> str:
+    """A file as an editor shows it."""
+    return data.decode("utf-8", "replace").replace("\r\n", "\n").replace("\r", "\n")
+
+
 class Practice:
     """The warm-ups and exercises of a course in one workspace.
 
@@ -203,6 +208,7 @@ class Practice:
         self._workspace = workspace
         self._standings: dict[str, Standing] = {}
         self._saved: dict[str, int] = {}
+        self._opened: dict[str, bytes] = {}
         self._thread: threading.Thread | None = None
         self._process: subprocess.Popen[bytes] | None = None
         self._closed = False
@@ -238,17 +244,32 @@ class Practice:
         self._standings[name] = replace(self.of(name), file=f"{exercise.place}/{exercise.module}")
 
     def source(self, name: str) -> str:
-        return self._path(self._catalog.exercise(name)).read_text(encoding="utf-8", errors="replace")
+        """The code in its file, to be changed; ``write`` knows then what was opened."""
+        self._opened[name] = self._path(self._catalog.exercise(name)).read_bytes()
+        return _text(self._opened[name])
 
-    def write(self, name: str, source: str) -> None:
-        """Put other code into its file.
+    def write(self, name: str, source: str) -> str:
+        """Put other code into its file. What was saved there since it was opened is not lost.
+
+        Returns:
+            What became of it; empty where nobody else saved it.
 
         Raises:
             MissingCapabilityError: the workspace cannot be written.
         """
-        exercise = self._catalog.exercise(name)
-        write_atomically(self._path(exercise), source.encode())
+        exercise, opened = self._catalog.exercise(name), self._opened[name]
+        path, told = self._path(exercise), ""
+        now = path.read_bytes() if path.is_file() else opened
+        if source == _text(opened):  # nothing was typed
+            return "" if now == opened else "It was saved elsewhere meanwhile, and stays as it is there."
+        if self._workspace is not None and (now != opened or "\ufffd" in _text(now)):
+            copy = self._workspace.shown(self._workspace.backup(path, "editor"))
+            what = "What was saved there meanwhile" if now != opened else "What was there, which is no UTF-8,"
+            told = f"{what} is in {copy}."
+        write_atomically(path, source.encode())
+        self._opened[name] = source.encode()
         self._saved[name] = self._stamp(exercise)
+        return told
 
     def was_saved(self, name: str) -> bool:
         """Whether the student's editor saved the file since the last call."""

@@ -116,6 +116,25 @@ def test_a_file_that_was_not_changed_is_left_alone_when_the_reader_is_left(mine:
     assert path.read_text() == "# from another editor\n"
 
 
+@pytest.mark.parametrize("typed", ["", "#"])
+def test_what_another_editor_saved_meanwhile_is_not_lost(mine: Workspace, typed: str) -> None:
+    path = file_of(mine)
+
+    async def journey(app: ReaderApp, pilot: Any) -> None:
+        await pilot.press("e")
+        await pilot.pause(0.2)
+        path.write_text("# from another editor\n")
+        await pilot.press(*typed, "escape")
+        await pilot.pause(0.2)
+        told = "saved there meanwhile is in .course" if typed else "stays as it is there"
+        assert told in app.message
+
+    doing(mine, journey)
+    copies = [one.read_text() for one in (mine.root / ".course" / "backups").rglob("*.py")]
+    assert (copies == ["# from another editor\n"]) == bool(typed)
+    assert ("from another editor" in path.read_text()) == (not typed)
+
+
 def test_what_cannot_be_written_stays_in_the_editor(mine: Workspace, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> None:
         raise MissingCapabilityError(

@@ -157,8 +157,8 @@ def chaos(rows: Iterable[Row]) -> str:
         return ""
     _, name, ends = widest
     return (
-        f"Never rank engines on one chaotic run: in {name} the energy at the end is between {min(ends):+.1f} "
-        f"and {max(ends):+.1f} %, depending on two degrees of the start."
+        f"Never rank engines on one chaotic run: well set, {name} ends with between {min(ends):+.1f} and "
+        f"{max(ends):+.1f} % of energy gained or lost, depending on two degrees of the start."
     )
 
 

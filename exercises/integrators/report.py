@@ -182,7 +182,8 @@ def _stability(submission, title):
         limit = f"{_ZS[int(np.argmax(grows))]:.2f}" if np.any(grows) else f"above {_ZS[-1]:g}"
         if grows[0]:
             limit = "the smallest tried" if np.isfinite(growth[0]) else "no numbers"
-        series.append(kit.Series(STEPS[task], _ZS, np.minimum(growth, 3.0)))
+        # What grows faster would flatten the rest: its curve leaves the picture.
+        series.append(kit.Series(STEPS[task], _ZS, np.where(growth <= 3.0, growth, math.nan)))
         rows.append((STEPS[task], limit))
     panel = kit.Panel(
         "step × ω", "growth per step", (*series, kit.Series("neither grows nor fades", [], 1.0, kind="level"))

@@ -325,7 +325,7 @@ mistakes(
 )
 mistakes(
     "DURATION_NOT_CHECKED",
-    "For this duration your code raises no ValueError.",
+    "For a duration that is not a whole number of steps your code raises no ValueError.",
     "With N = round(t_end / h), raise ValueError if abs(t_end / h - N) > 1e-6. A difference in seconds is another limit, and so is np.isclose, whose limit grows with N.",
     kind="fact",
 ).around(

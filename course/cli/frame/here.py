@@ -165,6 +165,10 @@ class Here:
         advice = f"Rename {other} to {exercise.module}: capitals count." if other else ""
         if moved and not other:
             advice = f"There is {moved}. The folder must be called {exercise.place}: rename it back."
+        given = {one.name for one in exercise.given}
+        beside = [one.name for one in sorted(path.parent.glob("*.py")) if one.name not in given]
+        if len(beside) == 1 and not advice:
+            advice = f"There is {beside[0]} beside it: if that is yours, rename it to {exercise.module}."
         advice = advice or f"`course start {exercise.id}` puts one there."
         return UngradableError(f"There is no file {shown}.", help=advice, code="no_file")
 

@@ -238,7 +238,8 @@ def _inside(console: Console, here: Here) -> int:
         console.note("To play with: course sandbox")
     if ahead:
         console.note(ahead)
-    console.note((f"Next: {step}", "bold"), " (`course go` runs it, and goes on from there)")
+    goes = str(step) != "course doctor"  # nothing can be done before that
+    console.note((f"Next: {step}", "bold"), " (`course go` runs it, and goes on from there)" if goes else "")
     return here.answer(
         Status(
             course=here.course,

@@ -59,7 +59,7 @@ def _suggest(name: str, commands: list[str]) -> None:
 
 app = typer.Typer(cls=_Scenes, help=COMMANDS["sandbox"].summary, invoke_without_command=True, **OPTIONS)
 
-_OWN = "ID.toml, a file of your own (`course author new scene ID`)"
+_OWN = "ID.toml, a file of your own (while a scene plays, / and then mine writes one)"
 _SCENE = argument("SCENE", f"A scene, or {_OWN}.", scene_ids)
 _SET = option("--set KEY=VALUE", "Set a parameter; repeatable.", scene_settings)
 

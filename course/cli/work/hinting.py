@@ -97,6 +97,8 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
         message = (
             f"The first hint follows an attempt at this function. Write something in {file}, however rough, "
             "and check it; then ask again."
+            if words is None and not begun
+            else f"Each check that fails on changed code in {file} has one hint, and you have had this one's."
             if words is None
             else f"You have had that one already. The next one follows a check that fails on changed code in "
             f"{file}."

@@ -244,6 +244,8 @@ def _show(
     missing = [name for name in here.catalog.exercise_ids() if name not in known]
     if files and missing and not only:
         console.line(f"Not started, so not in it: {', '.join(missing)}.")
+    if files and not quiz and not only and any(here.catalog.content.quiz.glob("*.toml")):
+        console.line("The quiz was not taken, so it is not in it.")
 
 
 def _score(one: _GoesIn) -> str:

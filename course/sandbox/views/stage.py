@@ -79,7 +79,11 @@ class Desk:
         path = self.save(f"{id_}.toml", own_copy(stage.chosen, id_))
         made = self.stage(path, stage.clock)
         made.world.paused = stage.world.paused
-        return made, f"This is your own copy now: {path}. Change it in an editor; it plays like any scene."
+        says = f"This is your own copy now: {path}. Change it in an editor; it plays like any scene."
+        now, theirs = stage.world.settings, made.world.settings
+        if changed := [key for key, value in now.items() if theirs.get(key) != value]:
+            says += f" It has your parameters, but not what was set besides: {', '.join(changed)}."
+        return made, says
 
 
 @dataclass(frozen=True)

@@ -282,8 +282,8 @@ def _headline_chaos(p: Mapping[str, Any], large: float) -> str:
 def _finding_chaos(p: Mapping[str, Any], small: float, large: float, coarse: float, fine: float) -> str:
     if math.isnan(large):
         return (
-            f"Within {p['duration']:g} s the two stay less than 1 rad apart. Start them higher, or run for "
-            "longer, and they come further apart."
+            f"Within {p['duration']:g} s the two stay less than 1 rad apart. Started low they swing almost "
+            "like springs, and may never come apart; start them higher, and from there run for longer."
         )
     early = f"after {digits(small)} s" if small > 0 else "at the start"
     return (

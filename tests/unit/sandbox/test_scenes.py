@@ -202,3 +202,11 @@ def test_a_scene_has_its_number_in_the_list_too():
     ]
     with pytest.raises(NotFoundError):
         choose(str(len(scenes()) + 1))
+
+
+def test_balls_that_bounce_far_do_not_agree_with_galton() -> None:
+    """What the scene's last question is about; at its own restitution they do."""
+    for restitution, agrees in ((0.5, True), (0.6, False)):
+        compared = run(choose("galton-board", {"restitution": restitution})).comparison
+        assert compared is not None
+        assert compared.agree == agrees

@@ -411,9 +411,12 @@ def test_a_parameter_and_an_own_copy_are_requests(tmp_path: Path) -> None:
     no_such, too_large = (one["message"] for one in of(told(page), "error"))
     assert no_such.startswith("This scene has no 'c")
     assert too_large.startswith("angle must be from 1")
+    send(made, page, "set", key="restitution", value=0.7)
     send(made, page, "mine")
-    scene = of(told(page), "scene")[-1]
+    messages = told(page)
+    scene = of(messages, "scene")[-1]
     assert (scene["id"], scene["own"]) == ("my-newtons-cradle", True)
+    assert of(messages, "error")[-1]["message"].endswith("but not what was set besides: restitution.")
     assert scene["status"]["parameters"]["angle"] == 45
     assert choose(str(tmp_path / "my-newtons-cradle.toml")).parameters["angle"] == 45
 

@@ -221,3 +221,11 @@ def test_advice_names_the_exercise_or_the_file_it_is_about(course, tmp_path):
     assert (none["code"], none["help"]) == ("nothing_started", "Start one: `course start doubling`.")
     other = course("check", "my notes.ipynb", *there).json["error"]
     assert "`course notebook check 'my notes.ipynb'` checks this notebook" in other["help"]
+
+
+def test_a_module_under_another_name_is_pointed_at(course, workspace, write):
+    path = write("RIGHT", "RIGHT")
+    path.rename(path.with_name("mine.py"))
+    ran = course("check", "doubling")
+    assert ran.code == 3
+    assert "There is mine.py beside it: if that is yours, rename it to doubling.py." in ran.err

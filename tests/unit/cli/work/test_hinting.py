@@ -42,6 +42,13 @@ def test_hints_come_one_per_attempt_and_are_never_counted(course, write, hint):
         assert " of 3" not in words
 
 
+def test_a_function_that_was_tried_too_is_not_said_to_be_unwritten(hint):
+    assert hint("wrong", "wrong")["task"] == "double"
+    other = hint(words=("--task", "doublings"))
+    assert (other["given"], other["reason"]) == (False, "unchanged")
+    assert other["message"].endswith("has one hint, and you have had this one's.")
+
+
 def test_a_hint_fits_what_the_check_thinks_is_wrong(hint, students_content):
     hints = students_content / "exercises" / "doubling" / "exercise.toml"
     hints.write_text(hints.read_text().replace("SQUARES_INSTEAD", "NOT_RIGHT"))

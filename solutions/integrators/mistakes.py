@@ -1617,7 +1617,7 @@ mistakes(
 )
 mistakes(
     "TOLERANCE_TOO_TIGHT",
-    "A step of this map counts as unstable, although its spectral radius is at most 1 + 1e-8.",
+    "A step counts as unstable although its spectral radius is at most 1 + 1e-8.",
     "Compare max(abs(np.linalg.eigvals(M))) with 1 + 1e-8. A norm of M, or of a power of M, may be larger, and rounding takes the modulus a little above one.",
 )
 mistakes(

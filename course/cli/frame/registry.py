@@ -217,6 +217,9 @@ def _with_global_options(command: Any) -> Any:
     for one in getattr(command, "commands", {}).values():
         _with_global_options(one)
         one.short_help = (one.help or "").partition("\n")[0]  # uncut
+    # Rich's help would keep the line breaks of a docstring, in all of its paragraphs but the first.
+    paragraphs = (command.help or "").split("\n\n")
+    command.help = "\n\n".join(" ".join(one.split()) for one in paragraphs)
     if not hasattr(command, "commands"):
         command.callback = _with_texts(command)
         command.epilog = "\n\n".join(filter(None, (command.epilog, GLOBAL_OPTIONS)))

@@ -321,3 +321,11 @@ def test_the_folder_of_the_student_is_not_importable(tmp_path):
     ran = as_process("--version", cwd=tmp_path)
     assert ran.returncode == 0
     assert "hijacked" not in ran.stderr
+
+
+@pytest.mark.parametrize("name", ["init", "submit", "quiz", "sandbox", "grade"])
+def test_a_help_page_has_its_paragraphs_in_one_piece(name):
+    """Rich wraps a text to the terminal, and keeps the breaks that it has."""
+    loaded = registry._load(name, registry.COMMANDS[name], "rich")
+    for one in (loaded, *getattr(loaded, "commands", {}).values()):
+        assert "\n" not in one.help.replace("\n\n", "")

@@ -16,11 +16,16 @@ mistakes(
 )
 mistakes(
     "QUOTIENT_OF_SUMS",
-    "You divided the sum of the forces by the sum of the speeds, with their signs or without.",
+    "The sums are divided. Speeds of opposite sign would cancel.",
     "Multiply each force by its speed before adding.",
 ).edit(
     "damping",
     {"(v * f for v, f in zip(speeds, forces)) / sum(v * v for v in speeds": "(forces) / sum(speeds"},
+)
+mistakes(
+    "QUOTIENT_OF_SIZES",
+    "You divided the sum of the forces by the sum of the speeds, both without their signs.",
+    "Multiply each force by its speed before adding.",
 ).edit("damping", {"v * f for v": "abs(f) for v", "v * v for v in speeds": "abs(v) for v in speeds"})
 mistakes(
     "LINE_WITH_AN_OFFSET",

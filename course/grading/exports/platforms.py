@@ -7,7 +7,6 @@ that a spreadsheet would take for a formula cannot be escaped without becoming a
 import csv
 import io
 import math
-import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -37,8 +36,6 @@ from course.scoring.verdict import CheckResult, Problem, Status, Visibility, fin
 _CANVAS = Needs(
     ("canvas_id", "sis_user_id"), "Canvas", "Give Canvas' gradebook export with --roster, or add the column."
 )
-#: A score that looks like the beginning of a formula, and is none.
-_BELOW_ZERO = re.compile(r"-[0-9]+([.,][0-9]+)?")
 _MOODLE = Needs(
     ("moodle_key",),
     "Moodle",
@@ -140,7 +137,11 @@ def _keep_theirs(
     """Write back what Canvas has where we have no score, and where it excuses the student."""
     for at, column in enumerate(columns):
         theirs = column.cells.get(selection.people[student].canvas_id, "")
-        if not (is_safe(theirs) or _BELOW_ZERO.fullmatch(theirs)):  # no score: a formula
+        if not is_safe(theirs) and not scores[at]:
+            selection.written.notes.append(
+                f"Canvas' own {one_line(theirs)!r} for {one_line(student)} {selection.exercises[at]} begins like a"
+                " formula and is left out: the import takes it away there."
+            )
             theirs = ""
         excused = theirs.upper() == "EX" and not overwrite
         if excused and scores[at]:

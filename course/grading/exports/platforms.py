@@ -139,8 +139,8 @@ def _keep_theirs(
         theirs = column.cells.get(selection.people[student].canvas_id, "")
         if not is_safe(theirs) and not scores[at]:
             selection.written.notes.append(
-                f"Canvas' own {one_line(theirs)!r} for {one_line(student)} {selection.exercises[at]} begins like a"
-                " formula and is left out: the import takes it away there."
+                f"Canvas' own {one_line(theirs)!r} for {one_line(student)} {selection.exercises[at]} begins"
+                " like a formula and is left out: the import takes it away there."
             )
             theirs = ""
         excused = theirs.upper() == "EX" and not overwrite

@@ -89,7 +89,8 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
     reply = replace(reply, task=task)
     entry, shown, failed = exercise.task_called(task), history.hints_for(task), history.diagnosed(task)
     begun = task not in history.unwritten_tasks()
-    if not begun or not history.hint_is_due(fingerprint(here.stub(exercise))):
+    handed_out = fingerprint(here.stub(exercise))
+    if not begun or not history.hint_is_due(handed_out):
         shown_last = next((index for index in reversed(shown) if index < len(entry.hints)), None)
         file = named or _file_name(here, exercise)
         step = NextStep(f"course check {exercise.id}")
@@ -97,7 +98,7 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
         message = (
             f"The first hint follows an attempt at this function. Write something in {file}, however rough, "
             "and check it; then ask again."
-            if words is None and not begun
+            if words is None and (not begun or last.fingerprint == handed_out)
             else f"Each check that fails on changed code in {file} has one hint, and you have had this one's."
             if words is None
             else f"You have had that one already. The next one follows a check that fails on changed code in "

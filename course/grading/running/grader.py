@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import atexit
 import gc
+import math
 import os
 import secrets
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -20,7 +22,7 @@ from course.grading.pipes import read_frame, served, write_frame
 from course.handed_in.notebook import opened
 from course.isolation.launch import keep_private
 from course.scoring.judging.submission import Submission, Terms
-from course.scoring.verdict import Problem, Verdict, not_graded
+from course.scoring.verdict import Problem, Verdict, format_points, in_points, not_graded
 
 if TYPE_CHECKING:
     from course.catalog.models import Exercise
@@ -111,6 +113,14 @@ def main() -> None:
         grader.close()
 
 
+def _check_worth(exercise: Exercise, worth: float) -> None:
+    """Refuse scores out of other points than the exercise's: every share and every export would be wrong."""
+    if not math.isclose(worth, exercise.max_points, abs_tol=1e-6):
+        said = f"it says {in_points(exercise.max_points)}, and the checks are worth {format_points(worth)}."
+        help_ = f"`course author build {exercise.id}` writes it anew; then `course grade rerun`."
+        raise ContentError(Path(exercise.folder) / "exercise.toml", None, said, help=help_)
+
+
 class _Grader:
     def __init__(self, config: Config) -> None:
         from course.catalog.load import Catalog
@@ -172,16 +182,22 @@ class _Grader:
             if len(self._sessions) == _MOST_OPEN:
                 self._sessions.pop(next(iter(self._sessions))).close()
             try:
-                self._sessions[exercise.id] = GradingSession(
+                session = GradingSession(
                     exercise,
                     self._catalog,
                     scope="full",
                     terms=self._config.terms,
                     processor=self._config.processor,
                 )
+                try:
+                    _check_worth(exercise, math.fsum(check.points for check in session.checks))
+                except ContentError:
+                    session.close()
+                    raise
             except ContentError as fault:
                 self._broken[exercise.id] = fault
                 raise
+            self._sessions[exercise.id] = session
         return self._sessions[exercise.id]
 
     def _fault(self, fault: ContentError) -> Problem:

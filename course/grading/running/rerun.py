@@ -26,7 +26,6 @@ from course.grading.running.run import (
     GradeAll,
     Ungraded,
     broken_checks,
-    check_worth,
     graded_exercises,
     unjudged,
 )
@@ -231,7 +230,6 @@ class _Rerun:
         # Read before anything is written: what is newest changes while results come in.
         waiting = [(item.result.key, item.verdict.state) for item in results.all() if item.result.number]
         for graded in grade(self._entries(waiting), terms):
-            check_worth(graded)
             entry = graded.entry
             key = self._key(entry.student, entry.exercise.id, entry.sha256)
             if graded.version:

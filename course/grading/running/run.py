@@ -1,7 +1,6 @@
 """A grading run from folder to gradebook: what ``course grade run`` does, without the words."""
 
 import contextlib
-import math
 import os
 import secrets
 import time
@@ -44,7 +43,7 @@ from course.printable import one_line
 from course.quizzing.bank import Bank, needed
 from course.scoring.graders import grader_version
 from course.scoring.judging.submission import Terms
-from course.scoring.verdict import OURS, format_points, in_points
+from course.scoring.verdict import OURS
 
 GradeAll = Callable[[Iterable[Entry], Terms], Iterator[Graded]]
 
@@ -147,23 +146,6 @@ class Summary:
                     Ungraded(effective.student, effective.exercise, verdict.state, error.code, error.message)
                 )
         self.unjudged = unjudged(broken)
-
-
-def check_worth(graded: Graded) -> None:
-    """Refuse a score out of other points than the exercise's: every share and every export would be wrong.
-
-    Raises:
-        ContentError: the checks are worth other points than ``exercise.toml`` says.
-    """
-    exercise, verdict = graded.entry.exercise, graded.verdict
-    worth = verdict.max_score
-    if verdict.state == "graded" and not math.isclose(worth, exercise.max_points, abs_tol=1e-6):
-        raise ContentError(
-            Path(exercise.folder) / "exercise.toml",
-            None,
-            f"it says {in_points(exercise.max_points)}, and the checks are worth {format_points(worth)}.",
-            help=f"`course author build {exercise.id}` writes it anew. What was graded before is kept.",
-        )
 
 
 def broken_checks(result: Effective) -> list[tuple[str, str, str]]:
@@ -365,7 +347,6 @@ class _Run:
             self._options.terms, seed=self.summary.seed, graders=self.summary.graders
         )
         for graded in grade(self._left_to_do(), terms):
-            check_worth(graded)
             yield from self._quizzes()
             submission = graded.entry.submission
             yield (

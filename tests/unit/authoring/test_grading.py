@@ -117,6 +117,9 @@ def test_a_check_of_what_another_one_kept_is_run_for_that_functions_changes(
 ) -> None:
     with (mini / "graders" / "doubling" / "checks.py").open("a", encoding="utf-8") as file:
         file.write(KEPT)
+    toml = mini / "exercises" / "doubling" / "exercise.toml"
+    worth = toml.read_text("utf-8").replace("hidden_points = 5", "hidden_points = 7")
+    toml.write_text(worth.replace("points = 6", "points = 8"), "utf-8")
     catalog = Catalog()
     exercise = catalog.exercise("doubling")
     model = solution_path(catalog, exercise).read_text("utf-8").rstrip()

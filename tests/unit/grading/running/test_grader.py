@@ -88,3 +88,19 @@ def test_the_fault_of_one_exercise_is_named_and_costs_no_other(tmp_path: Path, c
         assert (verdict.state, verdict.error and verdict.error.code) == ("grader_error", "check_file")
         assert verdict.error.message.startswith(f"graders/{name}/checks.py{said.replace('{name}', name)}")
         assert str(copied) not in verdict.error.message
+
+
+def test_checks_worth_other_points_than_their_exercise_give_it_no_scores(
+    tmp_path: Path, copied: Path
+) -> None:
+    checks = copied / "graders" / "halving" / "checks.py"
+    checks.write_text(checks.read_text("utf-8").replace("points(1)", "points(11)", 1), "utf-8")
+    shutil.copytree(copied / "solutions", tmp_path / "class" / "ada")
+    summary = graded_class(tmp_path, Catalog(), RunOptions(terms=Terms(level="L1"), seed=1))
+    assert summary.exit_code == 70
+    with Gradebook(tmp_path / "out" / "gradebook.sqlite") as book:
+        verdicts = {one.key.exercise: one.verdict for one in book.results()}
+    assert verdicts["doubling"].passed
+    assert verdicts["halving"].state == "grader_error"
+    told = "exercises/halving/exercise.toml: it says 2 points, and the checks are worth 12."
+    assert verdicts["halving"].error.message == told

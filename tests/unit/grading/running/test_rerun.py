@@ -11,7 +11,7 @@ import msgspec
 import pytest
 
 from course.catalog.load import Catalog
-from course.errors import ContentError, IntegrityError, MissingCapabilityError
+from course.errors import IntegrityError, MissingCapabilityError
 from course.grading.container import write_autograder
 from course.grading.gradebook.records import Key, Result
 from course.grading.intake.students import Entry
@@ -31,8 +31,7 @@ NOW = {"ada": RIGHT, "bob": HALF, "cy": RIGHT, "dan": RIGHT}
 class Graders:
     """Stand-ins for grader processes: the verdicts of ``NOW``."""
 
-    def __init__(self, worth: float = 10.0) -> None:
-        self.worth = worth
+    def __init__(self) -> None:
         self.asked: list[str] = []
         self.options: Terms | None = None
 
@@ -41,7 +40,7 @@ class Graders:
         for entry in entries:
             assert entry.submission.files == {"doubling.py": entry.student.encode()}
             self.asked.append(entry.student)
-            yield Graded(entry, msgspec.structs.replace(NOW[entry.student], max_score=self.worth))
+            yield Graded(entry, NOW[entry.student])
 
 
 def test_a_regrading_keeps_the_old_beside_the_new_and_a_second_one_finds_nothing_to_do(
@@ -110,11 +109,7 @@ def test_a_warm_up_is_graded_again_like_any_exercise(tmp_path: Path, monkeypatch
         for student, theirs in (("ada", version), ("bob", "older")):
             book.add(Result(key(student, name, theirs), HALF), {"doubling.py": student.encode()})
         assert edited_since(Results(book), catalog) == [name]
-        with pytest.raises(
-            ContentError, match=r"exercise.toml: it says 1 point, and the checks are worth 10"
-        ):
-            rerun(Results(book), catalog, RerunOptions(), grade=Graders())
-        done = rerun(Results(book), catalog, RerunOptions(), grade=Graders(worth=1.0))
+        done = rerun(Results(book), catalog, RerunOptions(), grade=Graders())
         assert (done.regraded, done.up_to_date, done.kept) == (1, 1, 0)
         assert edited_since(Results(book), catalog) == []
 

@@ -5,11 +5,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import msgspec
+
 from course.errors import MissingCapabilityError, UsageError
 from course.grading.results.effective import Effective, Results, no_exercise
 from course.grading.results.roster import FOR_TESTS, Column, Person, Roster
 from course.printable import command, one_line, some
-from course.scoring.verdict import CheckResult, Problem, Verdict, for_student
+from course.scoring.verdict import CheckResult, Problem, Status, Verdict, Visibility, for_student
 
 #: Names in a message.
 SHOWN = 10
@@ -271,10 +273,22 @@ _OUR_FAULT = Problem(
 
 
 def checks_for_student(verdict: Verdict) -> tuple[CheckResult, ...]:
-    """The checks, hidden values dropped; none where the grader itself failed."""
+    """The checks, hidden values dropped; none where the grader itself failed.
+
+    Where every public check finds a function unwritten, what is hidden says no more than that.
+    """
     if verdict.state == "grader_error":
         return ()
-    return tuple(for_student(check) for check in verdict.checks)
+    checks = tuple(map(for_student, verdict.checks))
+    public = [check for check in checks if check.visibility is Visibility.PUBLIC]
+    begun = {check.task for check in public if not check.unwritten and check.status is not Status.SKIP}
+    unwritten = {check.task: check for check in public if check.unwritten and check.task not in begun}
+    return tuple(
+        msgspec.structs.replace(check, message=known.message, help=known.help, diagnosis=known.diagnosis)
+        if check.status is Status.ERROR and (known := unwritten.get(check.task))
+        else check
+        for check in checks
+    )
 
 
 def problem_for_student(verdict: Verdict) -> Problem | None:

@@ -20,6 +20,7 @@ from typing import Any, Final
 from urllib.parse import quote
 
 import jinja2
+import msgspec
 from jinja2.bccache import Bucket
 from markupsafe import Markup, escape
 
@@ -39,7 +40,7 @@ from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.results.effective import Effective, Results
 from course.grading.results.late import in_days
 from course.grading.results.roster import Person
-from course.printable import one_line
+from course.printable import counted, one_line
 from course.scoring.verdict import (
     CheckResult,
     Problem,
@@ -330,7 +331,7 @@ def _facts(tally: Tally) -> list[tuple[int, str, str]]:
     ]
     more = [
         (sum(item.waiting for item in every), "not graded yet: no run has looked at it", "exercises"),
-        (sum(item.missing for item in every), "missing: enrolled, nothing handed in", "exercises"),
+        (sum(item.missing for item in every), "missing: nothing handed in", "exercises"),
         (sum(item.faults for item in every), "faults of the grader", "ungraded"),
         (tally.overrides.count, "scores set by hand", "overrides"),
         (tally.late.count, "handed in late", "late"),
@@ -355,6 +356,7 @@ def _otherwise(check: CheckTally, quiz: bool) -> str:
     words = {
         "fail": "wrong" if quiz else "failed", "error": "raised an error", "timeout": "took too long",
         "memory": "ran out of memory", "crash": "ended its process", "skip": "not run",
+        "unwritten": "not written",
     }  # fmt: skip
     others = [(count, words.get(state, state)) for state, count in check.statuses.items() if state != "pass"]
     return ", ".join(f"{count} {how}" for count, how in sorted(others, reverse=True))
@@ -510,13 +512,42 @@ def _shown_result(results: Results, item: Effective) -> _Shown:
         for task, group in by_task.items()
     ]
     done = {task: all(check.status is Status.PASS for check in group) for task, group in by_task.items()}
-    tasks = sorted(by_task.items(), key=lambda entry: done[entry[0]])
+    tasks = [(task, _gathered(by_task[task])) for task in sorted(by_task, key=done.__getitem__)]
     problem = problem_for_student(item.verdict) if item.result.number else None
     titles = {check.id: check.title for check in checks}
     return _Shown(results.title(item.exercise), item, problem, tasks, titles, bars)
 
 
+def _gathered(checks: list[CheckResult]) -> list[CheckResult]:
+    """A task's checks; as one, those of a function that is not written, or of which only the same is said."""
+    alike: dict[object, list[CheckResult]] = {}
+    unwritten = any(check.unwritten for check in checks)
+    for check in checks:
+        if check.unwritten or (unwritten and check.status is Status.SKIP):
+            alike.setdefault("unwritten", []).append(check)
+        elif check.status is Status.PASS or not check.input is check.actual is check.stdout is None:
+            alike[check.id] = [check]
+        else:
+            told = check.status, check.message, check.help, check.blocked_by, check.visibility
+            alike.setdefault(told, []).append(check)
+    return [_as_one(same) if len(same) > 1 else same[0] for same in alike.values()]
+
+
+def _as_one(checks: list[CheckResult]) -> CheckResult:
+    first = next((check for check in checks if check.unwritten), checks[0])
+    many = counted(len(checks), "check")
+    return msgspec.structs.replace(
+        first,
+        title=many if first.unwritten else f"{many}: {'; '.join(check.title for check in checks)}",
+        points=sum(check.points for check in checks),
+        max_points=sum(check.max_points for check in checks),
+        traceback=None,
+    )
+
+
 def _state_of(check: CheckResult, quiz: bool) -> tuple[str, str]:
+    if check.unwritten:
+        return "–", "not written"
     return ("✗", "not right") if quiz else _STATES.get(check.status, ("✗", "does not pass"))
 
 

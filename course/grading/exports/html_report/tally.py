@@ -26,7 +26,7 @@ class CheckTally:
 
     Attributes:
         latest: one of its results, for its words.
-        statuses: number of submissions by how it ended.
+        statuses: number of submissions by how it ended; "unwritten" where its function was not begun.
     """
 
     latest: CheckResult
@@ -137,11 +137,11 @@ class ExerciseTally:
         for check in checks:
             tally = self.checks.setdefault(check.id, CheckTally(check))
             tally.latest = check
-            tally.statuses[check.status.value] += 1
+            tally.statuses["unwritten" if check.unwritten else check.status.value] += 1
             sums = reached.setdefault(check.task, [0.0, 0.0])
             sums[0] += check.points
             sums[1] += check.max_points
-            if check.diagnosis:
+            if check.diagnosis and not check.unwritten:
                 codes.setdefault(check.diagnosis, []).append(check)
         for task, (points, most) in reached.items():
             self._take_task(task, points, most)

@@ -312,6 +312,27 @@ def test_a_page_has_the_score_that_counts_and_why(out: Path) -> None:
     assert "There is none." in refused
 
 
+def test_a_function_that_is_not_written_is_one_finding_and_no_mistake(tmp_path: Path) -> None:
+    """What is hidden of it too; three hidden checks of which only the same is said are one as well."""
+    raised = {"status": Status.ERROR, "input": None, "expected": None, "actual": None, "stdout": None}
+    unwritten = {**raised, "diagnosis": "NOT_IMPLEMENTED", "message": "Not yet.", "help": "Write it."}
+    ends = [(check(f"c{at}", Status.FAIL, hidden=at > 0), at) for at in range(3)]
+    stub = verdict(*(msgspec.structs.replace(one, **unwritten) for one, _ in ends))
+    raises = verdict(*(msgspec.structs.replace(one, **raised) for one, _ in ends))
+    with make_book(tmp_path, {"stub": stub, "raises": raises}):
+        pass
+    with open_results(tmp_path, writing=True):
+        pass
+    index = places(tmp_path)
+    page, other = ((tmp_path / index[name]).read_text("utf-8") for name in ("stub", "raises"))
+    assert [page.count(words) for words in ("Not yet.", "3 checks", "0 of 15 points")] == [1, 1, 1]
+    assert not [words for words in ("whose details", "raised an error") if words in page]
+    assert other.count("whose details") == other.count("2 checks: The title of c1; The title of c2") == 1
+    report = (tmp_path / "report.html").read_text("utf-8")
+    assert report.count("1 raised an error, 1 not written") == 3
+    assert [words in report for words in ("Write it.", "Add it to itself.")] == [False, True]
+
+
 def test_overrides_late_and_who_could_not_be_graded_are_listed(out: Path, results: Results) -> None:
     page = read_page(out / "report.html")
     refused = [item for item in results.all() if item.verdict.error is not None and item.result.number]

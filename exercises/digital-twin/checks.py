@@ -281,11 +281,15 @@ def test_delay_between_samples(submission):
 @pytest.mark.task("delay_line")
 @pytest.mark.points(0)
 def test_delay_none_and_all(submission):
-    """delay_line without latency, and with one longer than the signal"""
+    """delay_line without latency, with one longer than the signal, and of whole numbers"""
     x = np.array([2.0, -3.0, 1.0, 5.0])
     actuators.expect_new_signal(submission, x, 0.1)
     actuators.expect_delayed(
         submission, submission.call("delay_line", x, 0.1, 0.75), x, 0.1, 0.75, np.zeros(4)
+    )
+    whole = np.array([2, 3, 1])
+    actuators.expect_delayed(
+        submission, submission.call("delay_line", whole, 0.1, 0.05), whole, 0.1, 0.05, [0.0, 2.5, 2.0]
     )
 
 

@@ -15,8 +15,11 @@ shared = kit.companion("validation", "expectations")
 _I = np.arange(60)
 #: Errors without a pattern, of any size, number and sign.
 _ERRORS = [
-    (np.round(size * np.sin(1.7 * _I[:n] ** 1.3) + mean, 3),)
-    for n, size, mean in ((7, 2.0, 0.4), (12, 0.6, -1.3), (5, 30.0, 4.0), (20, 1.0, 0.0))
+    *(
+        (np.round(size * np.sin(1.7 * _I[:n] ** 1.3) + mean, 3),)
+        for n, size, mean in ((7, 2.0, 0.4), (12, 0.6, -1.3), (5, 30.0, 4.0), (20, 1.0, 0.0))
+    ),
+    (np.append(np.round(np.sin(_I[:19]), 3), 25.0),),  # one far from all others
 ]
 _ANGLES = np.concatenate(
     [np.linspace(-347.3, 551.9, 37), np.linspace(-3.1, 3.1, 12), np.linspace(3.3, 9.1, 7)]

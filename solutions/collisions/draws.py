@@ -105,6 +105,13 @@ def shot(rng, speed):
     return xa, drift + speed * n, ra, xb, drift, rb, float(dt + 2 * reach / speed)
 
 
+def nearly(rng, gap):
+    """Two spheres with this gap, m, that approach so slowly that it takes them half a second."""
+    n, (ra, rb) = unit(rng, 2), rng.uniform(0.2, 0.8, 2).tolist()
+    xa, drift = rng.uniform(-1.0, 1.0, 2), rng.uniform(-1e-3, 1e-3, 2)
+    return xa, drift + 2 * gap * n, ra, xa + (ra + rb + gap) * n, drift, rb, 1.0
+
+
 def passing(rng, d, share):
     """Two spheres whose paths miss each other's centre by ``share`` times the sum of the radii.
 
@@ -177,8 +184,8 @@ def head_on(rng, kind):
     vb = {"chase": 0.3 * va, "part": 1.7 * va}.get(kind, -rng.uniform(0.5, 3.0))
     if kind == "slow":
         va, vb = 1e-4 * va, 1e-4 * vb
-    if kind == "wall":
-        m = (m[0], math.inf)
+    if kind.startswith("wall"):
+        m = (math.inf, m[1]) if kind == "wall on the left" else (m[0], math.inf)
     gap = abs(va - vb) * rng.uniform(0.3, 0.8)
     left = rng.uniform(-4.0, 4.0)
     e = rng.uniform(0.2, 0.8)

@@ -197,7 +197,9 @@ mistakes(
 ).edit(
     "simulate_head_on",
     {"_impulse(m[0], m[1], closing, restitution": "(1 + restitution) * closing * m[0] * m[1] / (m[0] + m[1]"},
-)
+).edit(
+    "simulate_head_on", {"vb + impulse / m[1]": "vb + impulse * (m[0] / m[1]) / m[0]"}
+)  # of a wall on the left
 mistakes(
     "SPEEDS_NOT_RELATIVE",
     "The speed of approach is not the difference of the two velocities.",
@@ -981,9 +983,39 @@ mistakes(
     """,
 )
 mistakes(
+    "SLIP_TIMES_E",
+    "The whole relative velocity is multiplied by e, its part across the normal too.",
+    "Only the part along the normal is turned round and multiplied by e. Across it nothing changes: the impulse is J n.",
+).body(
+    "resolve",
+    """
+        va, vb, n = (np.array(a, dtype=float) for a in (va, vb, normal))
+        closing = (va - vb) @ n
+        if closing <= 0:
+            return va, vb
+        slip = vb - va + closing * n
+        impulse = _impulse(ma, mb, closing, restitution) * n - (1 - restitution) * slip / (1 / ma + 1 / mb)
+        return va - impulse / ma, vb + impulse / mb
+    """,
+)
+mistakes(
+    "DEPTH_LIMITED",
+    "Where one sphere lies deep in the other, the depth is too small, as if it had a limit.",
+    "It is ra + rb - d, however deep one lies in the other.",
+).edit(
+    "detect_sphere_sphere", {"depth = ra + rb - distance": "depth = min(ra + rb - distance, ra, rb)"}
+).edit(
+    "detect_sphere_sphere", {"depth = ra + rb - distance": "depth = min(ra + rb - distance, 2 * ra, 2 * rb)"}
+)
+mistakes(
+    "GAP_AS_OVERLAP",
+    "Spheres with a small gap between them get 0.0, as if they overlapped.",
+    "They overlap only where |x| < ra + rb. Compare without a margin: however small the gap is, it takes its time.",
+).edit("time_of_impact", {"c <= 0": "c <= 1e-3"})
+mistakes(
     "RESTITUTION_DROPPED_WHEN_SLOW",
-    "Slow impacts lose their rebound: below some speed e counts as 0.",
-    "Engines do that to calm piles, but here e holds at every speed. Remove the threshold.",
+    "Slow bodies part with less than e times the speed at which they met, or stay together.",
+    "The coefficient of restitution is the same at every speed, however slow they are.",
 ).body(
     "impulse_1d",
     """
@@ -997,6 +1029,16 @@ mistakes(
         closing = max((va - vb) @ n, 0.0)
         e = restitution if closing > 0.01 else 0.0
         impulse = (1 + e) * closing / (1 / ma + 1 / mb) * n
+        return va - impulse / ma, vb + impulse / mb
+    """,
+).edit(
+    "impulse_1d", {"va - vb, restitution": "va - vb, restitution * max(va - vb, 0.0) / (abs(va - vb) + 0.01)"}
+).body(
+    "resolve",
+    """
+        va, vb, n = (np.array(a, dtype=float) for a in (va, vb, normal))
+        closing = (va - vb) @ n
+        impulse = _impulse(ma, mb, closing, restitution * closing / (abs(closing) + 0.01)) * n
         return va - impulse / ma, vb + impulse / mb
     """,
 )

@@ -213,7 +213,7 @@ mistakes(
 mistakes(
     "WALK_WITHOUT_THREE",
     "The random walk is too small by about the square root of three.",
-    "If your code fits the Allan variance, look at the factor of the walk's term. A mean over T smooths the walk, so its part is K² T/3, not K² T.",
+    "If your code fits the Allan variance, look at the walk's term, K² T/3: is it divided by 3, and is it added to N²/T, square to square? Deviations do not add up.",
 ).around(
     "fit_noise",
     """
@@ -221,6 +221,11 @@ mistakes(
         return found | {"bias_random_walk": found["bias_random_walk"] / math.sqrt(3)}
     """,
 )
+mistakes(
+    "BIAS0_TIME_INVERTED",
+    "The time that bias0 is averaged over grows with K/N, where it should grow with N/K.",
+    "The best T is sqrt(3) N/K: noisier samples want a longer mean, and a faster walk a shorter one.",
+).edit("fit_noise", {"density / (walk * dt)": "walk / (density * dt)"})
 mistakes(
     "WHOLE_MEAN_AS_BIAS",
     "bias0 is the mean of the whole recording, but the bias has drifted since the start.",
@@ -410,6 +415,11 @@ mistakes(
     "Your code ignores small values of x, whatever happened before. That is a dead band; play has a memory.",
     "Start from the state, not from zero: clip the state to [x - gap/2, x + gap/2].",
 ).edit("backlash", {"min(max(state, x - gap / 2), x +": "x - min(max(x, -gap / 2),"})
+mistakes(
+    "OUTPUT_A_CALL_LATE",
+    "The output is the state that was passed in, which is the output of the call before.",
+    "Return the new number twice: y is the next state.",
+).edit("backlash", {"return y, y": "return state, y"})
 mistakes(
     "STATE_IS_NOT_OUTPUT",
     "The state that your code returns is not the output.",
@@ -1259,9 +1269,31 @@ mistakes(
 ).edit("imu", {"= bias_random_walk *": "= (bias_random_walk + noise_density) *"})
 mistakes(
     "PARALLEL_TEST_WRONG",
-    "A wall one metre long and square to the beam is not seen, as if it were parallel to it.",
+    "A wall square to the beam is not seen, as if it were parallel to it.",
     "Beam and wall are parallel where the cross product of their directions is zero; the wall's own length is a factor of it.",
-).edit("lidar", {"wx  # zero where beam and wall are parallel": "wx", "cross != 0": "abs(cross) != 1"})
+).edit("lidar", {"wx  # zero where beam and wall are parallel": "wx", "cross != 0": "abs(cross) != 1"}).edit(
+    "lidar", {"wx  # zero where beam and wall are parallel": "wx", "cross != 0": "abs(cross) > 0.3"}
+)
+mistakes(
+    "WALL_ENDS_SORTED",
+    "A wall that falls towards larger x is seen as one that rises.",
+    "An end is a pair of x and y: if you sort the ends, move them as pairs.",
+).edit(
+    "lidar",
+    {
+        "np.asarray(segments, dtype=float).reshape(-1, 2, 2)": "np.sort(np.reshape(segments, (-1, 2, 2)), axis=1)"
+    },
+)
+mistakes(
+    "WALL_AT_PI_MISSED",
+    "A wall on both sides of the direction -x from the robot is not seen.",
+    "There an angle jumps from pi to -pi. Take differences of angles, wrapped, or no angles at all: solve for the distance along the beam and the share along the wall.",
+).edit(
+    "lidar",
+    {
+        "hit = (cross": "a, b, phi = np.arctan2(ay, ax), np.arctan2(ay + wy, ax + wx), np.arctan2(dy, dx)\n    hit = (phi >= np.minimum(a, b)) & (phi <= np.maximum(a, b)) & (cross"
+    },
+)
 mistakes(
     "WALLS_ONE_SIDED",
     "Of some walls it matters which end is given first: a wall in a beam's way is not seen.",
@@ -1379,6 +1411,24 @@ mistakes(
     "In a recording with a random walk and no white noise, the bias keeps its first value.",
     "Add a step of std bias_random_walk * sqrt(dt) from each sample to the next.",
 )
+mistakes(
+    "BIAS_FADES",
+    "Without a walk, the bias fades towards zero.",
+    "Each bias is the whole previous bias plus a step, and with bias_random_walk = 0 that step is 0.",
+).body(
+    "imu",
+    """
+        n, bias = len(true), [bias0]
+        for step in bias_random_walk * math.sqrt(dt) * rng.standard_normal(n - 1):
+            bias.append(math.exp(-dt / 100) * bias[-1] + step)
+        return true + np.array(bias) + noise_density / math.sqrt(dt) * rng.standard_normal(n), np.array(bias)
+    """,
+)
+mistakes(
+    "NOISE_CENTRED",
+    "The mean of the random numbers is taken away from them.",
+    "Use them as rng.standard_normal draws them: over a short time, their mean is not zero.",
+).edit("imu", {"rng.standard_normal(n), bias": "(lambda w: w - np.mean(w))(rng.standard_normal(n)), bias"})
 mistakes(
     "BIAS_PULLED_BACK",
     "Over ten samples the bias wanders less far than independent steps would take it, as if something pulled it back.",
@@ -1941,6 +1991,20 @@ mistakes(
     kind="fact",
 )
 mistakes(
+    "DELAY_SHARE_WRONG",
+    "With a latency of two samples and a half, the samples on either side do not count half each.",
+    "Divide the latency by dt before you split it: its whole part is a number of samples, and the rest, from 0 to 1, is the share of the earlier one.",
+    kind="fact",
+).body(
+    "delay_line",
+    """
+        n = math.floor(latency / dt + 1e-9)
+        rest = latency - n * dt
+        late = np.concatenate((np.zeros(n + 1), x))
+        return (1 - rest) * late[1 : len(x) + 1] + rest * late[: len(x)]
+    """,
+)
+mistakes(
     "DELAY_SHARE_NEGATIVE",
     "The output is on the line through the wrong two samples: one share is negative, as it is where latency / dt is rounded up.",
     "If your code rounds latency / dt, round down, with math.floor: then the rest lies between 0 and 1, and so do the shares of both samples.",
@@ -2040,6 +2104,14 @@ mistakes(
     "CHORD_WRONG_WAY",
     "In a turn that was tried, the displacement has the right length but the wrong direction.",
     "The chord points along the heading half-way through the turn: use the cosine and the sine of heading + turn/2, with the heading from before the step.",
+)
+mistakes(
+    "RIGHT_TURNS_BACKWARDS",
+    "In a turn to the right, the robot goes backwards along its chord.",
+    "There turn and sin(turn/2) are both negative, and their quotient is positive: take the absolute value of neither.",
+).edit(
+    "diff_drive_step",
+    {"np.sinc(turn / (2 * math.pi))": "np.sinc(turn / (2 * math.pi)) * (-1 if turn < -1e-9 else 1)"},
 )
 mistakes(
     "CHORD_TURNED_BACK",
@@ -2239,6 +2311,17 @@ mistakes(
     "sync",
     {
         '_correct(state, spread, seen, twin["sigma"])': '_correct(state, spread, seen, twin["sigma"]) if abs(seen - state[0]) < 1.5 * twin["sigma"] else (state, spread)'
+    },
+)
+mistakes(
+    "SURPRISE_LIMITED",
+    "A surprise of five stds moves the position hardly further than one of two.",
+    "Correct by the same share of every surprise. After a jump of the friction the surprises are large because the twin is wrong, not because the measurement is.",
+    kind="fact",
+).edit(
+    "sync",
+    {
+        '_correct(state, spread, seen, twin["sigma"])': '_correct(state, spread, float(np.clip(seen, *(state[0] + np.array([-1, 1]) * twin["sigma"]))), twin["sigma"])'
     },
 )
 mistakes(

@@ -31,8 +31,8 @@ mistakes(
 )
 mistakes(
     "ORDER_LOCAL",
-    "The orders are one too high. The error of a single step gives that.",
-    "Run for one fixed time, so that half the step means twice as many steps.",
+    "The orders are one too high, as the error of a single step makes them.",
+    "Run for one fixed time, so that half the step means twice as many steps. If your code does, add nothing to the slope.",
 ).body(
     "characterise",
     """
@@ -1659,8 +1659,8 @@ mistakes(
 )
 mistakes(
     "RESTITUTION_ASSUMED",
-    "Engines whose coefficients differ all get the same one.",
-    "Send a body against the wall at 2 m/s, and compare its speeds before and after the hit. Does it reach the wall?",
+    "Engines whose coefficients differ get the same one, or nearly so.",
+    "Send a body against the wall at 2 m/s, and compare the speeds just before the hit and just after it. Does the body reach the wall?",
 )
 mistakes(
     "TUNNEL_UNSAFE_REPORTED",

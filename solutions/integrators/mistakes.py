@@ -1284,6 +1284,24 @@ mistakes(
     "Compute in Python's own floats (float64): no np.float32, and no round(). A constant that is typed with few digits does the same: write 1/6, not 0.166667.",
 )
 mistakes(
+    "WEIGHTS_ROUNDED",
+    "The four accelerations are weighted by rounded numbers, as 0.1667 for 1/6.",
+    "Write 1/6 and 1/3, or h/6*(...): what four digits leave, no small step removes.",
+).edit(
+    "rk4_step",
+    {
+        "h / 6 * (dv1 + 2 * dv2 + 2 * dv3 + dv4)": "h * (0.1667 * dv1 + 0.3333 * dv2 + 0.3333 * dv3 + 0.1667 * dv4)"
+    },
+)
+mistakes(
+    "KICKS_UNEQUAL",
+    "In the new velocity, the two accelerations do not count half each.",
+    "It is v + h/2*(a + a'), with a from before the position changes and a' from after.",
+).edit(
+    "velocity_verlet_step",
+    {"h / 2 * accel(t + h, q_next, v_half)": "h / 4 * (accel(t + h, q_next, v_half) + (v_half - v) * 2 / h)"},
+)
+mistakes(
     "VELOCITY_ALONE_WRONG",
     "After one step the position is right, and the velocity is not.",
     "Compare the line of the velocity with the formula: the old velocity, the factor of h, the time, position and velocity that accel is given, and nothing besides.",
@@ -1433,6 +1451,11 @@ mistakes(
     "After the first step the position is right and the velocity is not.",
     "One call of step gives both: q and v of row i go in, q and v of row i + 1 come out.",
 )
+mistakes(
+    "TIMES_ROUNDED",
+    "The steps get times that are rounded to a few decimals.",
+    "Pass i * h as it is: no round().",
+).edit("integrate", {"t = h * np.arange(n + 1)": "t = np.round(h * np.arange(n + 1), 3)"})
 mistakes(
     "TIMES_NOT_FIRST",
     "The times are not the first of them.",

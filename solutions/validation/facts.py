@@ -95,6 +95,7 @@ def _other_lags(lags, ids):
         "sum": [{"rule": "sum", "grid": grid} for grid in grids],
         "product": [{"rule": rule, "grid": grid} for rule in ("product", "centred") for grid in grids],
         "outside": [{"rule": rule, "grid": grid} for rule in ("zero", "wrapped") for grid in grids],
+        "shapes": [{"rule": "shapes"}],
         "alike": [{"grid": grid, "alike": True} for grid in (min, max, next)] if several else [],
     }
     return {name: [_lag_by(lags, ids, rule) for rule in some] for name, some in rules.items()}
@@ -135,10 +136,11 @@ def _raised(clean, offset, t, shifts):
 
 #: From the squares of what overlaps and from ``_Lags._others``.
 _BY_OTHERS = {
-    "zero": lambda squares, zero, wrapped, product, centred: squares + zero,
-    "wrapped": lambda squares, zero, wrapped, product, centred: squares + wrapped,
-    "product": lambda squares, zero, wrapped, product, centred: -product,
-    "centred": lambda squares, zero, wrapped, product, centred: -centred,
+    "zero": lambda squares, counts, zero, wrapped, product, centred, level: squares + zero,
+    "wrapped": lambda squares, counts, zero, wrapped, product, centred, level: squares + wrapped,
+    "product": lambda squares, counts, zero, wrapped, product, centred, level: -product,
+    "centred": lambda squares, counts, zero, wrapped, product, centred, level: -centred,
+    "shapes": lambda squares, counts, zero, wrapped, product, centred, level: (squares - level) / counts,
 }
 
 
@@ -174,7 +176,7 @@ class _Lags:
     def _others(self, t, y, speed):
         """For each shift, the sum of the squares of the samples that do not overlap, with zeros and with the
         other end of the simulation, which np.roll brings there; and of those that do, sums of products, as
-        they are and about the means."""
+        they are and about the means, and the part of the squares that is their mean difference's."""
         inside, span = self._inside(t), len(t) * (t[1] - t[0])
         there = speed(t, self._shifts * self.STEP)
         turns = np.floor((t - t[0] + (self._shifts * self.STEP)[:, None] + 1e-9) / span)
@@ -186,7 +188,8 @@ class _Lags:
             np.sum((there - a) * (y - b), axis=1, where=inside)
             for a, b in ((0.0, 0.0), (np.mean(speed(t, np.zeros(1))), np.mean(y)))
         )
-        return zero, wrapped, product, centred
+        level = np.sum(there - y, axis=1, where=inside) ** 2 / inside.sum(axis=1)
+        return zero, wrapped, product, centred, level
 
     def step(self, run_id):
         """The time between the samples of a run, s."""
@@ -199,8 +202,8 @@ class _Lags:
         Args:
             rule: "even": of the mean of the runs' own mean squares; "sum": of the sum of the squares; "zero",
                 "wrapped": of the mean square of all samples, with that in the place of the simulation where
-                it has none; "product", "centred": of those sums, the highest. Of any of them, a lowest point
-                at an end is None.
+                it has none; "product", "centred": of those sums, the highest; "shapes": of the mean square
+                about each run's mean difference. Of any of them, a lowest point at an end is None.
             grid: what makes the step of the search of the runs' steps: min, max, next (the first) and so on;
                 None for that of all shifts.
             alike: every run is moved by as many samples.
@@ -221,7 +224,7 @@ class _Lags:
         )
         squares, counts, *others = of_runs.sum(axis=0)
         if rule in _BY_OTHERS:
-            cost = _BY_OTHERS[rule](squares, *others)
+            cost = _BY_OTHERS[rule](squares, counts, *others)
         elif rule == "even":
             cost = np.sum(of_runs[:, 0] / of_runs[:, 1], axis=0)
         else:

@@ -388,6 +388,22 @@ _FORCES = {
     "gives": (("RETURNS_SWAPPED", lambda peak, impulse: {"peak": impulse, "impulse": peak}),),
 }
 
+
+def _without_far_ones(e):
+    e = np.asarray(e, dtype=float)
+    return float(np.sqrt(np.mean(e[np.abs(e - e.mean()) <= 3 * e.std()] ** 2)))
+
+
+def _times_dof(band):
+    """The band of one component, times their number."""
+    return lambda dof, runs, alpha: tuple(dof * end for end in band(1, runs, alpha))
+
+
+def _unwrapped(e):
+    smooth = np.unwrap(e)
+    return smooth - _TURN * np.round(np.ravel(smooth)[0] / _TURN)
+
+
 #: The band by quantiles that are no approximation.
 exactly = functools.partial(_band, quantiles=_exact)
 #: Task: (family, terms) of each family.
@@ -409,22 +425,34 @@ OTHERS = {
         ("BIAS_FOR_RMSE", lambda e: float(abs(np.mean(e)))),
         ("LARGEST_TAKEN", lambda e: float(np.max(e))),
         ("MEAN_REMOVED", lambda e: float(np.std(e, ddof=1))),
+        ("FROM_THE_FIRST", lambda e: float(np.sqrt(np.mean(np.square(np.subtract(e, e[0])))))),
+        ("FAR_ONES_LEFT_OUT", _without_far_ones),
     ],
     "bias_variance": [
         ("MEDIAN_FOR_MEAN", lambda e: (float(np.median(e)), float(np.mean((e - np.median(e)) ** 2)))),
         ("VARIANCE_ABOUT_ZERO", lambda e: (float(np.mean(e)), float(_over_fewer(np.square(e))))),
+        ("VARIANCE_OF_SIZES", lambda e: (float(np.mean(e)), float(np.var(np.abs(e))))),
+        ("VARIANCE_OF_STEPS", lambda e: (float(np.mean(e)), float(np.mean(np.diff(e) ** 2) / 2))),
     ],
-    "wrap_angle": _WRAP_OTHERS,
+    "wrap_angle": [*_WRAP_OTHERS, ("UNWRAPPED", _unwrapped)],
     "consistency_band": [
         *((code, _band(quantiles=quantiles)) for code, quantiles in _BAND_OTHERS),
         ("RUNS_IGNORED", _band(degrees=lambda dof, runs: dof, by=lambda dof, runs: 1)),
         ("RUNS_IGNORED", exactly(degrees=lambda dof, runs: dof, by=lambda dof, runs: 1)),
+        *(("BAND_OF_ONE_COMPONENT", _times_dof(band())) for band in (_band, exactly)),
+    ],
+    "coverage": [
+        (
+            "SIDES_MULTIPLIED",
+            lambda y, lo, hi: float(np.mean(np.less_equal(lo, y)) * np.mean(np.less_equal(y, hi))),
+        ),
     ],
     "energy_error": [
         ("TO_PREVIOUS", _energy_error(lambda e: e - _previous(e), lambda e: np.abs(_previous(e)))),
         ("TO_ANOTHER", _energy_error(change=lambda e: e - np.mean(e), over=lambda e: abs(np.mean(e)))),
         ("ENERGY_ARGUMENTS_SWAPPED", _energy_of_swapped),
         ("LOGARITHM", _energy_error(change=lambda e: np.log(np.abs(e / e[0])), over=lambda e: 1.0)),
+        ("LOGARITHM", _energy_error(change=lambda e: np.log(np.abs(e / e[0])), over=lambda e: np.sign(e[0]))),
         ("RATIO", _energy_error(change=_same, over=lambda e: e[0])),
     ],
 }

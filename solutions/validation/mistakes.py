@@ -2195,6 +2195,55 @@ mistakes(
     "Subtract E[0] and divide by abs(E[0]).",
 )
 mistakes(
+    "FROM_THE_FIRST",
+    "The first error is subtracted from all of them.",
+    "Square the errors as they are: one that is the same throughout counts too.",
+)
+mistakes(
+    "FAR_ONES_LEFT_OUT",
+    "Errors far from the others are left out.",
+    "Square all of them: a rare, large error is what the rmse is to show.",
+)
+mistakes(
+    "VARIANCE_OF_SIZES",
+    "The second value is the variance of the sizes: the signs of the errors are lost.",
+    "Subtract the bias from each error as it is, and take the mean square.",
+)
+mistakes(
+    "VARIANCE_OF_STEPS",
+    "The second value comes from the differences of neighbours.",
+    "Subtract the bias from each error, and take the mean square: the order of the errors does not matter.",
+)
+mistakes(
+    "UNWRAPPED",
+    "Each angle is joined to the one before it, as np.unwrap does, and leaves the range.",
+    "Wrapping is the opposite: bring each angle by itself between -pi and pi.",
+)
+mistakes(
+    "BAND_OF_ONE_COMPONENT",
+    "The band is that of a single component, times dof.",
+    "The sum over all components and runs has dof * runs degrees of freedom. Take its quantiles, and divide them by runs.",
+)
+mistakes(
+    "SIDES_MULTIPLIED",
+    "The shares of the two sides are multiplied.",
+    "A value counts if it is within both ends: combine the comparisons before you take the mean.",
+)
+mistakes(
+    "LAG_OF_SHAPES",
+    "The lag is about the shift at which the shapes fit best, with the mean difference of each run taken off.",
+    "Leave the differences as they are: sim(t + s) - real(t), squared.",
+    kind="fact",
+).around(
+    "validate",
+    """
+        level = [np.mean(np.subtract(s["y"], r["y"])) for s, r in pairs]
+        return _right([({**s, "y": np.asarray(s["y"]) - off}, r) for off, (s, r) in zip(level, pairs)])
+    """,
+    of="best_shift",
+    also=("LAG_NOT_BEST", ""),
+)
+mistakes(
     "LOGARITHM",
     "The result is the logarithm of the ratio.",
     "Return (E - E[0]) / abs(E[0]): a difference, which also works for negative energies.",

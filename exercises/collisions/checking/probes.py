@@ -304,9 +304,23 @@ def _by_law(task, calls, values, truth):
 def _by_speeds(task, colliding):
     """Whether bodies part too fast in all impacts, or too slowly."""
     excess = np.array([_excess(task, c, v) for c, v in colliding])
+    if _fades(task, colliding, excess):
+        return "RESTITUTION_DROPPED_WHEN_SLOW"
     if np.all(excess > 1e-8):
         return "BLOW_TOO_STRONG"
     return "BLOW_TOO_WEAK" if np.all(excess < -1e-8) else None
+
+
+def _fades(task, colliding, excess):
+    """Whether fast pairs part as they should, and the slower ones the less so, and no pair loses momentum."""
+    rebound = 4 if task == "impulse_1d" else 5
+    meetings = [
+        (_closing(task, call), call[rebound], off) for (call, _), off in zip(colliding, excess, strict=True)
+    ]
+    kept = np.array([1 + off / (e * speed) for speed, e, off in sorted(meetings) if e])
+    falls = len(kept) > 3 and np.all(np.diff(kept) > -1e-9) and kept[0] > -1e-9
+    whole = task == "impulse_1d" or not any(_momentum_lost(*pair) for pair in colliding)
+    return bool(falls and whole and kept[0] < 0.9 and 0.98 < kept[-1] < 1 + 1e-9)
 
 
 def _rubs(calls, values, truth):
@@ -421,8 +435,9 @@ def _wrong_moment(calls, values, truth):
             if not _apart(call, value) < 1e-6:
                 return None if _overlap(call) else "MISS_IS_A_NUMBER"
             return "IMPACT_IN_THE_PAST" if value < 0.0 else _beyond(call, value)
-        if right == 0.0:
-            return "OVERLAP_IN_THE_PAST" if value < 0.0 else None
+        if 0.0 in (right, value):
+            near = value == 0.0 and _apart(call, 0.0) < 0.01
+            return "OVERLAP_IN_THE_PAST" if value < 0.0 else "GAP_AS_OVERLAP" if near else None
         # The other root of the quadratic lies as far beyond the closest approach as this one before it.
         dx, dv = call[3] - call[0], call[4] - call[1]
         late = -2 * float(dx @ dv) / float(dv @ dv) - right

@@ -28,6 +28,9 @@ def of_motor(submission):
     values = [kit.as_number(value, "w_next") for value in submission.call_each("motor_step", calls)]
     if not all(map(math.isfinite, values)):
         return None
+    lagged = [w + (u - w) * -math.expm1(-dt / tau) for w, u, dt, tau, *_ in calls]
+    if np.allclose(values, [w * (abs(w) > 2.0) for w in lagged], rtol=0, atol=1e-9):
+        return named("DEADBAND_OF_SPEED")
     up, far_up, down, far_down = values[-4:]
     if up == far_up != 1.0 and down == far_down != 1.0 and up != down:
         return named("LAG_WITHOUT_DT")
@@ -82,6 +85,9 @@ def of_backlash(submission):
     if np.allclose(outputs, right, rtol=0, atol=1e-12):
         states = [kit.as_number(state, "state_next") for _, state in pairs]
         return None if np.allclose(states, outputs, rtol=0, atol=1e-12) else named("STATE_IS_NOT_OUTPUT")
+    states = [kit.as_number(state, "state_next") for _, state in pairs]
+    if np.allclose(states, right, rtol=0, atol=1e-12) and outputs == [state for _, state, _ in _PLAY]:
+        return named("OUTPUT_A_CALL_LATE")
     if ends := _of_ends(submission):
         return named(ends)
     return named("BACKLASH_RATE_DEPENDENT") if _counts_steps(submission) else None
@@ -128,39 +134,47 @@ def of_delay(submission):
     """What ``delay_line`` does to signals whose form does not depend on how fine they are sampled."""
     x, dt = np.array([3.0, 1.0, 4.0, 1.5, 9.0, 2.0, 6.0, 5.0]), 0.1
     lates = (0.02, 0.08, 0.26)
-    values = submission.call_each("delay_line", [(x, dt, late) for late in lates])
-    rows = [kit.as_vector(value, len(x), "the delayed signal") for value in values]
+    values = submission.call_each("delay_line", [*((x, dt, late) for late in lates), (x**0, dt, lates[-1])])
+    *rows, step = (kit.as_vector(value, len(x), "the delayed signal") for value in values)
     if not np.all(np.isfinite(rows)):
         return None
     shifts = [_shift(row, x) for row in rows]
     near = None not in shifts and np.all(np.abs(np.subtract(shifts, np.array(lates) / dt)) <= 1.0)
-    if near and shifts[2] > shifts[0]:
-        return named("DELAY_WHOLE_SAMPLES")
     t = dt * np.arange(len(x))
     circles = [np.interp(t - late, t, x, period=dt * len(x)) for late in lates]
-    if np.allclose(rows, circles, rtol=0, atol=1e-9):
-        return named("DELAY_WRAPS")
-    pulse = np.zeros(8)
-    pulse[3] = 1.0
-    parts = (0.3, 0.8)
-    values = submission.call_each("delay_line", [(pulse, dt, part * dt) for part in parts])
-    seen = [kit.as_vector(value, len(pulse), "the delayed signal")[3:5] for value in values]
-    if all(np.allclose(pair, (part, 1 - part)) for pair, part in zip(seen, parts, strict=True)):
-        return named("DELAY_SHARES_SWAPPED")
     first = [row[: round(late / dt + 0.4999)] for row, late in zip(rows, lates, strict=True)]
     held = all(np.all(part == x[0]) for part in first) and not np.all(rows[0] == x[0])
-    if held:
-        return named("DELAY_HOLDS_FIRST")
-    return named("DELAY_NOT_STRAIGHT") if _not_straight(submission, x, dt) else None
+    looks = (
+        ("DELAY_AS_LAG", np.all(np.diff(step[1:]) > 1e-9) and step[-1] < 1 - 1e-9),  # it never arrives
+        ("DELAY_WHOLE_SAMPLES", near and shifts[2] > shifts[0]),
+        ("DELAY_WRAPS", np.allclose(rows, circles, rtol=0, atol=1e-9)),
+        ("DELAY_SHARES_SWAPPED", _swaps(submission, dt)),
+        ("DELAY_HOLDS_FIRST", held),
+    )
+    code = next((code for code, seen in looks if seen), None) or _of_halves(submission, x, dt)
+    return named(code) if code else None
 
 
-def _not_straight(submission, x, dt):
-    """Whether all is right after two samples, and after two and a half nothing is one of them, or halfway."""
+def _swaps(submission, dt):
+    """Whether the shares of two samples are exchanged, at three tenths of the way and at eight."""
+    pulse, parts = np.eye(8)[3], (0.3, 0.8)
+    values = submission.call_each("delay_line", [(pulse, dt, part * dt) for part in parts])
+    seen = [kit.as_vector(value, len(pulse), "the delayed signal")[3:5] for value in values]
+    return all(np.allclose(pair, (part, 1 - part)) for pair, part in zip(seen, parts, strict=True))
+
+
+def _of_halves(submission, x, dt):
+    """Where all is right after two samples, what is wrong after two and a half."""
     values = submission.call_each("delay_line", [(x, dt, samples * dt) for samples in (2.0, 2.5)])
     whole, half = (kit.as_vector(value, len(x), "the delayed signal") for value in values)
+    if not np.allclose(whole, [0.0, 0.0, *x[:-2]], rtol=0, atol=1e-9):
+        return None
     before, after = x[:-3], x[1:-2]
+    shares = (half[3:] - after) / (before - after)
+    if np.ptp(shares) < 1e-9:
+        return "DELAY_SHARE_WRONG" if 0.0 < shares[0] < 1.0 and abs(shares[0] - 0.5) > 1e-6 else None
     known = [np.abs(half[3:] - line) < 1e-6 for line in ((before + after) / 2, before, after)]
-    return bool(np.allclose(whole, [0.0, 0.0, *x[:-2]], rtol=0, atol=1e-9) and not np.any(known))
+    return None if np.any(known) else "DELAY_NOT_STRAIGHT"
 
 
 def _shift(row, x):
@@ -185,25 +199,28 @@ def of_drive(submission, heading=False):
     if not np.all(np.isfinite(end)):
         return None
     way, right = np.subtract(end[:2], _TURN[0][:2]), np.subtract(_TURN_ENDS[:2], _TURN[0][:2])
-    parts = way / right
-    if abs(end[2] - _TURN_ENDS[2]) < 1e-9 and np.allclose(parts, (1.0, -1.0), rtol=0, atol=1e-9):
-        return named("Y_MIRRORED")
-    if (
-        abs(end[2] - _TURN_ENDS[2]) < 1e-9
-        and abs(_way(end) - _way(_TURN_ENDS)) < 1e-9
-        and abs(end[1] - _TURN_ENDS[1]) > 1e-6
-    ):
-        return named("CHORD_WRONG_WAY")
-    if (
-        abs(end[2] - _TURN_ENDS[2]) < 1e-9
-        and np.ptp(parts) < 1e-9
-        and parts[0] > 0
-        and abs(parts[0] - 1) > 1e-6
-    ):
-        return named("CHORD_WRONG_LENGTH")
-    if not np.allclose(end, _TURN_ENDS, rtol=1e-9, atol=1e-12):
-        return None
+    parts, turned = way / right, abs(end[2] - _TURN_ENDS[2]) < 1e-9
+    length = abs(_way(end) - _way(_TURN_ENDS)) < 1e-9
+    ended = np.allclose(end, _TURN_ENDS, rtol=1e-9, atol=1e-12)
+    looks = (
+        ("Y_MIRRORED", turned and np.allclose(parts, (1.0, -1.0), rtol=0, atol=1e-9)),
+        ("CHORD_WRONG_WAY", turned and length and abs(end[1] - _TURN_ENDS[1]) > 1e-6),
+        ("CHORD_WRONG_LENGTH", turned and np.ptp(parts) < 1e-9 and parts[0] > 0 and abs(parts[0] - 1) > 1e-6),
+        ("RIGHT_TURNS_BACKWARDS", ended and _backwards(submission)),
+    )
+    code = next((code for code, seen in looks if seen), None)
+    if code or not ended:
+        return named(code) if code else None
     return kit.attempt(lambda: (_of_slow_headings if heading else _of_slow_turns)(submission))
+
+
+def _backwards(submission):
+    """Whether the same turn to the right ends behind where it began, as far as it should be ahead."""
+    pose, v_left, v_right, *rest = _TURN
+    end = kit.as_vector(submission.call("diff_drive_step", pose, v_right, v_left, *rest), 3, "pose")
+    turn = pose[2] - _TURN_ENDS[2]
+    chord = _along(np.array([pose[2] + turn / 2]), _way(_TURN_ENDS))[0]
+    return np.allclose(end, [*(pose[:2] - chord), pose[2] + turn], rtol=0, atol=1e-9)
 
 
 def _way(end):

@@ -20,6 +20,7 @@ _WIDE = np.array([[[2.0, -8.0], [2.0, 8.0]]])  # both ends beyond the reach, and
 _ASIDE = np.array([[[2.0, -0.5], [2.0, 14.0]]])
 _ORIGIN, _REACH = (0.0, 0.0, 0.0), 5.0
 _ONE_METRE = np.array([[[2.0, -0.5], [2.0, 0.5]]])
+_FALLING = np.array([[[2.0, 1.5], [3.0, -2.0]]])  # and, its ends' x and y each in order, rising
 _TWICE = np.concatenate((_WALL, _WALL))
 
 #: Four beams in a crooked room, and how far off its walls are along each.
@@ -33,6 +34,12 @@ _READS = (2.080981412770427, 2.4360363400828278, 1.4891209215957006, 2.057905784
 def _at(beam, *distances):
     """What a beam reads of walls across the x axis."""
     return tuple(x / math.cos(beam) for x in distances)
+
+
+def _cut(beam, walls):
+    """How far off, along a beam from the origin, the line of the first of these walls is."""
+    (ax, ay), (bx, by) = walls[0]
+    return (ax * (by - ay) - ay * (bx - ax)) / (math.cos(beam) * (by - ay) - math.sin(beam) * (bx - ax))
 
 
 #: code, position, walls, the one beam, the right reading, readings that only this mistake gives
@@ -51,6 +58,9 @@ _SCENES = (
     ("LONG_WALL_LEFT_OUT", _ORIGIN, _ASIDE, 0.1, *_at(0.1, 2.0), (_REACH,)),
     ("PARALLEL_TEST_WRONG", _ORIGIN, _ONE_METRE, 0.0, 2.0, (_REACH,)),
     ("PARALLEL_TEST_WRONG", _ORIGIN, _ONE_METRE[:, ::-1], 0.0, 2.0, (_REACH,)),
+    ("PARALLEL_TEST_WRONG", _ORIGIN, _ONE_METRE * (1.0, 0.2), 0.0, 2.0, (_REACH,)),
+    ("WALL_ENDS_SORTED", _ORIGIN, _FALLING, 0.05, _cut(0.05, _FALLING), (_cut(0.05, np.sort(_FALLING, 1)),)),
+    ("WALL_AT_PI_MISSED", _ORIGIN, -_WALL, 3.0, *_at(3.0, -2.0), (_REACH,)),
     ("NEAR_WALL_NOT_SEEN", (1.995, 0.0, 0.0), _WALL, 0.0, 0.005, (_REACH,)),
 )
 #: position, walls, the one beam, the right reading: a wall ahead whose ends come in one order and in the
@@ -100,8 +110,8 @@ def of_lidar(submission, noisy=True, straight=False):
     if np.all(right) and (straight or np.allclose(fans[0], _READS, rtol=0, atol=1e-9)):
         return of_lidar_noise(submission) if noisy else None
     fixed = np.allclose(moved, fans[0], rtol=0, atol=1e-9)
-    room = np.allclose(fans[3 if straight else 0], _READS, rtol=0, atol=1e-9)
-    return _of_scenes(readings, right, None if straight else _turning(*fans), fixed, room)
+    seen = np.abs(fans[3 if straight else 0] - _READS) < 1e-9
+    return _of_scenes(readings, right, None if straight else _turning(*fans), fixed, seen)
 
 
 def _along_axes_missed(shifted, level, left):
@@ -149,12 +159,14 @@ def _turning(turned, ahead, less, more):
     return "HEADING_SUBTRACTED" if np.allclose(turned, less, rtol=0, atol=1e-9) else None
 
 
-def _of_scenes(readings, right, turning, fixed, room):
+def _of_scenes(readings, right, turning, fixed, seen):
     """From what was read in the scenes, and what turning the robot does to the beams of the room.
 
-    fixed: whether moving it changes nothing there; room: whether the room is read as it is, as it is from
-    within although walls have no ends, or parallel ones are seen
+    fixed: whether moving it changes nothing there
+    seen: which beams read the room as it is; all do from within although walls have no ends, or parallel ones
+        are seen
     """
+    room = bool(np.all(seen))
     turned, plain, parallel, nothing = right[-4:]
     if not nothing:
         return named("NO_HIT_NOT_MAX")
@@ -166,10 +178,11 @@ def _of_scenes(readings, right, turning, fixed, room):
         return named(turning)
     if np.all(right[:-4]) and not parallel and room:
         return named("PARALLEL_WALLS")
-    seen = zip(_SCENES, readings, strict=False)
-    codes = [code for (code, *_, slips), r in seen if np.min(np.abs(np.subtract(slips, r))) < 1e-9]
+    read = zip(_SCENES, readings, strict=False)
+    codes = [code for (code, *_, slips), r in read if np.min(np.abs(np.subtract(slips, r))) < 1e-9]
     # From within a convex room a beam meets one wall: there it is the nearest.
     only = {"POSITION_IGNORED": fixed, "WALLS_ENDLESS": room, "NOT_THE_NEAREST": room}
+    only["WALL_AT_PI_MISSED"] = seen[0]  # the first beam looks behind, at a wall that is not across -x
     only["WALL_SHARE_IN_METRES"] = codes.count("WALL_SHARE_IN_METRES") == 2
     return next((named(code) for code in codes if only.get(code, True)), None)
 

@@ -140,6 +140,18 @@ def expect_white(submission, calls, rel, source):
             help="A noise density is per square root of hertz: how many samples are there in a second?",
             input={"dt": dt, "noise_density": density, "bias_random_walk": 0.0, "samples": len(true)},
         )
+        kit.expect_array(
+            bias,
+            np.full(len(true), call[4]),
+            abs=1e-9,
+            source="rounding",
+            quantity="bias",
+            units="rad/s",
+            input={"dt": dt, "noise_density": density, "bias_random_walk": 0.0, "bias0": call[4]},
+            message="Without a walk, the bias does not stay what it is at first.",
+            help="bias[k+1] = bias[k] + bias_random_walk sqrt(dt) n: without a walk it is bias[k].",
+            diagnose=lambda bias=bias: sensors.of_still_bias(submission, bias),
+        )
 
 
 def expect_walk(submission, n, dt, walk, bias0, rng):
@@ -268,6 +280,14 @@ def expect_gyroscope_draws(submission, seed, dt):
         help="Draw two arrays of standard normal numbers, use each number once, and sum up only one array.",
         diagnose=lambda: sensors.of_imu(submission),
     )
+    for values, name in ((white, "samples of the noise (measured - bias)"), (steps, "bias steps")):
+        kit.expect_true(
+            not bool(abs(np.mean(values)) < 1e-9 * std(values)),
+            f"The {name} add up to nothing, as independent ones never do.",
+            help="Use the random numbers as they are drawn: do not take their mean away.",
+            input={"dt": dt, "noise_density": 0.01, "bias_random_walk": 0.01, "samples": n},
+            diagnose=sensors.named("NOISE_CENTRED"),
+        )
     # Of 4000 normal numbers 50 are beyond 2.5 stds: of right ones, never in a lifetime none.
     for values, name in ((white, "samples of the noise (measured - bias)"), (steps, "bias steps")):
         kit.expect_true(
@@ -364,7 +384,8 @@ def _off(found, cases):
 
 def unknown_gyroscope(rng):
     """dt, noise density, random walk and size of bias0 of a gyroscope of any kind, for ``recordings``."""
-    density, dt = 10 ** rng.uniform(-3.5, -2.0), rng.uniform(0.005, 0.03)
+    # N/K is far from one second either way: at a second, its inverse is as good.
+    density, dt = 10 ** rng.uniform(-3.5, -2.0), float(rng.choice([0.001, 0.1]) * rng.uniform(0.7, 1.4))
     # The walk takes over after some 60 to 120 samples: both are to be seen in one recording.
     return dt, density, density / (dt * rng.uniform(60, 120)), density * rng.uniform(10, 60)
 
@@ -437,16 +458,20 @@ def expect_scan_noise(submission, r_max, sigma, rng):
     wide, near, far, two = (kit.as_vector(v, n, "ranges") for v in submission.call_each("lidar", calls))
     with np.errstate(divide="ignore"):
         exact = np.where(np.cos(fan) > 0, 3.0 / np.cos(fan), np.inf)
-    hits = exact <= r_max
+    hits, clear = exact <= r_max, exact > r_max + 6 * sigma
     given = {"r_max": r_max, "sigma": sigma, "beams": n}
     ask = lambda: scanners.of_straight_lidar(submission)  # noqa: E731
-    kit.expect_true(
-        bool(np.all(wide[~hits] == r_max)),
-        "A beam without a hit within r_max does not read r_max exactly.",
-        help="Without a hit the reading is r_max itself: noise belongs to hits only.",
-        input=given,
-        diagnose=ask,
-    )
+
+    def expect_reach(beams):
+        kit.expect_true(
+            bool(np.all(wide[beams] == r_max)),
+            "A beam without a hit within r_max does not read r_max exactly.",
+            help="Without a hit the reading is r_max itself: noise belongs to hits only.",
+            input=given,
+            diagnose=ask,
+        )
+
+    expect_reach(clear)
     off = (wide - exact)[hits]
     with np.errstate(all="ignore"):
         missed = float(np.mean(wide[hits & (exact < r_max - 6 * sigma)] == r_max))
@@ -459,6 +484,7 @@ def expect_scan_noise(submission, r_max, sigma, rng):
         input=given,
         diagnose=ask,
     )
+    expect_reach(~hits)  # of a wall read at another distance nothing is said of noise
     kit.expect_close(
         std(off),
         sigma,

@@ -127,6 +127,13 @@ def of_imu(submission, bias_first=False):
 _NAMES = ("measured", "bias")
 
 
+def of_still_bias(submission, bias):
+    """The mistake behind a bias (n,) that moves although its walk has no strength."""
+    if np.all(np.diff(np.abs(bias)) < 0) and bias[0] * bias[-1] > 0:
+        return named("BIAS_FADES")
+    return of_imu(submission, bias_first=True)
+
+
 def _of_parts(pairs, true):
     """Whether the two parts are what they are called, and each is as strong as its own number says."""
     measured, bias = pairs[0]  # without a walk the bias is flat, and the rate is not
@@ -441,6 +448,13 @@ def of_bias0(found, cases):
     lengths = [_samples_averaged(mean, case) for mean, case in zip(found, cases, strict=True)]
     if all(lengths):
         best = [math.sqrt(3) * case[2] / case[3] / case[1] for case in cases]  # samples
+        inverse = [min(3 / case[1] ** 2 / n, len(case[0])) for n, case in zip(best, cases, strict=True)]
+        if (
+            max(abs(np.log(np.array(lengths) / inverse)))
+            < 0.5
+            < np.median(abs(np.log(np.divide(best, inverse))))
+        ):
+            return named("BIAS0_TIME_INVERTED")
         ratio = np.median(np.array(lengths) / best)
         if not 1 / 3 < ratio < 3:  # within it a mean is hardly worse than the best one
             return named("BIAS0_TIME_TOO_SHORT" if ratio < 1 else "BIAS0_TIME_TOO_LONG")

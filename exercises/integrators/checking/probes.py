@@ -122,6 +122,11 @@ def _weights(submission, task):
     """On a constant acceleration a method of more than one stage shows whether its weights add up to one."""
     if ORDERS[task] == 1:
         return None
+    shares = _shares(submission, task)
+    if task == "velocity_verlet_step" and math.isclose(sum(shares), 1.0) and 1e-6 < min(shares) < 0.5 - 1e-6:
+        return "KICKS_UNEQUAL"
+    if task == "rk4_step" and 1e-6 < max(abs(np.subtract(shares, [1 / 6, 1 / 3, 1 / 3, 1 / 6]))) < 1e-3:
+        return "WEIGHTS_ROUNDED"
     kick, other = (_weight(submission, task, h) for h in (0.37, 0.2))
     if task != "rk4_step" or not kick or not other or math.isclose(kick, 1.0, rel_tol=1e-6):
         return None
@@ -129,6 +134,17 @@ def _weights(submission, task):
     if math.isclose(kick, other, rel_tol=1e-6):
         return "WEIGHTS_DO_NOT_ADD_UP"
     return "POWER_OF_STEP_WRONG" if math.isclose(kick / other, 0.37 / 0.2, rel_tol=1e-6) else None
+
+
+def _shares(submission, task):
+    """How much of each acceleration in turn goes into the new velocity, as a share of the step."""
+    calls, shares = {"velocity_verlet_step": 2, "rk4_step": 4}[task], []
+    for i in range(calls):
+        given = iter([np.full(2, float(i == k)) for k in range(calls)])
+        accel = kit.counted(lambda *args, given=given, **names: next(given, np.zeros(2)))
+        _, v = kit.as_pair(submission.call(task, accel, _T, _Q, _V, _H), 2)
+        shares.append(float((v - _V)[0] / _H))
+    return shares
 
 
 def _weight(submission, task, h):
@@ -477,11 +493,15 @@ def of_times(submission, times, h):
     t, q, v = kit.as_tuple(found, ("t", "q", "v"))
     t, q, v = kit.as_vector(t), kit.as_array(q, (n + 1, 2)), kit.as_array(v, (n + 1, 2))
     true = np.array([np.linalg.matrix_power(p, i) @ start for i in range(n + 1)])
-    if not np.allclose(np.stack([q, v], axis=1), true):
+    if not np.allclose(np.stack([q, v], axis=1), true, rtol=1e-9, atol=1e-12):
         return of_rows(t, q, v, size, (true[:, 0], true[:, 1]))
     if np.allclose(times, times[0]):
         return named("TIME_NOT_PASSED" if _time_stands(submission) else "LOOP_ENDS_AT_REST")
-    return named("TIME_AHEAD") if np.allclose(times, h * np.arange(1, len(times) + 1)) else None
+    if np.allclose(times, h * np.arange(1, len(times) + 1)):
+        return named("TIME_AHEAD")
+    exact = h * np.arange(len(times))
+    rounded = any(np.allclose(times, np.round(exact, digits), rtol=0, atol=2e-6) for digits in (2, 3, 4))
+    return named("TIMES_ROUNDED") if rounded else None
 
 
 def _time_stands(submission):

@@ -284,6 +284,7 @@ _OTHER_RULES = {
     "sum": "LAG_OF_SUMS",
     "outside": "LAG_PAST_THE_END",
     "product": "LAG_OF_PRODUCTS",
+    "shapes": "LAG_OF_SHAPES",
     "alike": "LAG_OF_ONE_STEP",
 }
 

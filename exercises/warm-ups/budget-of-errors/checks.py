@@ -26,6 +26,7 @@ def test_budgets(submission):
             (([1.0, 1.0, 1.0, 1.0],), 2.0),
             (([0.1, 0.2, 0.2],), 0.3),
             (([0.25],), 0.25),
+            (([3.0, 0.2],), 3.00665927567),
         ],
         quantity="the total error",
         message="The total is wrong.",
@@ -34,4 +35,12 @@ def test_budgets(submission):
 
 
 #: Calls that tell wrong programs apart.
-QUESTIONS = {"total_error": [([3.0, 4.0],), ([0.2, 0.5, 0.1],), ([1.0, 1.0, 1.0, 1.0],), ([0.1, 0.2, 0.2],)]}
+QUESTIONS = {
+    "total_error": [
+        ([3.0, 4.0],),
+        ([0.2, 0.5, 0.1],),
+        ([1.0, 1.0, 1.0, 1.0],),
+        ([0.1, 0.2, 0.2],),
+        ([3.0, 0.2],),
+    ]
+}

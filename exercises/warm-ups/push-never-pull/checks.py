@@ -20,6 +20,7 @@ def test_corrections(submission):
             ((0.5, -0.25), -0.25),
             ((0.0, -2.0), 0.0),
             ((0.5, 2.0), 2.0),
+            ((0.0, 2.0), 2.0),
         ],
         abs=1e-12,
         source="closed form; absolute 1e-12 N s where it is zero",
@@ -32,5 +33,14 @@ def test_corrections(submission):
 
 #: Calls that tell wrong programs apart.
 QUESTIONS = {
-    "applied": [(3.0, 2.0), (3.0, -1.0), (3.0, -5.0), (0.0, -2.0), (0.5, -0.25), (0.7, 0.4), (0.5, 2.0)]
+    "applied": [
+        (3.0, 2.0),
+        (3.0, -1.0),
+        (3.0, -5.0),
+        (0.0, -2.0),
+        (0.5, -0.25),
+        (0.7, 0.4),
+        (0.5, 2.0),
+        (0.0, 2.0),
+    ]
 }

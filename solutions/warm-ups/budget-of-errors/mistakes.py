@@ -74,6 +74,11 @@ mistakes(
         return math.sqrt(step**2 + model**2 + sensor**2)
     """,
 )
+mistakes(
+    "SMALL_ONES_LEFT_OUT",
+    "Small errors are left out.",
+    "Add the squares of all of them: a small one counts little, but it counts.",
+).edit("total_error", {"for error in errors": "for error in errors if error > 0.1 * max(errors)"})
 
 mistakes.accept(
     "With hypot",

@@ -49,6 +49,11 @@ mistakes(
     "Your step of B is never longer than that of A.",
     "An engine that makes more iterations in a step may take longer ones.",
 ).edit("fair_step", {"h * other / iterations": "min(h, h * other / iterations)"})
+mistakes(
+    "ROUNDED_DOWN",
+    "Your step is 0: // rounds down, floats as well.",
+    "Divide with /.",
+).edit("fair_step", {"other / iterations": "other // iterations"})
 
 mistakes.accept(
     "By the passes in a second",

@@ -54,6 +54,11 @@ mistakes(
     "A falling ball gets 1 + e times its speed: that is the change of its velocity.",
     "Its new speed is e times the old one.",
 ).edit("after_floor", {"-e * v": "-(1 + e) * v"})
+mistakes(
+    "SLOW_ONES_REST",
+    "A slow ball stays on the floor.",
+    "Every ball that moves into the floor bounces, however slowly.",
+).edit("after_floor", {"-e * v if v < 0": "0.0 if -0.05 < v < 0 else -e * v if v < 0"})
 
 mistakes.accept(
     "One formula for both cases",

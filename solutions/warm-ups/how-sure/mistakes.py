@@ -65,6 +65,11 @@ mistakes(
     "Your result is about two standard errors, as for an interval of 95 %.",
     "Give the standard error itself.",
 ).edit("standard_error", {"return ": "return 1.96 * "})
+mistakes(
+    "EQUAL_ONES_ONCE",
+    "Values that are equal count only once in n.",
+    "n is the number of all values: len(values).",
+).edit("standard_error", {"len(values)": "len(set(values))"})
 
 mistakes.accept(
     "Written out",

@@ -123,6 +123,19 @@ mistakes(
             return np.asarray(wanted) / size * min(size, mu * normal)
     """,
 )
+mistakes(
+    "WHAT_THE_FIRST_LEAVES",
+    "The second component gets what the first one leaves of the limit.",
+    "It is the length that is limited: multiply both with the limit over the length.",
+).body(
+    "friction",
+    """
+        most = mu * normal
+        x = max(-most, min(most, wanted[0]))
+        left = most - abs(x)
+        return [x, max(-left, min(left, wanted[1]))]
+    """,
+)
 
 mistakes.accept(
     "By way of length and angle",

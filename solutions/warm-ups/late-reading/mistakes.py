@@ -156,6 +156,18 @@ mistakes(
         return {time + latency: value for time, value in zip(times, values)}.get(now)
     """,
 )
+mistakes(
+    "SAMPLES_NOT_TIME",
+    "You go back a number of samples: the latency over the time between the first two.",
+    "The samples need not be evenly spaced: for each, compare its time plus the latency with now.",
+).body(
+    "seen",
+    """
+        taken = [value for time, value in zip(times, values) if time <= now]
+        late = round(latency / (times[1] - times[0]))
+        return taken[-1 - late] if late < len(taken) else None
+    """,
+)
 
 mistakes.accept(
     "Goes from the newest to the oldest",

@@ -71,6 +71,11 @@ mistakes(
     "You subtract how far p and q are from the origin.",
     "Subtract the coordinates first: the distance of the centres is math.dist(p, q).",
 ).edit("overlap", {"math.dist(p, q)": "abs(math.hypot(*p) - math.hypot(*q))"})
+mistakes(
+    "DEPTH_LIMITED",
+    "The depth is never more than the smaller ball's diameter.",
+    "It is r1 + r2 minus the distance, however deep one lies in the other.",
+).edit("overlap", {"r1 + r2 - math.dist(p, q)": "min(r1 + r2 - math.dist(p, q), 2 * r1, 2 * r2)"})
 
 mistakes.accept(
     "Pythagoras by hand",

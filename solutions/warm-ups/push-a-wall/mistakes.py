@@ -52,8 +52,8 @@ mistakes(
 )
 mistakes(
     "COUPLING_SIGN",
-    "m12 has the wrong sign, or one of the entries of J has.",
-    "Both have a minus: m12 = -tip length sin(angle), and J's second entry is -length sin(angle).",
+    "A sign beside the diagonal is wrong, in M or in its inverse, or that of J's second entry.",
+    "m12 = -tip length sin(angle), and J's second entry is -length sin(angle). If you invert by hand, the entry beside the diagonal is -m12 / det.",
 ).edit("felt_mass", {"tip * lever], [": "-tip * lever], [-"})
 mistakes(
     "EACH_ENTRY_INVERTED",

@@ -49,6 +49,11 @@ mistakes(
     "You give the larger of wanted and total.",
     "The least that can be applied is minus the total: that takes back all there is.",
 ).body("applied", "return max(wanted, total)")
+mistakes(
+    "NOTHING_FROM_ZERO",
+    "Where no impulse was applied so far, you apply none.",
+    "A first push is a correction too: apply what is wanted, unless the sum would go below zero.",
+).edit("applied", {"return max(": "return 0.0 if total == 0 else max("})
 
 mistakes.accept(
     "The correction is at least minus the sum",

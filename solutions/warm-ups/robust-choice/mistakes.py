@@ -93,6 +93,23 @@ mistakes(
     "Your result is the list of the controller's costs, not its index.",
     "Give its place in the list.",
 ).body("robust", "return min(costs, key=max)")
+mistakes(
+    "WORST_FROM_ZERO",
+    "The search for the worst cost starts at 0, so no cost below 0 can be the worst.",
+    "Start with the first cost of the row, or take max(row).",
+).edit("robust", {"max(row)": "max(0.0, *row)"})
+mistakes(
+    "SMALLEST_REGRET",
+    "Your controller has the smallest regret: in each world you compare it with the best one there.",
+    "Compare the worst costs themselves.",
+).body(
+    "robust",
+    """
+        best = [min(world) for world in zip(*costs)]
+        regret = [max(cost - least for cost, least in zip(row, best)) for row in costs]
+        return regret.index(min(regret))
+    """,
+)
 
 mistakes.accept(
     "The smallest index by a key",

@@ -263,6 +263,7 @@ def test_moment_any_speed(submission, rng):
         [
             *(draws.shot(rng, 10.0**power) for power in (*np.linspace(0.0, 5.0, 11), -2.4, -3.1)),
             draws.late(rng),
+            *(draws.nearly(rng, gap) for gap in (1e-3, 1e-4, 3e-6)),
         ],
         "A contact is missed or comes at the wrong time.",
         "At any speed the first moment of contact is the smaller root of the quadratic, if it is at most dt; "
@@ -320,7 +321,9 @@ def test_moment_symmetries(submission, rng):
 @pytest.mark.points(3)
 def test_head_on_drawn(submission, rng):
     """Balls of any masses, some of which never meet"""
-    scenes = [draws.head_on(rng, kind) for kind in ("meet", "chase", "wall", "slow", "part")]
+    scenes = [
+        draws.head_on(rng, kind) for kind in ("meet", "chase", "wall", "wall on the left", "slow", "part")
+    ]
     scenes.append(scenes[0])  # nothing that an earlier call left behind may count
     h, n = rng.uniform(0.01, 0.03), 120
     values = submission.call_each(bundles.HEAD_ON, [scene.args(n * h, h) for scene in scenes])

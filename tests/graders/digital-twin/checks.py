@@ -196,7 +196,10 @@ def test_delay_fractions(submission, rng):
 def test_delay_edges(submission, rng):
     """delay_line with no latency, whole samples, or more latency than signal: the output, and its argument"""
     x, dt = rng.normal(2.0, 1.0, 12), rng.uniform(0.01, 0.1)
-    parts.expect_delays(submission, [(x, dt, 0.0), (x, dt, 3 * dt), (x, dt, 20.3 * dt)])
+    parts.expect_delays(
+        submission,
+        [(x, dt, 0.0), (x, dt, 3 * dt), (x, dt, 20.3 * dt), (np.rint(9 * x).astype(int), dt, 1.3 * dt)],
+    )
     actuators.expect_new_signal(submission, x, dt)
 
 

@@ -69,6 +69,22 @@ def recordings(rng, count=4, dts=(0.01, 0.02), swings=(1.0,)):
     ]
 
 
+def cut_short(rng):
+    """Carts whose simulation is off to one side and late, in recordings that end in the middle of a swing.
+
+    There the shift of the smallest mean square is another than that at which the shapes fit.
+    """
+    late, recorded = float(rng.uniform(0.03, 0.06)), []
+    for i, swings in enumerate((3.25, 4.25, 5.25)):
+        drive, t = (
+            twins.Wave(rng.uniform(-1, 1), rng.uniform(0.8, 1.1)),
+            0.005 * np.arange(round(200 * swings)),
+        )
+        recorded.append(twins.Recording(f"cut {i}", t, drive, drive.speed(t), 2.0))
+    sim = twins.simulated(recorded, late=late, offset=float(rng.choice([-1, 1]) * rng.uniform(0.6, 0.7)))
+    return bundles.Case(recorded, sim, twins.measured(recorded), late)
+
+
 def expect_verdict(submission, rng, recorded, sim, lates=0.0, **limits):
     """``validate`` reports what the samples say, and what the limits make of it."""
     expect_facts(submission, _scrambled(rng, recorded, sim, lates=lates), SPEC | limits)

@@ -289,6 +289,7 @@ def test_validate_lag(submission, rng):
         sim = twins.simulated(recordings, late=lates, sigma_factor=30.0)
         cases.expect_verdict(submission, rng, recordings, sim, lates)
     cases.expect_facts(submission, bundles.far_and_off(rng), cases.SPEC)
+    cases.expect_facts(submission, cases.cut_short(rng), cases.SPEC)
 
 
 @pytest.mark.task("validate")

@@ -70,7 +70,7 @@ TOLD = {
         "force_above_a_tenth": {None},
         "lag_in_milliseconds": {"LAG_IN_SAMPLES", "LAG_NOT_BEST"},
         "nees_of_the_first_row": {"SUMMED"},
-        "rmse_without_outliers": {None},
+        "rmse_without_outliers": {"FAR_ONES_LEFT_OUT"},
         "variance_without_outliers": {None},
         "verdict_bias_about_zero": {None},
         "verdict_ends_not_covered": {None},

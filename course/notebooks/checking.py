@@ -150,7 +150,8 @@ def _row(check: CheckResult, *, scored: bool) -> str:
         f"<br>{_coded(text)}" if index < 2 else f"<br><small>{escape(text)}</small>"
         for index, text in enumerate(_words(check))
     )
-    points = f"<td>{format_points(check.points)}/{format_points(check.max_points)}</td>" if scored else ""
+    reached = f"{format_points(check.points)}/{format_points(check.max_points)}" if check.max_points else ""
+    points = f"<td>{reached}</td>" if scored else ""
     return f"<tr><td>{mark} {escape(state)}</td><td><b>{escape(check.title)}</b>{words}</td>{points}</tr>"
 
 

@@ -26,6 +26,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from course.errors import ContentError
+from course.printable import meant
 from course.scoring.explain.story import Entry, Kind
 
 #: What a code looks like.
@@ -88,7 +89,8 @@ class Variant:
         ]
         if not found:
             said = f"{self.name}: the model solution has no function {self.of}."
-            raise ContentError(file, self.line, said, help="Name the function with `of=`.")
+            names = [node.name for node in ast.parse(model).body if isinstance(node, ast.FunctionDef)]
+            raise ContentError(file, self.line, said, help=meant(self.of, names, "Name one that it has."))
         node, lines = found[0], model.splitlines()
         if body:
             head = lines[node.lineno - 1 : node.body[0].lineno - 1]
@@ -145,6 +147,8 @@ class Mistakes:
         if looks_like or advice:
             if code in self.words:
                 raise ValueError(f"{code} has words twice")
+            if not advice.strip():
+                raise ValueError(f"{code} says what a mistake looks like, and not what to do about it")
             self.words[code] = Entry(looks_like, advice, kind)
             self.lines[code] = sys._getframe(1).f_lineno
         if true_too:

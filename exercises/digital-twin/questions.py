@@ -52,6 +52,7 @@ def _scans():
         (nowhere, _AHEAD, np.array([0.3, 1.0, -1.0, 3.0])),
         (nowhere, _ROW, np.array([0.1, -0.2])),
         (nowhere, _shifted(4.0), np.array([0.01])),
+        (nowhere, _AHEAD[:, ::-1], np.array([0.3])),
     )
     for pose, walls, beams in scenes:
         yield pose, walls, beams, 5.0, 0.0, np.random.default_rng(1)

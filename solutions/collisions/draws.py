@@ -363,6 +363,12 @@ def exact_spheres(rng, gap):
     return xa, ra, xa + apart, 5.0 - ra - gap
 
 
+def touching_spheres(rng):
+    """Two spheres that touch exactly, in whole numbers, and approach."""
+    xa, ra, xb, rb = exact_spheres(rng, 0.0)
+    return xa, xb - xa, ra, xb, np.zeros(len(xa)), rb, 1.0
+
+
 def exact_plane(rng, gap):
     """A sphere that touches a plane along an axis exactly; or with a gap of so many metres."""
     axis, side = int(rng.integers(0, 3)), float(rng.choice([-1.0, 1.0]))
@@ -448,6 +454,13 @@ def parting(args):
     """The same two bodies, moving apart."""
     ma, mb, va, vb, *rest = args
     return ma, mb, vb, va, *rest
+
+
+def opposed(args):
+    """The same two bodies, seen from where one moves as fast as the other, the opposite way."""
+    ma, mb, va, vb, *rest = args
+    middle = (va + vb) / 2
+    return ma, mb, va - middle, vb - middle, *rest
 
 
 def wall(args, side):

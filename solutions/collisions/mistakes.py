@@ -1011,7 +1011,7 @@ mistakes(
     "GAP_AS_OVERLAP",
     "Spheres with a small gap between them get 0.0, as if they overlapped.",
     "They overlap only where |x| < ra + rb. Compare without a margin: however small the gap is, it takes its time.",
-).edit("time_of_impact", {"c <= 0": "c <= 1e-3"})
+).edit("time_of_impact", {"c <= 0": "c <= 1e-3 * (ra + rb) ** 2"})
 mistakes(
     "RESTITUTION_DROPPED_WHEN_SLOW",
     "Slow bodies part with less than e times the speed at which they met, or stay together.",

@@ -43,6 +43,7 @@ def _no_friction(rng):
         0.4,
     )
     apart = [draws.carried(rng, draws.parting(draws.friction(rng, 3, 0.6)), way) for way in (1.0, -1.0)]
+    apart.append(draws.opposed(draws.parting(draws.friction(rng, 3, 0.6))))
     return [smooth, straight, *apart, draws.friction(rng, 3, 0.6)]
 
 
@@ -94,6 +95,7 @@ PUBLIC = {
     ],
     "impulse_separating": lambda rng: [
         *(draws.parting(draws.line(rng)) for _ in range(3)),
+        draws.opposed(draws.parting(draws.line(rng))),
         draws.parting(draws.slow_line(rng)),
         draws.line(rng),
     ],
@@ -106,6 +108,7 @@ PUBLIC = {
     ],
     "resolve_separating": lambda rng: [
         *(draws.carried(rng, draws.parting(draws.impact(rng, d)), way) for d, way in ((3, 1.0), (2, -1.0))),
+        draws.opposed(draws.parting(draws.impact(rng, 3))),
         draws.parting(draws.slow(rng, 3)),
         draws.impact(rng, 3),
     ],

@@ -683,8 +683,8 @@ mistakes(
 )
 mistakes(
     "STOPS_AT_MISFIT",
-    "Your code looks at no engine after the first one that does not fit.",
-    "Go on with the next engine: `break` and `return` end the loop, `continue` does not.",
+    "No engine that comes after one that does not fit is chosen.",
+    "Go on with the next engine: `break` and `return` end the loop, `continue` does not. And what you keep about one engine begins anew with the next.",
 ).body(
     "choose_engine",
     """

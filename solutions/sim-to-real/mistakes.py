@@ -161,7 +161,7 @@ mistakes(
 mistakes(
     "PROMISES_TOO_MUCH",
     "No estimator can reach this threshold with this excitation in this time.",
-    'Check the unit first: 0.1 with "%" is a tenth of a per cent. Else take a larger threshold, up to what the README asks of that parameter: what your own identify returns for such recordings is a guide.',
+    'Check the unit first: 0.1 with "%" is a tenth of a per cent. Else take a larger threshold, up to what the README asks of that parameter: what your own identify returns for such recordings is a guide. From n samples at rest, the std of the noise is known to 1.96/sqrt(2 n).',
     kind="fact",
 ).around(
     "plan",

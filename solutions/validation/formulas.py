@@ -434,7 +434,7 @@ OTHERS = {
         ("VARIANCE_OF_SIZES", lambda e: (float(np.mean(e)), float(np.var(np.abs(e))))),
         ("VARIANCE_OF_STEPS", lambda e: (float(np.mean(e)), float(np.mean(np.diff(e) ** 2) / 2))),
     ],
-    "wrap_angle": [*_WRAP_OTHERS, ("UNWRAPPED", _unwrapped)],
+    "wrap_angle": [*_WRAP_OTHERS, ("UNWRAPPED", _unwrapped), ("UNWRAPPED", np.unwrap)],
     "consistency_band": [
         *((code, _band(quantiles=quantiles)) for code, quantiles in _BAND_OTHERS),
         ("RUNS_IGNORED", _band(degrees=lambda dof, runs: dof, by=lambda dof, runs: 1)),

@@ -487,8 +487,8 @@ mistakes(
 )
 mistakes(
     "ONE_STANDARD_ERROR",
-    "Which part of your code uses alpha? Quantiles at fixed levels, or a fixed number of standard deviations, suit one alpha alone.",
-    "Take the quantiles of the resampled values at alpha/2 and 1 - alpha/2, as they are.",
+    "Which part of your code uses alpha, and is half of it left out on either side?",
+    "Take the quantiles of the resampled values at alpha/2 and 1 - alpha/2, or as many standard deviations as belong to 1 - alpha/2. Fixed levels and fixed numbers suit one alpha alone.",
     kind="consequence",
 ).body(
     "block_bootstrap_ci",
@@ -2193,6 +2193,26 @@ mistakes(
     "TO_ANOTHER",
     "Your code subtracts, or divides by, something other than the first energy.",
     "Subtract E[0] and divide by abs(E[0]).",
+)
+mistakes(
+    "AFTER_THE_SHIFT",
+    "rmse, bias and coverage are those that are left when the simulation is moved by its lag.",
+    "Compare the samples at the same times, as they are: a lag is an error like others.",
+).body(
+    "validate",
+    """
+        lag = best_shift(pairs)
+        moved = [np.interp(np.asarray(s["t"]) + lag, s["t"], s["y"]) for s, _ in pairs]
+        _, sigma, measured = (np.concatenate(column) for column in zip(*map(columns, pairs)))
+        e = np.concatenate(moved) - measured
+        return {
+            "rmse": float(np.sqrt(np.mean(e**2))),
+            "bias": float(np.mean(e)),
+            "lag_s": lag,
+            "coverage": float(np.mean(np.abs(e) <= 1.96 * sigma)),
+        }
+    """,
+    of="measures",
 )
 mistakes(
     "FROM_THE_FIRST",

@@ -9,11 +9,13 @@ from __future__ import annotations
 import ast
 import contextlib
 import hashlib
+import inspect
 import math
 import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, is_dataclass
+from functools import partial
 from operator import attrgetter
 from pathlib import Path
 from types import ModuleType
@@ -28,6 +30,7 @@ from course.authoring.exercises.grading import (
     accepted_files,
     accepted_sources,
     blamed,
+    ending,
     exercise_graders,
     mistakes_of,
     mistakes_path,
@@ -160,6 +163,7 @@ def _table_of(catalog: Catalog, exercise: Exercise, questions: ModuleType | None
             raise _no_task(questions_path(exercise.id), None, task)
     right: dict[str, set[tuple[float, ...]]] = {}
     for task in tasks:
+        _expect_callable(questions, exercise.id, task, next(_right(catalog, exercise, task)))
         for function in _right(catalog, exercise, task):
             for name, sums in sums_of(questions, task, function).items():
                 right.setdefault(name, set()).add(sums)
@@ -173,14 +177,45 @@ def _table_of(catalog: Catalog, exercise: Exercise, questions: ModuleType | None
     rows: dict[str, dict[tuple[float, ...], dict[tuple[str, ...], Row]]] = {name: {} for name in right}
     says = {task: _says(questions, task, next(_right(catalog, exercise, task))) for task in tasks}
     for task, codes, function in hypotheses_of(catalog, exercise):
-        if len(codes) > 1 and 4 * _says(questions, task, function) < says[task]:
-            continue
-        for name, sums in sums_of(questions, task, function).items():
+        with ending(_PATIENCE, partial(_endless, catalog, exercise, task, codes)):
+            if len(codes) > 1 and 4 * _says(questions, task, function) < says[task]:
+                continue
+            found = sums_of(questions, task, function)
+        for name, sums in found.items():
             known = rows[name].setdefault(sums, {})
             if not is_right(made, name, sums) and not any(len(other) < len(codes) for other in known):
                 known.setdefault(codes, Row(codes, sums))
     made.rows.update({name: _kept(some) for name, some in rows.items()})
     return made
+
+
+#: s; the slowest program of the course takes a twentieth of it for all of its questions.
+_PATIENCE = 60.0
+
+
+def _endless(catalog: Catalog, exercise: Exercise, task: str, codes: tuple[str, ...]) -> ContentError:
+    mistakes = mistakes_of(catalog, exercise)
+    line = next((one.line for one in mistakes.wrong if (one.task, one.code) == (task, codes[0])), None)
+    return ContentError(
+        mistakes_path(catalog, exercise),
+        line or mistakes.lines.get(codes[0]),
+        f"{task}: after {_PATIENCE:.0f} s {' and '.join(codes)} has not answered the questions.",
+        help="One that never ends is told so, whatever its words: write one that does, or take it out.",
+    )
+
+
+def _expect_callable(
+    questions: ModuleType, exercise_id: str, task: str, function: Callable[..., Any]
+) -> None:
+    """Each question has as many arguments as the function takes."""
+    path, asked = questions_path(exercise_id), questions.QUESTIONS.get(task, ())
+    calls = asked if task not in getattr(questions, "ASK", {}) else ()
+    for number, args in enumerate(calls, 1):
+        try:
+            inspect.signature(function).bind(*args)
+        except TypeError as error:
+            said = f"question {number} of {task} cannot be asked: {error}."
+            raise ContentError(path, None, said, help="Correct its arguments.") from None
 
 
 def _says(questions: ModuleType, task: str, function: Callable[..., Any]) -> int:
@@ -550,6 +585,8 @@ def audit_diagnoses(catalog: Catalog, exercise: Exercise, findings: Findings) ->
         with blamed(questions):
             asked = questions_of(exercise.id) if questions.is_file() else None
         if not asked:
+            if not exercise.is_warm_up:  # whose checks may have them
+                questions = exercise.checks_path.with_name("questions.py")
             message = "it asks no QUESTIONS, and there are words: what would tell wrong programs apart?"
             findings.add(questions, None, "words", message, "Write it.")
             return

@@ -34,6 +34,7 @@ from course.authoring.exercises.source import (
     parse,
     quoted_numbers,
     signatures,
+    unseeded,
 )
 from course.authoring.report import About, Findings
 from course.catalog.load import Catalog
@@ -57,8 +58,9 @@ def audit_checks(catalog: Catalog, exercise: Exercise, findings: Findings) -> tu
     first: dict[str, CheckSource] = {}
     for check in checks:
         if check.id in first:
-            other = first[check.id].path.parent.name
-            _wrong(findings, check, "exists twice.", f"Rename it; the other is in {other}.")
+            other = first[check.id]
+            where = f"line {other.line}" if other.path == check.path else other.path.parent.name
+            _wrong(findings, check, "exists twice.", f"Rename it; the other is in {where}.")
         first.setdefault(check.id, check)
     for check in checks:
         _audit_check(exercise, check, first, findings)
@@ -145,13 +147,19 @@ IN_WORDS = "Say it in words; put values into input, expected and actual, which a
 
 
 def _audit_words(exercise: Exercise, graders: Path, findings: Findings) -> None:
-    """The words of hidden checks contain no decimal number, unless the student already has it in a file."""
+    """The words of hidden checks contain no decimal number, unless the student already has it in a file.
+
+    And what they draw, a regrade draws again.
+    """
     public = public_numbers(exercise)
     for path in sorted(graders.glob("*.py")):
         for line, number in quoted_numbers(parse(path)):
             if number not in public:
                 problem = f"a text that a hidden check shows contains the number {number}."
                 findings.add(path, line, "leak", problem, IN_WORDS)
+        for line, call in unseeded(parse(path)):
+            fix = "Take `rng` as an argument of the check: what it draws, `grade rerun` draws again."
+            findings.add(path, line, "draw", f"{call} draws other numbers in every run.", fix)
 
 
 def public_numbers(exercise: Exercise) -> frozenset[str]:
@@ -437,8 +445,9 @@ def _audit_order(catalog: Catalog, exercise: Exercise, wrong: About) -> None:
     if stands(exercise) not in places:  # named already
         return
     later = places[places.index(stands(exercise)) + 1 :]
-    for other in map(partial(_readable, catalog), ids):
-        if other is None or other.order >= exercise.order or stands(other) not in later:
+    others = [other for other in map(partial(_readable, catalog), ids) if other is not None]
+    for other in sorted(others, key=lambda one: one.order):  # the lowest of them is where it belongs
+        if other.order >= exercise.order or stands(other) not in later:
             continue
         if exercise.is_warm_up and other.lesson != exercise.lesson:
             continue
@@ -498,10 +507,8 @@ def _audit_code(catalog: Catalog, exercise: Exercise, findings: Findings) -> Non
             findings.add(exercise.readme_path, None, "readme", problem, fix)
     _audit_imports(exercise, exercise.stub_path, stub, findings)
     _audit_imports(exercise, solution, model, findings)
-    if not exercise.is_warm_up and "\n## What is checked\n" not in read_text(exercise.readme_path):
-        problem = "the README has no section `## What is checked`."
-        fix = "Put there what is looked up beside the work; before it stands what is read first."
-        findings.add(exercise.readme_path, None, "readme", problem, fix)
+    if not exercise.is_warm_up:
+        _audit_length(exercise, findings)
     for path in accepted_files(catalog, exercise):
         _audit_imports(exercise, path, parse(path), findings)
     mistakes, file = mistakes_of(catalog, exercise), mistakes_path(catalog, exercise)
@@ -509,6 +516,35 @@ def _audit_code(catalog: Catalog, exercise: Exercise, findings: Findings) -> Non
         with contextlib.suppress(ContentError):  # told where it is planned
             tree = ast.parse(source_of(catalog, exercise, variant))
             _audit_imports(exercise, file, tree, findings, variant.line)
+
+
+#: In words: of a README what is read before the work begins, and what is looked up beside it. At 150 words a
+#: minute it is six minutes; `digital-twin` has seven devices to explain.
+_TO_READ, _TO_LOOK_UP, _MORE_TO_READ = 900, 500, {"digital-twin": 1100}
+#: And the words in which the first function to write has to come.
+_TO_BEGIN = 200
+
+
+def _audit_length(exercise: Exercise, findings: Findings) -> None:
+    """A README is short, and begins with something to write."""
+    reading, found, looked_up = read_text(exercise.readme_path).partition("\n## What is checked\n")
+    if not found:
+        problem = "the README has no section `## What is checked`."
+        fix = "Put there what is looked up beside the work; before it stands what is read first."
+        findings.add(exercise.readme_path, None, "readme", problem, fix)
+        return
+    most = _MORE_TO_READ.get(exercise.id, _TO_READ)
+    for words, limit, where in (
+        (reading.split(), most, "before *What is checked*"),
+        (looked_up.split(), _TO_LOOK_UP, "below it"),
+    ):
+        if len(words) > limit:
+            problem = f"the README has {len(words)} words {where}, and {limit} at most are read."
+            findings.add(exercise.readme_path, None, "readme", problem, "Shorten it, or let the stub say it.")
+    begins = " ".join(reading.split()[:_TO_BEGIN])
+    if not any(f"`{task.id}" in begins for task in exercise.task):
+        problem = f"the README names no function in its first {_TO_BEGIN} words."
+        findings.add(exercise.readme_path, None, "readme", problem, "Say which one to write first.")
 
 
 def _audit_imports(

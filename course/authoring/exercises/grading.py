@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import ast
 import contextlib
+import io
 import os
+import signal
 import tempfile
+import threading
 import traceback
 import types
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -418,6 +421,36 @@ class LocalSubmission:
         if not callable(function):
             raise StudentFailure.missing(name)
         return function
+
+
+class _TooLongError(KeyboardInterrupt):
+    """Raised in student code that does not end: no ``except Exception`` there keeps it."""
+
+
+@contextlib.contextmanager
+def ending(seconds: float, said: Callable[[], ContentError]) -> Iterator[None]:
+    """Stop what does not end, and keep what it prints to itself; where there is no such timer, wait.
+
+    Raises:
+        ContentError: ``said()``, after so many seconds.
+    """
+
+    def stop(*_: object) -> None:
+        raise _TooLongError
+
+    timed = hasattr(signal, "setitimer") and threading.current_thread() is threading.main_thread()
+    before = signal.signal(signal.SIGALRM, stop) if timed else None
+    try:
+        if timed:
+            signal.setitimer(signal.ITIMER_REAL, seconds)
+        with contextlib.redirect_stdout(io.StringIO()):
+            yield
+    except _TooLongError:
+        raise said() from None
+    finally:
+        if timed:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            signal.signal(signal.SIGALRM, before)
 
 
 def _guarded(fn: Any) -> Any:

@@ -468,7 +468,8 @@ def _judge_named(mutant: Variant, check: str, named: CheckResult | None) -> tupl
         return (Fault(f"is not caught by {named.id}, as it is on record.", again),)
     if (named.diagnosis or "") not in (mutant.code, *mutant.also):
         said = f"is diagnosed as {named.diagnosis} by {named.id} ({named.status}), not as {mutant.code}."
-        return (Fault(said, "Teach the check's diagnosis to recognise it, or correct the entry."),)
+        fix = "If the two answer alike, ask in questions.py what tells them apart, or give both one code."
+        return (Fault(said, f"{fix} Else teach the check's diagnosis, or correct the entry."),)
     return ()
 
 
@@ -535,7 +536,7 @@ def read_record(catalog: Catalog, exercise: Exercise) -> Record | None:
     try:
         return msgspec.json.decode(path.read_bytes(), type=Record) if path.is_file() else None
     except (OSError, msgspec.DecodeError) as error:
-        fix = "Delete the file, then run `course author build --accept`."
+        fix = f"Delete the file, then run `course author build {exercise.id} --accept`."
         raise ContentError(path, None, f"it cannot be read: {error}.", help=fix) from None
 
 

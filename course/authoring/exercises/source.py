@@ -197,3 +197,18 @@ def audit_style(catalog: Catalog, exercises: Sequence[Exercise], findings: Findi
             name = line.removeprefix(start)
             message, fix = "it is not laid out as ruff lays it out.", f"Run `ruff format {name}`."
             findings.add(root / name, None, "style", message, fix)
+
+
+#: Of numpy's own generator, what draws nothing.
+_NO_DRAWS = frozenset({"default_rng", "seed"})
+
+
+def unseeded(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """Calls that draw from no seed, with their lines: numpy's own, those of Python, one made of nothing."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call):
+            head, _, name = ast.unparse(node.func).rpartition(".")
+            fresh = name == "default_rng" and not (node.args or node.keywords)
+            shared = head in {"np.random", "numpy.random"} and name.islower() and name not in _NO_DRAWS
+            if fresh or shared or head == "random":
+                yield node.lineno, f"{ast.unparse(node.func)}()"

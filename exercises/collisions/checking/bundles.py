@@ -116,7 +116,9 @@ def _tell_dimension(submission, task, calls, failure):
     works = {
         d: kit.attempt(lambda some=some: submission.call_each(task, some)) for d, some in by_size.items()
     }
-    good, bad = ([d for d, found in works.items() if (found is None) == is_bad] for is_bad in (False, True))
+    good = [d for d, found in works.items() if found is not None]
+    fails = lambda args: kit.attempt(lambda: submission.call_each(task, [args])) is None  # noqa: E731
+    bad = [d for d, found in works.items() if found is None and all(map(fails, by_size[d]))]
     if good and bad:
         kit.fail(
             f"In {bad[0]}-D your code raises {failure.type}; in {good[0]}-D it works.",

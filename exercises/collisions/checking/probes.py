@@ -298,7 +298,18 @@ def _by_law(task, calls, values, truth):
                 return "ENERGY_CREATED"
             if _momentum_lost(call, value):
                 return "MOMENTUM_LOST"
-    return rubs or _by_speeds(task, colliding)
+    askew = task == "resolve" and _askew(calls, values, truth)
+    return "BLOW_NOT_ALONG_NORMAL" if askew else rubs or _by_speeds(task, colliding)
+
+
+def _askew(calls, values, truth):
+    """Whether every wrong pair that meets changes its velocities across the normal, too."""
+    across = []
+    for call, value, right in zip(calls, values, truth, strict=True):
+        if _closing("resolve", call) > 0 and not _same(right, value):
+            changes = np.subtract(value, call[2:4])
+            across.append(np.max(np.abs(changes - np.outer(changes @ call[4], call[4]))))
+    return len(across) > 1 and min(across) > 1e-8
 
 
 def _by_speeds(task, colliding):

@@ -107,6 +107,16 @@ mistakes(
     "The length is missing in J.",
     "J's second entry is -length sin(angle).",
 ).edit("felt_mass", {"[1.0, lever]": "[1.0, lever / length]"})
+mistakes(
+    "COSINE_SQUARED",
+    "The carriage counts with the square of a cosine: right along the rail and upright, and not between.",
+    "The rod gives way as it turns: work out x from M x = Jᵀ, then J x, then one over it.",
+).body(
+    "felt_mass",
+    """
+        return tip + carriage * np.cos(angle) ** 2 + 0.0 * length
+    """,
+)
 
 mistakes.accept(
     "The matrix is inverted by hand",

@@ -59,17 +59,3 @@ def test_a_page_more_to_read_first_is_too_late() -> None:
     script = read_script(CATALOG.lesson(lesson_id), CATALOG.warm_ups(lesson_id))
     longer = replace(script, weights=(TO_A_TASK, *script.weights[1:]))
     assert [line.split(":")[0] for line in too_late(start_of(longer))] == ["question", "task"]
-
-
-#: In words: of a README what is read before the work begins, and what is looked up beside it. At 150 words a
-#: minute it is six minutes; `digital-twin` has seven devices to explain.
-TO_READ, TO_LOOK_UP, MORE_TO_READ = 900, 500, {"digital-twin": 1100}
-
-
-@pytest.mark.parametrize("exercise", CATALOG.exercises(), ids=lambda exercise: exercise.id)
-def test_a_readme_is_short_and_begins_with_something_to_write(exercise):
-    reading, found, looked_up = exercise.readme_path.read_text("utf-8").partition("\n## What is checked\n")
-    assert found
-    assert len(reading.split()) <= MORE_TO_READ.get(exercise.id, TO_READ)
-    assert len(looked_up.split()) <= TO_LOOK_UP
-    assert any(f"`{task.id}" in " ".join(reading.split()[:200]) for task in exercise.task)

@@ -288,12 +288,16 @@ def test_moment_oblique(submission, rng):
 @pytest.mark.task(bundles.MOMENT)
 @pytest.mark.points(1)
 def test_moment_overlap(submission, rng):
-    """Spheres that overlap from the start"""
+    """Spheres that overlap from the start, or touch"""
     bundles.expect_formula(
         submission,
         bundles.MOMENT,
-        [*(draws.overlap(rng, approach) for approach in (True, False, True, False)), *draws.level(rng)],
-        "For spheres that overlap from the start the result is wrong.",
+        [
+            *(draws.overlap(rng, approach) for approach in (True, False, True, False)),
+            *draws.level(rng),
+            draws.touching_spheres(rng),
+        ],
+        "For spheres that overlap or touch at the start the result is wrong.",
         "If they approach, the answer is 0.0. Otherwise it is None.",
     )
 

@@ -36,6 +36,8 @@ GOOD_LINKS = (
 FIGURE = "![It falls down to zero](figure:none)\nc\n\nHalf"
 PRINTS = "```python\nprint(1 + 1)\n```\n\n```output\n3\n```\n\nHalf of twice"
 REQUIRING = 'points(3)\n@pytest.mark.requires("doublings_values")'
+DRAWS = "import numpy as np\nimport pytest\n\nRNG = np.random.{}\n"
+NO_ADVICE = 'mistakes("SIGN_LOST", "No sign.", " ").edit("double", {"2.0 * x": "2'
 OF_ITSELF = "points(1 + 2)\n@pytest.mark.requires('double_of_three')"
 
 
@@ -77,6 +79,22 @@ OF_ITSELF = "points(1 + 2)\n@pytest.mark.requires('double_of_three')"
         (TOML, '2 = ["SQUARES', '4 = ["SQUARES', "[task.fits]", "content", "no hint number 4"),
         (README, "`double(x) -> float`", "`double` -> float", None, "readme", "signature double(x)"),
         (README, "## What is checked", "## Checked", None, "readme", "no section `## What is checked`"),
+        (
+            README,
+            "\n## What is checked",
+            "word " * 950 + "\n\n## What is checked",
+            None,
+            "readme",
+            "900 at most",
+        ),
+        (
+            README,
+            "\n## What is checked\n",
+            "\n## What is checked\n" + "word " * 501,
+            None,
+            "readme",
+            "500 at",
+        ),
         (STUB, "def double(x)", "def double(y)", None, "signature", "double(y)"),
         (STUB, "def double(x)", "def double(x", "def double", "content", "not valid Python"),
         (STUB, '    """Twice ``x``.', '    x = """Twice ``x``.', "def double", "stub", "no docstring"),
@@ -95,6 +113,17 @@ OF_ITSELF = "points(1 + 2)\n@pytest.mark.requires('double_of_three')"
         (GRADERS, "double_of_negative", "double_of_three", "def test_double_of_three", "check", "twice"),
         (GRADERS, '"Try a negative number by hand."', '"Try -18.5 by hand."', "18.5", "leak", "18.5"),
         (GRADERS, '"Try a negative number by hand."', '"Try 3.0 by hand."', None, "", ""),
+        (GRADERS, "import pytest\n", DRAWS.format("default_rng()"), "RNG = ", "draw", "default_rng() draws"),
+        (GRADERS, "import pytest\n", DRAWS.format("uniform(1, 2)"), "RNG = ", "draw", "uniform() draws"),
+        (GRADERS, "import pytest\n", DRAWS.format("default_rng(5)"), None, "", ""),
+        (
+            MISTAKES,
+            'mistakes("SIGN_LOST").edit("double", {"2.0 * x": "2',
+            NO_ADVICE,
+            "No s",
+            "content",
+            "not what",
+        ),
         (MISTAKES, '"x * x"', '"x *"', '"x *"', "content", "is not valid Python"),
         (MISTAKES, '"2.0 * x": "x * x"', '"3.0 * x": "x * x"', "3.0", "content", "'3.0 * x' stands 0 times"),
         (MISTAKES, '{"2.0 * x": "x * x"}', '{"x": "y"}', '"y"', "content", "'x' stands 3 times in double"),

@@ -74,6 +74,26 @@ def test_what_an_author_writes_is_built_and_right(halving: Path, capsys: pytest.
     assert "up to date" in capsys.readouterr().out
 
 
+def test_a_mistake_that_never_ends_is_named_and_prints_nothing(
+    halving: Path, mini: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("course.authoring.exercises.diagnosis._PATIENCE", 0.5)
+    loops = 'mistakes("LOOPS", "It loops.", "End it.").body("halve", "print(1)\\nwhile True: pass")'
+    with mistakes(mini).open("a") as file:
+        file.write(f"\n{loops}\n")
+    for command in (["build", "halving"], ["check", "halving"]):
+        assert run(["author", *command]) != 0
+        told = " ".join(capsys.readouterr())
+        assert "halve: after 0 s LOOPS has not answered the questions." in told
+        assert "mistakes.py:" in told
+        assert "\n1\n" not in told
+
+
+def test_a_question_that_nobody_can_be_asked_is_named(halving: Path) -> None:
+    edit(halving / "questions.py", "(-3,)", "(-3, 4)")
+    assert any("question 2 of halve cannot be asked: too many" in one for one in problems())
+
+
 def test_a_probe_that_was_loaded_before_knows_a_code_that_is_new(halving: Path, mini: Path) -> None:
     """One command loads it with the questions, then writes the words, then grades with both."""
     questions, hidden = halving / "questions.py", mini / "graders" / "halving" / "checks.py"

@@ -89,7 +89,11 @@ SUMS = [
         ("SMALL_SURPRISES_IGNORED", "sync", [("z - x", "(z - x) * (abs(z - x) > 3 * twin['sigma'])")]),
         ("PREDICTS_TOO_LITTLE", "sync", [("dt / n * v", "dt / n * v / 2")]),
         ("SHARE_OVER_ONE", "sync", [("x + 0.3", "x + 1.5")]),
-        ("SURPRISE_LIMITED", "sync", [("z - x", "float(np.clip(z - x, -2 * twin['sigma'], 2 * twin['sigma']))")]),
+        (
+            "SURPRISE_LIMITED",
+            "sync",
+            [("z - x", "float(np.clip(z - x, -2 * twin['sigma'], 2 * twin['sigma']))")],
+        ),
         (None, "sync", [("0.05), 5.0)", "0.3), 0.9)")]),  # where a friction stops at a limit is asked for
         (None, "sync", [("- 0.15", "- 0.5")]),
         ("FRICTION_SHARE_TOO_LARGE", "sync", [("- 0.15", "- 3.0")]),

@@ -413,6 +413,7 @@ def code_of(catalog: Catalog, exercise: Exercise) -> bytes:
     solution = solution_path(catalog, exercise)
     folders = (exercise.readme_path.parent, exercise_graders(catalog, exercise))
     paths = [p for folder in folders for p in sorted(folder.rglob("*.py"), key=attrgetter("name"))]
+    paths = [path for path in paths if path.name != "report.py"]  # it draws what was decided
     others = sorted(solution.parent.glob("*.py"))
     paths += [path for path in others if path not in (solution, mistakes_path(catalog, exercise))]
     return b"".join(path.name.encode() + b"\0" + _unworded(path) + b"\0" for path in paths)

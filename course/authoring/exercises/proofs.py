@@ -224,6 +224,8 @@ class Prover:
             return
         self._breaks.add((check, path, line))
         fix = "Look at a value before computing with it: whatever a student's function returns is a finding."
+        if re.search(r"NameError|required (keyword-only|positional) argument", said):
+            fix = "Correct that line: it breaks whatever the function returns."
         if "there are no words for" in said:
             fix = "Write the code as `mistakes.py` has it, or give it words there."
         problem, fix = _told(f"{what}: {said.rstrip('.')}.", fix, self._findings.root)

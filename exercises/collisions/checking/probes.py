@@ -303,10 +303,12 @@ def _by_law(task, calls, values, truth):
 
 
 def _askew(calls, values, truth):
-    """Whether every wrong pair that meets changes its velocities across the normal, too."""
+    """Whether every wrong pair that meets, walls aside, exchanges momentum across the normal as well."""
     across = []
     for call, value, right in zip(calls, values, truth, strict=True):
-        if _closing("resolve", call) > 0 and not _same(right, value):
+        if _closing("resolve", call) > 0 and math.inf not in call[:2] and not _same(right, value):
+            if _momentum_lost(call, value):
+                return False
             changes = np.subtract(value, call[2:4])
             across.append(np.max(np.abs(changes - np.outer(changes @ call[4], call[4]))))
     return len(across) > 1 and min(across) > 1e-8

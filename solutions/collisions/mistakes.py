@@ -197,9 +197,9 @@ mistakes(
 ).edit(
     "simulate_head_on",
     {"_impulse(m[0], m[1], closing, restitution": "(1 + restitution) * closing * m[0] * m[1] / (m[0] + m[1]"},
-).edit(
+).edit(  # nan only where the wall is on the left
     "simulate_head_on", {"vb + impulse / m[1]": "vb + impulse * (m[0] / m[1]) / m[0]"}
-)  # of a wall on the left
+)
 mistakes(
     "SPEEDS_NOT_RELATIVE",
     "The speed of approach is not the difference of the two velocities.",
@@ -1010,12 +1010,12 @@ mistakes(
 mistakes(
     "GAP_AS_OVERLAP",
     "Spheres with a small gap between them get 0.0, as if they overlapped.",
-    "They overlap only where |x| < ra + rb. Compare without a margin: however small the gap is, it takes its time.",
+    "They overlap only where |x| < ra + rb. Compare without a margin: however small the gap is, closing it takes some time.",
 ).edit("time_of_impact", {"c <= 0": "c <= 1e-3 * (ra + rb) ** 2"})
 mistakes(
     "RESTITUTION_DROPPED_WHEN_SLOW",
     "Slow bodies part with less than e times the speed at which they met, or stay together.",
-    "The coefficient of restitution is the same at every speed, however slow they are.",
+    "e is the same at every speed, also for slow bodies.",
 ).body(
     "impulse_1d",
     """

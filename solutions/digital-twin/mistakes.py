@@ -213,7 +213,7 @@ mistakes(
 mistakes(
     "WALK_WITHOUT_THREE",
     "The random walk is too small by about the square root of three.",
-    "If your code fits the Allan variance, look at the walk's term, K² T/3: is it divided by 3, and is it added to N²/T, square to square? Deviations do not add up.",
+    "If your code fits the Allan variance, look at the walk's term, K² T/3: is it divided by 3? Add it to N²/T, and take the root of the sum: roots must not be added.",
 ).around(
     "fit_noise",
     """
@@ -1269,15 +1269,15 @@ mistakes(
 ).edit("imu", {"= bias_random_walk *": "= (bias_random_walk + noise_density) *"})
 mistakes(
     "PARALLEL_TEST_WRONG",
-    "A wall square to the beam is not seen, as if it were parallel to it.",
-    "Beam and wall are parallel where the cross product of their directions is zero; the wall's own length is a factor of it.",
+    "A wall square to the beam, of one metre or shorter, is not seen.",
+    "If your code asks whether beam and wall are parallel: the cross product of their directions is zero there, and has the wall's length as a factor.",
 ).edit("lidar", {"wx  # zero where beam and wall are parallel": "wx", "cross != 0": "abs(cross) != 1"}).edit(
     "lidar", {"wx  # zero where beam and wall are parallel": "wx", "cross != 0": "abs(cross) > 0.3"}
 )
 mistakes(
     "WALL_ENDS_SORTED",
     "A wall that falls towards larger x is seen as one that rises.",
-    "An end is a pair of x and y: if you sort the ends, move them as pairs.",
+    "An end is a pair of x and y: if you sort the ends, keep x and y of each together.",
 ).edit(
     "lidar",
     {
@@ -1286,7 +1286,7 @@ mistakes(
 )
 mistakes(
     "WALL_AT_PI_MISSED",
-    "A wall on both sides of the direction -x from the robot is not seen.",
+    "A wall that crosses the direction -x, as seen from the robot, is not seen.",
     "There an angle jumps from pi to -pi. Take differences of angles, wrapped, or no angles at all: solve for the distance along the beam and the share along the wall.",
 ).edit(
     "lidar",
@@ -1427,7 +1427,7 @@ mistakes(
 mistakes(
     "NOISE_CENTRED",
     "The mean of the random numbers is taken away from them.",
-    "Use them as rng.standard_normal draws them: over a short time, their mean is not zero.",
+    "Use them as rng.standard_normal draws them: the mean of a sample is never exactly zero.",
 ).edit("imu", {"rng.standard_normal(n), bias": "(lambda w: w - np.mean(w))(rng.standard_normal(n)), bias"})
 mistakes(
     "BIAS_PULLED_BACK",
@@ -1945,7 +1945,7 @@ mistakes(
 )
 mistakes(
     "DELAY_AS_LAG",
-    "The signal is smoothed, as behind a lag with the time constant latency, and not delayed.",
+    "The signal is smoothed, as behind a lag, and not delayed.",
     "A delay keeps the shape of the signal: the output at time k*dt is the signal of the time k*dt - latency.",
 ).body(
     "delay_line",
@@ -2315,7 +2315,7 @@ mistakes(
 )
 mistakes(
     "SURPRISE_LIMITED",
-    "A surprise of five stds moves the position hardly further than one of two.",
+    "A surprise of 5 stds moves the position hardly further than a surprise of 2.",
     "Correct by the same share of every surprise. After a jump of the friction the surprises are large because the twin is wrong, not because the measurement is.",
     kind="fact",
 ).edit(

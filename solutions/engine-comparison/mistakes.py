@@ -31,8 +31,8 @@ mistakes(
 )
 mistakes(
     "ORDER_LOCAL",
-    "The orders are one too high, as the error of a single step makes them.",
-    "Run for one fixed time, so that half the step means twice as many steps. If your code does, add nothing to the slope.",
+    "The orders are one too high. The error of a single step gives such orders.",
+    "Run for one fixed time, so that half the step means twice as many steps. If your code already does that, add nothing to the slope.",
 ).body(
     "characterise",
     """
@@ -684,7 +684,7 @@ mistakes(
 mistakes(
     "STOPS_AT_MISFIT",
     "No engine that comes after one that does not fit is chosen.",
-    "Go on with the next engine: `break` and `return` end the loop, `continue` does not. And what you keep about one engine begins anew with the next.",
+    "Go on with the next engine: `break` and `return` end the loop, `continue` does not. Reset what you keep about one engine before you look at the next.",
 ).body(
     "choose_engine",
     """
@@ -1659,7 +1659,7 @@ mistakes(
 )
 mistakes(
     "RESTITUTION_ASSUMED",
-    "Engines whose coefficients differ get the same one, or nearly so.",
+    "Engines of different restitution get the same value, or nearly the same.",
     "Send a body against the wall at 2 m/s, and compare the speeds just before the hit and just after it. Does the body reach the wall?",
 )
 mistakes(

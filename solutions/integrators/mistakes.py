@@ -1285,8 +1285,8 @@ mistakes(
 )
 mistakes(
     "WEIGHTS_ROUNDED",
-    "The four accelerations are weighted by rounded numbers, as 0.1667 for 1/6.",
-    "Write 1/6 and 1/3, or h/6*(...): what four digits leave, no small step removes.",
+    "The four accelerations are weighted by rounded numbers, such as 0.1667 for 1/6.",
+    "Write 1/6 and 1/3, or h/6*(...): the error of a rounded weight does not shrink with the step.",
 ).edit(
     "rk4_step",
     {

@@ -161,7 +161,7 @@ mistakes(
 mistakes(
     "PROMISES_TOO_MUCH",
     "No estimator can reach this threshold with this excitation in this time.",
-    'Check the unit first: 0.1 with "%" is a tenth of a per cent. Else take a larger threshold, up to what the README asks of that parameter: what your own identify returns for such recordings is a guide. From n samples at rest, the std of the noise is known to 1.96/sqrt(2 n).',
+    'Check the unit first: 0.1 with "%" is a tenth of a per cent. Else take a larger threshold, up to what the README asks of that parameter: what your own identify returns for such recordings is a guide. From n samples at rest, the std of the noise has a relative half-width of 1.96/sqrt(2 n).',
     kind="fact",
 ).around(
     "plan",
@@ -1102,7 +1102,7 @@ mistakes(
 mistakes(
     "MEDIAN_CART",
     "For several questions your gains are about the best for the median of the settling times. At least once their mean is clearly later than it could be.",
-    "Take the mean over all carts, with 3 s for each that fails. If you do, ask what your search compares: it is the mean settling time of all carts that counts. And search more finely.",
+    "Take the mean over all carts, with 3 s for each that fails. If you already do, search more finely, and compare gains by the mean settling time of all carts.",
     kind="consequence",
 ).edit(
     "tune",
@@ -1454,7 +1454,7 @@ mistakes(
 mistakes(
     "ONE_DRAW_FOR_ALL",
     "Here and for four other questions, your gains suit carts that are all large or all small at once better than carts drawn one parameter at a time, as if one random number set all five parameters of a cart.",
-    "Draw a number of its own for each parameter: a generator that starts anew from the same seed gives the same numbers again. If you do, ask what your search compares: it is the mean settling time of all carts that counts. And search more finely.",
+    "Draw a number of its own for each parameter: a generator that starts anew from the same seed gives the same numbers again. If you already do, search more finely, and compare gains by the mean settling time of all carts.",
     kind="consequence",
 ).body(
     "tune",
@@ -1473,13 +1473,13 @@ mistakes(
 mistakes(
     "BOX_ENDS_ALONE",
     "Here and for four other questions, your gains suit carts whose parameters all lie at an end of their range better than carts drawn from all of it.",
-    "Draw each factor anywhere between low and high: np.exp(rng.uniform(np.log(low), np.log(high), n)). If you do, ask what your search compares: it is the mean settling time of all carts that counts. And search more finely.",
+    "Draw each factor anywhere between low and high: np.exp(rng.uniform(np.log(low), np.log(high), n)). If you already do, search more finely, and compare gains by the mean settling time of all carts.",
     kind="consequence",
 ).edit("tune", {"(rng.permutation(200) + 0.5) / 200": "rng.integers(0, 2, 200)"})
 mistakes(
     "FACTORS_DIVIDE",
     "Here and for four other questions, your gains suit carts whose parameters are the estimate's values divided by factors from the box, and not those with the products.",
-    "Multiply: value * factor. If you do, ask what your search compares: it is the mean settling time of all carts that counts. And search more finely.",
+    "Multiply: value * factor. If you already do, search more finely, and compare gains by the mean settling time of all carts.",
     kind="consequence",
 ).edit("tune", {"estimate[name][0] * np.exp": "estimate[name][0] / np.exp"}, also=("NO_CART_SETTLES",))
 mistakes(
@@ -1491,7 +1491,7 @@ mistakes(
 mistakes(
     "LAG_FOR_LATENCY",
     "Here and for four other questions, your gains suit carts whose latency is tau + latency better than those of the box.",
-    "rollout takes tau and latency: give it each as it is, times its factor. If you do, ask what your search compares: it is the mean settling time of all carts that counts. And search more finely.",
+    "rollout takes tau and latency: give it each as it is, times its factor. If you already do, search more finely, and compare gains by the mean settling time of all carts.",
     kind="consequence",
 ).edit(
     "tune", {"few = {": 'carts["latency"] *= 1 + estimate["tau"][0] / estimate["latency"][0]\n    few = {'}

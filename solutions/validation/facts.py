@@ -134,14 +134,14 @@ def _raised(clean, offset, t, shifts):
     return clean(t, shifts) + offset
 
 
-#: From the squares of what overlaps and from ``_Lags._others``.
-_BY_OTHERS = {
-    "zero": lambda squares, counts, zero, wrapped, product, centred, level: squares + zero,
-    "wrapped": lambda squares, counts, zero, wrapped, product, centred, level: squares + wrapped,
-    "product": lambda squares, counts, zero, wrapped, product, centred, level: -product,
-    "centred": lambda squares, counts, zero, wrapped, product, centred, level: -centred,
-    "shapes": lambda squares, counts, zero, wrapped, product, centred, level: (squares - level) / counts,
-}
+#: Rules that ask what ``_Lags._others`` computes.
+_BY_OTHERS = ("zero", "wrapped", "product", "centred", "shapes")
+
+
+def _cost(rule, squares, counts, zero, wrapped, product, centred, level):
+    """From the squares and the number of what overlaps, and from ``_Lags._others``."""
+    costs = (squares + zero, squares + wrapped, -product, -centred, (squares - level) / counts)
+    return costs[_BY_OTHERS.index(rule)]
 
 
 class _Lags:
@@ -224,7 +224,7 @@ class _Lags:
         )
         squares, counts, *others = of_runs.sum(axis=0)
         if rule in _BY_OTHERS:
-            cost = _BY_OTHERS[rule](squares, counts, *others)
+            cost = _cost(rule, squares, counts, *others)
         elif rule == "even":
             cost = np.sum(of_runs[:, 0] / of_runs[:, 1], axis=0)
         else:

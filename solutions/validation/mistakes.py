@@ -488,7 +488,7 @@ mistakes(
 mistakes(
     "ONE_STANDARD_ERROR",
     "Which part of your code uses alpha, and is half of it left out on either side?",
-    "Take the quantiles of the resampled values at alpha/2 and 1 - alpha/2, or as many standard deviations as belong to 1 - alpha/2. Fixed levels and fixed numbers suit one alpha alone.",
+    "Take the quantiles of the resampled values at alpha/2 and 1 - alpha/2, or z standard deviations either way, with z the normal quantile at 1 - alpha/2. A fixed level or factor is right for one alpha only.",
     kind="consequence",
 ).body(
     "block_bootstrap_ci",
@@ -2196,8 +2196,8 @@ mistakes(
 )
 mistakes(
     "AFTER_THE_SHIFT",
-    "rmse, bias and coverage are those that are left when the simulation is moved by its lag.",
-    "Compare the samples at the same times, as they are: a lag is an error like others.",
+    "rmse, bias and coverage are computed after the simulation was moved by its lag.",
+    "Compare the samples at the same times, as they are: a lag is an error like any other.",
 ).body(
     "validate",
     """
@@ -2222,7 +2222,7 @@ mistakes(
 mistakes(
     "FAR_ONES_LEFT_OUT",
     "Errors far from the others are left out.",
-    "Square all of them: a rare, large error is what the rmse is to show.",
+    "Square all of them: a rare, large error is what the rmse is meant to show.",
 )
 mistakes(
     "VARIANCE_OF_SIZES",
@@ -2246,7 +2246,7 @@ mistakes(
 )
 mistakes(
     "SIDES_MULTIPLIED",
-    "The shares of the two sides are multiplied.",
+    "You multiply the share of values above lo by the share below hi.",
     "A value counts if it is within both ends: combine the comparisons before you take the mean.",
 )
 mistakes(

@@ -199,8 +199,8 @@ def _endless(catalog: Catalog, exercise: Exercise, task: str, codes: tuple[str, 
     return ContentError(
         mistakes_path(catalog, exercise),
         line or mistakes.lines.get(codes[0]),
-        f"{task}: after {_PATIENCE:.0f} s {' and '.join(codes)} has not answered the questions.",
-        help="One that never ends is told so, whatever its words: write one that does, or take it out.",
+        f"{task}: after {_PATIENCE:.0f} s {' and '.join(codes)} left the questions unanswered.",
+        help="What never ends is named as that, whatever its words: write one that ends, or take it out.",
     )
 
 

@@ -539,7 +539,7 @@ def _audit_length(exercise: Exercise, findings: Findings) -> None:
         (looked_up.split(), _TO_LOOK_UP, "below it"),
     ):
         if len(words) > limit:
-            problem = f"the README has {len(words)} words {where}, and {limit} at most are read."
+            problem = f"the README has {len(words)} words {where}, and at most {limit} are allowed."
             findings.add(exercise.readme_path, None, "readme", problem, "Shorten it, or let the stub say it.")
     begins = " ".join(reading.split()[:_TO_BEGIN])
     if not any(f"`{task.id}" in begins for task in exercise.task):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import contextlib
-import io
 import os
 import signal
 import tempfile
@@ -442,15 +441,17 @@ def ending(seconds: float, said: Callable[[], ContentError]) -> Iterator[None]:
     before = signal.signal(signal.SIGALRM, stop) if timed else None
     try:
         if timed:
-            signal.setitimer(signal.ITIMER_REAL, seconds)
-        with contextlib.redirect_stdout(io.StringIO()):
+            signal.setitimer(
+                signal.ITIMER_REAL, seconds, 1.0
+            )  # again and again: a program may catch the first
+        with open(os.devnull, "w") as nowhere, contextlib.redirect_stdout(nowhere):  # noqa: PTH123
             yield
     except _TooLongError:
         raise said() from None
     finally:
         if timed:
             signal.setitimer(signal.ITIMER_REAL, 0.0)
-            signal.signal(signal.SIGALRM, before)
+            signal.signal(signal.SIGALRM, before or signal.SIG_DFL)
 
 
 def _guarded(fn: Any) -> Any:

@@ -208,7 +208,10 @@ def unseeded(tree: ast.Module) -> Iterator[tuple[int, str]]:
     for node in ast.walk(tree):
         if isinstance(node, ast.Call):
             head, _, name = ast.unparse(node.func).rpartition(".")
-            fresh = name == "default_rng" and not (node.args or node.keywords)
-            shared = head in {"np.random", "numpy.random"} and name.islower() and name not in _NO_DRAWS
-            if fresh or shared or head == "random":
+            given = [ast.unparse(one) for one in node.args] + [one.arg for one in node.keywords]
+            fresh = name in {"default_rng", "RandomState", "Random"} and given in ([], ["None"])
+            shared = (
+                head in {"np.random", "numpy.random", "random"} and name.islower() and name not in _NO_DRAWS
+            )
+            if fresh or shared:
                 yield node.lineno, f"{ast.unparse(node.func)}()"

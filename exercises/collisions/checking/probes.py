@@ -315,7 +315,7 @@ def _askew(calls, values, truth):
 
 
 def _by_speeds(task, colliding):
-    """Whether bodies part too fast in all impacts, or too slowly."""
+    """Whether bodies part too fast in all impacts, or too slowly, or the slow ones alone."""
     excess = np.array([_excess(task, c, v) for c, v in colliding])
     if _fades(task, colliding, excess):
         return "RESTITUTION_DROPPED_WHEN_SLOW"

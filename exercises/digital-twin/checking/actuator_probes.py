@@ -81,11 +81,9 @@ def of_backlash(submission):
     values = submission.call_each("backlash", [(x, 1.0, state) for x, state, _ in _PLAY])
     pairs = [kit.as_tuple(value, ("y", "state_next")) for value in values]
     outputs = [kit.as_number(y, "y") for y, _ in pairs]
-    right = [y for *_, y in _PLAY]
+    right, states = [y for *_, y in _PLAY], [kit.as_number(state, "state_next") for _, state in pairs]
     if np.allclose(outputs, right, rtol=0, atol=1e-12):
-        states = [kit.as_number(state, "state_next") for _, state in pairs]
         return None if np.allclose(states, outputs, rtol=0, atol=1e-12) else named("STATE_IS_NOT_OUTPUT")
-    states = [kit.as_number(state, "state_next") for _, state in pairs]
     if np.allclose(states, right, rtol=0, atol=1e-12) and outputs == [state for _, state, _ in _PLAY]:
         return named("OUTPUT_A_CALL_LATE")
     if ends := _of_ends(submission):
@@ -144,8 +142,9 @@ def of_delay(submission):
     circles = [np.interp(t - late, t, x, period=dt * len(x)) for late in lates]
     first = [row[: round(late / dt + 0.4999)] for row, late in zip(rows, lates, strict=True)]
     held = all(np.all(part == x[0]) for part in first) and not np.all(rows[0] == x[0])
+    creeps = np.all(np.diff(step[1:]) > 1e-9) and np.all(np.diff(step[1:], 2) < -1e-9) and step[-1] < 1 - 1e-9
     looks = (
-        ("DELAY_AS_LAG", np.all(np.diff(step[1:]) > 1e-9) and step[-1] < 1 - 1e-9),  # it never arrives
+        ("DELAY_AS_LAG", creeps),
         ("DELAY_WHOLE_SAMPLES", near and shifts[2] > shifts[0]),
         ("DELAY_WRAPS", np.allclose(rows, circles, rtol=0, atol=1e-9)),
         ("DELAY_SHARES_SWAPPED", _swaps(submission, dt)),

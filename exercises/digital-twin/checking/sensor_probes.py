@@ -449,11 +449,8 @@ def of_bias0(found, cases):
     if all(lengths):
         best = [math.sqrt(3) * case[2] / case[3] / case[1] for case in cases]  # samples
         inverse = [min(3 / case[1] ** 2 / n, len(case[0])) for n, case in zip(best, cases, strict=True)]
-        if (
-            max(abs(np.log(np.array(lengths) / inverse)))
-            < 0.5
-            < np.median(abs(np.log(np.divide(best, inverse))))
-        ):
+        off, tells = np.log(np.divide(lengths, inverse)), np.log(np.divide(best, inverse))
+        if max(abs(off)) < 0.5 < np.median(abs(tells)):
             return named("BIAS0_TIME_INVERTED")
         ratio = np.median(np.array(lengths) / best)
         if not 1 / 3 < ratio < 3:  # within it a mean is hardly worse than the best one

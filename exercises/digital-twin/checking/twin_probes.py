@@ -209,7 +209,7 @@ def _in_one_step(submission):
         ("TIME_RUNS_BACK", good and t_late < t - 1e-9),
         ("TIME_NOT_THE_LATEST", abs(t0 - t - 0.2) > 1e-6),
         ("NO_CORRECTION", far <= 1e-6 * _SURPRISE),
-        ("LARGE_SURPRISES_DROPPED", good and np.ptp(rows[3:6, 1]) < 1e-9),
+        ("LARGE_SURPRISES_DROPPED", good and np.all(np.ptp(rows[3:6, 1:], axis=0) < 1e-9)),
         ("SURPRISE_INVERTED", moved < -1e-6),
         ("SMALL_SURPRISES_IGNORED", abs(moved) <= 1e-6 < abs(rows[5, 1] - x0) / _SURPRISE),
         ("BELIEVES_MEASUREMENT", believed),
@@ -227,7 +227,7 @@ def _in_one_step(submission):
         ("FRICTION_LEARNS_BACKWARDS", v > 0.2 and b_ahead - b0 > 1e-9),
         ("SPEED_NOT_CORRECTED", np.max(np.abs(rows[1:6, 2] - v0)) < 1e-9),
         ("SPEED_CORRECTED_BACKWARDS", v_ahead < v0),
-        ("SURPRISE_LIMITED", good and 0 < abs(rows[5, 1] - x0) < 1.2 * abs(rows[4, 1] - x0)),
+        ("SURPRISE_LIMITED", good and 0.8 < abs(rows[5, 1] - x0) / abs(rows[4, 1] - x0) < 1.2),
         ("SPEED_SHARE_OVER_DT", min(gains) > 0.12 and abs(gains[0] - gains[1]) < 0.05 * gains[1]),
     )
     return [code for code, seen in tests if seen]

@@ -51,8 +51,8 @@ mistakes(
 ).edit("fair_step", {"h * other / iterations": "min(h, h * other / iterations)"})
 mistakes(
     "ROUNDED_DOWN",
-    "Your step is 0: // rounds down, floats as well.",
-    "Divide with /.",
+    "Your step is 0.",
+    "It is a fraction of a second: divide with /, and leave out //, int and round.",
 ).edit("fair_step", {"other / iterations": "other // iterations"})
 
 mistakes.accept(

@@ -57,7 +57,7 @@ mistakes(
 mistakes(
     "SLOW_ONES_REST",
     "A slow ball stays on the floor.",
-    "Every ball that moves into the floor bounces, however slowly.",
+    "Every ball that moves into the floor bounces, however slow it is.",
 ).edit("after_floor", {"-e * v if v < 0": "0.0 if -0.05 < v < 0 else -e * v if v < 0"})
 
 mistakes.accept(

@@ -126,7 +126,7 @@ mistakes(
 mistakes(
     "WHAT_THE_FIRST_LEAVES",
     "The second component gets what the first one leaves of the limit.",
-    "It is the length that is limited: multiply both with the limit over the length.",
+    "It is the length that is limited: multiply both by the limit, and divide by the length.",
 ).body(
     "friction",
     """

@@ -158,7 +158,7 @@ mistakes(
 )
 mistakes(
     "SAMPLES_NOT_TIME",
-    "You go back a number of samples: the latency over the time between the first two.",
+    "You go back a fixed number of samples: the latency divided by the time between the first two.",
     "The samples need not be evenly spaced: for each, compare its time plus the latency with now.",
 ).body(
     "seen",

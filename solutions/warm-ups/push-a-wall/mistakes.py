@@ -109,7 +109,7 @@ mistakes(
 ).edit("felt_mass", {"[1.0, lever]": "[1.0, lever / length]"})
 mistakes(
     "COSINE_SQUARED",
-    "The carriage counts with the square of a cosine: right along the rail and upright, and not between.",
+    "You count the carriage with the cosine squared. That is right with the rod along the rail or upright, but not in between.",
     "The rod gives way as it turns: work out x from M x = Jᵀ, then J x, then one over it.",
 ).body(
     "felt_mass",

@@ -16,9 +16,8 @@ bundles = kit.sibling(__file__, "bundles")
 def expect_times(submission, rng):
     """Each step is told when it starts: the path of a step that moves by ``drift * h * t`` tells."""
     n, drift = int(rng.integers(120, 200)), rng.uniform(1.0, 3.0)
-    h = (
-        int(100 * rng.integers(20, 300) + 11 * rng.integers(1, 10)) / 100_000
-    )  # five decimals, none a zero at the end
+    # Five decimals, none a zero at the end.
+    h = int(100 * rng.integers(20, 300) + 11 * rng.integers(1, 10)) / 100_000
     t_end = round(n * h, 5)
     q0, v0 = bundles.signed(rng, 0.5, 1.5), bundles.signed(rng, 0.5, 1.5)
     clock = systems.LinearStep([1.0], [0.0], [0.0], [1.0], clock=drift)

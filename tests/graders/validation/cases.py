@@ -76,12 +76,10 @@ def cut_short(rng):
     """
     late, recorded = float(rng.uniform(0.03, 0.06)), []
     for i, swings in enumerate((3.25, 4.25, 5.25)):
-        drive, t = (
-            twins.Wave(rng.uniform(-1, 1), rng.uniform(0.8, 1.1)),
-            0.005 * np.arange(round(200 * swings)),
-        )
+        drive = twins.Wave(rng.uniform(-1, 1), rng.uniform(0.8, 1.1))
+        t = 0.005 * np.arange(round(200 * swings))
         recorded.append(twins.Recording(f"cut {i}", t, drive, drive.speed(t), 2.0))
-    sim = twins.simulated(recorded, late=late, offset=float(rng.choice([-1, 1]) * rng.uniform(0.6, 0.7)))
+    sim = twins.simulated(recorded, late=late, offset=float(rng.choice([-1, 1]) * rng.uniform(0.3, 0.4)))
     return bundles.Case(recorded, sim, twins.measured(recorded), late)
 
 

@@ -85,7 +85,7 @@ OF_ITSELF = "points(1 + 2)\n@pytest.mark.requires('double_of_three')"
             "word " * 950 + "\n\n## What is checked",
             None,
             "readme",
-            "900 at most",
+            "at most 900",
         ),
         (
             README,
@@ -93,7 +93,7 @@ OF_ITSELF = "points(1 + 2)\n@pytest.mark.requires('double_of_three')"
             "\n## What is checked\n" + "word " * 501,
             None,
             "readme",
-            "500 at",
+            "at most 500",
         ),
         (STUB, "def double(x)", "def double(y)", None, "signature", "double(y)"),
         (STUB, "def double(x)", "def double(x", "def double", "content", "not valid Python"),

@@ -84,7 +84,7 @@ def test_a_mistake_that_never_ends_is_named_and_prints_nothing(
     for command in (["build", "halving"], ["check", "halving"]):
         assert run(["author", *command]) != 0
         told = " ".join(capsys.readouterr())
-        assert "halve: after 0 s LOOPS has not answered the questions." in told
+        assert "halve: after 0 s LOOPS left the questions unanswered." in told
         assert "mistakes.py:" in told
         assert "\n1\n" not in told
 

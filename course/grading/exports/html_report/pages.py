@@ -528,7 +528,14 @@ def _gathered(checks: list[CheckResult]) -> list[CheckResult]:
         elif check.status is Status.PASS or not check.input is check.actual is check.stdout is None:
             alike[check.id] = [check]
         else:
-            told = check.status, check.message, check.help, check.blocked_by, check.visibility
+            told = (
+                check.status,
+                check.message,
+                check.help,
+                check.blocked_by,
+                check.traceback,
+                check.visibility,
+            )
             alike.setdefault(told, []).append(check)
     return [_as_one(same) if len(same) > 1 else same[0] for same in alike.values()]
 
@@ -541,7 +548,7 @@ def _as_one(checks: list[CheckResult]) -> CheckResult:
         title=many if first.unwritten else f"{many}: {'; '.join(check.title for check in checks)}",
         points=sum(check.points for check in checks),
         max_points=sum(check.max_points for check in checks),
-        traceback=None,
+        traceback=None if first.unwritten else first.traceback,
     )
 
 

@@ -189,7 +189,7 @@ def _table_of(catalog: Catalog, exercise: Exercise, questions: ModuleType | None
     return made
 
 
-#: s; the slowest program of the course takes a twentieth of it for all of its questions.
+#: s, for all of a program's questions; each of the course's own programs ends within it.
 _PATIENCE = 60.0
 
 

@@ -18,7 +18,7 @@ named = probes.named
 
 KEYS = ("accepted", "reasons", *probes.MEASURES, "intervals", "runs_used")
 
-#: A lag is right to this share of the longest time between samples. Correct searches use a quarter of it
+#: A lag is right to this share of the longest time between samples. Correct searches use 28 % of it
 #: (calibration table); one in whole samples is off by 0.3 or more here.
 LAG_SHARE = 0.2
 #: Ends of the lag's interval: the errors of searches with one run or another left out, times Student's t.

@@ -453,12 +453,16 @@ def _sides(pair: Pair) -> Iterator[tuple[Document, list[tuple[int, str, bool, li
         )
 
 
+#: So many passages may be open at one place; a file with all of it on one line has thousands there.
+_NEAR = 100
+
+
 def _blocks(passages: Iterable[tuple[Passage, Passage]]) -> list[tuple[Passage, Passage]]:
     """Passages that follow each other on both sides, joined into one, as a reader sees them."""
     found: list[tuple[Passage, Passage]] = []
     near: list[int] = []  # of ``found``, those that a passage further down can continue
     for first, second in sorted(passages):
-        near = [at for at in near if first[0] <= found[at][0][1] + _BLANK + 1]
+        near = [at for at in near if first[0] <= found[at][0][1] + _BLANK + 1][-_NEAR:]
         for at in near:
             one, other = found[at]
             if _continues(one, first) and _continues(other, second):

@@ -35,6 +35,22 @@ class Heard(NamedTuple):
     value: Any
 
 
+#: Bytes of results that are kept of one submission to see whether the same call gives them again. A function
+#: that keeps something may return megabytes each time, and the grader would hold them all.
+_HEARD = 32_000_000
+
+
+def _weight(value: Any) -> int:
+    """About how many bytes a result takes."""
+    if isinstance(value, dict):
+        value = list(value.values())
+    if isinstance(value, list | tuple):
+        return 64 + sum(map(_weight, value))
+    return 64 + (
+        value.nbytes if isinstance(value, np.ndarray) else len(value) if isinstance(value, str) else 0
+    )
+
+
 class RemoteSubmission:
     """One submission in a worker. A worker that died is replaced before the next check.
 
@@ -86,6 +102,7 @@ class RemoteSubmission:
         self._needed: tuple[str, ...] = ()
         self.without: LoadRefusedError | None = None
         self.heard: list[Heard] = []
+        self._room = _HEARD
         self._home = home
         self._places = places or Places(module=main)
         self.seed = seed
@@ -245,7 +262,8 @@ class RemoteSubmission:
         return given
 
     def _hear(self, method: str, name: str, args: tuple[Any, ...] | None, value: T) -> T:
-        if args is not None:
+        if args is not None and (size := _weight(value)) <= self._room:
+            self._room -= size
             self.heard.append(Heard(method, (name, *args), value))
         return self._told(name, value)
 
@@ -353,11 +371,15 @@ class RemoteSubmission:
         if monotonic() > self._deadline.earliest and self._deadline.passed():
             raise StudentFailure("timeout", message="it ran out of time")
         if not self._connection.alive:
-            told = self._connection.faults, self.without
+            told, functions = (self._connection.faults, self.without), self._connection.functions
             try:
                 self._connection = self._connect()
-                # What is said of a file was known before its code received any input: by now it may know one.
+                # What is said of a file was known before its code received any input: by now it may know one,
+                # and tell it by what it lacks.
                 self._connection.faults, self.without = told
+                if not functions.intersection(self._tasks) <= self._connection.functions:
+                    self._connection.close()
+                    raise StudentFailure("crash", message="functions were gone when it was loaded again")
                 self._printed_before = len(self._connection.output())
             except LoadRefusedError as error:
                 # It loaded before, so the submission itself makes the difference.

@@ -462,10 +462,11 @@ def log(
         student = None if student is None else results.called(student)
         runs = results.book.runs()
         decisions = results.decisions(student, exercise)
-        if student is not None and not decisions:  # who left the roster may have some
+        known_of = [one for one in decisions if one.student]  # who left the roster may have some
+        if student is not None and not known_of:
             overriding.must_have(results, student)
         known = [item.id for item in results.exercises()]
-        if exercise is not None and not decisions and exercise not in known:
+        if exercise is not None and not known_of and exercise not in known:
             raise overriding.no_exercise(exercise, known)
     if console.json:
         return console.answer(GradeLog(runs=tuple(runs), changes=tuple(decisions)))

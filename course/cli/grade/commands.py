@@ -307,7 +307,8 @@ def _show_similar(console: Console, found: Similar) -> None:
     if found.left_out:
         console.note(f"{counted(found.left_out, 'more pair')} not listed; raise --share.")
     if found.unreadable:
-        console.note(f"{len(found.unreadable)} not compared: not Python, or over 200 kB.")
+        names = some(found.unreadable, _MOST_LOST)
+        console.note(f"{len(found.unreadable)} not compared, as no Python or over 200 kB: {names}.")
 
 
 class GradeSalvage(Envelope, tag="course.grade-salvage/1", frozen=True, kw_only=True):
@@ -370,9 +371,11 @@ def _show_salvaged(console: Console, told: Salvaged, to: Path, *, dry_run: bool)
     )
     if not dry_run:
         with open_results(to) as results:
-            folder = results.book.run_options().get("folder", "SUBMISSIONS")
-        rest = command("grade", "run", folder, "--out", to, "--resume")
-        console.note(f"Written: {to}. {rest} grades what is missing.")
+            only = [word for one in results.exercises() for word in ("--exercise", one.id)]
+        rest = command("grade", "run", "SUBMISSIONS", *only, "--out", to, "--resume")
+        console.note(
+            f"Written: {to}. With the folder that counts now for SUBMISSIONS, {rest} grades what is missing."
+        )
 
 
 app = group(COMMANDS["grade"].summary)

@@ -208,6 +208,7 @@ def _show_people(console: Console, summary: Summary) -> None:
         (summary.strangers, "not in the roster, or ambiguous there"),
         (summary.unrecognised, "unknown owner"),
         (summary.stay, "graded before, and kept as they were"),
+        (summary.lower, "lower than before, by what was handed in now"),
     ):
         if listed:
             console.line((f"{len(listed)} {words}:", "bold"))

@@ -53,6 +53,27 @@ from course.scoring.verdict import Verdict, finite
 
 #: Bytes of all files of one submission, unpacked.
 _MOST_UNPACKED = 64 << 20
+#: Before what is masked, where version 1.2.0 has the first byte of zlib's own.
+_MASK, _SALT = b"m", 16
+
+
+def _masked(packed: bytes, salt: bytes) -> bytes:
+    """Bytes that nobody could foresee, and the same packed files again from them.
+
+    zlib stores what it cannot shorten as it is. A file handed in could then hold pages of a gradebook, with
+    rows of its own, and ``salvage`` would find them in a damaged one.
+    """
+    stream = hashlib.shake_256(salt).digest(len(packed))
+    mixed = int.from_bytes(packed) ^ int.from_bytes(stream)
+    return _MASK + salt + mixed.to_bytes(len(packed))
+
+
+def _unmasked(stored: bytes) -> bytes:
+    if stored[:1] != _MASK:
+        return stored
+    return _masked(stored[1 + _SALT :], stored[1 : 1 + _SALT])[1 + _SALT :]
+
+
 T = TypeVar("T")
 _CHECKPOINT_S = 5.0  # the most that a power cut costs
 
@@ -207,7 +228,7 @@ class Gradebook:
         return result
 
     def _keep(self, sha256: str, files: Mapping[str, bytes]) -> None:
-        packed = zlib.compress(msgspec.msgpack.encode(dict(files)), 1)
+        packed = _masked(zlib.compress(msgspec.msgpack.encode(dict(files)), 1), os.urandom(_SALT))
         self._db.execute(row_into("submissions", "INSERT OR IGNORE"), (sha256, packed))
 
     def restore(self, sha256: str, files: Mapping[str, bytes]) -> None:
@@ -320,7 +341,7 @@ class Gradebook:
         if not rows:
             return None
         try:
-            files = zlib.decompressobj().decompress(rows[0][0], _MOST_UNPACKED)
+            files = zlib.decompressobj().decompress(_unmasked(rows[0][0]), _MOST_UNPACKED)
             return msgspec.msgpack.decode(files, type=dict[str, bytes])
         except (zlib.error, msgspec.DecodeError, TypeError):
             raise _failed_checksum(f"The submission {sha256[:12]}", self.path) from None

@@ -334,10 +334,12 @@ def _checked_members(path: Path, infos: list[zipfile.ZipInfo]) -> Members:
         if info.flag_bits & 1:
             raise _refused(path, "it is encrypted")
         if name.suffix.lower() in _ARCHIVES:
-            raise _refused(path, "it holds another archive")
+            continue
         if name.as_posix() in members:
             raise _refused(path, "it holds two files of one name")
         members[name.as_posix()] = info
+    if files and not members:  # beside files of its own, an archive in it is left alone
+        raise _refused(path, "it holds nothing but another archive")
     around = posixpath.commonpath([name.rpartition("/")[0] for name in members] or [""])
     return {name.removeprefix(f"{around}/"): info for name, info in members.items()}
 
@@ -411,7 +413,7 @@ class _Request(msgspec.Struct, frozen=True):
 
 #: A file by its name in its archive, the digest of its content, the names of the functions in it, how much
 #: code was parsed to find them, and what it is if that is not what its name says.
-Outline = tuple[str, str, tuple[str, ...], int, str]
+Outline = tuple[str, str, tuple[str, ...], tuple[str, ...], int, str]
 
 
 class _Reply(msgspec.Struct, frozen=True):
@@ -586,18 +588,18 @@ def _outlines(
     else:
         digest = hashlib.sha256(content).hexdigest()
         if len(content) > MAX_NOTEBOOK:
-            yield "", digest, (), 0, "larger than 32 MB"
+            yield "", digest, (), (), 0, "larger than 32 MB"
         elif kind in _IS_CODE:
             yield "", digest, *_defined(path.name, content, functions), kind
         else:
-            yield "", digest, (), 0, kind
+            yield "", digest, (), (), 0, kind
         return
     if not files and not _is_record(path):
-        yield "", hashlib.sha256(content).hexdigest(), (), 0, f"{kind} without a file of code"
+        yield "", hashlib.sha256(content).hexdigest(), (), (), 0, f"{kind} without a file of code"
     for name, found in files:
         what = downloads.kind_of(name, found)
         digest = hashlib.sha256(found).hexdigest()
-        yield name, digest, *(_defined(name, found, functions) if what in _IS_CODE else ((), 0)), what
+        yield name, digest, *(_defined(name, found, functions) if what in _IS_CODE else ((), (), 0)), what
 
 
 def _is_record(path: Path) -> bool:
@@ -610,24 +612,42 @@ def _is_record(path: Path) -> bool:
 _IS_CODE = frozenset({"", "a text", "a notebook"})
 
 
-def _defined(name: str, content: bytes, functions: tuple[str, ...]) -> tuple[tuple[str, ...], int]:
-    """The functions among these that a file's top level defines, and how much code was parsed for that."""
+def _defined(
+    name: str, content: bytes, functions: tuple[str, ...]
+) -> tuple[tuple[str, ...], tuple[str, ...], int]:
+    """The functions among these that a file's top level defines, those of them that are written, and how much
+    code was parsed for that."""
     content = in_utf8(content)  # as ``assign`` reads it
     if not any(function.encode() in content for function in functions):
-        return (), 0  # parsing takes a hundred times as long as looking
+        return (), (), 0  # parsing takes a hundred times as long as looking
     pieces: list[str | bytes] = [content]
     try:
         if name.casefold().endswith(".ipynb") or downloads.is_notebook(content):
             cells = json.loads(content).get("cells", ())
             pieces = ["".join(cell.get("source", ())) for cell in cells if cell.get("cell_type") == "code"]
     except (ValueError, AttributeError, TypeError, RecursionError):
-        return (), 0
+        return (), (), 0
     size = sum(map(len, pieces))
     if size > MAX_CODE:
-        return (), 0  # nor could it be graded
+        return (), (), 0  # nor could it be graded
     found = [node for tree in map(statements.tree, pieces) if tree for node in tree.body]
-    names = {node.name for node in found if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)}
-    return tuple(function for function in functions if function in names), size
+    written: dict[str, bool] = {}  # the last one of a name counts
+    for node in found:
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            written[node.name] = not _as_in_a_stub(node.body)
+    defined = tuple(function for function in functions if function in written)
+    return defined, tuple(function for function in defined if written[function]), size
+
+
+def _as_in_a_stub(body: list[ast.stmt]) -> bool:
+    """Whether nothing is written yet in a function: beside its docstring it raises NotImplementedError."""
+    if ast.get_docstring(ast.Module(body, []), clean=False) is not None:
+        body = body[1:]
+    if not body or (len(body) == 1 and isinstance(body[0], ast.Pass)):
+        return True
+    raised = body[0].exc if len(body) == 1 and isinstance(body[0], ast.Raise) else None
+    raised = raised.func if isinstance(raised, ast.Call) else raised
+    return isinstance(raised, ast.Name) and raised.id == "NotImplementedError"
 
 
 if __name__ == "__main__":

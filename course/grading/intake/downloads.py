@@ -20,7 +20,7 @@ import os
 import re
 import tarfile
 import unicodedata
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -73,8 +73,8 @@ LAYOUTS = ("auto", "folders", "canvas", "moodle", "gradescope")
 #: Files that operating systems and tools put into folders by themselves.
 IGNORED = frozenset(
     {
-        "__MACOSX", "__pycache__", ".DS_Store", ".git", ".idea", ".ipynb_checkpoints", ".svn", ".vscode",
-        "Thumbs.db", "desktop.ini",
+        "__MACOSX", "__pycache__", ".DS_Store", ".course", ".git", ".idea", ".ipynb_checkpoints", ".svn",
+        ".vscode", "Thumbs.db", "desktop.ini",
     }
 )  # fmt: skip
 
@@ -121,6 +121,22 @@ class Place:
         mine = [(name != wanted, path) for name, path in found if is_meant(name, wanted)]
         return [path for _, path in sorted(mine, key=lambda item: item[0])]
 
+    def unwrapped(self, known: Collection[str]) -> "Place":
+        """The folder that has everything in it, as a workspace that was handed in whole; else this place.
+
+        Args:
+            known: folders that belong there.
+        """
+        root = self.root
+        for _ in range(_WRAPPED if self.files is None else 0):
+            inside = [one for one in _entries(root) if not is_clutter(one[0])]
+            if len(inside) != 1 or inside[0][1].is_symlink() or not inside[0][1].is_dir():
+                break
+            if "." in inside[0][0] or any(is_folder_meant(inside[0][0], one) for one in known):
+                break
+            root = inside[0][1]
+        return self if root is self.root else Place(root)
+
     def archives(self) -> list[Path]:
         """The zip files, by name."""
         found = self.root.iterdir() if self.files is None else (path for _, path in self.files)
@@ -133,6 +149,10 @@ class Place:
     def shown(self, path: Path) -> str:
         """A path relative to the folder, as a sentence names it."""
         return quoted(str(path.relative_to(self.root)))
+
+
+#: Folders around everything that are passed over.
+_WRAPPED = 3
 
 
 def _entries(folder: Path) -> list[tuple[str, Path]]:
@@ -209,7 +229,9 @@ def _names(folder: Path) -> list[str]:
     except OSError as error:
         raise NotFoundError(
             f"{folder} is not a folder of submissions: {error.strerror}.",
-            help="Name the folder that holds one folder per student.",
+            help="Unpack it, and name the folder that holds one folder per student."
+            if folder.is_file()
+            else "Name the folder that holds one folder per student.",
             code="submissions_not_found",
         ) from None
     return [name for raw in found if (name := os.fsdecode(raw)) not in IGNORED]

@@ -134,6 +134,13 @@ def _entries(
     try:
         if place.files is None and place.root.is_symlink():
             raise RefusedError("symlink", "The student's folder is a link.", "Hand in the folder itself.")
+        place = place.unwrapped({exercise.place for exercise in (*exercises, *(others or ()))})
+        above = quoted(str(place.root.relative_to(student.place.root)))
+        around = (
+            []
+            if place is student.place
+            else [f"Everything lies in the folder {above}, which was passed over."]
+        )
         archives = place.archives()
     except RefusedError as refused:
         for exercise in exercises:
@@ -153,8 +160,14 @@ def _entries(
     busy = others is not None and bool(used or left or archives or place.find(MANIFEST, "."))
     for exercise, item in taken:
         if isinstance(item, _FoundWork):
+            if (problem := _stub_beside(exercise, item, mine[exercise.id])) is not None:
+                yield _without(
+                    student, exercise, problem, mine[exercise.id],
+                    required=required, busy=busy, tidy=True, alone=False,
+                )  # fmt: skip
+                continue
             times = witnesses(student, exercise.id, item.submission.sha256, item.path)
-            notes = (*item.notes, *_beside(exercise, item, mine[exercise.id]))
+            notes = (*around, *item.notes, *_beside(exercise, item, mine[exercise.id]))
             yield Entry(name, exercise, item.submission, times=times, notes=notes, written=item.written)
         else:
             there = mine[exercise.id]
@@ -210,6 +223,34 @@ def _beside(exercise: Exercise, taken: _FoundWork, left: list[Candidate]) -> lis
         one for one in found_for(exercise, left, asked=()) if one.defines and one.sha256 not in taken.contents
     ]
     return [f"Also there, and not graded: {described(others)}."] if others else []
+
+
+#: How notes begin, or end, that say which of a student's files was graded, and how it was found.
+_ABOUT_A_FILE = re.compile(
+    r"(Graded from|Also there, and not graded:|These are the same file:|The same file is in|The folder "
+    r"|Everything (in|lies in) |It was written with ).*"
+    r"|.*( was taken for | was read as one\.|taken for folders\.).*",
+    re.DOTALL,
+)
+
+
+def about_a_file(note: str) -> bool:
+    """Whether a note of a verdict is one of those that reading a student's files made, or an assignment."""
+    return _ABOUT_A_FILE.fullmatch(note) is not None
+
+
+def _stub_beside(exercise: Exercise, taken: _FoundWork, left: list[Candidate]) -> RefusedError | None:
+    """Where nothing is written in the file with the right name, and something is in another, the question."""
+    others = [one for one in found_for(exercise, left, asked=()) if one.written]
+    path, member = taken.used[0]
+    if not others:
+        return None
+    tasks = tuple(task.id for task in exercise.task)
+    for name, _, defines, written, *_ in reader.outlines(Path(path), (), tasks):
+        if name == member and defines and not written:
+            message = f"Nothing is written in the file for {exercise.id}. There is {described(others)}."
+            return RefusedError("ambiguous_files", message, "Keep the one that counts.")
+    return None
 
 
 def _without(
@@ -471,6 +512,7 @@ def read_quiz(student: Student, *, alone: bool = False) -> tuple[Any, Path | Non
     with contextlib.suppress(OSError):
         if place.files is None and place.root.is_symlink():
             return [], None
+        place = place.unwrapped(())
         for path in (*place.archives(), *place.find(MANIFEST, ".")):
             try:
                 packed = path.suffix.lower() == ".zip"
@@ -512,6 +554,7 @@ class Candidate(msgspec.Struct, frozen=True):
         member: in the archive; empty for a file.
         sha256: digest of its content.
         defines: names of the functions in it; only an exercise's tasks, where it is listed for an exercise.
+        written: those of them that do more than a stub's.
         kind: what it is, or why it cannot be read; empty for code and notebooks.
         proposed: it is the only match.
     """
@@ -523,6 +566,7 @@ class Candidate(msgspec.Struct, frozen=True):
     defines: tuple[str, ...] = ()
     proposed: bool = False
     kind: str = ""
+    written: tuple[str, ...] = ()
 
 
 class Found(msgspec.Struct, frozen=True):
@@ -606,8 +650,9 @@ def _outlined(
             sha256,
             defines,
             kind=kind,
+            written=written,
         )
-        for member, sha256, defines, _, kind in outlines
+        for member, sha256, defines, written, _, kind in outlines
     ]
     return candidates, sum(parsed for *_, parsed, _ in outlines)
 
@@ -617,28 +662,35 @@ def found_for(
 ) -> tuple[Candidate, ...]:
     """The files that may be meant for an exercise, the likeliest first, with the one match if there is one.
 
+    The one in which most functions are written is the match; names decide only where no file has any.
+
     Args:
         asked: files that may be meant for it whatever they are called.
     """
     tasks = [task.id for task in exercise.task]
     stem = Path(exercise.module).stem.casefold()
-    ranked: list[tuple[float, Candidate]] = []
+    ranked: list[tuple[float, float, Candidate]] = []
     for one in candidates:
         mine = tuple(name for name in tasks if name in one.defines)
-        worth = len(mine) / len(tasks) if tasks else 0.0
+        written = tuple(name for name in mine if name in one.written)
         alike = difflib.SequenceMatcher(None, stem, Path(plain(Path(one.name).name)).stem).ratio()
         alike = alike if alike >= _ALIKE else 0.0
-        if worth or alike or one in asked:
+        if mine or alike or one in asked:
             # What cannot be read as code can be named, and not proposed.
-            rank = worth + alike / 10 if one.kind in _READABLE else 0.0
-            ranked.append((rank, msgspec.structs.replace(one, defines=mine)))
-    ranked.sort(key=lambda item: (-item[0], not item[1].name.casefold().endswith(HANDED_IN), item[1].name))
-    distinct = {item[1].sha256: item[0] for item in reversed(ranked)}
-    best = max(distinct.values(), default=0.0)
+            worth, alike = (len(written), alike + 0.1 * bool(mine)) if one.kind in _READABLE else (0, 0.0)
+            ranked.append((worth, alike, msgspec.structs.replace(one, defines=mine, written=written)))
+    handed_in = HANDED_IN
+    ranked.sort(
+        key=lambda item: (-item[0], -item[1], not item[2].name.casefold().endswith(handed_in), item[2].name)
+    )
+    most = ranked[0][0] if ranked else 0
+    distinct = {item[2].sha256: item[0] or item[1] for item in reversed(ranked)}
+    best = most or max(distinct.values(), default=0.0)
     # Two equally good files that differ: the grader must not decide which one counts.
     clear = best > 0 and list(distinct.values()).count(best) == 1
     return tuple(
-        msgspec.structs.replace(one, proposed=clear and number == 0) for number, (_, one) in enumerate(ranked)
+        msgspec.structs.replace(one, proposed=clear and number == 0)
+        for number, (_, _, one) in enumerate(ranked)
     )
 
 

@@ -35,7 +35,7 @@ from course.grading.gradebook.records import (
 )
 from course.grading.results.late import Policy, lateness, may_change, parse_policy
 from course.grading.results.roster import FOR_TESTS, Person, Roster
-from course.printable import command, one_line
+from course.printable import command, one_line, some
 from course.scoring.verdict import Problem, Verdict, format_points, not_graded
 
 #: State of work that an enrolled student did not hand in.
@@ -212,6 +212,9 @@ class Results:
         """The student who is called so: a name in the gradebook, or what the roster knows about one alone.
 
         Anything else is given back as it is, for whoever asks to refuse.
+
+        Raises:
+            NotFoundError: several students are called so.
         """
         students = self.students()
         if name in students:
@@ -223,12 +226,12 @@ class Results:
         if self.roster is None:
             people = {student: self.person(student) for student in students}
             so = [student for student, one in people.items() if one and name in {one.name, one.email}]
-            return so[0] if len(so) == 1 else name
+            return _only(so, name)
         meant = {person.student for person in self.roster.rows(name)}
         found = self.roster.match(self.present(), self.downloads)[0]
         ids = {student for student, person in found.items() if person.student in meant}
         ids |= meant & set(self.absent())
-        return ids.pop() if len(ids) == 1 else name
+        return _only(sorted(ids), name)
 
     def named(self, student: str) -> str:
         """A student's name in the gradebook, and in brackets the one in the roster if that is another."""
@@ -573,6 +576,16 @@ def no_exercise(exercise: str, known: Sequence[str]) -> NotFoundError:
         help=f"It has {', '.join(known) or 'none'}.",
         code="exercise_not_found",
     )
+
+
+def _only(students: Sequence[str], name: str) -> str:
+    if len(students) > 1:
+        raise NotFoundError(
+            f"{len(students)} students are called {name!r}.",
+            help=f"The gradebook calls them {some([one_line(one) for one in students], 4)}: name one.",
+            code="student_not_found",
+        )
+    return students[0] if students else name
 
 
 def must_have(results: Results, student: str) -> None:

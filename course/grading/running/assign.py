@@ -111,6 +111,13 @@ def named(results: Results, student: str, file: str, exercise: str | None) -> As
                 code="needs_exercise",
             )
         exercise = names.pop()
+    elif exercise == "quiz":
+        raise UsageError(
+            "A quiz is graded from its record, which no file is assigned for.",
+            help="Put the zip of `course submit` into the student's folder and grade with --resume, or give "
+            "the score with `course grade override`.",
+            code="needs_exercise",
+        )
     elif exercise not in known:
         raise no_exercise(exercise, known)
     times: tuple[tuple[str, float | None], ...] = ()

@@ -16,7 +16,7 @@ from course.catalog.questions import read_questions
 from course.errors import IntegrityError, NotFoundError
 from course.grading.gradebook.file import explained
 from course.grading.gradebook.records import Decision, Key, Result
-from course.grading.intake.students import Entry
+from course.grading.intake.students import Entry, about_a_file
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version
 from course.grading.results.effective import Effective, Results, counted
@@ -281,8 +281,10 @@ class _Rerun:
         return Key(student, exercise, sha256, self._versions[exercise], self._results.seed)
 
     def _taken(self, key: Key, verdict: Verdict) -> tuple[Effective, Effective]:
-        result = Result(key, verdict)
         before = self._before.pop((key.student, key.exercise))
+        # Which file it is was found out when it was read, and it is not read again.
+        notes = [one for one in before.verdict.warnings if about_a_file(one) and one not in verdict.warnings]
+        result = Result(key, msgspec.structs.replace(verdict, warnings=(*verdict.warnings, *notes)))
         after = self._results.of(result)
         fault = verdict.state == "grader_error" and before.verdict.state != "grader_error"
         if not self._options.dry_run and not fault:

@@ -25,7 +25,15 @@ from course.grading.intake.downloads import ClassList, Student, class_list
 from course.grading.intake.students import Entry, read_quiz, read_student, submission_from, witnesses
 from course.grading.quiz import EXERCISE_ID as QUIZ
 from course.grading.quiz import grade_quiz, quiz_version, record_sha256
-from course.grading.results.effective import Effective, Results, ScoreChange, counted_in, replacing
+from course.grading.results.effective import (
+    Effective,
+    Results,
+    ScoreChange,
+    Scores,
+    counted_in,
+    counting,
+    replacing,
+)
 from course.grading.results.roster import Roster
 from course.grading.running.batch import Graded, grade_all
 from course.grading.running.folder import (
@@ -43,7 +51,7 @@ from course.printable import one_line
 from course.quizzing.bank import Bank, needed
 from course.scoring.graders import grader_version
 from course.scoring.judging.submission import Terms
-from course.scoring.verdict import OURS
+from course.scoring.verdict import OURS, format_points
 
 GradeAll = Callable[[Iterable[Entry], Terms], Iterator[Graded]]
 
@@ -70,6 +78,7 @@ class Summary:
         not_submitted: pairs without a file, which count for nothing.
         already: results of an earlier run.
         stay: of these, those whose file is gone, or is assigned and has changed; a sentence each.
+        lower: scores that are lower than before a resumed run, a sentence each.
         missing: students who handed in nothing at all: enrolled, or without a roster those with a folder.
         strangers: students who handed in something and have no row of their own in the roster.
         compared: the columns of the roster in which these were looked for, as sentences.
@@ -93,6 +102,7 @@ class Summary:
     compared: str = ""
     already: int = 0
     stay: list[str] = field(default_factory=list)
+    lower: list[str] = field(default_factory=list)
     levels: Counter[str] = field(default_factory=Counter)
     unrecognised: list[str] = field(default_factory=list)
     moved: list[ScoreChange] = field(default_factory=list)
@@ -230,6 +240,7 @@ def grade_class(
             _begun_with(book, options, catalog) or fresh(catalog.content), options.exercises or None
         ) as graders,
     ):
+        before = counting(Results(book)) if options.resume else {}
         run = _Run(members, graders, folder, options, book)
         if options.resume and (out / "grades.csv").is_file():
             export_all(out, Results(book))  # what lies there says of work that came since that there is none
@@ -248,11 +259,21 @@ def grade_class(
         summary.count(results)
         if options.resume:
             summary.edited = edited_since(results, catalog)
+            summary.lower = list(_lower(before, counting(results)))
         export_all(out, results)
         summary.write_s = book.write_s
     back_up(out / BOOK)
     summary.elapsed_s = time.monotonic() - started
     return summary
+
+
+def _lower(before: Scores, now: Scores) -> Iterator[str]:
+    """Scores that a resumed run made lower, by what was handed in for it."""
+    for (student, exercise), (score, _) in before.items():
+        after, _ = now.get((student, exercise), (None, None))
+        if score is not None and (after is None or after < score):
+            now_points = "no score" if after is None else format_points(after)
+            yield f"{student} {exercise}: {format_points(score)} before, {now_points} now"
 
 
 def _begun_with(book: Gradebook, options: RunOptions, catalog: Catalog) -> Snapshot | None:
@@ -463,7 +484,7 @@ class _Run:
         """Score the quiz attempts that came with a submission; no student's code is involved."""
         path = None
         try:
-            record, path = read_quiz(student, alone=not self._exercises)
+            record, path = read_quiz(student, alone=not self._exercises or QUIZ in self._options.exercises)
         except UngradableError as error:
             record = error.message.rstrip(".")  # no list of attempts, which the scoring says of it
         if not self._with_quiz:

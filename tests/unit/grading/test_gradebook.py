@@ -7,6 +7,7 @@ import shutil
 import sqlite3
 import subprocess
 import sys
+import zlib
 from pathlib import Path
 
 import msgspec
@@ -416,6 +417,28 @@ def test_every_number_that_may_be_a_score_is_read_again_and_one_that_is_not_its_
     salvage(path, tmp_path / "new.sqlite")
     with Gradebook(tmp_path / "new.sqlite") as book:
         assert [str(one.score) for one in book.overrides()] == [str(abs(float(score)))]
+
+
+def test_bytes_that_are_handed_in_stand_nowhere_in_the_file_as_they_are(tmp_path: Path) -> None:
+    """zlib keeps what it cannot shorten: pages with a row of one's own would be found by ``salvage``."""
+    path, noise = tmp_path / "gradebook.sqlite", random.Random(5).randbytes(4 * PAGE)
+    with Gradebook(path, create=True, writing=True) as book:
+        book.add(Result(key(), verdict()), {"doubling.py": noise})
+    assert noise[PAGE : PAGE + 64] not in path.read_bytes()
+    with contextlib.closing(sqlite3.connect(path)) as db:
+        (stored,) = db.execute("SELECT files FROM submissions").fetchone()
+        as_before = zlib.compress(msgspec.msgpack.encode({"doubling.py": noise}), 1)
+        assert noise[PAGE : PAGE + 64] in as_before, "so version 1.2.0 kept it"
+        assert len(stored) == len(as_before) + 17
+    for kept in (stored, as_before):
+        with contextlib.closing(sqlite3.connect(path)) as db:
+            _know_digests(db)
+            db.execute("UPDATE submissions SET files = ?", (kept,))
+            db.execute("UPDATE submissions SET row_sha256 = row_digest('submissions', sha256, files)")
+            db.execute("DELETE FROM meta")
+            db.commit()
+        with Gradebook(path) as book:
+            assert book.submission("a" * 64) == {"doubling.py": noise}
 
 
 def test_with_a_backup_beside_it_nothing_is_lost(tmp_path: Path, whole: Path) -> None:

@@ -304,6 +304,16 @@ def test_what_is_no_roster_is_refused_with_the_row(tmp_path: Path, text: str, re
     assert reason in caught.value.message
 
 
+def test_a_space_at_the_end_of_an_id_is_nobody_s_name_unless_a_folder_has_it(tmp_path: Path) -> None:
+    roster = roster_of(tmp_path, "student,name\n ada ,Ada\nbob,Bob\nbob ,Robert\n")
+    names = {
+        name: [row.name for row in roster.rows(name)] for name in ("ada", " ada ", "bob", "bob ", " bob")
+    }
+    assert names == {
+        "ada": ["Ada"], " ada ": ["Ada"], "bob": ["Bob"], "bob ": ["Robert"], " bob": ["Bob", "Robert"],
+    }  # fmt: skip
+
+
 def test_students_are_found_by_id_and_never_guessed(tmp_path: Path) -> None:
     roster = roster_of(
         tmp_path,

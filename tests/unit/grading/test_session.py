@@ -13,6 +13,7 @@ from course.catalog.load import Catalog
 from course.catalog.models import Exercise
 from course.errors import MissingCapabilityError
 from course.isolation.levels import Deadline
+from course.isolation.session import Connection
 from course.scoring import kit
 from course.scoring.checks.collected import Check
 from course.scoring.failures import CheckFailed
@@ -173,6 +174,32 @@ def test_each_way_of_ending_has_its_status_and_spares_the_other_task(
     assert all(check.message and check.help for check in results(verdict, "double"))
 
 
+def test_what_a_file_lacks_when_it_is_loaded_again_is_no_outcome_of_its_own(
+    session: GradingSession, solution: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By then its code may know a hidden number, and would tell it by the function that is gone."""
+    load, loaded = RemoteSubmission._loaded, []
+
+    def fewer(remote: RemoteSubmission) -> Connection:
+        loaded.append(connection := load(remote))
+        if len(loaded) > 1:
+            connection.functions -= {"doublings"}
+        return connection
+
+    monkeypatch.setattr(RemoteSubmission, "_loaded", fewer)
+    verdict = grade(session, solution + b"\ndef double(x):\n    import os\n    os._exit(3)\n")
+    assert {check.status for check in results(verdict, "doublings")} - {Status.SKIP} == {Status.CRASH}
+    assert not any("no function" in check.message for check in verdict.checks)
+
+
+def test_of_one_file_only_so_many_bytes_of_results_are_kept() -> None:
+    remote = RemoteSubmission.__new__(RemoteSubmission)
+    remote.heard, remote._room = [], 2000
+    for value in ([np.zeros(100), {"a": "text"}], np.zeros(200), 1.0):
+        assert remote._hear("call", "double", (1.0,), value) is value
+    assert [type(heard.value) for heard in remote.heard] == [list, float]
+
+
 @pytest.mark.parametrize(
     ("source", "code", "said", "advice"),
     [
@@ -241,6 +268,7 @@ LEFT_OUT = {
     "get_ipython().run_line_magic('matplotlib', 'inline')": "line 1: left out, since it is not Python: get",
     "from helpers import *": "If helpers.py is a file of yours: it is not handed in and not graded.",
     "import helpers": "If helpers.py is a file of yours: it is not handed in and not graded.",
+    "import nump as np": "Is `nump` a slip for `numpy`? If nump.py is a file of yours: it is not handed in",
     "from .helpers import half": "If helpers.py is a file of yours: it is not handed in and not graded.",
 }
 

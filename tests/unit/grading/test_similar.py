@@ -266,9 +266,18 @@ def test_passages_in_reversed_order_are_not_joined() -> None:
     assert _backwards(500)() == 500
 
 
+def _crowded(size: int) -> Callable[[], int]:
+    """One who hands in all on one line, and one who has a gap after each passage of it."""
+    passages = [((1, 1), (10 * n, 10 * n + 1)) for n in range(size)]
+    return lambda: len(_blocks(passages))
+
+
 @pytest.mark.soak
-def test_passages_in_reversed_order_are_compared_in_time_that_grows_with_their_number() -> None:
-    assert growth(_backwards, 500) < LIMIT
+@pytest.mark.parametrize("passages", [_backwards, _crowded])
+def test_passages_that_nothing_joins_are_compared_in_time_that_grows_with_their_number(
+    passages: Callable[[int], Callable[[], int]],
+) -> None:
+    assert growth(passages, 500) < LIMIT
 
 
 def test_a_process_that_parses_ends_when_its_time_is_used_up() -> None:

@@ -135,6 +135,57 @@ def test_an_assigned_file_counts_until_another_file_with_the_right_name_arrives(
     assert counts() == own, "changed back, after another had counted"
 
 
+def test_a_quiz_record_that_cannot_be_read_is_no_missing_quiz(course, here: Path) -> None:
+    """Beside an exercise that was asked for, too: the student was told that nothing was handed in."""
+    shutil.copytree(MINI.parents[2] / "quiz", here / "content" / "quiz", dirs_exist_ok=True)
+    (here / "class" / "ada" / "mine.zip").write_bytes(zipped({"submission.json": b"{"}))
+    for words in (("--exercise", "quiz"), ("--exercise", "quiz", "--exercise", "doubling")):
+        out = f"new{len(words)}"
+        course("grade", "run", "class", "--out", out, *words)
+        told = course("grade", "explain", out, "ada", "quiz").out
+        assert "ungradable" in told, words
+
+
+def test_who_is_called_as_two_are_is_asked_back_and_nobody_s_log_is_refused(course, here: Path) -> None:
+    (here / "roster.csv").write_text("student,name\nada,John Smith\nbob,John Smith\ncy,Cy\n")
+    words = ("grade", "run", "class", "--out", "named", "--exercise", "doubling", "--roster", "roster.csv")
+    course(*words)
+    refused = course("grade", "explain", "named", "John Smith", "doubling", "--json")
+    assert (refused.code, refused.json["error"]["message"]) == (5, "2 students are called 'John Smith'.")
+    assert "ada, bob" in refused.json["error"]["help"]
+    for about in (("nobody",), ("ada", "nothing")):
+        assert course("grade", "log", "named", *about, "--json").code == 5, about
+
+
+def test_what_was_said_of_a_file_stays_when_it_is_graded_again(course, here: Path) -> None:
+    (here / "class" / "ada" / "more.py").write_text(SOURCE + "# another\n")
+    course("grade", "run", "class", "--out", "new", "--exercise", "doubling")
+    assert course("grade", "assign", "new", "--accept-names").code == 0
+    told = [course("grade", "explain", "new", who, "doubling").out for who in ("ada", "bob")]
+    assert "Also there, and not graded: 'more.py'" in told[0]
+    assert "Graded from 'hw.py', assigned by the instructor" in told[1]
+    assert course("grade", "rerun", "new", "--all").code == 0
+    for who, before in zip(("ada", "bob"), told, strict=True):
+        after = course("grade", "explain", "new", who, "doubling").out
+        assert [line for line in before.splitlines() if "note" in line] == [
+            line for line in after.splitlines() if "note" in line
+        ]
+
+
+def test_a_resumed_run_says_whose_score_became_lower(
+    course, here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    worse = verdict(check("shown", Status.FAIL))
+    monkeypatch.setattr(batch, "grade_all", lambda entries, *_, **__: [Graded(one, worse) for one in entries])
+    (here / "class" / "ada" / "doubling.py").write_text(SOURCE + "# an older one\n")
+    ran = course("grade", "run", "class", "--out", "out", "--exercise", "doubling", "--resume")
+    said = " ".join(ran.out.split())
+    assert (
+        f"1 lower than before, by what was handed in now: ada doubling: 10 before, {worse.score:g} now"
+        in said
+    )
+
+
 def test_every_zero_that_stops_an_export_is_listed_with_a_way_to_settle_it(
     course, here: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -180,7 +231,8 @@ def test_advice_names_the_folder_it_is_about(course, here: Path) -> None:
     damaged = course("grade", "log", "out", "--json").json["error"]["help"]
     assert damaged.startswith("`course grade salvage out --to out-salvaged` writes the intact rows")
     saved = course("grade", "salvage", "out", "--to", "saved")
-    assert f"`course grade run {here / 'class'} --out saved --resume` grades what is missing" in saved.out
+    rest = "`course grade run SUBMISSIONS --exercise doubling --out saved --resume` grades what is missing"
+    assert rest in " ".join(saved.out.split())
 
 
 def test_a_file_in_an_archive_that_was_refused_is_named_as_it_lies_in_the_students_folder(
@@ -215,7 +267,8 @@ def test_no_file_is_offered_for_a_quiz(course, here: Path) -> None:
     course("grade", "run", "class", "--out", "new", "--exercise", "quiz")
     told = course("grade", "assign", "new").out
     assert "`course grade override new ada quiz --score 0 --reason TEXT` gives a score by hand." in told
-    assert course("grade", "assign", "new", "ada", "x.py", "--exercise", "quiz", "--reason", "x").code != 0
+    refused = course("grade", "assign", "new", "ada", "x.py", "--exercise", "quiz", "--reason", "x", "--json")
+    assert "A quiz is graded from its record" in refused.json["error"]["message"]
 
 
 def test_a_preview_of_a_score_or_a_policy_changes_nothing(course, here: Path) -> None:

@@ -71,6 +71,12 @@ LAID: dict[str, Callable[[Path], object]] = {
         {FOUND: SOURCE, "__MACOSX/doubling/._doubling.py": b"x", ".DS_Store": b"y"},
         manifest=None,
     ),
+    "a zip with another beside it": lambda folder: archive(
+        folder / "mine.zip", {"work/earlier.zip": b"PK", "work/doubling/doubling.py": SOURCE}, manifest=None
+    ),
+    "a workspace handed in whole": lambda folder: [
+        put(folder / "my-course" / name, content) for name, content in ((FOUND, SOURCE), ("course.toml", b""))
+    ],
     "a notebook": lambda folder: put(folder / "doubling.ipynb", notebook("print(1)", SOURCE.decode())),
     "a notebook in a zip": lambda folder: archive(
         folder / "mine.zip", {"doubling/doubling.ipynb": notebook(SOURCE.decode())}
@@ -193,7 +199,7 @@ def _lying_size(path: Path) -> None:
         lambda path: archive(path, {FOUND: SOURCE, "a/" * (MAX_DEEP + 1) + "x.md": b""}),
         lambda path: archive(path, {FOUND: SOURCE, "a" * (MAX_PATH + 1): b""}),
         lambda path: archive(path, {"doubling/doubling.py": b"/etc/passwd"}, mode=stat.S_IFLNK | 0o777),
-        lambda path: archive(path, {"inner.zip": b"PK", "doubling/doubling.py": SOURCE}),
+        lambda path: archive(path, {"inner.zip": b"PK"}, manifest=None),
         lambda path: path.write_bytes(b"PK\x03\x04 and nothing that follows"),
         lambda path: path.write_bytes(b""),
         lambda path: path.mkdir(),

@@ -32,6 +32,10 @@ pytestmark = pytest.mark.usefixtures("unpacked")
 
 SOURCE = b"def double(x):\n    return 2 * x\n\ndef doublings(x, n):\n    return x\n"
 OTHER = SOURCE + b"# the second try\n"
+STUB = (
+    b'def double(x):\n    """Twice x."""\n    raise NotImplementedError\n\ndef doublings(x, n):\n    pass\n'
+)
+HALF = SOURCE.replace(b"return x\n", b"raise NotImplementedError('later')\n")
 NOTEBOOK = notebook(SOURCE.decode())
 
 
@@ -113,7 +117,7 @@ def test_a_name_in_a_zip_that_ends_with_a_backslash_ends_no_process(
 #: What is asked about -> the code, and the one match there is.
 ASKED: dict[str, tuple[dict[str, bytes], str, str | None]] = {
     "another name": ({"homework.py": SOURCE}, "no_file", "homework.py"),
-    "another folder": ({"week 3/doubling.py": SOURCE}, "no_file", "week 3/doubling.py"),
+    "another folder": ({"week 3/doubling.py": SOURCE, "a.txt": b"x"}, "no_file", "week 3/doubling.py"),
     "in a zip, another name": (
         {"all.zip": zipped({"src/hw.py": SOURCE, "readme.txt": b""})}, "no_file", "all.zip/src/hw.py"
     ),
@@ -121,6 +125,10 @@ ASKED: dict[str, tuple[dict[str, bytes], str, str | None]] = {
     "the better of two": ({"a.py": SOURCE, "b.py": b"def double(x): return x\n"}, "no_file", "a.py"),
     "copies of one": ({"a.py": SOURCE, "b.py": SOURCE}, "no_file", "a.py"),
     "a slip in the name": ({"dubling.py": b"def double(:\n"}, "no_file", "dubling.py"),
+    "the one that is written": ({"doubling_1.py": HALF, "my_own.py": SOURCE}, "no_file", "my_own.py"),
+    "a stub of another name": ({"doubling_1.py": STUB, "my_own.py": SOURCE}, "no_file", "my_own.py"),
+    "two finished ones": ({"doubling_v1.py": SOURCE, "doubling_final.py": OTHER}, "no_file", None),
+    "a stub with the right name": ({"doubling.py": STUB, "mine.py": SOURCE}, "ambiguous_files", "mine.py"),
     "two as good": ({"a.py": SOURCE, "b.py": OTHER}, "no_file", None),
     "neither defines any": ({"a.py": b"x = 1\n", "b.py": b"y = 1\n"}, "no_file", None),
     "a second version": ({"doubling.py": SOURCE, "doubling (1).py": OTHER}, "ambiguous_files", None),

@@ -7,6 +7,7 @@ for that explain nothing to somebody on whose machine it works.
 
 from __future__ import annotations
 
+import difflib
 import math
 import re
 import sys
@@ -29,6 +30,19 @@ _KNOWN = frozenset(
         "skimage", "sklearn", "sympy", "tensorflow", "torch", "tqdm", "vpython",
     }
 )  # fmt: skip
+
+#: What is imported most; a name near one of these is misspelt, more likely than a file.
+_USUAL = (
+    "collections",
+    "dataclasses",
+    "functools",
+    "itertools",
+    "math",
+    "numpy",
+    "random",
+    "statistics",
+    "typing",
+)
 
 _TYPES = "Nobody types while a check runs. Ask in a file of your own that imports this one."
 _FILES = (
@@ -100,9 +114,11 @@ def absent(failure: StudentFailure, code: str = "", *, shown: bool = True) -> st
     if name in _KNOWN:
         return ""
     what = f"{name}.py" if name.isidentifier() else "it"
+    meant = difflib.get_close_matches(name, _USUAL, 1, 0.8)
+    slip = f"Is `{name}` a slip for `{meant[0]}`? " if meant else ""
     return (
-        f"If {what} is a file of yours: it is not handed in and not graded. Copy what you use of it into the "
-        "file of the exercise."
+        f"{slip}If {what} is a file of yours: it is not handed in and not graded. Copy what you use of it "
+        "into the file of the exercise."
     )
 
 
@@ -293,7 +309,10 @@ _CURES: tuple[tuple[str, str], ...] = (
     ),
     (r"missing \d+ required positional", "Pass every argument that the `def` names."),
     (r"'bitwise_xor'|for \^", "`^` is no power in Python: write `**`."),
-    (r"RecursionError", "The function calls itself without an end. When should it stop?"),
+    (
+        r"RecursionError",
+        "The function calls itself more often than Python allows. Does it stop? A loop has no such limit.",
+    ),
     (
         r"ValueError: (?:too many|not enough) values to unpack",
         "The names on the left must be as many as the values.",

@@ -43,6 +43,7 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
         comparison: along time, if there was one.
         looked: a search of the check's own for the mistake was made on these numbers.
         search_s: seconds of ``CLOCK`` that the search took.
+        common: asks again for all that the check asks, and says what the wrong results share; or None.
     """
 
     def __init__(
@@ -58,6 +59,7 @@ class CheckFailed(AssertionError):  # noqa: N818 - it is an outcome, named for w
     ) -> None:
         super().__init__(finding.message)
         self.finding = finding
+        self.common: Callable[[], str] | None = None
         self.bare = bare or (finding.message, finding.help)
         self.guess = guess or (Diagnosis(finding.diagnosis, "", "") if finding.diagnosis else None)
         self.broke = broke

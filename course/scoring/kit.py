@@ -32,6 +32,7 @@ from course.physics.invariants import convergence_order
 from course.physics.systems import System
 from course.scoring.checks.collected import companion, known_answers, reference, sibling, words
 from course.scoring.explain.fingerprint import in_range
+from course.scoring.explain.likeness import of_cases
 from course.scoring.explain.story import SAME, Diagnosis, Words, said_once
 from course.scoring.failures import (
     CLOCK,
@@ -331,9 +332,44 @@ def expect_cases(
     """
     if expect is not expect_equal:
         finding = {"rel": 1e-9, "source": _CLOSED_FORM} | finding
-    for args, expected in cases:
+    cases = list(cases)
+    for i, (args, expected) in enumerate(cases):
         given = dict(zip(arguments, args, strict=False))
-        expect(submission.call(function, *args), expected, input=given, **finding)
+        try:
+            expect(submission.call(function, *args), expected, input=given, **finding)
+        except CheckFailed as failed:
+            named = [(dict(zip(arguments, one, strict=False)), one, right) for one, right in cases[i:]]
+            failed.common = functools.partial(_in_common, submission, function, named, i, expect, finding)
+            raise
+
+
+def _in_common(
+    submission: Any,
+    function: str,
+    cases: Sequence[tuple[dict[str, Any], tuple[Any, ...], Any]],
+    right: int,
+    expect: Callable[..., None],
+    finding: dict[str, Any],
+) -> str:
+    """What the call of the first case does to its arguments, or what the wrong results have in common.
+
+    Args:
+        right: how many cases before these had the right result.
+    """
+    named, args, _ = cases[0]
+    after = submission.call_inspect(function, *args).args_after
+    for name, before, then in zip(named, args, after, strict=False):
+        if isinstance(before, list) and plain(before) != plain(then):
+            return f"Your code changes `{name}`, the list that it is given."
+    wrong = []
+    for named, args, expected in cases:
+        value = submission.call(function, *args)
+        try:
+            expect(value, expected, **finding)
+        except CheckFailed:
+            wrong.append((plain(value), plain(expected), plain(named)))
+    right += len(cases) - len(wrong)
+    return of_cases(wrong) or (right and f"For {right} of {right + len(wrong)} inputs it is right.") or ""
 
 
 _CLOSED_FORM = "closed form, written down to twelve digits: only rounding is allowed"

@@ -138,7 +138,7 @@ def test_a_new_warm_up_is_proved_and_its_words_reach_a_student(
     assert "One third" in student("lesson", "half-as-much", cwd=work).stdout
     student("start", "first-third", cwd=work)
     mine, solutions = work / "warm-ups/first-third/first_third.py", mini / "solutions/warm-ups/first-third"
-    assert "Not written yet" in student("check", "first-third", cwd=work, code=1).stdout
+    assert "Still to do" in student("check", "first-third", cwd=work, code=1).stdout
     mine.write_text("def third(x):\n    return 3 * x\n", "utf-8")
     assert "three times the numbers" in student("check", "first-third", cwd=work, code=1).stdout
     shutil.copy(solutions / "first_third.py", mine)

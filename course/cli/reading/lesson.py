@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import assert_never
 
 from rich import box
+from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, Group, RenderableType
 from rich.padding import Padding
 from rich.segment import Segment
@@ -337,10 +338,15 @@ class FancyPrinter(_Printer):
                 return self._table(block)
             case b.CodeCell(hidden=False):
                 return self._code(block)
+            # What does not fit into the screen is said in words, as on paper.
+            case b.Diagram(drawing=text, description=description) if _widest(text) > self._prose:
+                return Text(f"Diagram: {description}")
             case b.Listing(text=text) | b.Diagram(drawing=text):
                 return Text(text, no_wrap=True, overflow="fold")
-            case b.MathBlock(text=text):
-                widest = max(len(row) for row in text.splitlines())
+            case b.MathBlock(text=text, spoken=spoken):
+                widest = _widest(text)
+                if widest > self._prose:
+                    return Text(spoken)
                 return Padding(Text(text), (0, 0, 0, min(4, max(0, self._prose - widest))))
             case b.Figure():
                 return self._figure(block)
@@ -504,6 +510,11 @@ def _commands(commands: tuple[b.Command, ...]) -> RenderableType:
         if command.note:
             shown.append(Padding(Text(command.note), (0, 0, 0, 4)))
     return Group(*shown)
+
+
+def _widest(text: str) -> int:
+    """Columns of the longest row."""
+    return max(map(cell_len, text.splitlines()), default=0)
 
 
 def _column_widths(header: list[Text], rows: list[list[Text]], room: int) -> list[int] | None:

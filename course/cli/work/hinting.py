@@ -99,7 +99,10 @@ def _next_hint(here: Here, exercise: Exercise, wanted: str | None, named: str | 
             f"The first hint follows an attempt at this function. Write something in {file}, however rough, "
             "and check it; then ask again."
             if words is None and (not begun or last.fingerprint == handed_out)
-            else f"Each check that fails on changed code in {file} has one hint, and you have had this one's."
+            else f"Each check that fails on changed code in {file} has one hint, and this one's was about "
+            f"{history.hints[-1].task}. Ask with --task before the others."
+            if words is None and history.hints
+            else f"The first hint follows a check that fails on changed code in {file}."
             if words is None
             else f"You have had that one already. The next one follows a check that fails on changed code in "
             f"{file}."

@@ -232,7 +232,7 @@ class _Page:
     def unwritten(self, tasks: Tasks) -> None:
         """The functions that are still the stub's, with each advice once; those of the rarer are named."""
         every = [check for _, checks in tasks for check in checks]
-        self.console.heading("Not written yet", self._worth(every))
+        self.console.heading("Still to do", self._worth(every))
         for task, _ in tasks:
             self.console.item(
                 "to do", task.title, (f"  [{task.id}]", "dim"), style="yellow", width=_LABEL_WIDTH

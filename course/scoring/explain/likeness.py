@@ -37,6 +37,10 @@ _TIMES = {
     math.pi / 180: "the right one times pi/180, as if it were turned from degrees to radians",
     9.81: "the right one times 9.81",
     1 / 9.81: "the right one over 9.81",
+    math.log(2.0): "the right one times ln 2, as of logarithms with two bases",
+    1 / math.log(2.0): "the right one over ln 2, as of logarithms with two bases",
+    math.log(10.0): "the right one times ln 10, as of logarithms with two bases",
+    1 / math.log(10.0): "the right one over ln 10, as of logarithms with two bases",
 }
 _TIMES |= {float(n): f"{n} times the right one" for n in (3, 4, 6, 10, 12, 100, 1000)}
 _TIMES |= {1 / n: f"the right one over {n}" for n in (6, 10, 12, 100, 1000)}
@@ -44,6 +48,8 @@ _TIMES |= {1 / n: f"the right one over {n}" for n in (6, 10, 12, 100, 1000)}
 _BY_CHANCE = 20
 #: A result with fewer significant digits is a rounded one, or the value of an input, by chance.
 _DIGITS = 2
+#: One with fewer is a rounded one, of which others are the same by chance.
+_ROUNDED = 3
 _PLACES = ("first", "second", "third", "fourth", "fifth", "sixth")
 
 
@@ -67,6 +73,41 @@ def likeness(actual: Any, expected: Any, given: Mapping[str, Any] | None = None)
         return _of_arrays(a, e, given or {}) if a.shape == e.shape else _of_lengths(a, e)
 
 
+def of_cases(cases: Sequence[tuple[Any, Any, Mapping[str, Any]]]) -> str:
+    """What all wrong results of a check have in common, which one may have by chance; "" if nothing.
+
+    Args:
+        cases: actual value, expected value and inputs of each, the one first that is shown.
+    """
+    said = [likeness(*case) for case in cases]
+    here = "Here your result is "
+    if len(cases) < 2 or not said[0].startswith(here):
+        # Which of several numbers are wrong is seen; a factor is, where all pairs have it.
+        return said[0] if said[0] else _of_every(cases)
+    return f"Each wrong result is {said[0].removeprefix(here)}" if len(set(said)) == 1 else _of_every(cases)
+
+
+def _of_every(cases: Sequence[tuple[Any, Any, Mapping[str, Any]]]) -> str:
+    """The one factor, or the one distance, between the numbers of all cases."""
+    pairs = [(a, e) for a, e, _ in cases if isinstance(a, int | float) and isinstance(e, int | float)]
+    if not len(cases) == len(pairs) > 1 or any(isinstance(one, bool) for pair in pairs for one in pair):
+        return ""
+    a, e = np.array(pairs, dtype=float).T
+    with np.errstate(all="ignore"):
+        ratio, apart = a / e, a - e
+    if _steady(ratio):
+        return f"Each wrong result is {ratio[0]:.6g} times the right one."
+    if _steady(apart):
+        return f"Each wrong result is too {'large' if apart[0] > 0 else 'small'} by {abs(apart[0]):.6g}."
+    return ""
+
+
+def _steady(numbers: Array) -> bool:
+    """Whether numbers, none of them zero, are all the same."""
+    first = numbers[0]
+    return bool(np.isfinite(first) and first and np.max(np.abs(numbers - first)) <= 1e-8 * abs(first))
+
+
 def _of_kinds(actual: Any, expected: Any, a: Array | None, given: Mapping[str, Any]) -> str:
     """The likeness of two texts, and of a number where None is right."""
     if isinstance(actual, str) and isinstance(expected, str):
@@ -84,7 +125,8 @@ def _of_numbers(actual: float, expected: float, given: Mapping[str, Any]) -> str
     if actual == expected and type(actual) is not type(expected):
         kinds = type(actual).__name__, type(expected).__name__
         return "Its value is right; its type is {}, and {} is asked for.".format(*kinds)
-    if isinstance(expected, int) and abs(actual - expected) != 1:  # a count or an index has no factor
+    # A count or an index has no factor.
+    if isinstance(actual, int) and isinstance(expected, int) and abs(actual - expected) != 1:
         return ""
     said = _of_two_numbers(float(actual), float(expected), given)
     return f"Here your result is {said}." if said else ""
@@ -191,7 +233,7 @@ def _of_difference(a: float, e: float, inputs: Sequence[tuple[str, float]]) -> s
     """By how much a number is off, where that is one, or one of the inputs."""
     some = [(n, v) for n, v in inputs if n[0] == "`" and v > 0 and not _is_small(v)]
     by = next((n for n, v in some if abs(abs(a - e) - v) <= _SAME * max(v, abs(e))), "")
-    if not by and abs(a - e) == 1.0:
+    if not by and _same(abs(a - e), 1.0):
         by = "1"
     return f"too {'large' if a > e else 'small'} by {by}" if by else ""
 
@@ -199,15 +241,17 @@ def _of_difference(a: float, e: float, inputs: Sequence[tuple[str, float]]) -> s
 def _of_powers(a: float, e: float) -> str:
     if _same(a * e, 1.0):
         return "one over the right one"
-    if e > 0.0 and _same(a, e * e):
-        return "the square of the right one"
-    return "the square root of the right one" if a > 0.0 and _same(a * a, e) else ""
+    for x, y, words in ((e, a, "the square of the right one"), (a, e, "the square root of the right one")):
+        # Of a number with few digits something else may be the square: 3/2 of 1.5 is.
+        if x > 0.0 and _same(y, x * x) and _digits(x) > _DIGITS:
+            return words
+    return "the arctangent of the right one" if _same(a, math.atan(e)) else ""
 
 
 def _of_digits(a: float, e: float) -> str:
     if abs(a) == 1.0:  # a ratio is one for many reasons
         return ""
-    if _digits(a) <= _DIGITS:
+    if _digits(a) <= _ROUNDED:
         return ""
     if a == math.trunc(e):
         return "the right one without its decimals"

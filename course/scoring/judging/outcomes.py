@@ -68,7 +68,11 @@ def skipped(check: Check, blocking: str) -> CheckResult:
 
 
 def told_more(
-    judged: CheckResult, source: bytes, places: Places, args: tuple[Any, ...] | None = None
+    judged: CheckResult,
+    source: bytes,
+    places: Places,
+    args: tuple[Any, ...] | None = None,
+    fact: str | None = None,
 ) -> CheckResult:
     """The result of a failed check with what its student's code, or the numbers below it, show beyond doubt.
 
@@ -76,6 +80,7 @@ def told_more(
 
     Args:
         args: of the call that raised.
+        fact: what several numbers of the check have in common, in the place of what one shows.
     """
     public = judged.visibility is Visibility.PUBLIC
     if args and judged.input is None and public:
@@ -91,7 +96,8 @@ def told_more(
         return msgspec.structs.replace(judged, diagnosis=found.code, message=message, help=advice)
     if judged.status is Status.FAIL and public and (unnamed or judged.diagnosis in NOT_FINITE):
         counted = judged.quantity.startswith((ENTRIES, EVALUATIONS))
-        fact = "" if counted else likeness(judged.actual, judged.expected, judged.input)
+        if fact is None:
+            fact = "" if counted else likeness(judged.actual, judged.expected, judged.input)
         return msgspec.structs.replace(judged, message=f"{judged.message} {fact}".strip())
     return judged
 

@@ -270,7 +270,8 @@ class GradingSession:
                 self._explainer.explain(results, self._failed, remote, source, self._heard, again)
         for name, judged in results.items():
             if judged.status in {Status.FAIL, Status.ERROR}:
-                results[name] = told_more(judged, source, places, self._raised.get(name))
+                fact = self._common(judged, remote)
+                results[name] = told_more(judged, source, places, self._raised.get(name), fact)
         return [results[check.id] for check in self._checks.checks if check.id in results]
 
     def _run_one(self, check: Check, remote: RemoteSubmission, places: Places) -> CheckResult:
@@ -314,6 +315,16 @@ class GradingSession:
             return result(check, Status.GRADER_ERROR, message=message, duration_ms=duration_ms)
         finding = unjudged(remote.returned, proven=bool(proven))
         return found(check, Status.FAIL, finding, duration_ms, traceback=OURS + where, stdout=printed)
+
+    def _common(self, judged: CheckResult, remote: RemoteSubmission) -> str | None:
+        """What all wrong results of a public check have in common, where it can say so and names nothing."""
+        failed = self._failed.get(judged.id)
+        if judged.diagnosis or judged.visibility is not Visibility.PUBLIC or not (failed and failed.common):
+            return None
+        remote.begin_check(judged.task)
+        with contextlib.suppress(CheckFailed, StudentFailure):
+            return failed.common()
+        return None
 
     def _patience(self, check: Check, hung: bool) -> float | None:
         """Seconds of CPU time for a check; less where another of its function ran out of time before.

@@ -8,10 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from course.authoring.exercises.grading import grade_sources
+from course.catalog.load import Catalog
 from course.isolation.failures import StudentFailure
 from course.scoring import kit
 from course.scoring.elsewhere import cure
-from course.scoring.explain.likeness import likeness, names_of, return_in_a_loop, why_none
+from course.scoring.explain.likeness import likeness, names_of, of_cases, return_in_a_loop, why_none
 from course.scoring.failures import CheckFailed, finding_of
 from course.scoring.judging.outcomes import told_more
 from course.scoring.verdict import CheckResult, Places, Status, Visibility
@@ -42,13 +44,17 @@ PLACES = Places(module="work.py")
         (12.0, 9.0, {"va": 3.0}, ""),
         (6, 7, {}, "too small by 1"),
         (1 / 2.4, 2.4, {}, "one over the right one"),
-        (2.4**2, 2.4, {}, "the square of the right one"),
-        (2.4**0.5, 2.4, {}, "the square root of the right one"),
-        (124.0, 124.4, {}, "the right one without its decimals"),
+        (2.43**2, 2.43, {}, "the square of the right one"),
+        (2.43, 2.43**2, {}, "the square root of the right one"),
+        (2.25, 1.5, {}, ""),  # three halves of it as well
+        (math.atan(0.43), 0.43, {}, "the arctangent of the right one"),
+        (1.7 * math.log(2.0), 1.7, {}, "the right one times ln 2, as of logarithms with two bases"),
+        (1241.0, 1241.4, {}, "the right one without its decimals"),
         (2.1, 2.06387, {}, ""),
         (1.0, 1.41, {}, ""),
         (-1.0, -0.98, {}, ""),
-        (2.35, 2.3456, {}, "the right one rounded to 2 decimals"),
+        (12.35, 12.3456, {}, "the right one rounded to 2 decimals"),
+        (2.35, 2.3456, {}, ""),  # what leaves something out came to such a number, too
         (3.0, 3, {}, "its type is float, and int is asked for"),
         (math.inf, "None", {}, "give None, not inf"),
         (6.5, "None", {"values": [5.0, 6.5]}, "the same as the last of `values`"),
@@ -71,6 +77,45 @@ def test_an_answer_is_compared_with_the_right_one_and_with_what_went_in(
 ) -> None:
     found = likeness(actual, expected, given)
     assert found == said if not said or said.endswith(".") else said in found
+
+
+@pytest.mark.parametrize(
+    ("pairs", "said"),
+    [
+        ([(1.7, 2.7), (0.9, 1.9)], "Each wrong result is too small by 1."),
+        ([(4.8, 2.4), (7.0, 3.5)], "Each wrong result is twice the right one."),
+        ([(2.4, 1.2), (4.8, 2.5)], ""),  # twice by chance
+        ([(1.2345, 1.0), (2.469, 2.0)], "Each wrong result is 1.2345 times the right one."),
+        ([(1.25, 1.0), (3.25, 3.0)], "Each wrong result is too large by 0.25."),
+        ([([1.0, -2.0], [1.0, 2.0]), ([3.0, 4.0], [3.0, 5.0])], "Only the sign of the second of these"),
+        ([(4.8, 2.4)], "Here your result is twice the right one."),
+        ([(True, 2.4), (True, 3.5)], ""),
+    ],
+)
+def test_of_one_check_s_results_is_said_what_all_have_in_common(pairs: Any, said: str) -> None:
+    found = of_cases([(actual, expected, {}) for actual, expected in pairs])
+    assert said in found
+    assert bool(said) == bool(found)
+
+
+@pytest.mark.parametrize(
+    ("body", "said"),
+    [
+        ("energies.sort()", "Your code changes `energies`, the list that it is given."),
+        ("return 0.25", "For 1 of 5 inputs it is right."),
+    ],
+)
+def test_a_warm_up_says_what_its_results_show(body: str, said: str) -> None:
+    exercise = Catalog().exercise("worst-drift")
+    source = f"""
+def worst_drift(energies):
+    if energies[0] == 2.0 and energies[1] == 2.2:
+        return 0.15
+    {body}
+    return max(abs(energy - energies[0]) for energy in energies) / abs(energies[0])
+"""
+    ((_, verdict),) = grade_sources([(exercise, source.encode())])
+    assert verdict.checks[0].message == f"The worst drift is wrong. {said}"
 
 
 @pytest.mark.parametrize(

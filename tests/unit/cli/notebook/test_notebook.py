@@ -104,7 +104,7 @@ def test_a_number_is_not_taken_for_a_lesson_or_an_exercise(course):
 
 def test_check_says_what_is_wrong_and_passes_when_it_is_right(course, notebook):
     write_into(notebook, GOOD)
-    course("notebook", "check", str(notebook)).ends(1, "Not written yet")
+    course("notebook", "check", str(notebook)).ends(1, "Still to do")
     write_into(notebook, GOOD, OTHER)
     ran = course("notebook", "check", str(notebook), "--json")
     assert ran.code == 0

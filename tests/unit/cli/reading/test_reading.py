@@ -165,6 +165,34 @@ def test_figures_are_written_where_asked_and_their_path_is_said(
     assert f"Picture:{picture}" in "".join(written(console).split())
 
 
+def test_a_diagram_and_a_formula_too_wide_for_the_screen_are_said_in_words(lesson: Lesson) -> None:
+    """At 40 columns the right half of a diagram was missing, and nothing said so."""
+    drawing = "one ──── two ──── three ──── four ──── five"
+    text = f"""+++\n+++\n
+```mermaid
+flowchart LR
+    accDescr: One leads to five.
+    one --> five
+```
+
+```drawing
+{drawing}
+```
+
+$$
+q_{{n+1}} = q_n + h v_n + h a_n + h b_n + h c_n + h d_n + h e_n
+$$
+"""
+    Path(lesson.path).write_text(text, encoding="utf-8")
+    narrow, wide = (" ".join(shown(lesson, width).split()) for width in (40, 80))
+    assert "Diagram: One leads to five." in narrow
+    assert "───" not in narrow
+    assert drawing in wide
+    assert "accDescr" not in wide
+    assert "plus h a sub n" in narrow
+    assert "plus h a sub n" not in wide
+
+
 def test_a_table_too_wide_for_the_screen_becomes_facts(lesson: Lesson) -> None:
     words = ("extraordinarily", "incomprehensible", "circumstantially")
     table = f"| {' | '.join(words)} |\n|--|--|--|\n| one | two | three |\n"

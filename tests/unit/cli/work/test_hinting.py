@@ -46,7 +46,9 @@ def test_a_function_that_was_tried_too_is_not_said_to_be_unwritten(hint):
     assert hint("wrong", "wrong")["task"] == "double"
     other = hint(words=("--task", "doublings"))
     assert (other["given"], other["reason"]) == (False, "unchanged")
-    assert other["message"].endswith("has one hint, and you have had this one's.")
+    assert other["message"].endswith(
+        "has one hint, and this one's was about double. Ask with --task before the others."
+    )
 
 
 def test_a_hint_fits_what_the_check_thinks_is_wrong(hint, students_content):

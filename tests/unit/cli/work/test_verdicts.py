@@ -126,7 +126,7 @@ def test_a_failure_says_what_was_measured_expected_and_where():
 
 def test_what_passed_and_what_is_not_written_yet_stands_above_what_fails():
     words = _shown(_check("a", "euler", Status.FAIL), _unwritten("b", "verlet"), _check("c", "rk4"))
-    assert words.index("RK4") < words.index("Not written yet") < words.index("Explicit Euler")
+    assert words.index("RK4") < words.index("Still to do") < words.index("Explicit Euler")
 
 
 def test_a_brief_verdict_fits_a_small_terminal_and_ends_with_its_finding(monkeypatch):
@@ -154,7 +154,7 @@ def test_functions_not_written_yet_are_listed_once():
     )
     assert words.count("Write it.") == 1
     assert words.index("b works") < words.index("to do: Explicit Euler") < words.index("to do: RK4")
-    assert "Not written yet: 0/6 points" in words
+    assert "Still to do: 0/6 points" in words
     assert "verbose" not in words
     two = _unwritten("c", "rk4"), _unwritten("d", "rk4")
     mended = [msgspec.structs.replace(one, help="Mend it.") for one in two]

@@ -18,7 +18,7 @@ _TARGET = 1.0  # m/s
 def report(submission):
     """Everything there is to see; sections of functions not yet written say so."""
     parts = (
-        ("The twin drifts, and comes back", lambda: _replay(submission)),
+        ("A copy that drifts, and your twin", lambda: _replay(submission)),
         ("Both directions", lambda: _loop(submission)),
         ("A drive round the room", lambda: drive.section(submission)),
         ("A scan", lambda: _scan(submission)),
@@ -74,14 +74,14 @@ def _replay(submission):
         seen = f"your twin ends {1000 * _rms(off[late]):.0f} mm off and believes in {friction:.2f} 1/s"
     off_panel.append(kit.Series("one measurement, std", [0.0, 60.0], [scenes.SIGMA] * 2, quiet=True))
     return kit.Section(
-        "The twin drifts, and comes back",
+        "A copy that drifts, and your twin",
         text="A cart rolls for a minute under a fixed drive; after 20 s its wheels start to rub. A copy that "
         "is never corrected keeps the old friction. Your twin gets ten positions a second, one "
         "in seven of them late" + ("." if followed else "; `sync` is still to be written."),
         columns=("copy", "off in the last 10 s", "friction"),
         rows=(*table, ("the cart", "", "0.80 1/s")),
         plot=kit.Plot(
-            "Without measurements the copy drifts away; with them it comes back",
+            "How far the copy and your twin are off, and the friction they believe in",
             (
                 kit.Panel("time / s", "off by / m", tuple(off_panel), title="Where is the cart?", log="y"),
                 kit.Panel("time / s", "friction / (1/s)", tuple(believed), title="Why is it slow?"),
@@ -119,15 +119,15 @@ def _loop(submission):
     )
     return kit.Section(
         "Both directions",
-        text="The same cart, and once a second your command sets its drive from your twin. The twin learns "
-        "the new friction, and its command brings the cart back to its speed.",
+        text="The same cart, and once a second your command sets its drive from your twin. A twin "
+        "that learns the new friction brings the cart back to its speed.",
         columns=("drive", "slowest after 20 s", "last 10 s"),
         rows=(
             ("as planned", f"{min(planned[200:]):.2f} m/s", f"{np.mean(planned[-100:]):.2f} m/s"),
             ("from your twin", f"{dip:.2f} m/s", f"{end:.2f} m/s"),
         ),
         plot=kit.Plot(
-            "A twin that sends commands brings the robot back to its speed",
+            "The speed of the cart, driven as planned and by your twin",
             (panel,),
             f"Speed over a minute; with the planned drive it stays at {np.mean(planned[-100:]):.2f} m/s "
             f"after 20 s, with the twin's it dips to {dip:.2f} and ends at {end:.2f} m/s.",
@@ -152,7 +152,7 @@ def _scan(submission):
         text=f"{hit.sum()} of {len(angles)} beams hit a wall, {spread:.0f} mm off (std; required: 30). The "
         "others point through the door or exceed their range.",
         plot=kit.Plot(
-            "Each beam ends at its nearest wall",
+            "Where your beams end",
             (kit.Panel("x / m", "y / m", (*walls, dots, robot), equal=True),),
             f"The room from above with {hit.sum()} hits scattered {spread:.0f} mm about its walls; none "
             "where the door is.",

@@ -118,11 +118,13 @@ def test_identify_public(submission):
     """Mass, both frictions and lag of the public carts, from bench recordings"""
     recordings, carts = judge.public_recordings()
     # The heavier cart first: what is kept of the lighter one, whose recordings say more, shows afterwards.
-    asked = [recordings[-1], recordings[-1], *recordings]
+    asked = [recordings[-1], recordings[-1], *recordings, *judge.far_recordings()[0]]
     values = probes.patient(lambda: submission.call_each("identify", asked), "IDENTIFY_TOO_SLOW")
     first, second, *found = [probes.estimate_of(value) for value in values]
+    found, far = found[: len(carts)], found[len(carts) :]
     judge.expect_accurate(found, carts, recordings, submission)
     judge.expect_forgetful(first, second, found[-1])
+    judge.expect_far(far, found, carts)
 
 
 @pytest.mark.task("identify")
@@ -138,7 +140,9 @@ def test_identify_intervals(submission):
     # Widths that follow from nothing are told so before they are too wide.
     judge.expect_growth(full, weak, carts, recordings)
     judge.expect_honest_widths(full, recordings, carts)
+    judge.expect_errors(full, weak, recordings, judge.weak_recordings())
     judge.expect_truth(full, carts, recordings, 1, 4)
+    judge.expect_own_lag(full)
 
 
 @pytest.mark.task("tune")

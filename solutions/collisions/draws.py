@@ -342,6 +342,19 @@ def touching(rng):
     return paths.HeadOn(masses(rng), places, (va, vb), radius, float(rng.uniform(0.2, 0.8))), 0.5, 0.05
 
 
+def on_sample(rng):
+    """A pair that meets at a sample, the time of which has by ``%`` nearly a step left and by ``/`` none."""
+    while True:
+        h, k = float(rng.integers(10, 60)) / 1000, int(rng.integers(5, 60))
+        (va, vb), radius = rng.integers((1, -4), (5, 0)).tolist(), float(rng.integers(2, 10)) / 20
+        left = float(rng.integers(-8, 9)) / 2
+        places = left, left + 2 * radius + (va - vb) * h * k
+        scene = paths.HeadOn(masses(rng), places, (float(va), float(vb)), radius, 0.5)
+        contact = motions.meeting(scene).contact
+        if int(contact / h) == k and contact % h > h / 2:
+            return scene, round((k + 20) * h, 3), h
+
+
 # -- exact and slow, where limits show ------------------------------------------------------------------
 
 
@@ -380,8 +393,8 @@ def exact_plane(rng, gap):
 
 
 def gap(rng):
-    """Less than a twentieth of a millimetre, which every margin takes for a touch; in m."""
-    return float(10 ** rng.uniform(-6.5, -4.3))
+    """Ten nanometres to a micrometre, which every margin takes for a touch; in m."""
+    return float(10 ** rng.uniform(-8.0, -6.0))
 
 
 def slow(rng, d):

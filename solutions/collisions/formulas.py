@@ -830,11 +830,19 @@ TERMS = {
 OTHERS = {
     "detect_sphere_sphere": [
         (("DEPTH_SIGN_FLIPPED",), _spheres(depth=lambda r, d: d - r, touching=lambda deep: deep <= 0)),
+        (
+            ("DEPTH_SIGN_FLIPPED", "TOUCHING_NEEDS_OVERLAP"),
+            _spheres(depth=lambda r, d: d - r, touching=lambda deep: deep < 0),
+        ),
         (("DEPTH_CLAMPED",), _spheres(depth=lambda r, d: max(r - d, 0.0), touching=lambda deep: deep > 0)),
         (("DEPTH_UNSIGNED",), _spheres(depth=lambda r, d: abs(r - d), touching=lambda deep: True)),
     ],
     "detect_sphere_plane": [
         (("DEPTH_SIGN_FLIPPED",), _plane(depth=lambda r, s: s - r, touching=lambda deep: deep <= 0)),
+        (
+            ("DEPTH_SIGN_FLIPPED", "TOUCHING_NEEDS_OVERLAP"),
+            _plane(depth=lambda r, s: s - r, touching=lambda deep: deep < 0),
+        ),
         (("DEPTH_CLAMPED",), _plane(depth=lambda r, s: max(r - s, 0.0), touching=lambda deep: deep > 0)),
         (("NORMAL_REVERSED",), _plane(gap=lambda x, p, n: -float((x - p) @ n), normal=lambda n: -n)),
         (("LENGTH_OF_THE_POINT",), _plane(gap=lambda x, p, n: float(x @ n) - _size(p))),

@@ -108,6 +108,19 @@ mistakes(
     """,
 )
 mistakes(
+    "LOWEST_POINT_OF_BALL",
+    "The depth is that of the point below the centre, along the last axis.",
+    "The deepest point lies against the normal: take r less the part of x - point along it.",
+).body(
+    "detect_sphere_plane",
+    """
+        lowest = np.array(x, dtype=float)
+        lowest[-1] -= r
+        depth = -float(np.dot(lowest - point, normal))
+        return depth >= 0, normal, depth
+    """,
+)
+mistakes(
     "PLANE_POINT_IGNORED",
     "The plane's point is left out, or added where it should be subtracted.",
     "Measure the height from a point of the plane: (x - point) . normal.",
@@ -931,6 +944,34 @@ mistakes(
         return low
     """,
 )
+mistakes(
+    "REACH_OF_ONE_BODY",
+    "Contacts are missed where the gap is longer than the way of the faster body alone. All others are found.",
+    "Both bodies move: it is the relative velocity that has to close the gap within dt.",
+    kind="fact",
+).edit(
+    "time_of_impact",
+    {
+        "    if b * b < a * c:": "    reach = max(np.linalg.norm(va), np.linalg.norm(vb)) * dt\n    if math.sqrt(x @ x) - ra - rb > reach or b * b < a * c:"
+    },
+)
+mistakes(
+    "PARTING_WITHIN_STEP",
+    "Contacts are missed where the spheres, moving on, would still overlap at dt. All others are found.",
+    "Only the first of the two roots is asked for: the later one may lie beyond dt.",
+    kind="fact",
+).edit(
+    "time_of_impact",
+    {
+        "    return float(t) if t <= dt else None": "    return float(t) if (b + math.sqrt(b * b - a * c)) / a <= dt else None"
+    },
+)
+mistakes(
+    "CLOSEST_AFTER_STEP",
+    "Contacts are missed where the spheres would be closest only after dt. All others are found.",
+    "They touch before that: it is the first root that has to lie within dt.",
+    kind="fact",
+).edit("time_of_impact", {"    if b * b < a * c:": "    if b > a * dt or b * b < a * c:"})
 mistakes(
     "CONTACTS_MISSED",
     "Some bodies that meet within the step get None.",
@@ -2354,7 +2395,9 @@ def _pairs(task, family, base, terms):
         for other in names[number + 1 :]:
             for code, form in firsts[one]:
                 for second, another in firsts[other]:
-                    if code != second:
+                    # Of another sign, a test that is meant for the depth says something else: see OTHERS.
+                    signed = code.startswith(("DEPTH_SIGN", "DEPTH_CLAMPED", "DEPTH_UNSIGNED"))
+                    if code != second and not (signed and other == "touching"):
                         yield task, (code, second), family(**base | {one: form, other: another})
 
 

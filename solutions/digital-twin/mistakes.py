@@ -28,6 +28,18 @@ mistakes(
     },
 )
 mistakes(
+    "NEGATIVE_TURNS_CUT",
+    "Whole turns are rounded towards zero and the rest downwards, so each negative angle counts one turn too high.",
+    "Round once: divide the whole angle by the angle of a count, and take np.floor.",
+).body(
+    "encoder",
+    """
+        turns = (np.asarray(theta) / (2 * math.pi)).astype(np.int64)
+        rest = np.mod(theta, 2 * math.pi)
+        return turns * counts_per_rev + np.floor(rest * counts_per_rev / (2 * math.pi)).astype(np.int64)
+    """,
+)
+mistakes(
     "TURNS_FORGOTTEN",
     "The count starts over after each turn.",
     "An incremental encoder keeps counting, up and down: wrap neither the angle nor the count.",
@@ -839,6 +851,21 @@ mistakes(
     """,
 )
 mistakes(
+    "FRICTION_HELD_BACKWARDS",
+    "When the cart moves backwards, a surprise leaves the friction as it is.",
+    "Correct it in either direction of motion: with a negative speed, by the share with the other sign.",
+).program(
+    "sync",
+    """
+        _both_ways = _correct
+
+
+        def _correct(state, spread, z, sigma):
+            after, spread = _both_ways(state, spread, z, sigma)
+            return after if state[1] > 0 else np.append(after[:2], state[2]), spread
+    """,
+)
+mistakes(
     "STEP_FIXED",
     "The prediction covers the usual 0.1 s even where twice that time has passed.",
     'The measurements come at uneven times, so predict over t_measured - twin["t"].',
@@ -1262,6 +1289,16 @@ mistakes(
     "The dead band is narrower or wider than deadband says.",
     "A command counts as 0 if abs(u) <= deadband, without any factor, and keeps its value otherwise.",
 ).edit("motor_step", {"<= deadband else": "<= 1.2 * deadband else"})
+mistakes(
+    "DEADBAND_OF_THE_SHARE",
+    "The dead band is compared with the command as a share of u_max.",
+    "Compare abs(u) with deadband: both are speeds, in rad/s.",
+).edit("motor_step", {"abs(u) <= deadband": "abs(u / u_max) <= deadband"})
+mistakes(
+    "HALF_GAP_CUT",
+    "Half of the gap is cut to a whole number, as gap // 2 does.",
+    "Take gap / 2.",
+).edit("backlash", {"max(state, x - gap / 2), x + gap / 2)": "max(state, x - gap // 2), x + gap // 2)"})
 mistakes(
     "STRENGTHS_MIXED",
     "The white noise or the bias changes with the strength that belongs to the other.",
@@ -1705,6 +1742,17 @@ mistakes(
     "lidar", {"(cross != 0) &": "(cross != 0) & (wy != 0) &"}
 )
 mistakes(
+    "WALLS_MISSED_BY_ROUNDING",
+    "Some beams pass through a wall that is parallel to an axis, and none through the same wall turned.",
+    "A hit lies a rounding error beside its wall, so do not compare its x and y with the corners: a hit has its place between the ends, from 0 to 1.",
+).edit(
+    "lidar",
+    {
+        "    with np.errstate(": "    (px, py), (qx, qy) = segments[:, 0].T, segments[:, 1].T\n    with np.errstate(",
+        "(share >= 0) & (share <= 1)": "(np.minimum(px, qx) <= x + along * dx) & (x + along * dx <= np.maximum(px, qx)) & (np.minimum(py, qy) <= y + along * dy) & (y + along * dy <= np.maximum(py, qy))",
+    },
+)
+mistakes(
     "NEAR_WALL_NOT_SEEN",
     "A wall very close to the robot is not seen: its beam reads r_max.",
     "A hit counts at every distance from zero on: compare the distance along the beam with 0.",
@@ -1991,6 +2039,34 @@ mistakes(
     kind="fact",
 )
 mistakes(
+    "DELAY_OF_WHOLE_NUMBERS",
+    "From whole numbers come whole numbers: what lies between two samples loses its decimals.",
+    "Make the result an array of floats: np.zeros(len(x)). np.zeros_like(x) takes the type of x.",
+).edit(
+    "delay_line",
+    {
+        "return np.interp(t - latency, t, x, left=0.0)": "return np.interp(t - latency, t, x, left=0.0).astype(np.asarray(x).dtype)"
+    },
+)
+mistakes(
+    "DELAY_GOES_ON_BACKWARDS",
+    "Less than a sample before the first one the output is not 0: it lies on the line through the first two samples, drawn on backwards.",
+    "int() cuts -0.5 to 0: ask whether the place is below 0 before you cut it, or take math.floor.",
+).body(
+    "delay_line",
+    """
+        x = np.asarray(x, dtype=float)
+        y = np.zeros(len(x))
+        for k in range(len(x)):
+            place = k - latency / dt
+            i = int(place)
+            if i >= 0 and place > -1:
+                share = place - i
+                y[k] = x[i] + share * (x[min(i + 1, len(x) - 1)] - x[i])
+        return y
+    """,
+)
+mistakes(
     "DELAY_SHARE_WRONG",
     "With a latency of two samples and a half, the samples on either side do not count half each.",
     "Divide the latency by dt before you split it: its whole part is a number of samples, and the rest, from 0 to 1, is the share of the earlier one.",
@@ -2104,6 +2180,16 @@ mistakes(
     "CHORD_WRONG_WAY",
     "In a turn that was tried, the displacement has the right length but the wrong direction.",
     "The chord points along the heading half-way through the turn: use the cosine and the sine of heading + turn/2, with the heading from before the step.",
+)
+mistakes(
+    "TURN_ON_THE_SPOT_LOST",
+    "Where the wheels run against each other at one speed, the robot stays as it is.",
+    "Its middle stays, and it turns: the heading changes by (v_right - v_left) / track * dt all the same.",
+).edit(
+    "diff_drive_step",
+    {
+        "x, y, heading = pose\n": "x, y, heading = pose\n    if v_left + v_right == 0:\n        return np.array(pose, dtype=float)\n"
+    },
 )
 mistakes(
     "RIGHT_TURNS_BACKWARDS",

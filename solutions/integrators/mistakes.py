@@ -177,6 +177,18 @@ mistakes(
     """,
 )
 mistakes(
+    "VERLET_OF_POSITIONS",
+    "The position moves by h*v + h**2*a and the velocity by h/2*a, as if q - h*v were the position a step before.",
+    "Verlet's formula of positions needs the true one. With a velocity, move by h*v + h**2/2*a, and add h/2 times the sum of the old and the new acceleration to the velocity.",
+).body(
+    "velocity_verlet_step",
+    """
+        before = q - h * v
+        q_next = 2 * q - before + h**2 * accel(t, q, v)
+        return q_next, (q_next - before) / (2 * h)
+    """,
+)
+mistakes(
     "EQUAL_WEIGHTS",
     "The four slopes are averaged with equal weights.",
     "The two middle slopes count double: (k1 + 2*k2 + 2*k3 + k4)/6.",
@@ -237,6 +249,27 @@ mistakes(
     kind="consequence",
 ).edit("rk4_step", {"dv1 + 2 * dv2 + 2 * dv3 + dv4": "2 * dv1 + dv2 + dv3 + 2 * dv4"})
 mistakes(
+    "STAGES_WEIGHED_WRONG",
+    "Your four calls of accel are those of a method of order four, but their slopes are not put together with its weights.",
+    "Compare the last line of your step with the last line of the method's table: each weight stands below its own stage.",
+    kind="consequence",
+).body(
+    "rk4_step",
+    """
+        root = math.sqrt(2.0)
+
+        def slope(time, y):
+            return np.array([y[1], accel(time, y[0], y[1])])
+
+        y = np.array([q, v], dtype=float)
+        k1 = slope(t, y)
+        k2 = slope(t + h / 2, y + h / 2 * k1)
+        k3 = slope(t + h / 2, y + h * ((root - 1) / 2 * k1 + (2 - root) / 2 * k2))
+        k4 = slope(t + h, y + h * (-root / 2 * k2 + (2 + root) / 2 * k3))
+        return tuple(y + h / 6 * (k1 + (2 + root) * k2 + (2 - root) * k3 + k4))
+    """,
+)
+mistakes(
     "STAGE_VELOCITY_IGNORED",
     "accel gets the velocity from the start of the step each time. Only a force that depends on velocity, such as damping, shows this: if a check with another force fails, too, there is a second mistake.",
     "Give accel the velocity of the stage as well: each stage has its own position and its own velocity.",
@@ -249,7 +282,7 @@ mistakes(
 mistakes(
     "EXTRA_EVALUATIONS",
     "accel is called more often than this method needs.",
-    "The Euler methods call accel once a step, Verlet once or twice, RK4 four times. If you need the same acceleration twice, keep it in a variable. If you iterate, or divide the step into shorter ones, it is another method.",
+    "The Euler methods call accel once a step, Verlet once or twice, RK4 four times. If you need the same acceleration twice, keep it in a variable; if you call accel to guess a velocity for another call, give that call the old one. If you iterate, or divide the step into shorter ones, it is another method.",
     kind="fact",
 ).around(
     "rk4_step",
@@ -608,7 +641,7 @@ mistakes(
 )
 mistakes(
     "TRUNCATED_AND_SHORT",
-    "There seem to be two mistakes: a number of steps that is truncated instead of rounded, and one sample too few for that many steps.",
+    "The number of steps is truncated instead of rounded, and for that many steps there is one sample too few.",
     "Use n = round(t_end / h), not int(...) and not //; then record the initial state before the loop and one state after each of the n steps.",
     true_too=("OFF_BY_ONE_SAMPLE",),
 ).body(
@@ -741,7 +774,7 @@ mistakes(
 )
 mistakes(
     "REFUSES_NO_DURATION",
-    "t_end = 0 is refused, and another duration is not.",
+    "t_end = 0 raises an exception, and another duration does not.",
     "No steps are a whole number of steps: return the initial state as the only row.",
     kind="fact",
 ).body(

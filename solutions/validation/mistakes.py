@@ -31,6 +31,41 @@ mistakes(
     kind="consequence",
 ).edit("rmse", {"sqrt(np.mean(np.square(np.asarray(e, dtype=float))": "mean(np.abs(e"})
 mistakes(
+    "RUNNING_UPDATE_OLD_MEAN",
+    "The variance is that of a running update that squares one distance, from the mean before the sample or after it.",
+    "One of the two factors is the distance from the new mean: m2 += (x - old_mean) * (x - new_mean). Or compute the mean first, then the mean square of what is left.",
+).body(
+    "bias_variance",
+    """
+        mean = m2 = 0.0
+        for n, x in enumerate(e, 1):
+            delta = float(x) - mean
+            mean += delta / n
+            m2 += delta * delta
+        return mean, m2 / len(e)
+    """,
+).body(
+    "bias_variance",
+    """
+        mean = m2 = 0.0
+        for n, x in enumerate(e, 1):
+            mean += (float(x) - mean) / n
+            m2 += (float(x) - mean) ** 2
+        return mean, m2 / len(e)
+    """,
+)
+mistakes(
+    "VARIANCE_ABOUT_FIRST",
+    "The variance is taken about the first error.",
+    "Subtract the mean of all errors, and take the mean square of what is left.",
+).body(
+    "bias_variance",
+    """
+        e = np.asarray(e, dtype=float)
+        return float(np.mean(e)), float(np.mean((e - e[0]) ** 2))
+    """,
+)
+mistakes(
     "DDOF_ONE",
     "Your code divides by N - 1.",
     "Divide by N. np.var does; statistics.variance divides by N - 1, and statistics.pvariance by N.",
@@ -259,6 +294,19 @@ mistakes(
     "Return one value per row of err: a return inside the loop ends it after the first row, and np.sum without an axis adds up all rows.",
     kind="fact",
 ).edit("nees", {"squared_distance(err, P": "float(np.mean(squared_distance(err, P))"})
+mistakes(
+    "VARIANCE_TAKEN_FOR_SIGMA",
+    "Where there is one component, the result is (nu/S)**2: S is divided by as if it were a standard deviation.",
+    "S is a variance already: nu**2/S, as nu @ inv(S) @ nu gives for one component too.",
+).body(
+    "nis",
+    """
+        nu, S = np.asarray(nu, dtype=float), np.asarray(S, dtype=float)
+        if nu.shape[1] == 1:
+            return (nu[:, 0] / S[:, 0, 0]) ** 2
+        return squared_distance(nu, S)
+    """,
+)
 mistakes(
     "INVERTED_BY_ELEMENT",
     "Your code divides by each element of the matrix.",
@@ -881,6 +929,11 @@ mistakes(
             scores.append(np.sqrt(np.mean(np.concatenate(e) ** 2)))
         return np.array(scores)
     """,
+)
+mistakes(
+    "ROOTS_WEIGHTED",
+    "Each score is the mean of the RMSEs of its runs, each as often as the run has samples.",
+    "Square the errors of all samples of the fold, average them, and take the root once, at the end.",
 )
 mistakes(
     "MEAN_OF_RUNS",
@@ -2501,6 +2554,10 @@ _FOLDS = {
     "score": (
         ("MEAN_OF_RUNS", lambda e: np.mean([np.sqrt(np.mean(run**2)) for run in e])),
         ("MEAN_OF_RUNS", lambda e: np.sqrt(np.mean([np.mean(run**2) for run in e]))),
+        (
+            "ROOTS_WEIGHTED",
+            lambda e: np.average([np.sqrt(np.mean(run**2)) for run in e], weights=[len(run) for run in e]),
+        ),
         ("ROOT_MISSING", lambda e: np.mean(np.concatenate(e) ** 2)),
         ("NOT_AVERAGED", lambda e: np.sqrt(np.sum(np.concatenate(e) ** 2))),
         ("SUM_OF_RUNS", lambda e: np.sum([np.sqrt(np.mean(run**2)) for run in e])),

@@ -121,7 +121,7 @@ def _tell_dimension(submission, task, calls, failure):
     bad = [d for d, found in works.items() if found is None and all(map(fails, by_size[d]))]
     if good and bad:
         kit.fail(
-            f"In {bad[0]}-D your code raises {failure.type}; in {good[0]}-D it works.",
+            f"In {bad[0]}-D your code raises an exception; in {good[0]}-D it works.",
             input=shown(task, by_size[bad[0]][0]),
             expected="a result",
             actual=failure.type,
@@ -156,7 +156,7 @@ def _parts(task, args, value):
         )
     if isinstance(normal, np.ndarray) and normal.ndim == 1 and len(normal) in {1, 2, 3} - {len(args[0])}:
         kit.fail(
-            f"The normal has {len(normal)} coordinates, and the centre has {len(args[0])}.",
+            "The normal has another number of coordinates than the centre.",
             input=shown(task, args),
             expected=f"{len(args[0])} coordinates",
             actual=len(normal),

@@ -483,9 +483,45 @@ def _apart(call, t):
     return abs(float(np.sqrt(x @ x)) - ra - rb) / (ra + rb)
 
 
+def _which_are_missed(calls, values, truth):
+    """What tells the contacts that are missed from all that are found, as a code, or None.
+
+    Where two answers fit, neither is known.
+    """
+    asked = [(call, value) for call, value, right in zip(calls, values, truth, strict=True) if right]
+    found = [
+        _same(right, value) for value, right in zip(values, truth, strict=True) if right and value is not None
+    ]
+    if not all(found) or not 2 <= len(found) <= len(asked) - 2:
+        return None
+    fits = [code for code, test in _MISSED if all(test(*c) == (value is None) for c, value in asked)]
+    return fits[0] if len(fits) == 1 else None
+
+
+def _out_of_reach(xa, va, ra, xb, vb, rb, dt):
+    return float(np.linalg.norm(xb - xa)) - ra - rb > max(np.linalg.norm(va), np.linalg.norm(vb)) * dt
+
+
+def _overlap_at_end(xa, va, ra, xb, vb, rb, dt):
+    return float(np.linalg.norm(xb - xa + dt * (vb - va))) < ra + rb
+
+
+def _closest_later(xa, va, _ra, xb, vb, _rb, dt):
+    return -float((xb - xa) @ (vb - va)) > dt * float((vb - va) @ (vb - va))
+
+
+_MISSED = (
+    ("REACH_OF_ONE_BODY", _out_of_reach),
+    ("PARTING_WITHIN_STEP", _overlap_at_end),
+    ("CLOSEST_AFTER_STEP", _closest_later),
+)
+
+
 def _coarse(calls, values, truth):
     """Contacts that are missed, or found at about the right time."""
     pairs = [(right, value, call[-1]) for call, value, right in zip(calls, values, truth, strict=True)]
+    if missed := _which_are_missed(calls, values, truth):
+        return missed
     if any(right is None and value is not None for right, value, _ in pairs):
         return (
             "CONTACTS_MISSED"

@@ -106,12 +106,27 @@ def of_lidar(submission, noisy=True, straight=False):
         return named("WALLS_NOT_READ")
     if _along_axes_missed(shifted, level, left):
         return named("WALLS_ALONG_AXES_MISSED")
+    if _missed_by_rounding(submission):
+        return named("WALLS_MISSED_BY_ROUNDING")
     right = np.abs(readings - [scene[-1] for scene in scenes]) < 1e-9
     if np.all(right) and (straight or np.allclose(fans[0], _READS, rtol=0, atol=1e-9)):
         return of_lidar_noise(submission) if noisy else None
     fixed = np.allclose(moved, fans[0], rtol=0, atol=1e-9)
     seen = np.abs(fans[3 if straight else 0] - _READS) < 1e-9
     return _of_scenes(readings, right, None if straight else _turning(*fans), fixed, seen)
+
+
+def _missed_by_rounding(submission):
+    """Whether some beams pass through a wall along y, and none of them through the same wall turned."""
+    fan, turn = np.linspace(-0.9, 0.9, 41), 0.3
+    wall = np.array([[2.0, -3.0], [2.0, 3.0]])
+    away = np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
+    calls = [
+        ((0.0, 0.0, heading), walls[None], fan, _REACH, 0.0, np.random.default_rng(1))
+        for heading, walls in ((0.0, wall), (turn, wall @ away))
+    ]
+    level, turned = (kit.as_vector(one, len(fan), "ranges") for one in submission.call_each("lidar", calls))
+    return 0 < np.count_nonzero(level == _REACH) < len(fan) and not np.any(turned == _REACH)
 
 
 def _along_axes_missed(shifted, level, left):

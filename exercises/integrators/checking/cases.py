@@ -136,7 +136,7 @@ def expect_refusals(submission, state, durations):
             if failure.type not in _OTHER_REFUSALS:
                 raise
             kit.fail(
-                f"integrate refuses the duration with {failure.type} instead of ValueError.",
+                "integrate refuses the duration with another exception than ValueError.",
                 input={"t_end": t_end, "h": h},
                 expected="ValueError",
                 actual=failure.type,
@@ -145,9 +145,9 @@ def expect_refusals(submission, state, durations):
 
 
 def expect_taken(submission, state, durations):
-    """Each (t_end, h) is nearly enough a whole number of steps."""
+    """Each (t_end, h) is nearly enough a whole number of steps, and has as many rows and one."""
     for t_end, h in durations:
-        kit.expect_accepts(
+        value = kit.expect_accepts(
             lambda t_end=t_end, h=h: submission.call(
                 "integrate", probes.IDENTITY, Oscillator(1.0), *state, t_end, h
             ),
@@ -155,6 +155,13 @@ def expect_taken(submission, state, durations):
             input={"t_end": t_end, "h": h},
             message="A duration that is less than 1e-6 of a step from a whole number of steps is refused.",
             diagnose=lambda: probes.named("REFUSES_NEARLY_WHOLE"),
+        )
+        kit.expect_length(
+            histories(value)[0],
+            round(t_end / h) + 1,
+            message="integrate does not return N + 1 times for N steps.",
+            help="N = round(t_end / h), for a duration that is a little less than N steps, too.",
+            input={"t_end": t_end, "h": h},
         )
 
 
@@ -217,6 +224,11 @@ def expect_clean(submission, task, system, t, whole, h):
     # An acceleration of whole numbers, too, must not leave the result without room for fractions.
     floats = kit.as_pair(submission.call(task, _spring, *args[1:]), 2)
     spring = {"accel": "-4 * q, of whole numbers", "t": t, "q": whole[0], "v": whole[1], "h": h}
+    kit.expect_true(
+        np.any(floats[1] != args[3]) or not whole[0].any(),
+        "The acceleration makes no difference to the velocity.",
+        input=spring,
+    )
     _expect_whole(submission, task, _spring, [t, *whole, h], floats, spring)
 
 

@@ -242,8 +242,11 @@ def _blind_spot(submission, task):
     return "STAGE_VELOCITY_IGNORED" if blind and all(np.allclose(call[2], _V) for call in calls) else None
 
 
-#: What ``accel`` returns at the first to the fourth call: nothing that the state would give.
-_SLOPES = np.array([[1.3, -0.6], [-0.8, 0.9], [0.5, 1.7], [-1.1, -0.4]])
+#: What ``accel`` returns at the first to the fourth call: nothing that the state would give. Four numbers
+#: each, so that the velocities that come back show the method's table.
+_SLOPES = np.array(
+    [[1.3, -0.6, 0.2, 0.7], [-0.8, 0.9, 1.1, -0.3], [0.5, 1.7, -0.9, 0.4], [-1.1, -0.4, 0.6, 1.2]]
+)
 
 
 def _stage(submission, task):
@@ -254,20 +257,43 @@ def _stage(submission, task):
     if task != "rk4_step":
         return None
     accel = kit.counted(lambda *args, **names: _SLOPES[(len(accel.calls) - 1) % 4])
-    end = kit.as_pair(submission.call(task, accel, _T, _Q, _V, _H), 2)
+    q0, v0 = np.resize(_Q, 4), np.resize(_V, 4)
+    end = kit.as_pair(submission.call(task, accel, _T, q0, v0, _H), 4)
     if accel.count != 4:
         return None
-    dv = np.zeros(2), _H / 2 * _SLOPES[0], _H / 2 * _SLOPES[1], _H * _SLOPES[2]
-    v = [_V + one for one in dv]
-    q = _Q, _Q + _H / 2 * v[0], _Q + _H / 2 * v[1], _Q + _H * v[2]
+    if _weights_missed(accel.calls, end, q0, v0):
+        return "STAGES_WEIGHED_WRONG"
+    dv = np.zeros(4), _H / 2 * _SLOPES[0], _H / 2 * _SLOPES[1], _H * _SLOPES[2]
+    v = [v0 + one for one in dv]
+    q = q0, q0 + _H / 2 * v[0], q0 + _H / 2 * v[1], q0 + _H * v[2]
     t = _T, _T + _H / 2, _T + _H / 2, _T + _H
     for call, right, code in zip(accel.calls, zip(t, q, v, strict=True), _STAGES, strict=True):
         # Single precision is told by its digits.
         if len(call) != 3 or not all(map(functools.partial(np.allclose, rtol=1e-5), call, right)):
             return code
     weights = np.array([1, 2, 2, 1]) * _H / 6
-    states = np.stack([_Q + weights @ np.array(v), _V + weights @ _SLOPES])
+    states = np.stack([q0 + weights @ np.array(v), v0 + weights @ _SLOPES])
     return None if np.allclose(end, states, rtol=1e-5) else "STAGES_PUT_TOGETHER_WRONG"
+
+
+def _weights_missed(calls, end, q0, v0):
+    """Whether the calls are another method's of order four, and the state after them is not its own."""
+    if any(len(call) != 3 or np.shape(call[2]) != np.shape(v0) for call in calls):
+        return False
+    v = np.array([call[2] for call in calls])
+    table, c = (v - v0) / _H @ np.linalg.inv(_SLOPES), np.array([(call[0] - _T) / _H for call in calls])
+    if np.max(np.abs(table[1] - [0.5, 0, 0, 0])) + np.max(np.abs(table[2] - [0, 0.5, 0, 0])) < 1e-6:
+        return False  # the classical method's own calls are told of elsewhere
+    if not np.allclose(np.array([call[1] for call in calls]), q0 + _H * table @ v, rtol=1e-5):
+        return False
+    once, squared = table @ c, table @ c**2
+    conditions = np.stack([c**0, c, c**2, c**3, once, c * once, squared, table @ once])
+    wanted = 1 / np.array([1, 2, 3, 4, 6, 8, 12, 24])
+    weights = np.linalg.lstsq(conditions, wanted)[0]
+    if np.max(np.abs(conditions @ weights - wanted)) > 1e-6:
+        return False
+    own = q0 + _H * weights @ v, v0 + _H * weights @ _SLOPES
+    return not np.allclose(end, own, rtol=1e-5)
 
 
 #: The first call has no stage before it: what it gets is told by other probes.

@@ -139,6 +139,10 @@ def fits(u, y, tau, late):
             ("SIGN_OF_POSITION", (viscous, np.sign(viscous))),
             ("SIGN_NOT_INTEGRATED", (viscous, sign)),
             ("FRICTION_DELAYED", (_delayed(viscous, late), _delayed(coulomb, late))),
+            *(
+                ("SIGN_WITH_DEAD_BAND" + name, (viscous, _integral(sign * (np.abs(y) > least))))
+                for name, least in (("", 0.1), (" small", 0.05), (" large", 0.2))
+            ),
         )
     }
     for name, column, at in (("COULOMB_AS_VISCOUS", viscous, 2), ("VISCOUS_AS_COULOMB", coulomb, 1)):
@@ -160,22 +164,22 @@ def _fitted(columns, target):
     return np.array([1.0, *-theta[1:]]) / theta[0]
 
 
-def misfit(u, y, tau, late):
-    """Sum of squares that the README's fit leaves with these times, (m/s)^2."""
+def fit(u, y, tau, late):
+    """m, b and Fc of the README's fit with these times, (3,), and the sum of squares it leaves, (m/s)^2."""
     columns = _blocks(
         np.stack([_delayed(_impulse(u, tau), late), _integral(y), _integral(np.sign(y))], axis=1)
     )
     target = _blocks(y[:, None])[:, 0]
     theta = np.linalg.lstsq(columns, target)[0]
-    return float(np.sum((target - columns @ theta) ** 2))
+    return np.array([1.0, *-theta[1:]]) / theta[0], float(np.sum((target - columns @ theta) ** 2))
 
 
 def errors(u, y, tau, late):
     """Standard errors of m, b, Fc, tau, latency and lag for a fit near these times, {how: (6,)}.
 
     "": the README's jackknife. "kept out": each refit also lacks the blocks that were left out before.
-    "formula": what the usual formula says of m, of blocks and of the whole recording, with the times fitted
-    or known, (4,).
+    "held": each refit has the times of all blocks. "formula": what the usual formula says of m, of blocks
+    and of the whole recording, with the times fitted or known, (4,).
     """
     d, size = 0.001, round(1 / H)
     impulse, later, sooner = (_impulse(u, each) for each in (tau, tau + d, tau - d))
@@ -185,13 +189,16 @@ def errors(u, y, tau, late):
     cut, target = _blocks(whole), _blocks(y[:, None])[:, 0]
     X, v = cut.reshape(-1, size, 5), target.reshape(-1, size)
     XX, Xv = X.transpose(0, 2, 1) @ X, np.einsum("bki,bk->bi", X, v)
+    others = XX.sum(axis=0) - XX, Xv.sum(axis=0) - Xv
     refits = {
-        "": (XX.sum(axis=0) - XX, Xv.sum(axis=0) - Xv),
+        "": others,
         "kept out": ((XX.sum(axis=0) - XX.cumsum(axis=0))[:-1], (Xv.sum(axis=0) - Xv.cumsum(axis=0))[:-1]),
+        "held": (others[0][:, :3, :3], others[1][:, :3]),
     }
     found = {}
     for name, (left, right) in refits.items():
         theta = (np.linalg.pinv(left) @ right[..., None])[..., 0]
+        theta = np.pad(theta, [(0, 0), (0, 5 - theta.shape[1])])
         m = 1 / theta[:, 0]
         times = tau + theta[:, 3] * m, late + theta[:, 4] * m
         each = np.stack([m, -theta[:, 1] * m, -theta[:, 2] * m, *times, times[0] + times[1]], axis=1)

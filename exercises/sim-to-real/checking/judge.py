@@ -144,7 +144,13 @@ def expect_kept(i, gap, seconds, carts, seed):
     scale = 100 if gap["unit"] == "%" else 1
     kit.fail(
         "The threshold of a gap is not between the narrowest interval and the largest useful one.",
-        diagnose=named("PROMISES_TOO_LITTLE" if threshold > needed else "PROMISES_TOO_MUCH"),
+        diagnose=named(
+            "PROMISES_TOO_LITTLE"
+            if threshold > needed
+            else "PROMISES_TOO_MUCH_OF_NOISE"
+            if gap["parameter"] == "noise"
+            else "PROMISES_TOO_MUCH"
+        ),
         input={"gap": i, **run},
         expected=[scale * reach, scale * needed],
         actual=scale * threshold,
@@ -168,6 +174,32 @@ def public_recordings():
     """Two bench recordings of the public cart and one of the data sheet's, and whose they are."""
     carts = [cart.PUBLIC, cart.PUBLIC, cart.SHEET]
     return cart.prbs_recordings(carts, 20.0, cart.U_BENCH, np.random.default_rng(21)), carts
+
+
+@functools.cache
+def far_recordings():
+    """Recordings of carts with times far from the data sheet's, and their lags, s."""
+    carts = [{**cart.PUBLIC, "tau": tau, "latency": late} for tau, late in ((0.13, 0.18), (0.03, 0.035))]
+    recordings = cart.prbs_recordings(carts, 20.0, cart.U_BENCH, np.random.default_rng(23))
+    return recordings, [each["tau"] + each["latency"] for each in carts]
+
+
+def expect_far(estimates, near, carts):
+    """The lags of ``far_recordings``; those of carts with times near the sheet's are right already.
+
+    near: estimates of these, and whose they are
+    """
+    for estimate, lag in zip(estimates, far_recordings()[1], strict=True):
+        kit.expect_close(
+            estimate["lag"][0],
+            lag,
+            rel=cart.SCORED["lag"],
+            source="the README's",
+            quantity="lag",
+            units="s",
+            message="The lag of a cart whose times are far from the data sheet's is off.",
+            diagnose=lambda: probes.of_values(near, carts) or named("TIMES_NEAR_SHEET"),
+        )
 
 
 def expect_accurate(estimates, carts, recordings=(), submission=None, single=None):
@@ -270,6 +302,44 @@ def _shares(estimate):
     """Half-widths of the scored intervals as shares of their values, (4,)."""
     entries = (estimate[name] for name in cart.SCORED)
     return np.array([(high - low) / 2 / abs(value) if value else np.inf for value, low, high in entries])
+
+
+def expect_errors(full, weak, recordings, weak_recordings):
+    """Intervals of the README's fit are no narrower than its values scatter, from weak recordings too."""
+    for estimates, of, least in ((full, recordings, 1.5), (weak, weak_recordings, 0.75)):
+        ratios = probes.over_errors(estimates, of)
+        if ratios is None:
+            continue
+        for name, ratio in zip(probes.ALL, np.median(ratios, axis=0), strict=True):
+            kit.expect_bounded(
+                float(ratio),
+                low=least,
+                source="the README's",
+                quantity=f"half-width of {name} over the jackknife's standard error, median",
+                message="An interval is narrower than the values of this fit need.",
+                diagnose=lambda estimates=estimates, of=of, ratios=ratios: probes.of_narrow(
+                    estimates, of, ratios
+                ),
+                input={
+                    "parameter": name,
+                    "recordings": "20 s at 3 N" if of is recordings else "8 s at 1.2 N",
+                },
+            )
+
+
+def expect_own_lag(estimates):
+    """The interval of lag is not made of those of tau and latency."""
+    for made, code in (
+        (probes.ends_added, "LAG_ENDS_ADDED"),
+        (probes.squares_added, "LAG_OF_INDEPENDENT_TIMES"),
+    ):
+        kit.expect_true(
+            not all(made(each) for each in estimates),
+            "The interval of lag is not its own.",
+            diagnose=named(code),
+            input={"parameter": "lag"},
+            actual=list(estimates[0]["lag"]),
+        )
 
 
 def expect_honest_widths(estimates, recordings, carts):

@@ -113,6 +113,13 @@ def box_of(plan):
                 input={"parameter": name},
                 actual=[low, high],
             )
+        if not 0.01 < low <= high < 100.0:
+            kit.fail(
+                "A factor of the randomisation box is a hundredth or less, or a hundred or more.",
+                help="Factors multiply the estimate: from e^-w to e^w, for a half-width w.",
+                input={"parameter": name},
+                actual=[low, high],
+            )
         found[name] = (low, high)
     return found
 
@@ -132,7 +139,7 @@ def width(name, low, high):
 _ROUNDING = 1e-9
 
 
-def of_box(box, shown=cart.NAMES):
+def of_box(box, shown=cart.NAMES):  # noqa: PLR0911 - one return per mistake
     """What is wrong with a box of which some parameter is too narrow or too wide.
 
     shown: the parameters that the finding is about
@@ -153,6 +160,9 @@ def of_box(box, shown=cart.NAMES):
     middles = {k: math.sqrt(low * high) for k, (low, high) in box.items()}
     if all(abs(math.log(middles[k] / cart.SHEET[k])) < 0.2 for k in cart.NAMES):
         return named("BOX_NOT_FACTORS")
+    widths = sorted(math.log(high / low) / 2 for low, high in box.values())
+    if _all_near([a / b for a, b in zip(widths, sorted(cart.FLEET.values()), strict=True)], 1.0):
+        return named("BOX_EXCHANGED")
     narrow = any(inside(k, *box[k]) < 0.95 for k in shown)
     return named("BOX_TOO_NARROW" if narrow else "BOX_TOO_WIDE")
 

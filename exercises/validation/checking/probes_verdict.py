@@ -205,7 +205,9 @@ def of_interval(key, ends, right):
                 for z in (1.0, 1.645, 1.96, 2.0, 3.0, _T95[n - 1], *_T95[n - 3 : n - 2])
             ),
         ]
-        if found := _only(looks, lambda wrong: abs(share - wrong) < 1e-3 * max(wrong, 1e-6)):
+        # Where the width is right, or a wrong rule would give about the right one, it tells nothing.
+        found = _only(looks, lambda wrong: abs(share - wrong) < 1e-3 * max(wrong, 1e-6))
+        if found and abs(share - 1) > 2e-3:
             return found
     middles = [abs(sum(ends[k]) / 2 - right.numbers[k]) <= 0.01 * right.half(k) for k in NUMBERS]
     alike = len(shares) > 1 and 0.01 < max(shares) <= (1 + 1e-5) * min(shares)

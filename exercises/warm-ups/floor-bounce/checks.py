@@ -37,7 +37,7 @@ def test_on_the_way_up(submission):
         submission,
         "after_floor",
         ("v", "e"),
-        [((2.0, 0.8), 2.0), ((0.5, 0.3), 0.5), ((0.0, 0.4), 0.0)],
+        [((2.0, 0.8), 2.0), ((0.5, 0.3), 0.5), ((0.0, 0.4), 0.0), ((1.0, 0.0), 1.0)],
         abs=1e-12,
         source="closed form; absolute 1e-12 m/s where it is zero",
         quantity="the velocity afterwards",

@@ -20,6 +20,7 @@ def test_rules(submission):
             ((0.2, 0.6, "larger"), 0.6),
             ((1.2, 0.5, "product"), 0.6),
             ((0.2, 0.6, "mean"), 0.4),
+            ((1.2, 0.9, "larger"), 1.2),
         ],
         quantity="the coefficient",
         message="The coefficient of a pair is wrong.",

@@ -24,7 +24,7 @@ mistakes(
 )
 mistakes(
     "QUOTIENT_OF_SIZES",
-    "You divided the sum of the forces by the sum of the speeds, both without their signs.",
+    "Your result is the sum of the forces over the sum of the speeds, both without their signs.",
     "Multiply each force by its speed before adding.",
 ).edit("damping", {"v * f for v": "abs(f) for v", "v * v for v in speeds": "abs(v) for v in speeds"})
 mistakes(

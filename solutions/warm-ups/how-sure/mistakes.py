@@ -91,6 +91,13 @@ mistakes.accept(
 )
 
 
+mistakes(
+    "POWER_BEFORE_DIVISION",
+    "You divided by 2 n: in s / n ** 1 / 2 the power comes first, and s / n / 2 is left.",
+    "Write n ** 0.5, or math.sqrt(n).",
+)
+
+
 def error_of(less=1, power=0.5, root=0.5):
     def standard_error(values):
         n = len(values)
@@ -113,6 +120,7 @@ mistakes.terms(
 
 @mistakes.more
 def factors():
+    yield "standard_error", ("POWER_BEFORE_DIVISION",), lambda values: error_of(power=1.0)(values) / 2
     yield "standard_error", ("TWO_STANDARD_ERRORS",), lambda values: 2 * error_of()(values)
     yield "standard_error", ("MEAN_OF_THE_SIZES",), sizes_over_n_minus_one
 

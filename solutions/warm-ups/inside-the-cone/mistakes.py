@@ -157,6 +157,13 @@ mistakes.accept(
 )
 
 
+mistakes(
+    "DIRECTION_OF_ATAN",
+    "With a negative first component the result points the other way: math.atan(y / x) gives that.",
+    "math.atan2(y, x) knows all directions. Or scale both components by one factor, and need no angle.",
+)
+
+
 def friction_of(length=math.hypot, beyond=1.0, sign=1.0, most=lambda normal, mu: mu * normal):
     def friction(wanted, normal, mu):
         limit, size = most(normal, mu), length(*wanted)
@@ -186,6 +193,13 @@ mistakes.terms(
 def other_limits():
     yield "friction", ("COMPARED_WITH_NORMAL",), friction_of(most=lambda normal, mu: normal)
     yield "friction", ("PYRAMID",), smaller_pyramid
+    yield "friction", ("DIRECTION_OF_ATAN",), by_angle
+
+
+def by_angle(wanted, normal, mu):
+    size, angle = math.hypot(*wanted), math.atan(wanted[1] / wanted[0]) if wanted[0] else math.pi / 2
+    most = min(mu * normal, size)
+    return [most * math.cos(angle), most * math.sin(angle)]
 
 
 def smaller_pyramid(wanted, normal, mu):

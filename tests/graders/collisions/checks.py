@@ -347,9 +347,9 @@ def test_head_on_drawn(submission, rng):
 @pytest.mark.task(bundles.HEAD_ON)
 @pytest.mark.points(2)
 def test_head_on_large_steps(submission, rng):
-    """Fast balls, long steps, and a meeting in the first step"""
+    """Fast balls, long steps, and meetings in the first step and on a sample"""
     cases = [*(draws.fast_pair(rng, jump) for jump in (3.0, 30.0, 1000.0)), draws.early(rng), draws.slim(rng)]
-    cases.append(draws.touching(rng))
+    cases += [draws.touching(rng), draws.on_sample(rng)]
     values = submission.call_each(bundles.HEAD_ON, [scene.args(t_end, h) for scene, t_end, h in cases])
     for (scene, t_end, h), truth, value in zip(cases, bundles.meetings(cases), values, strict=True):
         bundles.expect_head_on(
@@ -358,7 +358,7 @@ def test_head_on_large_steps(submission, rng):
             value,
             t_end,
             h,
-            "Balls that meet early, or travel far in one step, do not move as they should.",
+            "Balls that meet early or on a sample, or travel far in one step, do not move as they should.",
             "The contact lies inside the step, gap over speed of approach after its start. Straight lines up "
             "to it, the impact, straight lines for the rest of the step.",
         )

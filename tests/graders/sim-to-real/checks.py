@@ -114,10 +114,13 @@ def test_identify_accurate(submission):
 def test_identify_honest(submission):
     """The intervals for strong and weak recordings, and the true values"""
     estimates, carts = execution.bench(submission)
-    judge.expect_intervals(estimates, carts, reference.recordings(submission.seed))
-    judge.expect_growth(estimates, execution.weak(submission), carts, reference.recordings(submission.seed))
-    judge.expect_honest_widths(estimates, reference.recordings(submission.seed), carts)
-    judge.expect_truth(estimates, carts, reference.recordings(submission.seed), 2, 8)
+    recordings, weak = reference.recordings(submission.seed), execution.weak(submission)
+    judge.expect_intervals(estimates, carts, recordings)
+    judge.expect_growth(estimates, weak, carts, recordings)
+    judge.expect_honest_widths(estimates, recordings, carts)
+    judge.expect_errors(estimates, weak, recordings, reference.weak_recordings(submission.seed))
+    judge.expect_truth(estimates, carts, recordings, 2, 8)
+    judge.expect_own_lag(estimates)
 
 
 # -- tune: the plan, executed ---------------------------------------------------------------------------

@@ -147,8 +147,8 @@ TIMES = [
         (lambda: probes.of_values(off(RECORDED), RECORDED, RECORDINGS), None),
         (lambda: probes.of_values(fitted(), RECORDED, RECORDINGS), None),
         # A mass that is wrong is none of differences, nor is one with a time at the edge.
-        (lambda: probes.of_values(HEAVIER, RECORDED, RECORDINGS), None),
-        (lambda: probes.of_misses(HEAVIER, RECORDED, RECORDINGS), "VALUES_OFF"),
+        (lambda: probes.of_values(HEAVIER, RECORDED, RECORDINGS), "OTHER_FIT"),
+        (lambda: probes.of_misses(HEAVIER, RECORDED, RECORDINGS), "OTHER_FIT"),
         (lambda: probes.of_values(off(RECORDED, **EDGE), RECORDED, RECORDINGS), "PARAMETER_FIXED"),
         # On one cart it may be chance: a lag, one over a mass, something divided by it.
         (lambda: probes.of_values(off(TRUTHS[:1], **LATE), TRUTHS[:1]), None),

@@ -270,7 +270,8 @@ def grade_class(
 def _lower(before: Scores, now: Scores) -> Iterator[str]:
     """Scores that a resumed run made lower, by what was handed in for it."""
     for (student, exercise), (score, _) in before.items():
-        after, _ = now.get((student, exercise), (None, None))
+        # Nothing is lost; who has another name now has the score under that.
+        after, _ = now.get((student, exercise), (score, None))
         if score is not None and (after is None or after < score):
             now_points = "no score" if after is None else format_points(after)
             yield f"{student} {exercise}: {format_points(score)} before, {now_points} now"

@@ -30,7 +30,7 @@ TOLD = {
     },
     "sim-to-real": {
         "tune_mean_of_the_settled": {"GAINS_HARD_CODED", "NO_CART_SETTLES"},
-        "plan_noise_to_two_per_cent": {"PROMISES_TOO_MUCH"},
+        "plan_noise_to_two_per_cent": {"PROMISES_TOO_MUCH_OF_NOISE"},
         "identify_ever_fewer_blocks": {"INTERVAL_USELESS"},
         "tune_delays_not_drawn": {"RANGE_NOT_READ"},
     },

@@ -308,7 +308,7 @@ def _show_similar(console: Console, found: Similar) -> None:
         console.note(f"{counted(found.left_out, 'more pair')} not listed; raise --share.")
     if found.unreadable:
         names = some(found.unreadable, _MOST_LOST)
-        console.note(f"{len(found.unreadable)} not compared, as no Python or over 200 kB: {names}.")
+        console.note(f"{len(found.unreadable)} not compared (not Python, or over 200 kB): {names}.")
 
 
 class GradeSalvage(Envelope, tag="course.grade-salvage/1", frozen=True, kw_only=True):

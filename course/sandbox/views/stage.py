@@ -450,11 +450,11 @@ class Stage:
 
     def _jump(self, stack: list[Moment], other: list[Moment], which: str) -> None:
         self._must_be_idle()
+        if not stack:
+            raise UsageError(f"There is nothing to {which}.", code=f"no_{which}")
         self.present()
         if self.world.held:
             self.act("release")
-        if not stack:
-            raise UsageError(f"There is nothing to {which}.", code=f"no_{which}")
         before = list(self._undos), list(self._redos)
         there = stack.pop()
         self._push(other, self._now(there.why))

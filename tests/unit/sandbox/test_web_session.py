@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from course.errors import MissingCapabilityError
@@ -495,6 +495,7 @@ ANYTHING = st.one_of(REQUEST, st.text(max_size=60), st.binary(max_size=60), st.j
 
 @settings(max_examples=120)
 @given(messages=st.lists(ANYTHING, max_size=12))
+@example(messages=['{"do":"grab","x":0.0,"y":0.0,"reach":10}', '{"do": "redo"}'])
 def test_whatever_arrives_the_world_lives_on(messages: list[str | bytes]) -> None:
     made, page = make("head-on")
 

@@ -21,12 +21,12 @@ mistakes(
         touching, normal, depth = _right(xa, ra, xb, rb)
         return touching, -normal, depth
     """,
-).body(
+).edit(
     "detect_sphere_plane",
-    """
-        depth = r - (x - point) @ normal
-        return bool(depth >= 0), -normal, depth
-    """,
+    {
+        "float(np.dot(np.subtract(x, point, dtype=float), normal))": "(x - point) @ normal",
+        "depth >= 0, ": "bool(depth >= 0), -",
+    },
 )
 mistakes(
     "DEPTH_SIGN_FLIPPED",
@@ -75,18 +75,18 @@ mistakes(
     "ONE_COORDINATE_ONLY",
     "Where a scalar product belongs, only one coordinate counts.",
     "Take all of them: (x - point) @ normal, (va - vb) @ normal.",
-).body(
+).edit(
     "detect_sphere_plane",
-    """
-        depth = r - (x[-1] - point[-1]) * normal[-1]
-        return bool(depth >= 0), normal, depth
-    """,
-).body(
+    {
+        "float(np.dot(np.subtract(x, point, dtype=float), normal))": "(x[-1] - point[-1]) * normal[-1]",
+        "depth >= 0": "bool(depth >= 0)",
+    },
+).edit(
     "detect_sphere_plane",
-    """
-        depth = r - (x[0] - point[0]) * normal[0]
-        return bool(depth >= 0), normal, depth
-    """,
+    {
+        "float(np.dot(np.subtract(x, point, dtype=float), normal))": "(x[0] - point[0]) * normal[0]",
+        "depth >= 0": "bool(depth >= 0)",
+    },
 ).edit("resolve", {"(va - vb) @ n,": "(va[0] - vb[0]) * n[0],"}).edit(
     "resolve", {"(va - vb) @ n,": "(va[-1] - vb[-1]) * n[-1],"}
 )
@@ -94,12 +94,12 @@ mistakes(
     "DISTANCE_UNSIGNED",
     "The height above the plane has lost its sign: a centre inside the solid counts as outside.",
     "Use it with its sign, without abs(): inside the solid (x - point) . normal is negative, and the depth is then larger than r.",
-).body(
+).edit(
     "detect_sphere_plane",
-    """
-        depth = r - abs((x - point) @ normal)
-        return bool(depth >= 0), normal, depth
-    """,
+    {
+        "float(np.dot(np.subtract(x, point, dtype=float), normal)": "abs((x - point) @ normal",
+        "depth >= 0": "bool(depth >= 0)",
+    },
 ).body(
     "detect_sphere_plane",
     """
@@ -124,12 +124,12 @@ mistakes(
     "PLANE_POINT_IGNORED",
     "The plane's point is left out, or added where it should be subtracted.",
     "Measure the height from a point of the plane: (x - point) . normal.",
-).body(
+).edit(
     "detect_sphere_plane",
-    """
-        depth = r - x @ normal
-        return bool(depth >= 0), normal, depth
-    """,
+    {
+        "float(np.dot(np.subtract(x, point, dtype=float), normal))": "x @ normal",
+        "depth >= 0": "bool(depth >= 0)",
+    },
 )
 mistakes(
     "PLANE_ASSUMED_LEVEL",
@@ -241,12 +241,7 @@ mistakes(
     "THIRD_LAW_MISSING",
     "The two bodies do not receive equal and opposite impulses, so momentum is not conserved.",
     "What b gains, a must lose: va - J/ma n and vb + J/mb n with the same J.",
-).around(
-    "resolve",
-    """
-        return va, _right(ma, mb, va, vb, normal, restitution)[1]
-    """,
-)
+).around("resolve", "return va, _right(ma, mb, va, vb, normal, restitution)[1]")
 mistakes(
     "BLOW_NOT_ALONG_NORMAL",
     "The impulse acts in a direction other than the normal, such as that of the relative velocity. Smooth bodies can push each other only along the normal.",
@@ -545,12 +540,7 @@ mistakes(
     "A contact that happens after the end of the step is reported.",
     "Only times up to dt count; return None for a later contact.",
     kind="consequence",
-).around(
-    "time_of_impact",
-    """
-        return _right(xa, va, ra, xb, vb, rb, math.inf)
-    """,
-)
+).around("time_of_impact", "return _right(xa, va, ra, xb, vb, rb, math.inf)")
 mistakes(
     "MISSES_COUNT_AS_HITS",
     "The time is a gap over a speed, as if all bodies met head on. Bodies that pass beside each other can then count as hits.",
@@ -572,9 +562,7 @@ mistakes(
     kind="consequence",
 ).around(
     "time_of_impact",
-    """
-        return 0.0 if np.linalg.norm(xb - xa) <= ra + rb else _right(xa, va, ra, xb, vb, rb, dt)
-    """,
+    "return 0.0 if np.linalg.norm(xb - xa) <= ra + rb else _right(xa, va, ra, xb, vb, rb, dt)",
 )
 mistakes(
     "APPROACH_NOT_ASKED",
@@ -744,31 +732,15 @@ mistakes(
     "RADIUS_IGNORED",
     "The bodies are taken for points, without radii.",
     "The surfaces touch while the centres are still ra + rb apart (or r from a wall).",
-).around(
-    "simulate_head_on",
-    """
-        return _right(m, x0, v0, 0.0, restitution, t_end, h)
-    """,
-).around(
-    "simulate_drop",
-    """
-        return _right(z0, v0, 0.0, restitution, g, t_end, h)
-    """,
+).around("simulate_head_on", "return _right(m, x0, v0, 0.0, restitution, t_end, h)").around(
+    "simulate_drop", "return _right(z0, v0, 0.0, restitution, g, t_end, h)"
 )
 mistakes(
     "TRUNCATED_STEP_COUNT",
     "The number of steps is cut off instead of rounded: t_end/h may come out just below a whole number.",
     "Use round(t_end / h), and return one sample more than there are steps.",
-).around(
-    "simulate_head_on",
-    """
-        return _right(m, x0, v0, radius, restitution, int(t_end / h) * h, h)
-    """,
-).around(
-    "simulate_drop",
-    """
-        return _right(z0, v0, radius, restitution, g, int(t_end / h) * h, h)
-    """,
+).around("simulate_head_on", "return _right(m, x0, v0, radius, restitution, int(t_end / h) * h, h)").around(
+    "simulate_drop", "return _right(z0, v0, radius, restitution, g, int(t_end / h) * h, h)"
 )
 mistakes(
     "RESTING_JITTER",
@@ -796,12 +768,7 @@ mistakes(
     "RESTITUTION_AS_ENERGY",
     "The speeds scale with the square root of e, as if e were the share of the energy, or of the height, that remains.",
     "e is a ratio of speeds: use it as it is given. The remaining energy follows from it.",
-).around(
-    "simulate_drop",
-    """
-        return _right(z0, v0, radius, math.sqrt(restitution), g, t_end, h)
-    """,
-)
+).around("simulate_drop", "return _right(z0, v0, radius, math.sqrt(restitution), g, t_end, h)")
 mistakes(
     "EULER_IN_FLIGHT",
     "Before the first contact the fall is off by g h t/2 already, the error of an Euler step.",
@@ -1087,12 +1054,7 @@ mistakes(
     "FRICTION_COEFFICIENT_CAPPED",
     "The coefficient of friction is cut off at one.",
     "mu may be larger than one, as for rubber on dry concrete. Use it as it is given.",
-).around(
-    "resolve_with_friction",
-    """
-        return _right(ma, mb, va, vb, normal, restitution, min(mu, 1.0))
-    """,
-)
+).around("resolve_with_friction", "return _right(ma, mb, va, vb, normal, restitution, min(mu, 1.0))")
 mistakes(
     "BRIEF_CONTACTS_MISSED",
     "Only contacts are missed at which the bodies overlap for a short part of the step. All times are right.",
@@ -1436,9 +1398,7 @@ mistakes(
     kind="consequence",
 ).around(
     "resolve_with_friction",
-    """
-        return _right(ma, mb, va, vb, normal, restitution, 0.0 if math.inf in (ma, mb) else mu)
-    """,
+    "return _right(ma, mb, va, vb, normal, restitution, 0.0 if math.inf in (ma, mb) else mu)",
 )
 mistakes(
     "OVERLAP_IN_THE_PAST",
@@ -1507,12 +1467,7 @@ mistakes(
     "OTHER_GRAVITY",
     "From the start the ball falls with another g than the one that is given.",
     "Use the argument g everywhere: in the flight, for the time to the floor, and in the rule for the rest.",
-).around(
-    "simulate_drop",
-    """
-        return _right(z0, v0, radius, restitution, 9.81, t_end, h)
-    """,
-)
+).around("simulate_drop", "return _right(z0, v0, radius, restitution, 9.81, t_end, h)")
 mistakes(
     "NORMAL_REVERSED_AT_TIMES",
     "In some cases the normal points the other way.",
@@ -1597,16 +1552,8 @@ mistakes(
     "Of these pairs, only those with two equal masses are wrong.",
     "The formula holds for all masses, without a special case. Equal bodies exchange their velocities only for e = 1.",
     kind="consequence",
-).around(
-    "resolve",
-    """
-        return _right(ma, mb, va, vb, normal, 1.0 if ma == mb else restitution)
-    """,
-).around(
-    "impulse_1d",
-    """
-        return _right(ma, mb, va, vb, 1.0 if ma == mb else restitution)
-    """,
+).around("resolve", "return _right(ma, mb, va, vb, normal, 1.0 if ma == mb else restitution)").around(
+    "impulse_1d", "return _right(ma, mb, va, vb, 1.0 if ma == mb else restitution)"
 )
 mistakes(
     "QUADRATIC_MIXED",

@@ -180,10 +180,7 @@ mistakes(
     "With the generator in the same state, a second call gives a different result, so something besides the generator has an effect.",
     "Draw only from the rng that is passed in: rng.standard_normal(n), not np.random.randn(n). Keep nothing between two calls.",
 ).around(
-    "imu",
-    """
-        return _right(true, dt, noise_density, bias_random_walk, bias0, np.random.default_rng())
-    """,
+    "imu", "return _right(true, dt, noise_density, bias_random_walk, bias0, np.random.default_rng())"
 ).around(
     "lidar",
     """
@@ -197,30 +194,20 @@ mistakes(
     "The noise density is about a std of the samples, of their white noise or of their differences: the factor sqrt(dt) is missing.",
     "The white noise of a sample has std noise_density / sqrt(dt): multiply that std by sqrt(dt). In a fit, T is in seconds, not in samples.",
 ).around(
-    "fit_noise",
-    """
-        return _right(still, dt) | {"noise_density": float(np.std(np.diff(still)) / math.sqrt(2))}
-    """,
+    "fit_noise", 'return _right(still, dt) | {"noise_density": float(np.std(np.diff(still)) / math.sqrt(2))}'
 )
 mistakes(
     "DRIFT_COUNTED_AS_NOISE",
     "The noise density is about what the std of the whole recording gives, which also contains the drift of the bias.",
     "Take the differences of neighbouring samples: they contain almost none of the drift, and their variance is twice that of the white noise.",
-).around(
-    "fit_noise",
-    """
-        return _right(still, dt) | {"noise_density": float(np.std(still) * math.sqrt(dt))}
-    """,
-)
+).around("fit_noise", 'return _right(still, dt) | {"noise_density": float(np.std(still) * math.sqrt(dt))}')
 mistakes(
     "NOISE_COUNTED_AS_DRIFT",
     "The random walk is far too large: it is about what neighbouring samples give, whose differences are nearly all white noise.",
     "The white noise hides the walk between neighbouring samples. Average over longer and longer blocks: the variance of the noise falls as 1/T, and that of the walk grows as T/3.",
 ).around(
     "fit_noise",
-    """
-        return _right(still, dt) | {"bias_random_walk": float(np.std(np.diff(still)) / math.sqrt(dt))}
-    """,
+    'return _right(still, dt) | {"bias_random_walk": float(np.std(np.diff(still)) / math.sqrt(dt))}',
 )
 mistakes(
     "WALK_WITHOUT_THREE",
@@ -242,22 +229,12 @@ mistakes(
     "WHOLE_MEAN_AS_BIAS",
     "bias0 is the mean of the whole recording, but the bias has drifted since the start.",
     "Average only the start of the recording, about sqrt(3) N/K seconds of it.",
-).around(
-    "fit_noise",
-    """
-        return _right(still, dt) | {"bias0": float(np.mean(still))}
-    """,
-)
+).around("fit_noise", 'return _right(still, dt) | {"bias0": float(np.mean(still))}')
 mistakes(
     "FIRST_SAMPLE_AS_BIAS",
     "bias0 is a single sample, with all of its white noise.",
     "Average the start of the recording: long enough to reduce the noise, and short enough that the bias has not drifted. That is about sqrt(3) N/K seconds.",
-).around(
-    "fit_noise",
-    """
-        return _right(still, dt) | {"bias0": float(still[0])}
-    """,
-)
+).around("fit_noise", 'return _right(still, dt) | {"bias0": float(still[0])}')
 mistakes(
     "HEADING_IGNORED",
     "When the robot turns, its beams do not turn with it.",
@@ -378,28 +355,18 @@ mistakes(
     "CLIPS_SPEED_NOT_COMMAND",
     "The speed is limited, where only the command should be. A motor that is faster than u_max would slow down in an instant.",
     "Only u is clipped to [-u_max, u_max], before the lag: limit neither w nor the result.",
-).body(
+).edit(
     "motor_step",
-    """
-        u = 0.0 if abs(u) <= deadband else u
-        return min(max(w - math.expm1(-dt / tau) * (u - w), -u_max), u_max)
-    """,
-).around(
-    "motor_step",
-    """
-        return min(max(_right(w, u, dt, tau, u_max, deadband), -u_max), u_max)
-    """,
-)
+    {
+        "min(max(u, -u_max), u_max)": "u",
+        "w - math.expm1(-dt / tau) * (u - w": "min(max(w - math.expm1(-dt / tau) * (u - w), -u_max), u_max",
+    },
+).around("motor_step", "return min(max(_right(w, u, dt, tau, u_max, deadband), -u_max), u_max)")
 mistakes(
     "DEADBAND_SUBTRACTED",
     "The dead band is subtracted from a command outside it.",
     "Here a command outside the dead band keeps its full value: only where abs(u) <= deadband does it become 0.",
-).around(
-    "motor_step",
-    """
-        return _right(w, math.copysign(max(abs(u) - deadband, 0.0), u), dt, tau, u_max, 0.0)
-    """,
-)
+).around("motor_step", "return _right(w, math.copysign(max(abs(u) - deadband, 0.0), u), dt, tau, u_max, 0.0)")
 mistakes(
     "DEADBAND_EDGE",
     "A command exactly equal to the dead band moves the motor.",
@@ -436,12 +403,7 @@ mistakes(
     "STATE_IS_NOT_OUTPUT",
     "The state that your code returns is not the output.",
     "Return (y, y): the position of the output is all there is to remember.",
-).body(
-    "backlash",
-    """
-        return min(max(state, x - gap / 2), x + gap / 2), x
-    """,
-)
+).body("backlash", "return min(max(state, x - gap / 2), x + gap / 2), x")
 mistakes(
     "DELAY_WHOLE_SAMPLES",
     "The signal comes out late by a whole number of samples: the rest of the latency is dropped or rounded.",
@@ -468,12 +430,7 @@ mistakes(
     "If the caller changed the result later, its own array would change too.",
     "Return a new array: np.array(x) or x.copy() makes one.",
     kind="fact",
-).around(
-    "delay_line",
-    """
-        return x if latency == 0 else _right(x, dt, latency)
-    """,
-)
+).around("delay_line", "return x if latency == 0 else _right(x, dt, latency)")
 mistakes(
     "EULER_ODOMETRY",
     "The robot drives straight along the old heading, as if it turned only afterwards.",
@@ -508,39 +465,22 @@ mistakes(
     "LEFT_RIGHT_SWAPPED",
     "A faster right wheel turns the robot to the right.",
     "A turn to the left is positive: turn rate = (v_right - v_left) / track.",
-).around(
-    "diff_drive_step",
-    """
-        return _right(pose, v_right, v_left, track, dt)
-    """,
-)
+).around("diff_drive_step", "return _right(pose, v_right, v_left, track, dt)")
 mistakes(
     "SPEED_SUM_TURNS",
     "The robot turns by the sum of the two wheel speeds, so it turns even where both are equal.",
     "Use the difference: turn rate = (v_right - v_left) / track.",
-).body(
-    "diff_drive_step",
-    """
-        x, y, heading = pose
-        turn = (v_right + v_left) / track * dt
-        chord = (v_left + v_right) / 2 * dt * np.sinc(turn / (2 * math.pi))
-        middle = heading + turn / 2
-        return np.array([x + chord * math.cos(middle), y + chord * math.sin(middle), heading + turn])
-    """,
-)
+).edit("diff_drive_step", {"v_right - ": "v_right + ", "  # sin(turn/2)/(turn/2), 1 at 0": ""})
 mistakes(
     "TURN_IN_DEGREES",
     "The turn, or the angle of the cosine and the sine, is converted between degrees and radians.",
     "(v_right - v_left) / track * dt is already in radians, and so is the heading: convert nothing.",
-).body(
+).edit(
     "diff_drive_step",
-    """
-        x, y, heading = pose
-        turn = math.degrees((v_right - v_left) / track) * dt
-        chord = (v_left + v_right) / 2 * dt * np.sinc(turn / (2 * math.pi))
-        middle = heading + turn / 2
-        return np.array([x + chord * math.cos(middle), y + chord * math.sin(middle), heading + turn])
-    """,
+    {
+        "(v_right - v_left) / track": "math.degrees((v_right - v_left) / track)",
+        "  # sin(turn/2)/(turn/2), 1 at 0": "",
+    },
 )
 mistakes(
     "DRIVE_SIN_COS_SWAPPED",
@@ -618,22 +558,12 @@ mistakes(
     "LATE_USED_AS_CURRENT",
     "A late measurement is compared with the twin's present position and drags the twin back, as if it had been taken now.",
     'If t_measured < twin["t"], ignore the measurement; or keep a short history in memory, correct the past, and run the model forward again.',
-).around(
-    "sync",
-    """
-        return _right(twin, z, max(t_measured, twin["t"]))
-    """,
-)
+).around("sync", 'return _right(twin, z, max(t_measured, twin["t"]))')
 mistakes(
     "TIME_RUNS_BACK",
     "A late measurement sets the twin's clock back.",
     'Return "t": max(twin["t"], t_measured), so that a late measurement does not change the clock.',
-).around(
-    "sync",
-    """
-        return _right(twin, z, t_measured) | {"t": t_measured}
-    """,
-)
+).around("sync", 'return _right(twin, z, t_measured) | {"t": t_measured}')
 mistakes(
     "MEMORY_DROPPED",
     "Your code keeps nothing in memory, and after many measurements one more still moves the position most of the way to it.",
@@ -771,12 +701,7 @@ mistakes(
     "DRIVE_NOT_USED",
     "Another drive makes no difference to the prediction.",
     'dv/dt = drive - friction * speed, with twin["drive"].',
-).around(
-    "sync",
-    """
-        return _right({**twin, "drive": 0.0}, z, t_measured) | {"drive": twin["drive"]}
-    """,
-)
+).around("sync", 'return _right({**twin, "drive": 0.0}, z, t_measured) | {"drive": twin["drive"]}')
 mistakes(
     "PAST_WITH_NEW_DRIVE",
     "A late measurement leads to another speed where the drive has just been changed, although the new drive acts only from the twin's time on.",
@@ -989,24 +914,14 @@ mistakes(
     "GENERATOR_IGNORED",
     "Different generators give the same random numbers, all of them or some.",
     "Draw from the rng that is passed in, and do not make one of your own with a fixed seed.",
-).around(
-    "lidar",
-    """
-        return _right(pose, segments, angles, r_max, sigma, np.random.default_rng(0))
-    """,
-).edit("imu", {"(dt) * rng.standard_normal(n -": "(dt) * np.random.default_rng(4).standard_normal(n -"}).edit(
-    "imu", {"dt) * rng.standard_normal(n)": "dt) * np.random.default_rng(4).standard_normal(n)"}
-)
+).around("lidar", "return _right(pose, segments, angles, r_max, sigma, np.random.default_rng(0))").edit(
+    "imu", {"(dt) * rng.standard_normal(n -": "(dt) * np.random.default_rng(4).standard_normal(n -"}
+).edit("imu", {"dt) * rng.standard_normal(n)": "dt) * np.random.default_rng(4).standard_normal(n)"})
 mistakes(
     "NOISE_CUT_AT_MAX",
     "A wall just within range never reads more than r_max, even with noise.",
     "The reading of a hit may exceed r_max: after the noise, limit it to zero or more and to nothing else. If your code decides from the noisy reading whether a beam hits, let it decide before the noise.",
-).around(
-    "lidar",
-    """
-        return np.minimum(_right(pose, segments, angles, r_max, sigma, rng), r_max)
-    """,
-)
+).around("lidar", "return np.minimum(_right(pose, segments, angles, r_max, sigma, rng), r_max)")
 mistakes(
     "BIAS_HELD",
     "Some steps of the bias are exactly zero: there it keeps its value from one sample to the next.",
@@ -1025,12 +940,7 @@ mistakes(
     "BIAS0_IGNORED",
     "The bias does not start at bias0, but at zero or near it.",
     "bias[0] is bias0: add it to the running sum of the steps, with a 0 in front.",
-).around(
-    "imu",
-    """
-        return _right(true, dt, noise_density, bias_random_walk, 0.0, rng)
-    """,
-)
+).around("imu", "return _right(true, dt, noise_density, bias_random_walk, 0.0, rng)")
 mistakes(
     "BIAS_WALKS_TO_BIAS0",
     "bias0 is the last value of the bias, not its first.",
@@ -1263,22 +1173,12 @@ mistakes(
     "BIAS0_FROM_THE_MEAN",
     "bias0 is a mean over the start after the mean of the whole recording has been taken off.",
     "Average the start of the recording as it is, before anything is subtracted from it.",
-).around(
-    "fit_noise",
-    """
-        return _right(still - np.mean(still), dt)
-    """,
-)
+).around("fit_noise", "return _right(still - np.mean(still), dt)")
 mistakes(
     "BIAS0_OF_THE_END",
     "bias0 is a mean over the end of the recording, and the bias has drifted since the start.",
     "Average the start of the recording, about sqrt(3) N/K seconds of it.",
-).around(
-    "fit_noise",
-    """
-        return _right(still[::-1], dt)
-    """,
-)
+).around("fit_noise", "return _right(still[::-1], dt)")
 mistakes(
     "SLOT_OFF_CENTRE",
     "Pushed forwards and pushed backwards, the output does not end equally far from the input, on opposite sides of it.",
@@ -1974,13 +1874,7 @@ mistakes(
     "DELAY_FIRST_LOST",
     "Without latency, the output begins with 0.0 and not with the first sample.",
     "The output is 0.0 before the latency, but not at it: set it to 0.0 where t < latency, with < and not <=.",
-).body(
-    "delay_line",
-    """
-        t = dt * np.arange(len(x))
-        return np.where(t > latency, np.interp(t - latency, t, x), 0.0)
-    """,
-)
+).edit("delay_line", {"interp(t - latency, t, x, left=": "where(t > latency, np.interp(t - latency, t, x), "})
 mistakes(
     "DELAY_OF_PRODUCT",
     "The latency is multiplied by dt.",

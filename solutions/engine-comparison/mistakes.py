@@ -103,13 +103,7 @@ mistakes(
     "Engines that lose area pass the test: what they lose in the step that is looked at lies within what the test allows.",
     "Take one step with h = 0.5/omega, and compare |det - 1| with 1e-6: a kept energy is not a kept area.",
     kind="consequence",
-).around(
-    "characterise",
-    """
-        return _right(engine, omega, 0.05 if z == 0.5 else z)
-    """,
-    of="_spring_step",
-)
+).around("characterise", "return _right(engine, omega, 0.05 if z == 0.5 else z)", of="_spring_step")
 mistakes(
     "STABLE_TAKEN_FOR_SYMPLECTIC",
     "Engines that lose area pass the test.",
@@ -245,24 +239,12 @@ mistakes(
     "LIMIT_ASSUMED",
     "The result times omega is the same for different engines.",
     "For each h, build the matrix of one step from two runs and look at its eigenvalues.",
-).body(
-    "characterise",
-    """
-        return 2.0
-    """,
-    of="_max_stable_z",
-)
+).body("characterise", "return 2.0", of="_max_stable_z")
 mistakes(
     "RETURNS_Z",
     "The result is as large as the step times omega.",
     "Divide by omega: the answer is a time in seconds.",
-).around(
-    "characterise",
-    """
-        return _right(engine, omega) * omega
-    """,
-    of="_max_stable_z",
-)
+).around("characterise", "return _right(engine, omega) * omega", of="_max_stable_z")
 mistakes(
     "NO_ZERO",
     "An engine that is unstable even at the smallest step gets a positive limit.",
@@ -287,46 +269,22 @@ mistakes(
     "An engine that is never unstable gets a finite number.",
     "Return math.inf if no step in the README's range is unstable.",
     kind="consequence",
-).around(
-    "characterise",
-    """
-        return min(_right(engine, omega), 10.0)
-    """,
-    of="_max_stable_z",
-)
+).around("characterise", "return min(_right(engine, omega), 10.0)", of="_max_stable_z")
 mistakes(
     "ANISOTROPY_INVERTED",
     "The result is as large as one over the right ratio.",
     "The force along the diagonal is the numerator: F(45 degrees) / F(0 degrees).",
-).around(
-    "characterise",
-    """
-        return 1 / _right(engine, info)
-    """,
-    of="_anisotropy",
-)
+).around("characterise", "return 1 / _right(engine, info)", of="_anisotropy")
 mistakes(
     "DIAGONAL_COMPONENT",
     "The ratio is too small by the square root of two, as if one component of the diagonal force were the force.",
     "Push with (F cos 45°, F sin 45°, 0) and report F. A push of (F, F, 0) is the square root of two times as large as F.",
-).around(
-    "characterise",
-    """
-        return _right(engine, info) / math.sqrt(2)
-    """,
-    of="_anisotropy",
-)
+).around("characterise", "return _right(engine, info) / math.sqrt(2)", of="_anisotropy")
 mistakes(
     "ANISOTROPY_ASSUMED",
     "Engines whose ratios differ all get the same one.",
     "Let the body settle first. From where it lies, bisect the least force that makes it faster than 0.01 m/s: along x, and along the diagonal.",
-).body(
-    "characterise",
-    """
-        return 1.0
-    """,
-    of="_anisotropy",
-)
+).body("characterise", "return 1.0", of="_anisotropy")
 mistakes(
     "DIAGONAL_NOT_PUSHED",
     "Every push went along x or along y, and none along the diagonal.",
@@ -505,9 +463,7 @@ mistakes(
     "Engines look for contact in different ways: shoot bodies at the wall.",
 ).body(
     "characterise",
-    """
-        return (2 * info["radius"] + info["wall_thickness"]) / info["dt"]
-    """,
+    'return (2 * info["radius"] + info["wall_thickness"]) / info["dt"]',
     of="_tunnelling_speed",
 )
 mistakes(
@@ -515,13 +471,7 @@ mistakes(
     "An engine that stops everything gets a finite number.",
     "Return math.inf if nothing gets through in the README's range of speeds.",
     kind="consequence",
-).around(
-    "characterise",
-    """
-        return min(_right(engine, info), 200.0)
-    """,
-    of="_tunnelling_speed",
-)
+).around("characterise", "return min(_right(engine, info), 200.0)", of="_tunnelling_speed")
 mistakes(
     "DETERMINISM_ONE_RUN",
     "Every engine is called deterministic, but no run was made twice in a row.",
@@ -574,23 +524,13 @@ mistakes(
     """,
     of="_deterministic",
 )
-mistakes("WRONG_KEYS").around(
-    "characterise",
-    """
-        return {**_right(engine), "name": "unknown"}
-    """,
-)
+mistakes("WRONG_KEYS").around("characterise", 'return {**_right(engine), "name": "unknown"}')
 mistakes(
     "MEASURED_AS_NONE",
     "",
     "If you measure it already, perhaps an exception that you catch became None, `x or None` turned a 0 into None, or what you wait for never came: a body that stops dead has v = 0.",
     kind="fact",
-).around(
-    "characterise",
-    """
-        return {**_right(engine), "friction_anisotropy": None}
-    """,
-)
+).around("characterise", 'return {**_right(engine), "friction_anisotropy": None}')
 mistakes("ENGINE_MISUSED").body(
     "characterise",
     """
@@ -743,10 +683,7 @@ mistakes(
             return _cheapest(known, requirements)
     """,
 ).around(
-    "choose_engine",
-    """
-        return min((n for n in reports if _right({n: reports[n]}, requirements)), default=None)
-    """,
+    "choose_engine", "return min((n for n in reports if _right({n: reports[n]}, requirements)), default=None)"
 )
 mistakes(
     "MUTATES_INPUT",
@@ -784,12 +721,7 @@ mistakes(
     "An engine is returned where None belongs.",
     "A value that is nearly equal does not meet ==. Return None if no engine meets every requirement, or if there are no reports.",
     kind="consequence",
-).around(
-    "choose_engine",
-    """
-        return _right(reports, requirements) or ""
-    """,
-)
+).around("choose_engine", 'return _right(reports, requirements) or ""')
 mistakes(
     "STALE_LICENCE",
     "This engine is open source today; what is given looks like an older licence.",
@@ -817,12 +749,7 @@ mistakes(
     "The date of a fact is earlier than the day on which it became true.",
     "as_of is the day on which you checked that the fact was true.",
     kind="fact",
-).around(
-    "engine_facts",
-    """
-        return [{**entry, "as_of": "2012-10-07"} for entry in _right()]
-    """,
-)
+).around("engine_facts", 'return [{**entry, "as_of": "2012-10-07"} for entry in _right()]')
 mistakes(
     "STEP_OF_A_HABIT",
     "A default step is given for an engine that has none: it takes whatever step the caller passes.",
@@ -943,12 +870,7 @@ mistakes(
     "At least one engine has more than one entry for the same field.",
     "Keep one entry for each pair of engine and field.",
     kind="fact",
-).around(
-    "engine_facts",
-    """
-        return _right() + [{**_right()[0], "source": "https://ode.org"}]
-    """,
-)
+).around("engine_facts", 'return _right() + [{**_right()[0], "source": "https://ode.org"}]')
 mistakes(
     "MISSING_RAISES",
     "Your code raises an exception where a report lacks a required key, or has None there.",
@@ -985,12 +907,7 @@ mistakes(
     "FIRST_REQUIREMENT_ONLY",
     "Your code checks only one of the requirements.",
     "Does a return inside the loop end it too early, or does each requirement replace the verdict on the one before it?",
-).around(
-    "choose_engine",
-    """
-        return _right(reports, requirements[:1])
-    """,
-)
+).around("choose_engine", "return _right(reports, requirements[:1])")
 mistakes(
     "OTHER_LICENCE",
     "A valid identifier is given, but not of a licence of this engine.",
@@ -1047,13 +964,13 @@ mistakes(
     "DAMPING_NOT_LOG",
     "The result is the fraction of the speed that is lost, in all or per second. That is less than the rate.",
     "The speed falls as exp(-c t): take -ln(v/v0) / t.",
-).body(
+).edit(
     "characterise",
-    """
-        n = 1000
-        _, v = engine.run("free", [0.0], [1.0], 1 / n, n, [0.0])
-        return 1 - v[-1][0]
-    """,
+    {
+        "h, n = dt / 1000, 100": "n = 1000",
+        ", h,": ", 1 / n,",
+        "-math.log(v[-1][0]) / (n * h)": "1 - v[-1][0]",
+    },
     of="_linear_damping",
 )
 mistakes(
@@ -1210,12 +1127,7 @@ mistakes(
     "ONE_FOR_EACH_KEY",
     "Of two requirements about the same key only one is checked.",
     "Go through the list of requirements itself: a dict by key keeps one of each.",
-).around(
-    "choose_engine",
-    """
-        return _right(reports, list({r["key"]: r for r in requirements}.values()))
-    """,
-)
+).around("choose_engine", 'return _right(reports, list({r["key"]: r for r in requirements}.values()))')
 mistakes(
     "GROWS_WITH_EACH_CALL",
     "Perhaps something that is kept from one call to the next is filled again, or used up.",
@@ -1238,27 +1150,14 @@ mistakes(
     "Orders 1, 2 and 4 are right, and a method of third order gets another.",
     "Round the measured slope to the nearest whole number, whatever it is.",
 ).around(
-    "characterise",
-    """
-        return min((1, 2, 4), key=lambda known: abs(known - _right(engine, omega)))
-    """,
-    of="_order",
+    "characterise", "return min((1, 2, 4), key=lambda known: abs(known - _right(engine, omega)))", of="_order"
 )
 mistakes(
     "RESTITUTION_TOO_FAST",
     "Engines whose wall lets no body leave faster than some speed get too small a ratio. Perhaps the body meets it at more than 2 m/s.",
     "Let the body hit the wall at 2 m/s, because the coefficient may depend on the speed.",
     kind="consequence",
-).body(
-    "characterise",
-    """
-        start = -(info["radius"] + info["wall_thickness"] / 2) - 3.5 * 20 * info["dt"]
-        q, v = engine.run("wall", [start], [20.0], info["dt"], 10, [0])
-        hit = next(i for i in range(11) if v[i][0] <= 0)
-        return -v[hit][0] / v[hit - 1][0], q[hit][0]
-    """,
-    of="_slow_hit",
-)
+).edit("characterise", {"* 2 *": "* 20 *", " [2.0": " [20.0"}, of="_slow_hit")
 mistakes(
     "FORCE_UP_OR_DOWN",
     "In at least one run, a force along z acts on the body besides its weight.",

@@ -88,12 +88,7 @@ mistakes(
     "SEMI_IMPLICIT_IS_EULER",
     "Position and velocity both move with old values. That is explicit Euler.",
     "Update the velocity first, then move the position with the new velocity: q + h*v_next, not q + h*v.",
-).body(
-    "semi_implicit_euler_step",
-    """
-        return q + h * v, v + h * accel(t, q, v)
-    """,
-)
+).body("semi_implicit_euler_step", "return q + h * v, v + h * accel(t, q, v)")
 mistakes(
     "AVERAGED_VELOCITY",
     "The position moves with the mean of the old and the new velocity. Adding h**2/2 times the acceleration does the same.",
@@ -103,17 +98,14 @@ mistakes(
     "STAGE_TIMES_FROZEN",
     "accel gets the time at the start of the step where a later one belongs. Only a force that depends on time shows this: if a check with another force fails, too, there is a second mistake.",
     "Give accel the time of its position: t + h/2 for a state half a step on, t + h for one a whole step on.",
-).body(
+).edit(
     "semi_implicit_euler_step",
-    """
-        q_next = q + h * v
-        return q_next, v + h * accel(t, q_next, v)
-    """,
+    {
+        "v_next = v + h * accel(t, q, v)": "q_next = q + h * v",
+        "q + h * v_next, v_next": "q_next, v + h * accel(t, q_next, v)",
+    },
 ).edit("velocity_verlet_step", {"accel(t + h, q_next": "accel(t, q_next"}).around(
-    "rk4_step",
-    """
-        return _right(lambda _t, q, v: accel(t, q, v), t, q, v, h)
-    """,
+    "rk4_step", "return _right(lambda _t, q, v: accel(t, q, v), t, q, v, h)"
 )
 mistakes(
     "RETURNS_SWAPPED",
@@ -135,13 +127,13 @@ mistakes(
     "HALF_MISSING",
     "The position is moved by h*v + h**2*a: the term with h squared lacks its factor one half.",
     "A constant acceleration moves a body by h*v + h**2/2*a. Put the 1/2 in, or drift with the velocity after the first half kick, v + h/2*a.",
-).body(
+).edit(
     "velocity_verlet_step",
-    """
-        a = accel(t, q, v)
-        q_next = q + h * v + h**2 * a
-        return q_next, v + h / 2 * (a + accel(t + h, q_next, v))
-    """,
+    {
+        "v_half = v + h / 2 *": "a =",
+        "* v_half": "* v + h**2 * a",
+        "v_half + h / 2 * accel(t + h, q_next, v_half": "v + h / 2 * (a + accel(t + h, q_next, v)",
+    },
 )
 mistakes(
     "STALE_CACHE",
@@ -273,12 +265,7 @@ mistakes(
     "STAGE_VELOCITY_IGNORED",
     "accel gets the velocity from the start of the step each time. Only a force that depends on velocity, such as damping, shows this: if a check with another force fails, too, there is a second mistake.",
     "Give accel the velocity of the stage as well: each stage has its own position and its own velocity.",
-).around(
-    "rk4_step",
-    """
-        return _right(lambda t, q, _v: accel(t, q, v), t, q, v, h)
-    """,
-)
+).around("rk4_step", "return _right(lambda t, q, _v: accel(t, q, v), t, q, v, h)")
 mistakes(
     "EXTRA_EVALUATIONS",
     "accel is called more often than this method needs.",
@@ -352,21 +339,14 @@ mistakes(
     "Call step(accel, i * h, q, v, h) with the time at which this particular step starts.",
 ).around(
     "integrate",
-    """
-        return _right(lambda accel, _t, q, v, h: step(accel, 0.0, q, v, h), accel, q0, v0, t_end, h)
-    """,
+    "return _right(lambda accel, _t, q, v, h: step(accel, 0.0, q, v, h), accel, q0, v0, t_end, h)",
 )
 mistakes(
     "DURATION_NOT_CHECKED",
     "For a duration that is not a whole number of steps your code raises no ValueError.",
     "With N = round(t_end / h), raise ValueError if abs(t_end / h - N) > 1e-6. A difference in seconds is another limit, and so is np.isclose, whose limit grows with N.",
     kind="fact",
-).around(
-    "integrate",
-    """
-        return _right(step, accel, q0, v0, round(t_end / h) * h, h)
-    """,
-)
+).around("integrate", "return _right(step, accel, q0, v0, round(t_end / h) * h, h)")
 mistakes(
     "REFUSES_DIVISIBLE",
     "t_end / h may come out just below a whole number, as 28.999999999999996 for 0.29 s at 0.01 s. Then int() and // give 28, and t_end % h is almost h. np.arange in steps of h may have one entry too many.",
@@ -399,12 +379,7 @@ mistakes(
     "ORDER_SLOPE_INVERTED",
     "The result is the slope of log h over log error, or one over the right slope: as if the two axes were swapped.",
     "The order is d log(error) / d log(h): h belongs on the horizontal axis (the first argument of np.polyfit), the error on the vertical one.",
-).body(
-    "observed_order",
-    """
-        return np.polyfit(np.log(errors), np.log(hs), 1)[0]
-    """,
-)
+).body("observed_order", "return np.polyfit(np.log(errors), np.log(hs), 1)[0]")
 mistakes(
     "ORDER_OF_THE_OTHER_AXIS",
     "The line is fitted to log h over log error, and its slope is turned over. Where points scatter, that is another line.",
@@ -420,22 +395,12 @@ mistakes(
     "LOGARITHM_MISSING",
     "The result is the slope without the logarithm on at least one axis.",
     "error = C * h**p is a straight line only with logarithms on both axes, so take np.log of hs and of errors.",
-).body(
-    "observed_order",
-    """
-        return np.polyfit(hs, errors, 1)[0]
-    """,
-)
+).body("observed_order", "return np.polyfit(hs, errors, 1)[0]")
 mistakes(
     "ORDER_FROM_ENDS",
     "The result is the slope between two of the points, without the others.",
     "Fit a line to all points by least squares: np.polyfit with degree 1, or a sum over centred logarithms.",
-).body(
-    "observed_order",
-    """
-        return math.log(errors[0] / errors[-1]) / math.log(hs[0] / hs[-1])
-    """,
-)
+).body("observed_order", "return math.log(errors[0] / errors[-1]) / math.log(hs[0] / hs[-1])")
 mistakes(
     "ORDER_MEAN_OF_PAIRS",
     "The result comes from slopes between two points each, not from one line through all points.",
@@ -451,12 +416,7 @@ mistakes(
     "RETURNS_Z",
     "For more than one map, the result is the product h * omega at the limit, not the step itself.",
     "Divide by omega: the answer is a time in seconds. If you do, look at the acceleration: it has to be -omega**2 * q.",
-).around(
-    "max_stable_step",
-    """
-        return _right(step, omega) * omega
-    """,
-)
+).around("max_stable_step", "return _right(step, omega) * omega")
 mistakes(
     "STABILITY_BY_NORM",
     "The limits are those of a norm of the matrix. One step can stretch a state, and the motion still stays bounded.",
@@ -485,12 +445,7 @@ mistakes(
     "ASSUMES_ITS_LIMIT",
     "h * omega comes out the same for three methods with different limits.",
     "What in your result depends on the given step? Its calls on (1, 0) and (0, omega) give a matrix at each h, and the eigenvalues of that matrix have to decide where the search goes.",
-).body(
-    "max_stable_step",
-    """
-        return 2.0 / omega
-    """,
-)
+).body("max_stable_step", "return 2.0 / omega")
 mistakes(
     "EIGENVALUES_WITHOUT_MODULUS",
     "The limits are those of the real parts or the signed values of the eigenvalues: -1.1 and 0.8 + 0.8i are unstable too.",
@@ -542,12 +497,7 @@ mistakes(
     "The result is not math.inf for a method that is stable at every step up to 10/omega.",
     "Return math.inf when no step up to 10/omega is unstable, whatever comes beyond.",
     kind="consequence",
-).around(
-    "max_stable_step",
-    """
-        return min(_right(step, omega), 10 / omega)
-    """,
-).body(
+).around("max_stable_step", "return min(_right(step, omega), 10 / omega)").body(
     "max_stable_step",
     """
         def stable(z):
@@ -597,13 +547,13 @@ mistakes(
     "POSITION_TERM_SUBTRACTED",
     "In the position, the term with the acceleration is subtracted.",
     "A constant acceleration moves a body by h*v + h**2/2*a. accel already has the right sign, so the term is added.",
-).body(
+).edit(
     "velocity_verlet_step",
-    """
-        a = accel(t, q, v)
-        q_next = q + h * v - 0.5 * h * h * a
-        return q_next, v + h / 2 * (a + accel(t + h, q_next, v))
-    """,
+    {
+        "v_half = v + h / 2 *": "a =",
+        "* v_half": "* v - 0.5 * h * h * a",
+        "v_half + h / 2 * accel(t + h, q_next, v_half": "v + h / 2 * (a + accel(t + h, q_next, v)",
+    },
 )
 mistakes(
     "KICK_SUBTRACTED",
@@ -676,12 +626,7 @@ mistakes(
     "The first row is not the initial state.",
     "Row 0 of the positions is q0 and row 0 of the velocities is v0, as they were before any step. The first step starts from them.",
     true_too=("INITIAL_STATE_MISSING",),
-).around(
-    "integrate",
-    """
-        return _right(step, accel, np.ones(len(q0)), np.asarray(v0), t_end, h)
-    """,
-)
+).around("integrate", "return _right(step, accel, np.ones(len(q0)), np.asarray(v0), t_end, h)")
 mistakes(
     "TIMES_START_LATE",
     "The times begin one step late.",
@@ -723,12 +668,7 @@ mistakes(
     "SEMI_IMPLICIT_IS_VERLET",
     "The steps are those of velocity Verlet.",
     "Semi-implicit Euler takes whole steps: v_next = v + h*accel(t, q, v), then q + h*v_next.",
-).body(
-    "semi_implicit_euler_step",
-    """
-        return velocity_verlet_step(accel, t, q, v, h)
-    """,
-)
+).body("semi_implicit_euler_step", "return velocity_verlet_step(accel, t, q, v, h)")
 mistakes(
     "ENERGY_SWINGS_TOO_FAR",
     "The energy of the spring strays further from its initial value than with this method.",
@@ -740,12 +680,7 @@ mistakes(
     "Your code takes less energy out of the spring than this method does.",
     "Compute one step of a spring by hand, from a large q and a large v, and compare both results: sign, factor, and whether old or new values are used.",
     kind="consequence",
-).around(
-    "rk4_step",
-    """
-        return _right(accel, t + h / 2, *_right(accel, t, q, v, h / 2), h / 2)
-    """,
-)
+).around("rk4_step", "return _right(accel, t + h / 2, *_right(accel, t, q, v, h / 2), h / 2)")
 mistakes(
     "ACCEL_BY_KEYWORD",
     "That works only where its arguments have these very names.",
@@ -809,9 +744,7 @@ mistakes(
     """,
 ).around(
     "velocity_verlet_step",
-    """
-        return _right(lambda t, q, v: accel(t, (np.asarray(q) + np.pi) % (2 * np.pi) - np.pi, v), t, q, v, h)
-    """,
+    "return _right(lambda t, q, v: accel(t, (np.asarray(q) + np.pi) % (2 * np.pi) - np.pi, v), t, q, v, h)",
 )
 mistakes("RESULT_OVERWRITTEN").program(
     "explicit_euler_step",
@@ -925,12 +858,7 @@ mistakes(
     "OTHER_STEP_TAKEN",
     "The rows are those of another step than the one that is given.",
     "Call what you are given: step(accel, i * h, q, v, h), whatever it is.",
-).around(
-    "integrate",
-    """
-        return _right(rk4_step, accel, q0, v0, t_end, h)
-    """,
-)
+).around("integrate", "return _right(rk4_step, accel, q0, v0, t_end, h)")
 mistakes(
     "LOOP_ENDS_AT_REST",
     "The loop takes no more steps once one of them changes nothing, or hardly anything.",
@@ -1018,12 +946,7 @@ mistakes(
     "RETURNS_THE_INTERCEPT",
     "The result is where the line meets the axis, or the factor C of the error C * h**p, instead of the slope.",
     "np.polyfit(x, y, 1) returns the slope first. np.polynomial.polynomial.polyfit returns it last.",
-).body(
-    "observed_order",
-    """
-        return float(np.polyfit(np.log10(hs), np.log10(errors), 1)[1])
-    """,
-)
+).body("observed_order", "return float(np.polyfit(np.log10(hs), np.log10(errors), 1)[1])")
 mistakes(
     "RETURNS_ARGUMENT",
     "The result is an array that your code was given: if the caller changes one later, the other changes too.",
@@ -1638,12 +1561,7 @@ mistakes(
     "The result is 0, although the slope through these points is negative.",
     "Return the slope as it is: errors may grow as h shrinks.",
     kind="consequence",
-).around(
-    "observed_order",
-    """
-        return max(0.0, _right(hs, errors))
-    """,
-)
+).around("observed_order", "return max(0.0, _right(hs, errors))")
 mistakes(
     "EQUAL_STEPS_LOST",
     "The result is the slope with only the later one of two points of the same step.",

@@ -292,12 +292,7 @@ mistakes(
     "EXCITATION_CONSTANT",
     "In at least one recording the force changes at most twice after its first command, and a delay shows only where it changes.",
     "Reverse the force many times, at irregular intervals.",
-).body(
-    "design_excitation",
-    """
-        return np.full(round(100 * budget_s), u_max)
-    """,
-).body(
+).body("design_excitation", "return np.full(round(100 * budget_s), u_max)").body(
     "design_excitation",
     """
         n = round(100 * budget_s)
@@ -309,26 +304,15 @@ mistakes(
     "More than two thirds of the force's power lies below 0.3 Hz, in swings of seconds; the lag is about a tenth of a second.",
     "Add changes as quick as the effects that you want to see: several within a second. Full force, reversed after a random 0.1 to 0.6 s, has slow and quick ones.",
 ).body(
-    "design_excitation",
-    """
-        return u_max * np.sin(2 * np.pi * 0.01 * np.arange(round(100 * budget_s)) / 100)
-    """,
+    "design_excitation", "return u_max * np.sin(2 * np.pi * 0.01 * np.arange(round(100 * budget_s)) / 100)"
 ).body(
-    "design_excitation",
-    """
-        return u_max * np.sin(2 * np.pi * 0.05 * np.arange(round(100 * budget_s)) / 100)
-    """,
+    "design_excitation", "return u_max * np.sin(2 * np.pi * 0.05 * np.arange(round(100 * budget_s)) / 100)"
 )
 mistakes(
     "EXCITATION_TOO_FAST",
     "More than two thirds of the power in the force's changes lies above 4 Hz, where the motor's lag and the mass average most of it out.",
     "Hold each command long enough for the cart to pick up speed: a few tenths of a second. If your signal is made of sines, take lower frequencies.",
-).body(
-    "design_excitation",
-    """
-        return rng.uniform(-u_max, u_max, round(100 * budget_s))
-    """,
-)
+).body("design_excitation", "return rng.uniform(-u_max, u_max, round(100 * budget_s))")
 mistakes(
     "EXCITATION_SATURATES",
     "The largest force of the signal is above u_max.",
@@ -358,12 +342,7 @@ mistakes(
     "EXCITATION_TOO_WEAK",
     "The largest force is less than half of what the bench can give, so the noise hides more than it has to.",
     "Use all of u_max: the noise stays the same, so the motion stands out more clearly.",
-).around(
-    "design_excitation",
-    """
-        return 0.16 * _right(budget_s, u_max, rng)
-    """,
-)
+).around("design_excitation", "return 0.16 * _right(budget_s, u_max, rng)")
 mistakes(
     "EXCITATION_BLIND",
     "From what this signal makes a cart do, at least one parameter comes out too uncertain.",
@@ -382,16 +361,8 @@ mistakes(
     "One rate tells little more than how far the speed goes up and down, and how late. Mix quick changes with longer pushes: full force, reversed after a random 0.1 to 0.6 s, has both.",
     kind="fact",
 ).body(
-    "design_excitation",
-    """
-        return u_max * np.sin(2 * np.pi * 2.0 * np.arange(round(100 * budget_s)) / 100)
-    """,
-).body(
-    "design_excitation",
-    """
-        return np.where(np.arange(round(100 * budget_s)) // 20 % 2 == 0, u_max, -u_max)
-    """,
-)
+    "design_excitation", "return u_max * np.sin(2 * np.pi * 2.0 * np.arange(round(100 * budget_s)) / 100)"
+).body("design_excitation", "return np.where(np.arange(round(100 * budget_s)) // 20 % 2 == 0, u_max, -u_max)")
 mistakes(
     "EXCITATION_MOSTLY_WEAK",
     "For more than 40 % of the time the force is below half of u_max. With the same signs and full force all the time, the signal would show enough.",
@@ -408,16 +379,8 @@ mistakes(
     "The number of commands is not the duration times the rate.",
     "Return round(100 * budget_s) commands for any budget_s, and cut what is longer: int() can lose one, and np.arange can give one more.",
     kind="fact",
-).body(
-    "design_excitation",
-    """
-        return u_max * rng.choice([-1.0, 1.0], round(budget_s))
-    """,
-).around(
-    "design_excitation",
-    """
-        return _right(budget_s, u_max, rng)[: int(100 * budget_s)]
-    """,
+).body("design_excitation", "return u_max * rng.choice([-1.0, 1.0], round(budget_s))").around(
+    "design_excitation", "return _right(budget_s, u_max, rng)[: int(100 * budget_s)]"
 ).around(
     "design_excitation",
     """
@@ -590,12 +553,7 @@ mistakes(
     "For all of these carts the lag comes out too short by about the same time.",
     "Sample k of u is commanded from sample k of y on: shift neither against the other, except for the latency that you search.",
     kind="fact",
-).around(
-    "identify",
-    """
-        return _right(t[:-3], np.concatenate([np.zeros(3), u[:-6]]), y[:-3])
-    """,
-)
+).around("identify", "return _right(t[:-3], np.concatenate([np.zeros(3), u[:-6]]), y[:-3])")
 mistakes(
     "TIMES_NOT_BEST",
     "m, b and Fc are those of the README's fit with your tau and latency. In most of these recordings its misfit is smaller with the cart's own times.",
@@ -791,23 +749,13 @@ mistakes(
     "An interval is wider than the recording requires.",
     "Each refit of the jackknife uses all blocks but one, and sqrt((n-1)/n * sum((each - mean)**2)) is the standard error of the whole recording. If yours is made so, make the fit scatter less: integrate the equation, fit every sample of y as it was recorded, and refine the times between the points of the grid.",
     kind="consequence",
-).around(
-    "identify",
-    """
-        return {k: [x, 0.5 * x, 1.5 * x] for k, (x, _, _) in _right(t, u, y).items()}
-    """,
-)
+).around("identify", "return {k: [x, 0.5 * x, 1.5 * x] for k, (x, _, _) in _right(t, u, y).items()}")
 mistakes(
     "INTERVAL_REVERSED",
     "An entry is not in the order value, low, high with low <= value <= high.",
     "Each entry is [value, low, high] with low <= value <= high, in the parameter's own unit. low and high are limits, not widths.",
     kind="fact",
-).around(
-    "identify",
-    """
-        return {k: [x, x - low, high - x] for k, (x, low, high) in _right(t, u, y).items()}
-    """,
-)
+).around("identify", "return {k: [x, x - low, high - x] for k, (x, low, high) in _right(t, u, y).items()}")
 mistakes(
     "PARAMETER_FIXED",
     "At least one of the parameters comes out the same for every cart that was tried.",
@@ -864,12 +812,7 @@ mistakes(
     "GAINS_HARD_CODED",
     "Your code returns the same gains for very different carts.",
     "Draw carts around the given estimate, roll them out, and take the gains with the least mean settling time. Where every cart counts as 3 s, as the slowest alone does, no gains are better than others, and a descent does not move. Keep nothing from an earlier call, which was about another cart.",
-).body(
-    "tune",
-    """
-        return {"kp": 15.2, "kd": 7.4}
-    """,
-).program(
+).body("tune", 'return {"kp": 15.2, "kd": 7.4}').program(
     "tune",
     """
         _anew = tune
@@ -886,33 +829,18 @@ mistakes(
     "DELAY_IGNORED",
     "Another latency in the estimate makes no difference to the gains, and they suit a cart with a shorter delay.",
     "The carts you tune on need the estimated latency, times a factor from the box. If they have it, search a wider grid.",
-).around(
-    "tune",
-    """
-        return _right({**estimate, "latency": [0.001, 0.001, 0.001]}, randomization)
-    """,
-)
+).around("tune", 'return _right({**estimate, "latency": [0.001, 0.001, 0.001]}, randomization)')
 mistakes(
     "RANDOMIZATION_IGNORED",
     "Three other boxes make no difference to the gains.",
     "Draw each parameter between value * low and value * high of the box that is passed in, and take the mean over the draws. If you do, keep nothing from an earlier call, and try more gains.",
-).around(
-    "tune",
-    """
-        return _right(estimate, {k: [1.0, 1.0] for k in NAMES})
-    """,
-).around(
+).around("tune", "return _right(estimate, {k: [1.0, 1.0] for k in NAMES})").around(
     "tune",
     """
         wide = {"m": 1.05, "b": 1.5, "Fc": 0.9, "tau": 1.2, "latency": 1.2}
         return _right(estimate, {k: [math.exp(-w), math.exp(w)] for k, w in wide.items()})
     """,
-).around(
-    "tune",
-    """
-        return _right(estimate, {k: [math.exp(-w), math.exp(w)] for k, w in LOG_WIDTH.items()})
-    """,
-)
+).around("tune", "return _right(estimate, {k: [math.exp(-w), math.exp(w)] for k, w in LOG_WIDTH.items()})")
 mistakes(
     "GAINS_SWAPPED",
     "With kp and kd swapped, the gains would do well, for this question and for others.",
@@ -962,23 +890,13 @@ mistakes(
     "The threshold of the whole plan is well above 1, the largest success there is.",
     "Success is a fraction, and this threshold has no unit: 92 % is 0.92.",
     kind="fact",
-).around(
-    "plan",
-    """
-        return {**_right(), "threshold": 94}
-    """,
-)
+).around("plan", 'return {**_right(), "threshold": 94}')
 mistakes(
     "PROMISE_OF_PERFECTION",
     "The plan promises the best possible gains on every fleet, or better.",
     "Only the best possible gains have a success of 1. Promise at least 0.90 and less than 1.",
     kind="fact",
-).around(
-    "plan",
-    """
-        return {**_right(), "threshold": 1.0}
-    """,
-)
+).around("plan", 'return {**_right(), "threshold": 1.0}')
 mistakes(
     "EXCITATION_RESTS",
     "The force is zero for more than 40 % of the time. A cart that stands still shows hardly anything.",
@@ -1242,10 +1160,7 @@ mistakes(
     "The force stays below u_max. In at least one of the checks the same signal, scaled up to it, would show enough.",
     "Scale the finished signal so that its largest absolute value is u_max: the noise stays the same. Most of it should be near that: rare peaks show little.",
 ).around(
-    "design_excitation",
-    """
-        return 0.36 * np.convolve(_right(budget_s, u_max, rng), np.full(100, 0.01), "same")
-    """,
+    "design_excitation", 'return 0.36 * np.convolve(_right(budget_s, u_max, rng), np.full(100, 0.01), "same")'
 )
 mistakes(
     "EXCITATION_STANDS",
@@ -1263,22 +1178,12 @@ mistakes(
     "LAG_READ",
     "The gains change with the estimate's lag, although tau and latency stay as they are.",
     "rollout takes tau and latency. lag is their sum: used for one of them, it counts the other one twice.",
-).around(
-    "tune",
-    """
-        return _right({**estimate, "latency": estimate["lag"]}, randomization)
-    """,
-)
+).around("tune", 'return _right({**estimate, "latency": estimate["lag"]}, randomization)')
 mistakes(
     "LOWS_NOT_READ",
     "The gains stay exactly as they are when the low ends of the box's ranges are moved, and change with the high ends.",
     "Draw each parameter between value * low and value * high, and take the mean over all carts.",
-).around(
-    "tune",
-    """
-        return _right(estimate, {k: [high, high] for k, (_, high) in randomization.items()})
-    """,
-)
+).around("tune", "return _right(estimate, {k: [high, high] for k, (_, high) in randomization.items()})")
 mistakes(
     "KD_FOLLOWS_KP",
     "kd is the same in all answers, or follows from kp in the same way.",

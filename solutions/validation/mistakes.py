@@ -70,10 +70,7 @@ mistakes(
     "Your code divides by N - 1.",
     "Divide by N. np.var does; statistics.variance divides by N - 1, and statistics.pvariance by N.",
 ).edit("rmse", {"mean(np.square(np.asarray(e, dtype=float))": "sum(np.square(e)) / max(len(e) - 1, 1"}).body(
-    "bias_variance",
-    """
-        return float(np.mean(e)), float(np.var(e, ddof=1))
-    """,
+    "bias_variance", "return float(np.mean(e)), float(np.var(e, ddof=1))"
 )
 mistakes(
     "NOT_AVERAGED",
@@ -85,22 +82,12 @@ mistakes(
     "VARIANCE_ABOUT_ZERO",
     "The second value still contains the bias: the errors are squared before the mean is subtracted.",
     "Subtract the mean, square, and divide the sum by N.",
-).body(
-    "bias_variance",
-    """
-        return float(np.mean(e)), float(np.mean(np.square(e)))
-    """,
-)
+).body("bias_variance", "return float(np.mean(e)), float(np.mean(np.square(e)))")
 mistakes(
     "STD_FOR_VARIANCE",
     "The second value is the standard deviation.",
     "The variance is the mean of the squared deviations, without a root.",
-).body(
-    "bias_variance",
-    """
-        return float(np.mean(e)), float(np.std(e))
-    """,
-)
+).body("bias_variance", "return float(np.mean(e)), float(np.std(e))")
 mistakes(
     "CANCELLATION",
     "The variance loses its digits where the mean is much larger than the scatter.",
@@ -117,12 +104,7 @@ mistakes(
     "Your code takes a median where a mean is asked for.",
     "Take the mean. A median ignores rare large errors.",
     kind="consequence",
-).body(
-    "bias_variance",
-    """
-        return float(np.median(e)), float(np.var(e))
-    """,
-)
+).body("bias_variance", "return float(np.median(e)), float(np.var(e))")
 mistakes(
     "MUTATES_INPUT",
     "Your code works in the caller's own array, list or dict, not in a copy.",
@@ -436,49 +418,26 @@ mistakes(
     "COVERAGE_OPEN_BOUNDS",
     "A value exactly on an end is not counted.",
     "Ends are included: use <= on both sides.",
-).body(
-    "coverage",
-    """
-        return float(np.mean((lo < y) & (y < hi)))
-    """,
-).body(
-    "coverage",
-    """
-        return float(np.mean((lo <= y) & (y < hi)))
-    """,
+).body("coverage", "return float(np.mean((lo < y) & (y < hi)))").body(
+    "coverage", "return float(np.mean((lo <= y) & (y < hi)))"
 )
 mistakes(
     "COUNTED",
     "The result is the number of values inside, not their fraction.",
     "Divide by the number of values.",
-).body(
-    "coverage",
-    """
-        return int(np.sum((lo <= y) & (y <= hi)))
-    """,
-)
+).body("coverage", "return int(np.sum((lo <= y) & (y <= hi)))")
 mistakes(
     "OUTSIDE_COUNTED",
     "The result is the fraction that lies outside.",
     "Count where lo <= y <= hi.",
     kind="consequence",
-).body(
-    "coverage",
-    """
-        return float(np.mean((y < lo) | (hi < y)))
-    """,
-)
+).body("coverage", "return float(np.mean((y < lo) | (hi < y)))")
 mistakes(
     "IN_PER_CENT",
     "The result is a hundred times too large.",
     "Return a fraction, not a percentage.",
     kind="consequence",
-).body(
-    "coverage",
-    """
-        return 100 * float(np.mean((lo <= y) & (y <= hi)))
-    """,
-)
+).body("coverage", "return 100 * float(np.mean((lo <= y) & (y <= hi)))")
 mistakes(
     "IID_BOOTSTRAP",
     "In the resamples, most errors are not followed by the next one of the series. Are single errors drawn, or blocks taken apart?",
@@ -611,23 +570,23 @@ mistakes(
     "NOT_ABSOLUTE",
     "Your code divides by the first energy with its sign. Where energies are negative, a gain looks like a loss.",
     "Divide by abs(E[0]).",
-).body(
+).edit(
     "energy_error",
-    """
-        e = np.array([energy(a, b) for a, b in zip(q, v)])
-        return (e - e[0]) / e[0]
-    """,
+    {
+        "values = np.array([energy(q_i, v_i) for q_i, v_i": "e = np.array([energy(a, b) for a, b",
+        "values - values[0]) / abs(values[0])": "e - e[0]) / e[0]",
+    },
 )
 mistakes(
     "TO_CURRENT",
     "Your code divides by the energy at each moment.",
     "Divide by abs(E[0]), always.",
-).body(
+).edit(
     "energy_error",
-    """
-        e = np.array([energy(a, b) for a, b in zip(q, v)])
-        return (e - e[0]) / np.abs(e)
-    """,
+    {
+        "values = np.array([energy(q_i, v_i) for q_i, v_i": "e = np.array([energy(a, b) for a, b",
+        "values - values[0]) / abs(values[0]": "e - e[0]) / np.abs(e",
+    },
 )
 mistakes(
     "WHOLE_NUMBERS",
@@ -675,12 +634,12 @@ mistakes(
     "UNSIGNED",
     "The result has lost its sign.",
     "Take no absolute value of the error: its sign says whether it is too large or too small. Only energy_error has bars, and there they belong to E[0] alone.",
-).body(
+).edit(
     "energy_error",
-    """
-        e = np.array([energy(a, b) for a, b in zip(q, v)])
-        return np.abs(e - e[0]) / abs(e[0])
-    """,
+    {
+        "values = np.array([energy(q_i, v_i) for q_i, v_i": "e = np.array([energy(a, b) for a, b",
+        "(values - values[0]) / abs(values": "np.abs(e - e[0]) / abs(e",
+    },
 ).body(
     "contact_force_error",
     """
@@ -699,24 +658,24 @@ mistakes(
     "TO_PREVIOUS",
     "Your code compares each sample with the one before it.",
     "Subtract E[0] from each sample and divide by abs(E[0]): a slow drift cannot be seen from step to step.",
-).body(
+).edit(
     "energy_error",
-    """
-        e = np.array([energy(a, b) for a, b in zip(q, v)])
-        return np.diff(e, prepend=e[0]) / abs(e[0])
-    """,
+    {
+        "values = np.array([energy(q_i, v_i) for q_i, v_i": "e = np.array([energy(a, b) for a, b",
+        "(values - values[0]) / abs(values": "np.diff(e, prepend=e[0]) / abs(e",
+    },
 )
 mistakes(
     "WHOLE_ARRAYS",
     "More than one of each is passed at once.",
     "Loop over the samples: energy(q[i], v[i]) returns one number.",
     kind="fact",
-).body(
+).edit(
     "energy_error",
-    """
-        e = np.asarray(energy(q, v))
-        return (e - e[0]) / abs(e[0])
-    """,
+    {
+        "values = np.array([energy(q_i, v_i) for q_i, v_i in zip(q, v)]": "e = np.asarray(energy(q, v)",
+        "values - values[0]) / abs(values": "e - e[0]) / abs(e",
+    },
 )
 mistakes(
     "PEAK_OF_ERROR",
@@ -1051,13 +1010,7 @@ mistakes(
     "The lag has the wrong sign, or has lost its sign.",
     "The lag is positive where the simulation is late: where sim(t + lag) looks like real(t).",
     kind="fact",
-).around(
-    "validate",
-    """
-        return -_right(pairs)
-    """,
-    of="best_shift",
-)
+).around("validate", "return -_right(pairs)", of="best_shift")
 mistakes(
     "LAG_WHOLE_SAMPLES",
     "Here the lag is a whole number of samples.",
@@ -1253,9 +1206,7 @@ mistakes(
     kind="fact",
 ).around(
     "validate",
-    """
-        return np.mean([_right([pair], shifts) for pair in pairs], axis=0)
-    """,
+    "return np.mean([_right([pair], shifts) for pair in pairs], axis=0)",
     of="misfit",
     also=("LAG_MEAN_OF_RUNS", "LAG_OF_PARTS", "LAG_NOT_BEST"),
 )
@@ -1266,16 +1217,12 @@ mistakes(
     kind="fact",
 ).around(
     "validate",
-    """
-        return _right(pairs[-1:], shifts)
-    """,
+    "return _right(pairs[-1:], shifts)",
     of="misfit",
     also=("LAG_MEAN_OF_RUNS", "LAG_OF_PARTS", "LAG_NOT_BEST"),
 ).around(
     "validate",
-    """
-        return _right(sorted(pairs, key=lambda pair: pair[0]["id"])[:1])
-    """,
+    'return _right(sorted(pairs, key=lambda pair: pair[0]["id"])[:1])',
     of="best_shift",
     also=("LAG_MEAN_OF_RUNS", ""),
 )
@@ -1347,13 +1294,7 @@ mistakes(
     "The lag is as large as a number of samples, or of milliseconds.",
     "lag_s is in seconds: multiply a number of samples by the time between them, or divide milliseconds by 1000.",
     kind="fact",
-).around(
-    "validate",
-    """
-        return _right(pairs) / min(r["t"][1] - r["t"][0] for _, r in pairs)
-    """,
-    of="best_shift",
-)
+).around("validate", 'return _right(pairs) / min(r["t"][1] - r["t"][0] for _, r in pairs)', of="best_shift")
 mistakes(
     "SIGN_OF_LIMIT_IGNORED",
     "A negative bias or lag is accepted, although its interval reaches beyond the margin.",
@@ -1475,12 +1416,7 @@ mistakes(
     "OVER_COVERAGE_ACCEPTED",
     "The coverage has no upper limit in your code. So a sigma of 1 km passes.",
     "Refuse a coverage whose interval reaches below coverage_min or above coverage_max.",
-).around(
-    "validate",
-    """
-        return _right(sim, real, {**spec, "coverage_max": math.inf})
-    """,
-)
+).around("validate", 'return _right(sim, real, {**spec, "coverage_max": math.inf})')
 mistakes(
     "JACKKNIFE_FACTOR",
     "The interval is as wide as with another factor than (n - 1)/n.",
@@ -1562,16 +1498,13 @@ mistakes(
     "Each model is fitted to its fold, not to the runs outside it.",
     "Fit to all the runs outside the fold, and predict those of the fold.",
     kind="fact",
-).body(
+).edit(
     "cross_validate",
-    """
-        scores = []
-        for fold in np.array_split(np.arange(len(runs)), k):
-            model = fit([runs[i] for i in fold])
-            e = [np.subtract(predict(model, runs[i]), runs[i]["y"]) for i in range(len(runs)) if i not in fold]
-            scores.append(np.sqrt(np.mean(np.concatenate(e) ** 2)))
-        return np.array(scores)
-    """,
+    {
+        " held_out ": " fold ",
+        "run for i, run in enumerate(runs) if i not in held_out": "runs[i] for i in fold",
+        "i in held_out]": "i in range(len(runs)) if i not in fold]",
+    },
 )
 mistakes(
     "RETURNS_SWAPPED",
@@ -1984,12 +1917,12 @@ mistakes(
     "Your code does not pass energy a position and a velocity of shape (d,).",
     "Pass q[i] and v[i] as they are.",
     kind="fact",
-).body(
+).edit(
     "energy_error",
-    """
-        e = np.array([energy(np.atleast_2d(a), np.atleast_2d(b)) for a, b in zip(q, v)], dtype=float)
-        return (e - e[0]) / abs(e[0])
-    """,
+    {
+        "values = np.array([energy(q_i, v_i) for q_i, v_i in zip(q, v)]": "e = np.array([energy(np.atleast_2d(a), np.atleast_2d(b)) for a, b in zip(q, v)], dtype=float",
+        "values - values[0]) / abs(values": "e - e[0]) / abs(e",
+    },
 )
 mistakes(
     "MARGIN_EXCLUDED",
@@ -2011,28 +1944,18 @@ mistakes(
         return {**report, "reasons": sorted(reasons), "accepted": not reasons}
     """,
 )
-mistakes("RAISED").body(
+mistakes("RAISED").edit(
     "block_bootstrap_ci",
-    """
-        e = np.asarray(e, dtype=float)
-        n = len(e)
-        starts = rng.integers(0, n - n_boot + 1, size=(n_boot, math.ceil(n / block)))
-        rows = np.minimum((starts[:, :, None] + np.arange(block)).reshape(n_boot, -1)[:, :n], n - 1)
-        values = [statistic(e[row]) for row in rows]
-        lo, hi = np.quantile(values, [alpha / 2, 1 - alpha / 2])
-        return float(lo), float(hi)
-    """,
+    {
+        " block ": " n_boot ",
+        "(starts[:, :, None] + np.arange(block)).reshape(n_boot, -1)[:, :n]": "np.minimum((starts[:, :, None] + np.arange(block)).reshape(n_boot, -1)[:, :n], n - 1)",
+    },
 )
 mistakes(
     "FEW_DEGREES_ONLY",
     "The band is right for dof * runs = 40, and wrong here, where it is more.",
     "A search must reach far enough, a table must be long enough, random draws must be many, and a gamma function of a large argument overflows.",
-).around(
-    "consistency_band",
-    """
-        return tuple(min(end, 1000.0 / runs) for end in _right(dof, runs, alpha))
-    """,
-)
+).around("consistency_band", "return tuple(min(end, 1000.0 / runs) for end in _right(dof, runs, alpha))")
 mistakes(
     "NOT_SQUARED",
     "The result is made of absolute errors where squares belong.",

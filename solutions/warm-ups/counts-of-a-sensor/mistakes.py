@@ -56,12 +56,7 @@ mistakes(
     "LIMIT_CUT_OFF",
     "The limit in counts is cut off: 0.29 / 0.01 comes out just below 29, and int() gives 28.",
     "Round it to the nearest whole number, or take the smaller of two lengths in metres.",
-).body(
-    "reading",
-    """
-        return min(round(distance / resolution), int(limit / resolution)) * resolution
-    """,
-)
+).body("reading", "return min(round(distance / resolution), int(limit / resolution)) * resolution")
 mistakes(
     "NOTHING_BEYOND",
     "Beyond the limit your sensor does not read the limit.",

@@ -80,12 +80,7 @@ mistakes(
     "STEP_MISSING",
     "The old velocity moves the position, but one of the rates is not multiplied by the step.",
     "Both x and v advance by h times their rate.",
-).body(
-    "euler_step",
-    """
-        return x + h * v, v + a
-    """,
-)
+).body("euler_step", "return x + h * v, v + a")
 mistakes(
     "ONE_STEP_LATE",
     "The last position is compared with the exact one of a step later.",
@@ -95,12 +90,7 @@ mistakes(
     "SIGN_OF_THE_ERROR",
     "The error can be negative.",
     "Keep the abs().",
-).body(
-    "error_at_end",
-    """
-        return math.cos(omega * (len(positions) - 1) * H) - positions[-1]
-    """,
-)
+).body("error_at_end", "return math.cos(omega * (len(positions) - 1) * H) - positions[-1]")
 mistakes(
     "HALF_A_H_SQUARED",
     "The position moves by h v and half of a h squared. That is exact for a constant acceleration, and not Euler's step.",
@@ -164,12 +154,7 @@ mistakes(
     "STUCK_TOGETHER",
     "Both balls go on with the mean of their velocities, as if they stuck together.",
     "Elastic balls keep their energy, too: equal ones exchange their velocities.",
-).body(
-    "after_contact",
-    """
-        return (v1 + v2) / 2, (v1 + v2) / 2
-    """,
-)
+).body("after_contact", "return (v1 + v2) / 2, (v1 + v2) / 2")
 mistakes(
     "ASSIGNED_IN_TURN",
     "Both balls have the same velocity afterwards: one of them is overwritten before it is used.",

@@ -21,12 +21,7 @@ mistakes(
     "REST_THROWN_AWAY",
     "The account is left empty, so the simulation's clock falls behind.",
     "Return the time that the steps did not use: account minus steps times h.",
-).body(
-    "ticks",
-    """
-        return int((frame + left) // h), 0.0
-    """,
-)
+).body("ticks", "return int((frame + left) // h), 0.0")
 mistakes(
     "ROUNDED",
     "The number of steps is rounded to the nearest, so a step may be taken before its time is there.",

@@ -33,12 +33,7 @@ mistakes(
     "RISING_STOPPED",
     "A ball that is already rising is stopped.",
     "It keeps its velocity: only a ball on its way down bounces.",
-).body(
-    "after_floor",
-    """
-        return max(-e * v, 0.0)
-    """,
-)
+).body("after_floor", "return max(-e * v, 0.0)")
 mistakes(
     "RISING_SLOWED",
     "A ball that is already rising loses speed, too.",

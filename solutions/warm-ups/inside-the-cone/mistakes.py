@@ -32,12 +32,7 @@ mistakes(
     "NO_LIMIT",
     "There is no limit, so nothing would ever slide.",
     "Friction gives mu times the normal impulse at most.",
-).body(
-    "friction",
-    """
-        return list(wanted)
-    """,
-)
+).body("friction", "return list(wanted)")
 mistakes(
     "NORMAL_FORGOTTEN",
     "The limit is mu alone.",

@@ -150,12 +150,7 @@ mistakes(
     "ONLY_WHAT_ARRIVES_NOW",
     "You give None unless a value arrives exactly now.",
     "An earlier one still counts: give the last that has arrived.",
-).body(
-    "seen",
-    """
-        return {time + latency: value for time, value in zip(times, values)}.get(now)
-    """,
-)
+).body("seen", "return {time + latency: value for time, value in zip(times, values)}.get(now)")
 mistakes(
     "SAMPLES_NOT_TIME",
     "You go back a fixed number of samples: the latency divided by the time between the first two.",

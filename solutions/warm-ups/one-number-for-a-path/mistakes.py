@@ -8,41 +8,23 @@ mistakes(
     "MEAN_SIZE",
     "Your result is the mean of the sizes. In it a large difference counts no more than two of half its size.",
     "Square the differences before you take the mean, and take the root after it.",
-).body(
-    "rms",
-    """
-        return sum(abs(s - m) for s, m in zip(simulated, measured)) / len(measured)
-    """,
-)
+).body("rms", "return sum(abs(s - m) for s, m in zip(simulated, measured)) / len(measured)")
 mistakes(
     "ROOT_MISSING",
     "Your result is the mean of the squares, in square metres.",
     "Take the root at the end.",
-).body(
-    "rms",
-    """
-        return sum((s - m) ** 2 for s, m in zip(simulated, measured)) / len(measured)
-    """,
-)
+).body("rms", "return sum((s - m) ** 2 for s, m in zip(simulated, measured)) / len(measured)")
 mistakes(
     "SIDES_CANCEL",
     "Differences to opposite sides cancel: a path that swings around the other has no error here.",
     "Square every difference first: squares have no sign.",
-).body(
-    "rms",
-    """
-        return abs(sum(s - m for s, m in zip(simulated, measured)) / len(measured))
-    """,
-)
+).body("rms", "return abs(sum(s - m for s, m in zip(simulated, measured)) / len(measured))")
 mistakes(
     "ONE_LESS",
     "The sum is divided by n - 1.",
     "Divide by the number of differences: their own mean plays no part in a root mean square.",
 ).body(
-    "rms",
-    """
-        return math.sqrt(sum((s - m) ** 2 for s, m in zip(simulated, measured)) / (len(measured) - 1))
-    """,
+    "rms", "return math.sqrt(sum((s - m) ** 2 for s, m in zip(simulated, measured)) / (len(measured) - 1))"
 )
 mistakes(
     "MEAN_FORGOTTEN",
@@ -87,12 +69,7 @@ mistakes(
     "LARGEST",
     "Your result is the largest difference.",
     "All differences count: square each, take the mean, take the root.",
-).body(
-    "rms",
-    """
-        return max(abs(s - m) for s, m in zip(simulated, measured))
-    """,
-)
+).body("rms", "return max(abs(s - m) for s, m in zip(simulated, measured))")
 mistakes(
     "EACH_PATH_ALONE",
     "You took the root mean square of each path, and subtracted one from the other.",

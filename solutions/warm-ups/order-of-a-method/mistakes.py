@@ -65,10 +65,7 @@ mistakes(
     "You divided the logarithms of the two errors, and those of the two steps.",
     "Subtract them: log(error) - log(error_small), and log(h) - log(h_small).",
 ).body(
-    "observed_order",
-    """
-        return (math.log(error) / math.log(error_small)) / (math.log(h) / math.log(h_small))
-    """,
+    "observed_order", "return (math.log(error) / math.log(error_small)) / (math.log(h) / math.log(h_small))"
 )
 mistakes(
     "ROUNDED",

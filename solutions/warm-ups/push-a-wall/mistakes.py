@@ -23,22 +23,12 @@ mistakes(
     "EVERYTHING",
     "Your result is the whole mass, in every pose.",
     "A bent rod gives way, and the wall feels less.",
-).body(
-    "felt_mass",
-    """
-        return carriage + tip + 0.0 * length * angle
-    """,
-)
+).body("felt_mass", "return carriage + tip + 0.0 * length * angle")
 mistakes(
     "TIP_ALONE",
     "Your result is the mass of the tip, in every pose.",
     "A rod along the rail pushes with the carriage behind it.",
-).body(
-    "felt_mass",
-    """
-        return tip + 0.0 * length * angle
-    """,
-)
+).body("felt_mass", "return tip + 0.0 * length * angle")
 mistakes(
     "DIAGONAL_ONLY",
     "You left out the entries of M beside its diagonal.",
@@ -111,12 +101,7 @@ mistakes(
     "COSINE_SQUARED",
     "You count the carriage with the cosine squared. That is right with the rod along the rail or upright, but not in between.",
     "The rod gives way as it turns: work out x from M x = Jᵀ, then J x, then one over it.",
-).body(
-    "felt_mass",
-    """
-        return tip + carriage * np.cos(angle) ** 2 + 0.0 * length
-    """,
-)
+).body("felt_mass", "return tip + carriage * np.cos(angle) ** 2 + 0.0 * length")
 
 mistakes.accept(
     "The matrix is inverted by hand",

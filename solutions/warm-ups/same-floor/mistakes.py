@@ -8,12 +8,7 @@ mistakes(
     "KEPT_AS_THEY_ARE",
     "Both numbers are the old ones: the floor becomes another one with the step.",
     "Find the spring and the damper from the old step, then ERP and CFM from the new one.",
-).body(
-    "same_floor",
-    """
-        return erp, cfm
-    """,
-)
+).body("same_floor", "return erp, cfm")
 mistakes(
     "CFM_KEPT",
     "The CFM is the old one.",

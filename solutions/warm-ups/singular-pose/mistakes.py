@@ -113,12 +113,7 @@ mistakes(
     "FORWARDS_EVERYWHERE",
     "You multiplied J with (vx, vy): you took them for the speeds of the joints.",
     "The velocity of the tip is known. Solve for the speeds, and give None where that cannot be done.",
-).body(
-    "joint_speeds",
-    """
-        return vx - length * math.sin(angle) * vy, length * math.cos(angle) * vy
-    """,
-)
+).body("joint_speeds", "return vx - length * math.sin(angle) * vy, length * math.cos(angle) * vy")
 mistakes(
     "SINE_AND_COSINE_SWAPPED",
     "Sine and cosine are swapped, also where you look for the singular pose.",

@@ -18,12 +18,7 @@ mistakes(
     "ONE_RULE_FOR_ALL",
     "Every rule multiplies here.",
     "Look at which rule is given, and follow it.",
-).body(
-    "pair_friction",
-    """
-        return mu1 * mu2
-    """,
-)
+).body("pair_friction", "return mu1 * mu2")
 mistakes(
     "SUM_NOT_MEAN",
     'For "mean" you take the sum.',

@@ -10,21 +10,13 @@ mistakes(
     "ELBOW_FROM_THE_AXIS",
     "You measure the second angle from the x axis.",
     "The elbow's motor turns with the first link: from the axis the second link points at a1 + a2.",
-).body(
-    "hand",
-    """
-        return l1 * math.cos(a1) + l2 * math.cos(a2), l1 * math.sin(a1) + l2 * math.sin(a2)
-    """,
-)
+).body("hand", "return l1 * math.cos(a1) + l2 * math.cos(a2), l1 * math.sin(a1) + l2 * math.sin(a2)")
 mistakes(
     "AXES_SWAPPED",
     "x and y are swapped, or sine and cosine.",
     "Measured from the x axis, x goes with the cosine.",
 ).body(
-    "hand",
-    """
-        return l1 * math.sin(a1) + l2 * math.sin(a1 + a2), l1 * math.cos(a1) + l2 * math.cos(a1 + a2)
-    """,
+    "hand", "return l1 * math.sin(a1) + l2 * math.sin(a1 + a2), l1 * math.cos(a1) + l2 * math.cos(a1 + a2)"
 )
 mistakes(
     "DEGREES",
@@ -42,10 +34,7 @@ mistakes(
     "The elbow turns clockwise.",
     "Both angles are counter-clockwise: add them.",
 ).body(
-    "hand",
-    """
-        return l1 * math.cos(a1) + l2 * math.cos(a1 - a2), l1 * math.sin(a1) + l2 * math.sin(a1 - a2)
-    """,
+    "hand", "return l1 * math.cos(a1) + l2 * math.cos(a1 - a2), l1 * math.sin(a1) + l2 * math.sin(a1 - a2)"
 )
 mistakes(
     "ONE_LONG_LINK",
@@ -67,10 +56,7 @@ mistakes(
     "The lengths of the two links are exchanged.",
     "l1 goes with a1, and l2 with a1 + a2.",
 ).body(
-    "hand",
-    """
-        return l2 * math.cos(a1) + l1 * math.cos(a1 + a2), l2 * math.sin(a1) + l1 * math.sin(a1 + a2)
-    """,
+    "hand", "return l2 * math.cos(a1) + l1 * math.cos(a1 + a2), l2 * math.sin(a1) + l1 * math.sin(a1 + a2)"
 )
 mistakes(
     "BOTH_AT_THE_FIRST_ANGLE",

@@ -121,17 +121,12 @@ _COLUMNS = (
 
 def rows(comparison: Comparison) -> tuple[EngineRow, ...]:
     """Every row with its truth, its error and whether it is the best of its column."""
-    best = best_rows(comparison.rows)
-    return tuple(
-        filled(
-            EngineRow,
-            row,
-            scenario := SCENARIOS[row.scenario],
-            error=None if row.value is None else scenario.error(row.value),
-            best=id(row) in best,
-        )
-        for row in comparison.rows
-    )
+    best, made = best_rows(comparison.rows), []
+    for row in comparison.rows:
+        scenario = SCENARIOS[row.scenario]
+        error = None if row.value is None else scenario.error(row.value)
+        made.append(filled(EngineRow, row, scenario, error=error, best=id(row) in best))
+    return tuple(made)
 
 
 app = group(COMMANDS["engines"].summary)
@@ -300,17 +295,17 @@ def _scenario(console: Console, scenario: Scenario, rows: Sequence[Row], best: f
     steps = sorted({row.dt for row in rows}, reverse=True)
     lines = []
     for dt in steps:
-        for engine, origin in _lines(row for row in rows if row.dt == dt):
-            cells = {
-                row.setting: _cell(scenario, row, best)
-                for row in rows
-                if row.engine == engine and row.dt == dt and (row.origin == "reference") == origin
-            }
+        found: dict[tuple[str, bool], dict[Setting, str]] = {}  # by engine, and whether from the reference
+        for row in (row for row in rows if row.dt == dt):
+            cells = found.setdefault((row.engine, row.origin == "reference"), {})
+            cells[row.setting] = _cell(scenario, row, best)
+        for (engine, origin), cells in found.items():
+            if not origin and (engine, True) in found:
+                continue  # what has a reference is not listed as missing too
             name = ENGINES[engine].name + (", reference" if origin else "")
             step = [_shown_step(dt)] if len(steps) > 1 else []
-            lines.append(
-                (_truth(scenario), name, *step, cells.get(DEFAULT, ""), _tuned(cells, rows, engine, dt))
-            )
+            well_set = _tuned(cells, rows, engine, dt)
+            lines.append((_truth(scenario), name, *step, cells.get(DEFAULT, ""), well_set))
     heads = ("Truth", "Engine", *(["Step"] if len(steps) > 1 else []), "As it comes", "Well set")
     console.table(heads, lines)
     if console.plain and not console.quiet:
@@ -328,12 +323,6 @@ def _tuned(cells: Mapping[Setting, str], rows: Sequence[Row], engine: str, dt: f
     return "" if text == cells.get(DEFAULT) and not any(letter.isdigit() for letter in text) else text
 
 
-def _lines(rows: Iterable[Row]) -> list[tuple[str, bool]]:
-    """(engine, from the reference) in order; an engine that has a reference is not listed as missing too."""
-    found = dict.fromkeys((row.engine, row.origin == "reference") for row in rows)
-    return [key for key in found if key[1] or (key[0], True) not in found]
-
-
 def best_rows(rows: Sequence[Row]) -> frozenset[int]:
     """Which rows, by ``id``, come nearest the truth in their column; ties are all best.
 
@@ -346,23 +335,19 @@ def best_rows(rows: Sequence[Row]) -> frozenset[int]:
             columns.setdefault((row.scenario, row.dt, row.setting), []).append(row)
     best: set[int] = set()
     for (scenario_id, _dt, _setting), column in columns.items():
-        scenario = SCENARIOS[scenario_id]
         if len(column) < 2:
             continue
-        distance = [_distance(scenario, row) for row in column]
+        scenario = SCENARIOS[scenario_id]
+        large, truth = scenario.better == "large", scenario.truth or 0.0
+        values = [row.value or 0.0 for row in column]
+        distance = [-value if large else abs(value - truth) for value in values]
         nearest, first = min(zip(distance, column, strict=True), key=lambda pair: pair[0])
         # Values that look equal on the screen share a rank, and so do those within the spread of phases or
         # starts.
         slack = max(0.5 * 10.0**-scenario.digits, 0.5 * (first.highest - first.lowest))
-        if scenario.better == "large":
-            slack = 1e-9
+        slack = 1e-9 if large else slack
         best |= {id(row) for row, far in zip(column, distance, strict=True) if far - nearest <= slack}
     return frozenset(best)
-
-
-def _distance(scenario: Scenario, row: Row) -> float:
-    value = row.value or 0.0
-    return -value if scenario.better == "large" else abs(value - (scenario.truth or 0.0))
 
 
 def _truth(scenario: Scenario) -> str:
@@ -378,7 +363,7 @@ def _cell(scenario: Scenario, row: Row, best: frozenset[int]) -> str:
         return _STATUS[row.status]
     text = number(scenario, row.value)
     if rate := row.details.get("steps_per_second"):
-        text = f"{text}, {_rate(rate)}"
+        text += f", {rate:.0f}/s" if rate < 1000 else f", {rate / 1000:.1f}k/s"
     elif row.value in (row.details.get("fastest_tried_m_s"), row.details.get("longest_tried_ms")):
         text += ", all"
     if row.highest - row.lowest >= 10.0**-scenario.digits:
@@ -389,18 +374,13 @@ def _cell(scenario: Scenario, row: Row, best: frozenset[int]) -> str:
 
 
 def number(scenario: Scenario, value: float) -> str:
-    return _unit(_digits(scenario, value), scenario)
-
-
-def _digits(scenario: Scenario, value: float) -> str:
     """A value: signed where the truth is zero, and never "0" for a number that is not zero."""
     sign = "+" if scenario.truth == 0.0 and scenario.unit == "%" else ""
     size = abs(value)
     if size >= 1000:
-        return f"{value:{sign}.4g}" if size >= 1e5 else f"{value:{sign}.0f}"
-    if 0.0 < size < 0.5 * 10.0**-scenario.digits:
-        return f"{value:{sign}.0e}"
-    return f"{value + 0.0:{sign}.{scenario.digits}f}"
+        return _unit(f"{value:{sign}.4g}" if size >= 1e5 else f"{value:{sign}.0f}", scenario)
+    form = ".0e" if 0.0 < size < 0.5 * 10.0**-scenario.digits else f".{scenario.digits}f"
+    return _unit(f"{value + 0.0:{sign}{form}}", scenario)
 
 
 def _short(value: float) -> str:
@@ -408,10 +388,6 @@ def _short(value: float) -> str:
     size = abs(value)
     digits = 2 - math.floor(math.log10(size)) if size >= 1e-3 else 0
     return f"{value + 0.0:.{max(0, digits)}f}"
-
-
-def _rate(rate: float) -> str:
-    return f"{rate:.0f}/s" if rate < 1000 else f"{rate / 1000:.1f}k/s"
 
 
 def _unit(text: str, scenario: Scenario) -> str:

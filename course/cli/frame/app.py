@@ -104,8 +104,10 @@ def run(arguments: Sequence[str]) -> int:
             kind = f"A fault in the course, not in your work ({type(error).__name__})"
             message = f"{kind}; the details are in {write_report(error)}."
             code = _say(console, line, InternalError.exit_code, "internal", message)
-    if console.json and not console.emitted:
-        _emit(console, line, code)
+    if console.json and not console.emitted:  # one object, of a command that adds nothing to its exit code
+        from course.cli.frame.replies import Bare, schema_of_line
+
+        console.emit(Bare(schema=schema_of_line(line), ok=code == 0, exit_code=code))
     try:
         console.flush()
     except OSError as error:
@@ -123,7 +125,12 @@ def _dispatch(line: Line, console: Console) -> int:
     if line.problem:
         raise UsageError(line.problem, help="Try `course --help`.")
     if line.version:
-        return _version(console)
+        from course.cli.frame.replies import Version
+
+        python = ".".join(map(str, sys.version_info[:3]))
+        console.line(f"course {__version__} (Python {python})")
+        console.emit(Version(version=__version__, python=python))
+        return 0
     if line.settings.directory is not None:
         _enter(line.settings.directory)
     if line.rest[:1] in {("--show-completion",), ("--install-completion",)} and len(line.rest) == 2:
@@ -174,16 +181,6 @@ def _root(
         return None
     home: Callable[[], int] = find(*HOME)
     return home()
-
-
-def _version(console: Console) -> int:
-    python = ".".join(map(str, sys.version_info[:3]))
-    console.line(f"course {__version__} (Python {python})")
-    if console.json:
-        from course.cli.frame.replies import Version
-
-        console.emit(Version(version=__version__, python=python))
-    return 0
 
 
 def _completion(console: Console, option: str, shell: str) -> int:
@@ -243,13 +240,6 @@ def _refused(console: Console, line: Line, error: OSError) -> int:
     message = f"{error.filename or 'The output'} cannot be {used} ({error.strerror or error})."
     kind, advice = MissingCapabilityError, _REFUSED.get(error.errno or 0, _MAKE_ROOM)
     return _say(console, line, kind.exit_code, kind.default_code, message, advice)
-
-
-def _emit(console: Console, line: Line, code: int) -> None:
-    """Keep the promise of one object for a command that has nothing to add to its exit code."""
-    from course.cli.frame.replies import Bare, schema_of_line
-
-    console.emit(Bare(schema=schema_of_line(line), ok=code == 0, exit_code=code))
 
 
 def _usage(console: Console, line: Line, error: Any) -> int:

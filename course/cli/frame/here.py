@@ -22,6 +22,7 @@ from course.errors import CourseError, MissingCapabilityError, NotFoundError, Un
 from course.handed_in.limits import MAX_FILE
 from course.ids import WARM_UPS
 from course.progress.history import History, Standing, history_of
+from course.progress.store import Event
 from course.progress.workspace import Recorder, Workspace, write_atomically
 from course.strangers import read_bytes
 
@@ -80,17 +81,14 @@ class Here:
     def _say_renumbered(self, chosen: Exercise, number: str) -> None:
         """Of a number that meant another exercise before 2.0, one that was begun here then: name both."""
         before = next((one for one in self.catalog.exercises() if str(one.number) == number), chosen)
-        if before is not chosen and self._begun_before_2_0(before):
+        begun: tuple[Event, ...] = ()
+        with suppress(CourseError):  # a damaged record is another command's to tell
+            begun = self.workspace.store.events("start", before.id) if before is not chosen else ()
+        if any(str(event.data.get("version")).startswith("1.") for event in begun):
             current().warn(
                 f"{number} is {chosen.id}, by the order of the lessons; before 2.0 it was {before.id}, "
                 f"which is {self.catalog.place_of(before)} now."
             )
-
-    def _begun_before_2_0(self, exercise: Exercise) -> bool:
-        with suppress(CourseError):  # a damaged record is another command's to tell
-            begun = self.workspace.store.events("start", exercise.id)
-            return any(str(event.data.get("version")).startswith("1.") for event in begun)
-        return False
 
     def nothing_started(self) -> NotFoundError:
         """The error that no exercise has been started; its advice names the first one."""

@@ -44,34 +44,24 @@ def global_options(arguments: Sequence[str]) -> Line:
     directory: str | None = None
     rest: list[str] = []
     problem = ""
-    position = 0
-    while position < len(arguments):
-        word = arguments[position]
-        position += 1
+    words = iter(arguments)
+    for word in words:
         if word == "--":
-            rest += [word, *arguments[position:]]
-            break
-        if word in _FLAGS:
+            rest += [word, *words]
+        elif word in _FLAGS:
             found.add(_FLAGS[word])
-        elif word == "-C":
-            if position == len(arguments):
-                problem = "-C needs the folder to work in."
-                break
-            directory = _below(directory, arguments[position])
-            position += 1
         elif word.startswith("-C"):
-            directory = _below(directory, word.removeprefix("-C"))
+            folder = word.removeprefix("-C") or next(words, None)
+            if folder is None:
+                problem = "-C needs the folder to work in."
+            else:  # two in a row add up, the second below the first
+                directory = folder if directory is None else str(Path(directory) / folder)
         else:
             rest.append(word)
     settings = Settings(
         json="json" in found, plain="plain" in found, quiet="quiet" in found, directory=directory
     )
     return Line(settings=settings, rest=tuple(rest), version="version" in found, problem=problem)
-
-
-def _below(first: str | None, second: str) -> str:
-    """Two ``-C`` in a row add up, the second below the first."""
-    return second if first is None else str(Path(first) / second)
 
 
 # ---
@@ -135,8 +125,11 @@ figure_ids = _key_of("course.figures.registry", "FIGURES")
 scenario_ids = _key_of("course.engines.scenarios", "SCENARIOS")
 
 
+_SCENES = Path(__file__).parents[2] / "sandbox" / "scenes"
+
+
 def scene_ids(incomplete: str) -> list[str]:
-    return _beginning(incomplete, (path.stem for path in _scenes().glob("*.toml")))
+    return _beginning(incomplete, (path.stem for path in _SCENES.glob("*.toml")))
 
 
 def notebook_ids(incomplete: str) -> list[str]:
@@ -177,7 +170,7 @@ def scene_settings(ctx: Any, incomplete: str) -> list[str]:
     from course.strangers import read_bytes, toml
 
     name = _given(ctx, "scene")
-    path = Path(name) if name.endswith(".toml") else _scenes() / f"{name}.toml"
+    path = Path(name) if name.endswith(".toml") else _SCENES / f"{name}.toml"
     try:
         found = toml(read_bytes(path).decode()).get("parameter", ())
     except (OSError, ValueError):
@@ -231,8 +224,7 @@ def _given(ctx: Any, name: str) -> str:
     A line that ends in an option without its value cannot be parsed. The arguments that the parser had read
     by then have no names yet.
     """
-    value = ctx.params.get(name) or (ctx.args[0] if ctx.args else "")
-    return str(value)
+    return str(ctx.params.get(name) or (ctx.args[0] if ctx.args else ""))
 
 
 def _of_exercises(ctx: Any, name: str) -> list[Path]:
@@ -250,10 +242,6 @@ def _in_content(folder: str, *patterns: str) -> list[Path]:
         return sorted(path for pattern in patterns for path in root.glob(pattern))
     except (CourseError, OSError, ValueError):
         return []
-
-
-def _scenes() -> Path:
-    return Path(__file__).parents[2] / "sandbox" / "scenes"
 
 
 def grade_lists(incomplete: str) -> list[str]:

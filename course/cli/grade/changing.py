@@ -83,10 +83,9 @@ def override(
     if now is None:
         console.line(f"{one_line(student)} {exercise}: nothing was handed in, and no score counts.")
     else:
-        counts = (
-            f"{points(now.score)} of {format_points(now.max_score)} {'would count' if dry_run else 'counts'}"
-        )
-        console.line((f"{one_line(student)} {exercise}: {counts}; {checks_gave(now)}.", "bold"))
+        scored = f"{points(now.score)} of {format_points(now.max_score)}"
+        counts = f"{scored} {'would count' if dry_run else 'counts'}; {checks_gave(now)}"
+        console.line((f"{one_line(student)} {exercise}: {counts}.", "bold"))
         if score is not None:
             console.note("The student can read the reason: it is on their page and in exports for students.")
     if dry_run:
@@ -162,11 +161,8 @@ def late(
                 book.add_times(known, replace=True)
         results = Results(book)
         handed_in = [item for item in results.all() if item.result.number]
-        found = [
-            filled(LateOne, item, submitted_at=utc(item.submitted_at) or None)
-            for item in handed_in
-            if item.late is not None or item.flagged_late
-        ]
+        late_ones = [item for item in handed_in if item.late is not None or item.flagged_late]
+        found = [filled(LateOne, one, submitted_at=utc(one.submitted_at) or None) for one in late_ones]
         unknown_time = sum(item.submitted_at is None for item in handed_in) if results.policy else 0
         unknown = _unknown(results, known)
         unsure = _unsure(results, known) if isinstance(listed, Worksheet) else []
@@ -379,36 +375,33 @@ def assign(
         _show_unsettled(console, left, out, "would be left to settle" if done and dry_run else "to settle")
         if waiting:
             console.note(f"Not graded yet: {counted(waiting, 'student')}. The run goes on with --resume.")
-    assigned_ones, unsettled = tuple(map(_assigned_one, done)), tuple(map(_unsettled_one, left))
+    unsettled = []
+    for item in left:
+        files = tuple(filled(FoundFile, one, file=one.name) for one in item.found.candidates)
+        unsettled.append(filled(UnsettledOne, item, reason=item.found.reason, files=files))
     return console.answer(
-        GradeAssign(dry_run=dry_run, assigned=assigned_ones, unsettled=unsettled, unjudged=broke)
+        GradeAssign(
+            dry_run=dry_run,
+            assigned=tuple(map(_assigned_one, done)),
+            unsettled=tuple(unsettled),
+            unjudged=broke,
+        )
     )
 
 
 def _assigned_one(item: Assigned) -> AssignedOne:
-    one, before = item.assignment, item.before
-    return filled(
-        AssignedOne,
-        one,
-        file=one.name,
-        score_before=before.score if before else None,
-        score_after=item.after.score,
-        state_before=before.verdict.state if before else "missing",
-        state_after=item.after.verdict.state,
-    )
-
-
-def _unsettled_one(item: Unsettled) -> UnsettledOne:
-    files = tuple(filled(FoundFile, one, file=one.name) for one in item.found.candidates)
-    return filled(UnsettledOne, item, reason=item.found.reason, files=files)
+    one, before, after = item.assignment, item.before, item.after
+    scores = {"score_before": before.score if before else None, "score_after": after.score}
+    was = before.verdict.state if before else "missing"
+    states = {"state_before": was, "state_after": after.verdict.state}
+    return filled(AssignedOne, one, file=one.name, **scores, **states)
 
 
 def _show_assigned(console: Console, done: list[Assigned], *, dry_run: bool) -> None:
     for item in done:
-        one, after = item.assignment, item.after
-        was = item.before.verdict.state if item.before else "missing"
+        one, after = _assigned_one(item), item.after
         scored = f"{points(after.score)} of {format_points(after.max_score)}"
-        words = f"{was} -> {after.verdict.state}, {scored}; from {quoted(one.name)}"
+        words = f"{one.state_before} -> {one.state_after}, {scored}; from {quoted(one.file)}"
         console.item(f"{one_line(one.student)} {one.exercise}", words)
     if done:
         console.line((f"{len(done)} {'would be assigned' if dry_run else 'assigned and graded'}.", "bold"))

@@ -141,10 +141,9 @@ def show_change(console: Console, change: Change) -> None:
     if change.raw_before is None or change.raw_after is None:
         return  # of what no check judged, none has changed
     for check in change.checks:
-        delta = f", {check.points_after - check.points_before:+g} points"
-        console.item(
-            check.id, f"{check.before or 'no such check'} -> {check.after or 'gone'}{delta}", indent=4
-        )
+        became = f"{check.before or 'no such check'} -> {check.after or 'gone'}"
+        delta = f"{check.points_after - check.points_before:+g} points"
+        console.item(check.id, f"{became}, {delta}", indent=4)
 
 
 def moved_scores(moved: Sequence[ScoreChange]) -> Iterator[str]:
@@ -164,12 +163,10 @@ def show_roster(console: Console, file: str, moved: Sequence[ScoreChange], dropp
     for line in moved_scores(moved):
         console.line(line, indent=2)
     if dropped:
-        leave = (
-            f"1 student is not in {file} and leaves"
-            if len(dropped) == 1
-            else f"{len(dropped)} students are not in {file} and leave"
-        )
-        console.line(f"{leave} the roster: {some([one_line(name) for name in dropped], _MOST)}")
+        one = len(dropped) == 1
+        who = f"{len(dropped)} student{' is' if one else 's are'} not in {file}"
+        names = some([one_line(name) for name in dropped], _MOST)
+        console.line(f"{who} and {'leaves' if one else 'leave'} the roster: {names}")
 
 
 def points(score: float | None, most: float | None = None) -> str:

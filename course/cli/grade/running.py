@@ -162,10 +162,8 @@ def _show_edited(console: Console, summary: Summary, tried: Regraded | None, out
     changes = tried.changes
     names = ", ".join(summary.edited)
     console.line((f"The graders were edited after these scores were given: {names}.", "bold"))
-    colon = ":" if changes else "."
-    console.line(
-        f"No score was changed by that. With the present graders, {len(changes)} would change{colon}"
-    )
+    would = f"{len(changes)} would change{':' if changes else '.'}"
+    console.line(f"No score was changed by that. With the present graders, {would}")
     for change in changes[:_MOST_TROUBLED]:
         show_change(console, change)
     if len(changes) > _MOST_TROUBLED:
@@ -428,9 +426,10 @@ def _alike(rows: Sequence[Ungraded]) -> list[tuple[str, Ungraded]]:
             files.setdefault((row.exercise, row.message), []).append(row)
         else:
             told.append((f"{one_line(row.student)} {row.exercise}", row))
-    for (exercise, _), those in files.items():
-        told.append((f"{exercise}, {counted(len(those), 'submission')}", those[0]))
-    return told
+    whole = (
+        (f"{those[0].exercise}, {counted(len(those), 'submission')}", those[0]) for those in files.values()
+    )
+    return [*told, *whole]
 
 
 def _mark(summary: Summary) -> str:

@@ -53,15 +53,14 @@ class Learning:
         days = sorted({_day(one) for one in said})
         each = []
         for one in said:
-            section, question = self._asked(one)
-            moment, words = one.at.isoformat(), one.text or None
-            each.append(
-                filled(PredictionState, one, section=section, question=question, said=words, at=moment)
-            )
+            more = {"said": one.text or None, "at": one.at.isoformat(), **self._asked(one)}
+            each.append(filled(PredictionState, one, **more))
         return PredictionsState(
-            all=_counts("all", said),
-            by_lesson=tuple(_counts(one, [x for x in said if x.lesson == one]) for one in lessons),
-            by_day=tuple(_counts(day, [x for x in said if _day(x) == day]) for day in days),
+            all=PredictionsOf(of="all", **tally(said)),
+            by_lesson=tuple(
+                PredictionsOf(of=one, **tally(x for x in said if x.lesson == one)) for one in lessons
+            ),
+            by_day=tuple(PredictionsOf(of=one, **tally(x for x in said if _day(x) == one)) for one in days),
             each=tuple(each),
         )
 
@@ -72,14 +71,13 @@ class Learning:
         except CourseError:
             return None
 
-    def _asked(self, said: RecordedPrediction) -> tuple[str, str]:
+    def _asked(self, said: RecordedPrediction) -> dict[str, str]:
         """Where it was asked, as "lesson#section", and the question; "" for what is gone."""
         script = self._scripts(said.lesson)
         asked = next((one for one in script.questions if one.key == said.key), None) if script else None
-        if script is None or asked is None:
-            return "", ""
-        section = script.section_of(asked.index)
-        return f"{said.lesson}#{section.slug}" if section else "", asked.words
+        section = script.section_of(asked.index) if script and asked else None
+        where = f"{said.lesson}#{section.slug}" if section else ""
+        return {"section": where, "question": asked.words if asked else ""}
 
     # -- mistakes --------------------------------------------------------------------------------------
 
@@ -93,7 +91,7 @@ class Learning:
                 MistakeState,
                 one,
                 title=exercise.task_called(one.task).title,
-                looks_like=_looks_like(exercise, one.diagnosis) or _raised(one),
+                looks_like=_looks_like(exercise, one),
                 read=exercise.where_to_read(one.task),
                 first_seen=one.first.isoformat(),
                 last_seen=one.last.isoformat(),
@@ -114,14 +112,8 @@ class Learning:
             often = "a prediction was" if count == 1 else f"{count} predictions were"
             why.setdefault(place, []).append(f"{often} wrong")
         for place, reasons in sorted(why.items(), key=lambda item: -len(item[1])):
-            lesson = place.partition("#")[0]
-            yield Revisit(
-                lesson=lesson,
-                section=place,
-                title=self._title(place),
-                why=tuple(reasons),
-                command=f"course lesson {place}",
-            )
+            lesson, title, command = place.partition("#")[0], self._title(place), f"course lesson {place}"
+            yield Revisit(lesson=lesson, section=place, title=title, why=tuple(reasons), command=command)
 
     def _title(self, place: str) -> str:
         """The section's title; the lesson's where there is no such section."""
@@ -163,12 +155,9 @@ def _reasons(learning: Learning, section: str) -> str:
 def _show_predictions(console: Console, predictions: PredictionsState) -> None:
     whole = predictions.all
     console.heading("Predictions", f"{whole.said} made, {whole.skipped} skipped")
-    for one in predictions.by_lesson:
-        console.line(f"{one.of}: {_in_words(one)}", indent=2)
     days = predictions.by_day[-_DAYS:]
-    if len(days) > 1:
-        for one in days:
-            console.line(f"{one.of}: {_in_words(one)}", indent=2)
+    for one in (*predictions.by_lesson, *(days if len(days) > 1 else ())):
+        console.line(f"{one.of}: {_in_words(one)}", indent=2)
 
 
 #: So many mistakes that are open and so many that are mended are shown, the newest of each.
@@ -183,13 +172,10 @@ def _show_mistakes(console: Console, what: str, done: str, mistakes: Sequence[Mi
     console.heading(what, f"{len(mistakes)} {done}, {fixed} fixed")
     shown = [one for one in mistakes if not one.mended_at][-_OPEN:]
     shown += [one for one in mistakes if one.mended_at][-_MENDED:]
-    for one in mistakes:
-        if one not in shown:
-            continue
+    for one in (one for one in mistakes if one in shown):
         seen = f"in {one.runs} checks since" if one.runs > 1 else "seen"
-        state = (
-            f"fixed {day(one.mended_at)}" if one.mended_at else f"not fixed yet, {seen} {day(one.first_seen)}"
-        )
+        state = f"not fixed yet, {seen} {day(one.first_seen)}"
+        state = f"fixed {day(one.mended_at)}" if one.mended_at else state
         # A diagnosis of a check's own code has no words here; its name is made of words.
         words = one.looks_like or f"{one.diagnosis.replace('_', ' ').capitalize()}."
         console.line(f"{one.title} ({one.exercise}), {state}: {words}", indent=2)
@@ -209,24 +195,15 @@ def _in_words(counts: PredictionsOf) -> str:
     return ", ".join(f"{number} {word}" for number, word in named if number)
 
 
-def _counts(of: str, said: Iterable[RecordedPrediction]) -> PredictionsOf:
-    return PredictionsOf(of=of, **tally(said))
-
-
-def _looks_like(exercise: Exercise, code: str) -> str:
+def _looks_like(exercise: Exercise, mistake: Mistake) -> str:
     """The diagnosis in words; "" where the exercise keeps none as data."""
     from course.scoring.explain.story import read_table
 
     table = read_table(Path(exercise.folder))
-    entry = table.words.get(code) if table else None
-    return entry.looks_like if entry else ""
-
-
-def _raised(mistake: Mistake) -> str:
-    """An exception in words; records of earlier versions do not say which."""
-    if mistake.diagnosis != "RAISED":
-        return ""
-    return f"Raised {mistake.raised.rstrip(' .') or 'an exception'}."
+    entry = table.words.get(mistake.diagnosis) if table else None
+    # Records of earlier versions do not say which exception it was.
+    raised = f"Raised {mistake.raised.rstrip(' .') or 'an exception'}."
+    return (entry.looks_like if entry else "") or (raised if mistake.diagnosis == "RAISED" else "")
 
 
 def _day(said: RecordedPrediction) -> str:

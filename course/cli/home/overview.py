@@ -37,8 +37,29 @@ WORDS = {
 
 def dashboard() -> int:
     """Say where the student is and what is next."""
-    here, catalog = here_or_outside()
-    return _outside(current(), catalog) if here is None else _inside(current(), here)
+    console, (here, catalog) = current(), here_or_outside()
+    if here is not None:
+        return _inside(console, here)
+    lessons, exercises = catalog.lesson_ids(), catalog.exercise_ids()
+    step = "course init my-course"
+    console.heading(catalog.title)
+    console.line(
+        f"{counted(len(lessons), 'lesson')}, {counted(len(exercises), 'exercise')}; all of it works offline."
+    )
+    console.line("You are not in a workspace: the folder that holds your own files.")
+    console.note("See what it looks like first: course demo")
+    console.next(step)
+    return console.answer(
+        Status(
+            course=catalog.ref,
+            title=catalog.title,
+            workspace=None,
+            lessons_read=0,
+            lessons=len(lessons),
+            exercises=(),
+            next=NextStep(step),
+        )
+    )
 
 
 def progress() -> int:
@@ -100,20 +121,14 @@ def _show_reading(console: Console, lessons: Sequence[LessonState], warm_ups: Se
 
 def warm_up_states(catalog: Catalog, standing: Standing) -> tuple[WarmUpState, ...]:
     """Every warm-up and how far the student is; raises what reading the record raises."""
-    return tuple(_warm_up_state(one, n, standing) for n, one in enumerate(catalog.warm_ups(), start=1))
-
-
-def _warm_up_state(warm_up: Exercise, number: int, standing: Standing) -> WarmUpState:
-    history = standing.history(warm_up.id)
-    return filled(
-        WarmUpState,
-        warm_up,
-        number=number,
-        state="done" if history.done else "started" if standing.is_begun(warm_up.id) else "new",
-        checks_run=len(history.runs),
-        hints_shown=len(history.hints),
-        done_at=history.done.at.isoformat() if history.done else None,
-    )
+    states = []
+    for number, one in enumerate(catalog.warm_ups(), start=1):
+        history = standing.history(one.id)
+        state = "done" if history.done else "started" if standing.is_begun(one.id) else "new"
+        done_at = history.done.at.isoformat() if history.done else None
+        more = {"checks_run": len(history.runs), "hints_shown": len(history.hints), "done_at": done_at}
+        states.append(filled(WarmUpState, one, number=number, state=state, **more))
+    return tuple(states)
 
 
 def _done_of(states: Sequence[WarmUpState]) -> str:
@@ -170,34 +185,9 @@ def _state(started: bool, history: History) -> str:
         return "started" if started else "new"
     if last.state != "graded":
         return "broken"
-    if whole is None:  # only some checks were ever run
-        return "failing"
-    if whole.all_pass and last.all_pass:
+    if whole is not None and whole.all_pass and last.all_pass:
         return "complete"
-    return "passed" if whole.passed else "failing"
-
-
-def _outside(console: Console, catalog: Catalog) -> int:
-    lessons, exercises = catalog.lesson_ids(), catalog.exercise_ids()
-    step = "course init my-course"
-    console.heading(catalog.title)
-    console.line(
-        f"{counted(len(lessons), 'lesson')}, {counted(len(exercises), 'exercise')}; all of it works offline."
-    )
-    console.line("You are not in a workspace: the folder that holds your own files.")
-    console.note("See what it looks like first: course demo")
-    console.next(step)
-    return console.answer(
-        Status(
-            course=catalog.ref,
-            title=catalog.title,
-            workspace=None,
-            lessons_read=0,
-            lessons=len(lessons),
-            exercises=(),
-            next=NextStep(step),
-        )
-    )
+    return "passed" if whole is not None and whole.passed else "failing"  # or only some checks were ever run
 
 
 def _inside(console: Console, here: Here) -> int:
@@ -223,7 +213,11 @@ def _inside(console: Console, here: Here) -> int:
     console.line("; ".join(done))
     if objectives:
         taken = quiz is not None and quiz.best is not None
-        show_objectives(console, objectives, {state.id: _evidence(state) for state in states}, taken=taken)
+        evidence = {
+            state.id: f"exercise {state.number}, {state.id}: {WORDS[state.state]} {score_of(state)}".rstrip()
+            for state in states
+        }
+        show_objectives(console, objectives, evidence, taken=taken)
     elif states:
         console.table(
             ("Exercise", "No.", "State", "Score"),
@@ -275,10 +269,6 @@ def _progress_line(exercise: ExerciseState) -> str:
     return ", ".join(parts)
 
 
-def _evidence(state: ExerciseState) -> str:
-    return f"exercise {state.number}, {state.id}: {WORDS[state.state]} {score_of(state)}".rstrip()
-
-
 def _quiz_line(quiz: QuizState) -> str:
     if quiz.best is None:
         return "not taken yet"
@@ -323,9 +313,7 @@ def exercises() -> int:
         words = f": {state.title}; lesson {state.lesson}; {chapter}{known}"
         console.item(str(state.number), (state.id, "bold"), words, indent=0, width=2)
     left = next((state for state in states if state.state not in {"passed", "complete"}), None)
-    step = f"course start {left.id}" if left is not None and left.state == "new" else ""
-    if left is not None and not step:
-        step = f"course watch {left.id}"
+    step = f"course {'start' if left.state == 'new' else 'watch'} {left.id}" if left else ""
     if step:
         console.note(f"Next: {step}" if here else f"In a workspace (course init): {step}")
     return console.answer(

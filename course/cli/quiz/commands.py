@@ -26,13 +26,12 @@ from course.quizzing.answers import AnswerFile, read_answers
 from course.quizzing.bank import (
     MarkedQuestion,
     PosedQuestion,
-    Result,
     check_seed,
     mark,
     mark_sentence,
     needed,
 )
-from course.quizzing.desk import Due, answered, finished, fits, reviewed
+from course.quizzing.desk import answered, finished, fits, reviewed
 
 app = group(COMMANDS["quiz"].summary)
 
@@ -156,7 +155,10 @@ def _finish(
 ) -> int:
     result = finished(attempt, posed, desk.here.record)
     due = desk.reviews()
-    step = _step(result, due)
+    missed = (one.posed.read for one in result.marked if not one.right and one.posed.read)
+    step = "course quiz review" if due else "course"
+    if not result.passed:
+        step = f"course lesson {read}" if (read := next(missed, "")) else "course quiz take"
     screen.show_result(console, result)
     if any(one.seed == attempt.seed and one.id != attempt.id for one in desk.history.finished):
         console.line("Questions of this seed were answered before: this attempt does not count.")
@@ -180,13 +182,6 @@ def _finish(
             warnings=tuple(desk.here.warnings),
         )
     )
-
-
-def _step(result: Result, due: Sequence[Due]) -> str:
-    if result.passed:
-        return "course quiz review" if due else "course"
-    read = next((one.posed.read for one in result.marked if not one.right and one.posed.read), "")
-    return f"course lesson {read}" if read else "course quiz take"
 
 
 @app.command(epilog="Example: course quiz review")

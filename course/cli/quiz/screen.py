@@ -202,24 +202,26 @@ def show_result(console: Console, result: Result) -> None:
 
 def _show_briefly(console: Console, marked: MarkedQuestion, number: int) -> None:
     """One answered question; if it was missed, both answers and why the student's is wrong."""
-    posed, chosen = marked.posed, marked.chosen
-    outcome = ("right", "green") if marked.right else ("missed", "red")
-    console.line((f"{number}. {posed.title}: ", "bold"), outcome)
+    _show_outcome(console, marked, number)
     if not marked.right:
-        answer = _lettered(chosen)
+        answer = _lettered(marked.chosen)
         if console.fancy:  # it was read a moment ago, and a line of it says which it was
             answer = shorten(answer, max(20, console.width - _LABEL - 4), placeholder=" …")
         console.item("Your answer", answer, style="red", width=_LABEL)
-        console.line(chosen.explanation, indent=4)
-        console.item("Right", _lettered(posed.key), style="green", width=_LABEL)
+        console.line(marked.chosen.explanation, indent=4)
+        console.item("Right", _lettered(marked.posed.key), style="green", width=_LABEL)
+
+
+def _show_outcome(console: Console, marked: MarkedQuestion, number: int) -> None:
+    outcome = ("right", "green") if marked.right else ("missed", "red")
+    console.line((f"{number}. {marked.posed.title}: ", "bold"), outcome)
 
 
 def show_marked(console: Console, marked: MarkedQuestion, number: int) -> None:
     """One answered question and why its options are right or wrong."""
     posed, chosen = marked.posed, marked.chosen
     console.blank()
-    outcome = ("right", "green") if marked.right else ("missed", "red")
-    console.line((f"{number}. {posed.title}: ", "bold"), outcome)
+    _show_outcome(console, marked, number)
     if not marked.right:
         _show_prompt(console, posed, indent=2)
         _show_choice(console, "Your answer", chosen, "red")
@@ -294,9 +296,12 @@ def hand_out(console: Console, here: Here, posed: Sequence[PosedQuestion], seed:
     step = f"course quiz {command} --answers answers.toml"
     answers = "".join(f'{question.question} = ""\n' for question in posed)
     template = f"format_version = 1\nseed = {seed}\n\n[answers]\n{answers}"
-    for number, question in enumerate(posed, start=1):
+    asked = []
+    for number, one in enumerate(posed, start=1):
         console.blank()
-        _show_question(console, question, number, len(posed))
+        _show_question(console, one, number, len(posed))
+        places = tuple(filled(QuizPlace, choice) for choice in one.choices)
+        asked.append(QuizAsked(one.question, one.title, one.prompt, places))
     console.blank()
     console.heading("Answers", "save this as answers.toml, with a letter in each pair of quotes")
     console.block(template)
@@ -306,17 +311,12 @@ def hand_out(console: Console, here: Here, posed: Sequence[PosedQuestion], seed:
             course=here.course,
             seed=seed,
             mark=mark_sentence(len(posed)) if command == "take" else "",
-            questions=tuple(_asked(question) for question in posed),
+            questions=tuple(asked),
             template=template,
             next=NextStep(step),
             warnings=tuple(here.warnings),
         )
     )
-
-
-def _asked(posed: PosedQuestion) -> QuizAsked:
-    places = tuple(filled(QuizPlace, choice) for choice in posed.choices)
-    return QuizAsked(posed.question, posed.title, posed.prompt, places)
 
 
 def question_reply(marked: MarkedQuestion) -> QuizQuestion:

@@ -85,19 +85,14 @@ def _exercise(catalog: Catalog, path: Path, data: bytes, wanted: str | None) -> 
         return catalog.exercise(wanted)
     exercises = catalog.exercises()
     marks = [cell.tags.get("exercise") for cell in code_cells(data, path.name)]
+    found = [one for one in exercises if one.id in marks]
+    found += [one for one in exercises if path.stem == one.id or f"{path.stem}.py" == one.module]
+    if found:
+        return found[0]
     for exercise in exercises:
-        if exercise.id in marks:
-            return exercise
-    module = f"{path.stem}.py"
-    for exercise in exercises:
-        if path.stem == exercise.id or module == exercise.module:
-            return exercise
-    for exercise in exercises:
-        try:
+        with contextlib.suppress(UngradableError):
             notebook_source(data, exercise)
-        except UngradableError:
-            continue
-        return exercise
+            return exercise
     raise NotFoundError(
         f"{path.name} does not say which exercise it is about, and defines no function of any.",
         help="Say which with --exercise.",

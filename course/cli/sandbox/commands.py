@@ -42,19 +42,15 @@ class _Scenes(TyperGroup):
         if self.get_command(ctx, name) is None and (name.isdecimal() or name in known_scenes()):
             args = ["play", *args]
         elif self.get_command(ctx, name) is None:
-            _suggest(name, list(self.commands))
+            # Say which scene was meant, unless a command is as close; either way it is no command, exit 2.
+            close = difflib.get_close_matches(name, [*self.commands, *known_scenes()], n=1)
+            if close and close[0] not in self.commands:
+                raise UsageError(
+                    f"There is no scene {name!r}.",
+                    help=f"Did you mean: course sandbox play {close[0]}?",
+                    code="scene_not_found",
+                )
         return super().resolve_command(ctx, args)
-
-
-def _suggest(name: str, commands: list[str]) -> None:
-    """Say which scene was meant, unless a command is as close; either way it is no command, exit 2."""
-    close = difflib.get_close_matches(name, [*commands, *known_scenes()], n=1)
-    if close and close[0] not in commands:
-        raise UsageError(
-            f"There is no scene {name!r}.",
-            help=f"Did you mean: course sandbox play {close[0]}?",
-            code="scene_not_found",
-        )
 
 
 app = typer.Typer(cls=_Scenes, help=COMMANDS["sandbox"].summary, invoke_without_command=True, **OPTIONS)
@@ -138,8 +134,12 @@ def replay(file: Annotated[Path, argument("FILE", "A recording.")]) -> int:
     recorded = recording.read(named(file))
     with console.working("Replaying"):
         difference = recording.replay(recorded)
-    for name, (then, here) in difference.versions.items():
-        console.line(f"Recorded with {name} {then}; here it is {here}.")
+    versions = tuple(
+        SandboxVersion(name=name, recorded=then, here=here)
+        for name, (then, here) in difference.versions.items()
+    )
+    for one in versions:
+        console.line(f"Recorded with {one.name} {one.recorded}; here it is {one.here}.")
     if difference.same:
         states = counted(difference.checked, "state")
         console.line(f"The same, bit by bit: {counted(recorded.ticks, 'step')}, {states} compared.")
@@ -148,18 +148,13 @@ def replay(file: Annotated[Path, argument("FILE", "A recording.")]) -> int:
             f"It differs at step {difference.tick} (t = {difference.t:.3f} s); "
             f"up to step {difference.good_until} it was the same."
         )
-        if not difference.versions:
+        if not versions:
             console.note("All versions are the same: the file was changed, or this is a fault of the course.")
-    versions = tuple(
-        SandboxVersion(name=name, recorded=then, here=here)
-        for name, (then, here) in difference.versions.items()
-    )
-    code = 0 if difference.same else 1
     return console.answer(
         filled(
             SandboxReplay,
             difference,
-            exit_code=code,
+            exit_code=0 if difference.same else 1,
             scene=recorded.head.scene.id,
             steps=recorded.ticks,
             first_difference=difference.tick,
@@ -188,14 +183,12 @@ def export(
     target = target_file(output, "-o", endings) if output else None
     chosen = playing.chosen(scene, settings or ())
     data = writers[format_](chosen)
-    written = None
-    if target is None:
-        if not console.json:
-            console.raw(data.decode())
-    else:
-        written = playing.write(target, data, format_)
-    beside = None
+    written = beside = None
     start = start_script(data) if format_ == "sdf" else None
+    if target is not None:
+        written = playing.write(target, data, format_)
+    elif not console.json:
+        console.raw(data.decode())
     if start is not None and target is None:
         console.warn(f"Its velocities at the start need a file beside it: with -o FILE, {START} comes along.")
     elif start is not None and target is not None:

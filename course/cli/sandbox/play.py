@@ -340,14 +340,18 @@ def open_view(
     return play_in(chosen, _desk(), guess=guess, **more)
 
 
+def _view(name: str) -> Callable[..., bytes]:
+    play_in: Callable[..., bytes] = importlib.import_module(f"course.sandbox.views.{name}.view").play
+    return play_in
+
+
 def _desk() -> Desk:
     """What a view may ask of this program: to keep things in the workspace, and files where it runs."""
     played: set[str] = set()
     with contextlib.suppress(CourseError):  # playing needs no workspace
         store = Here.load().workspace.store
-        played = {
-            event.subject for kind in ("sandbox-guess", "sandbox-played") for event in store.events(kind)
-        }
+        events = (*store.events("sandbox-guess"), *store.events("sandbox-played"))
+        played = {event.subject for event in events}
 
     def opened(scene: str) -> None:
         if scene not in played and scene in scene_ids():
@@ -360,11 +364,6 @@ def _desk() -> Desk:
         return str(here.write(path, data, why="sandbox").path)
 
     return Desk(keep=_keep, save=save, played=set(played), opened=opened)
-
-
-def _view(name: str) -> Callable[..., bytes]:
-    play_in: Callable[..., bytes] = importlib.import_module(f"course.sandbox.views.{name}.view").play
-    return play_in
 
 
 # -- unseen ----------------------------------------------------------------------------------------------
@@ -480,14 +479,7 @@ def _keep(chosen: Chosen, comparison: Comparison | None) -> None:
         store = Here.load().workspace.store
     except CourseError:
         return  # playing needs no workspace
-    store.append(
-        "sandbox-guess",
-        chosen.scene.id,
-        {
-            "guess": comparison.guess,
-            "theory": comparison.theory,
-            "simulation": comparison.simulation if math.isfinite(comparison.simulation) else None,
-            "right": bool(comparison.guess_right),
-            "settings": {**chosen.parameters, **chosen.settings},
-        },
-    )
+    simulation = comparison.simulation if math.isfinite(comparison.simulation) else None
+    data: dict[str, Any] = {"guess": comparison.guess, "theory": comparison.theory, "simulation": simulation}
+    data |= {"right": bool(comparison.guess_right), "settings": {**chosen.parameters, **chosen.settings}}
+    store.append("sandbox-guess", chosen.scene.id, data)

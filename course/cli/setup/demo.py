@@ -97,7 +97,13 @@ def demo() -> int:
     )
     with attempts.open_session(example, catalog) as session:
         before = _motion(console, session, _checked(console, session, mistaken), passes=False)
-        _show_mistake(console, example, mistaken, before.verdict)
+        with console.paged():
+            console.heading("1. This function calls itself explicit Euler. Each of its steps:")
+            # The body of the function's loop up to where it keeps the step: the method itself.
+            body = mistaken.partition("for _ in range(n):\n")[2].partition("        xs.append")[0]
+            console.block(textwrap.dedent(body).rstrip(), "python", indent=2)
+            console.blank()
+            show_verdict(console, example, before.verdict, whole=False, brief=True)
         if console.converses:
             fixed = _ask(console, session, mistaken, right)
         else:
@@ -149,14 +155,6 @@ def _motion(console: Console, session: GradingSession, made: Attempt, *, passes:
     return _Motion(made.verdict, np.array(x), np.array(v))
 
 
-def _show_mistake(console: Console, example: Exercise, mistaken: str, verdict: Verdict) -> None:
-    with console.paged():
-        console.heading("1. This function calls itself explicit Euler. Each of its steps:")
-        console.block(_loop(mistaken), "python", indent=2)
-        console.blank()
-        show_verdict(console, example, verdict, whole=False, brief=True)
-
-
 def _ask(console: Console, session: GradingSession, mistaken: str, right: str) -> Attempt | None:
     """The module as the user fixes it, or ``right`` if they do not; None if they leave.
 
@@ -166,7 +164,8 @@ def _ask(console: Console, session: GradingSession, mistaken: str, right: str) -
     indent = wrong[: len(wrong) - len(wrong.lstrip())]
     console.blank()
     console.line(("Your turn. ", "bold"), f"This line is wrong: {wrong.strip()}")
-    question, tries = "Type it as it should be (Enter shows the answer, q leaves): ", 0
+    again = "Type it as it should be (Enter shows the answer, q leaves): "
+    question, tries = again, 0
     while True:
         typed = console.ask(question)
         if typed is None or typed.lower() in {"q", "quit"}:
@@ -174,9 +173,7 @@ def _ask(console: Console, session: GradingSession, mistaken: str, right: str) -
         if not typed:
             return _checked(console, session, right)
         if typed.split() == wrong.split():
-            question = (
-                "That is the line as it was. Type it as it should be (Enter shows the answer, q leaves): "
-            )
+            question = f"That is the line as it was. {again}"
             continue
         made = _checked(console, session, mistaken.replace(wrong, indent + typed))
         if made.verdict.all_pass:
@@ -236,12 +233,6 @@ def worked_example(catalog: Catalog) -> Exercise:
     return msgspec.structs.replace(
         read_document(folder / "exercise.toml", Exercise).value, folder=str(folder)
     )
-
-
-def _loop(source: str) -> str:
-    """The body of the function's loop up to where it keeps the step: the method itself."""
-    body = source.partition("for _ in range(n):\n")[2].partition("        xs.append")[0]
-    return textwrap.dedent(body).rstrip()
 
 
 def _change(before: str, after: str) -> tuple[str, ...]:

@@ -108,23 +108,18 @@ def doctor(
         console.line(sentence, indent=2)
     _fact("Terminal", "; ".join(f"{name} {value}" for name, value in shape.items()))
     _fact("Workspace", workspace or "none here")
-    for line in (repaired, trouble):
-        if line:
-            console.line(line)
     unserved = tuple(
         f"Optional ({one.group}): {one.unserved}."
         for one in requirements()
         if one.unserved and one.group not in _NOT_FOR_USERS
     )
-    for sentence in unserved:
-        console.line(sentence)
-    for fix in fixes:
-        console.line(f"{fix.problem} Install it with: {fix.command}")
+    install = (f"{fix.problem} Install it with: {fix.command}" for fix in fixes)
+    for line in filter(None, (repaired, trouble, *unserved, *install)):
+        console.line(line)
     console.line(("Everything the course needs is here." if complete else "Something is missing.", "bold"))
-    code = 0 if complete else MissingCapabilityError.exit_code
     return console.answer(
         Doctor(
-            exit_code=code,
+            exit_code=0 if complete else MissingCapabilityError.exit_code,
             course=catalog.ref,
             python=platform.python_version(),
             platform=platform.platform(),
@@ -148,6 +143,9 @@ def _fact(label: str, words: str) -> None:
 
 def packages() -> Iterable[Package]:
     """Every requirement of the course that this machine could have, and what is installed for it."""
+    from packaging.specifiers import SpecifierSet
+    from packaging.version import InvalidVersion
+
     for one in requirements():
         if one.group in _NOT_FOR_USERS or not one.applies:
             continue
@@ -155,19 +153,10 @@ def packages() -> Iterable[Package]:
             installed = importlib.metadata.version(one.name)
         except importlib.metadata.PackageNotFoundError:
             installed = None
-        ok = installed is not None and _satisfies(installed, one.versions)
+        ok = installed is not None
+        with contextlib.suppress(InvalidVersion):  # a text that is not a version counts as in the range
+            ok = ok and SpecifierSet(one.versions).contains(str(installed), prereleases=True)
         yield filled(Package, one, requirement=one.text, installed=installed, ok=ok)
-
-
-def _satisfies(installed: str, wanted: str) -> bool:
-    """Whether the version is in the range; a text that is not a version counts as in it."""
-    from packaging.specifiers import SpecifierSet
-    from packaging.version import InvalidVersion
-
-    try:
-        return SpecifierSet(wanted).contains(installed, prereleases=True)
-    except InvalidVersion:
-        return True
 
 
 def _missing(found: Iterable[Package]) -> tuple[Fix, ...]:
@@ -181,12 +170,9 @@ def _missing(found: Iterable[Package]) -> tuple[Fix, ...]:
         names = ", ".join(item.name for item in items)
         verb = "are" if len(items) > 1 else "is"
         what = (
-            f"{names} {verb} missing or too old."
-            if not group
-            else f"Optional ({group}): {names} {verb} missing."
+            f"Optional ({group}): {names} {verb} missing." if group else f"{names} {verb} missing or too old."
         )
-        command = "pip install " + " ".join(f"'{item.requirement}'" for item in items)
-        fixes.append(Fix(problem=what, command=command))
+        fixes.append(Fix(what, "pip install " + " ".join(f"'{item.requirement}'" for item in items)))
     return tuple(fixes)
 
 
@@ -228,12 +214,11 @@ def _workspace(*, repair: bool) -> tuple[str | None, str | None, str | None]:
 
 
 def terminal(console: Console) -> dict[str, str]:
-    encoding = getattr(sys.stdout, "encoding", None) or "unknown"
     return {
         "output": "to a terminal" if sys.stdout.isatty() else "to a file or a pipe",
         "columns": str(console.terminal_width),
         "colour": "on" if console.fancy and not os.environ.get("NO_COLOR") else "off",
-        "encoding": encoding,
+        "encoding": getattr(sys.stdout, "encoding", None) or "unknown",
     }
 
 
@@ -359,13 +344,11 @@ def _last_crash() -> str | None:
     mark = f"{INSTALLATION}{Path(__file__).resolve().parents[2]}\n"
     found = []
     for path in Path(tempfile.gettempdir()).glob("course-crash-*.txt"):
-        try:
+        with contextlib.suppress(OSError):
             facts = path.lstat()
-        except OSError:
-            continue
-        mine = not hasattr(os, "getuid") or facts.st_uid == os.getuid()
-        if mine and path.is_file() and not path.is_symlink():
-            found.append((facts.st_mtime, path))
+            mine = not hasattr(os, "getuid") or facts.st_uid == os.getuid()
+            if mine and path.is_file() and not path.is_symlink():
+                found.append((facts.st_mtime, path))
     for when, path in sorted(found, reverse=True):
         with contextlib.suppress(OSError):
             text = path.read_text(encoding="utf-8", errors="backslashreplace")

@@ -244,30 +244,22 @@ def _refuse_odd_places(root: Path, catalog: Catalog) -> None:
         )
     if root.exists() and not root.is_dir():
         raise UsageError(f"{root} is a file.", help="Name a folder.", code="exists")
-    outer = _enclosing(root)
-    if outer is not None:
-        raise UsageError(
-            f"{root} lies inside the workspace {outer.root}.",
-            help="Use that one, or make yours somewhere else.",
-            code="nested_workspace",
-        )
-
-
-def _enclosing(root: Path) -> Workspace | None:
     try:
-        return Workspace.find(root.parent)
+        outer = Workspace.find(root.parent)
     except NotFoundError:
-        return None
+        return
     except CourseError as error:
         raise UsageError(error.message, help=error.help, code="nested_workspace") from error
+    raise UsageError(
+        f"{root} lies inside the workspace {outer.root}.",
+        help="Use that one, or make yours somewhere else.",
+        code="nested_workspace",
+    )
 
 
 def _quoted(root: Path, here: Path) -> str:
     """A path for a shell: relative where that is shorter, quoted where it must be."""
-    try:
-        text = str(root.relative_to(here))
-    except ValueError:
-        text = str(root)
+    text = str(root.relative_to(here) if root.is_relative_to(here) else root)
     text = f"./{text}" if text.startswith("-") else text
     if os.name == "nt":  # whose shells know no other quotes, and no such character in a name
         return f'"{text}"' if any(char.isspace() for char in text) else text

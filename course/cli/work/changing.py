@@ -9,7 +9,7 @@ import contextlib
 import difflib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from course.catalog.models import Exercise
 from course.cli.frame.console import Console, current
@@ -24,9 +24,6 @@ from course.handed_in.cells import read_notebook
 from course.notebooks.merge import CannotMergeError, is_untouched, merged
 from course.printable import counted
 from course.progress.workspace import same_text, write_atomically
-
-if TYPE_CHECKING:  # what generates notebooks needs NumPy
-    from course.notebooks.build import Generated
 
 
 def diff(exercise: ExerciseName = None) -> int:
@@ -141,17 +138,12 @@ def _updates(here: Here, *, dry_run: bool) -> Iterator[Change]:
     from course.notebooks.build import WORKSPACE, generate  # a lesson opens without it
 
     for notebook in generate(here.catalog, layout=WORKSPACE, there=here.workspace.root):
-        yield _update_notebook(here, notebook, dry_run=dry_run)
-
-
-def _update_notebook(here: Here, notebook: Generated, *, dry_run: bool) -> Change:
-    """The same for a notebook, in which newer text is put around the student's work."""
-    path, new, action = here.workspace.root / notebook.path, notebook.data, "beside"
-    mine = read_notebook(path)
-    with contextlib.suppress(CannotMergeError):
-        new = merged(mine, notebook.data)
-        action = "current" if new == mine else "replace" if is_untouched(mine) else "merge"
-    return _put(path, f"{path.stem}.new.ipynb", new, action, dry_run=dry_run or action == "current")
+        path, new, action = here.workspace.root / notebook.path, notebook.data, "beside"
+        mine = read_notebook(path)
+        with contextlib.suppress(CannotMergeError):  # newer text is put around the student's work
+            new = merged(mine, notebook.data)
+            action = "current" if new == mine else "replace" if is_untouched(mine) else "merge"
+        yield _put(path, f"{path.stem}.new.ipynb", new, action, dry_run=dry_run or action == "current")
 
 
 def _update_file(here: Here, exercise: Exercise, name: str, new: bytes, *, dry_run: bool) -> Change:
@@ -177,12 +169,7 @@ def _put(path: Path, beside: str, new: bytes, action: str, *, dry_run: bool) -> 
     """Write the newer content where the action wants it, with a copy of what it replaces."""
     to = path.with_name(beside) if action == "beside" else path
     kept = None if dry_run else write(to, new, why="update").backup
-    return Change(
-        path=str(path),
-        action=action,
-        new=str(to) if action == "beside" else None,
-        backup=kept.backup if kept else None,
-    )
+    return Change(str(path), action, str(to) if to != path else None, kept.backup if kept else None)
 
 
 def _sentence(here: Here, change: Change, *, dry_run: bool) -> str:

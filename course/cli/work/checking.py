@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated
 
-from course.catalog.models import CourseRef, Exercise
+from course.catalog.models import CourseRef
 from course.cli.frame.console import Console, current
 from course.cli.frame.here import Here
 from course.cli.frame.options import ExerciseName, Verbose, check_ids, choice_of, option
@@ -158,10 +158,11 @@ def _check_one(
     form: str = "text",
 ) -> Check:
     """Check, record, show; raises the error if it cannot be checked."""
-    exercise = work.exercise
+    exercise, last = work.exercise, here.known_history(work.exercise).last
     if form == "text":
         report_source_file(console, here, work)
-    with console.working(f"Checking {exercise.id}{_estimate(here, exercise)}"):
+    took = f", about {last.seconds:.0f} s" if last is not None and last.seconds >= 1 else ""
+    with console.working(f"Checking {exercise.id}{took}"):
         made = attempts.attempt(exercise, here.catalog, work.submission, only or "")
     verdict = made.verdict
     here.record("check", exercise.id, made.data(here.catalog.version, one_of_many=one_of_many))
@@ -211,7 +212,7 @@ def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int
             results.append(_check_one(console, here, work, one_of_many=True, verbose=verbose, form=form))
         except CourseError as error:
             console.error(error.message, error.help)
-            body = ErrorBody(code=error.code, message=error.message, help=error.help)
+            body = filled(ErrorBody, error)
             results.append(ErrorReply(schema="course.check/1", exit_code=error.exit_code, error=body))
     complete = sum(result.ok for result in results)
     pass_ = "passes" if complete == 1 else "pass"
@@ -221,9 +222,3 @@ def _check_all(console: Console, here: Here, *, verbose: bool, form: str) -> int
         console.warn(warning)
     worst = max(result.exit_code for result in results)
     return console.answer(CheckAll(exit_code=worst, results=tuple(results)))
-
-
-def _estimate(here: Here, exercise: Exercise) -> str:
-    """How long it took last time, if that was long."""
-    last = here.known_history(exercise).last
-    return f", about {last.seconds:.0f} s" if last is not None and last.seconds >= 1 else ""

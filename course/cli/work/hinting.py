@@ -160,7 +160,11 @@ def solution(exercise: ExerciseName = None) -> int:
             code="not_passed",
         )
     source, files = _released(here, chosen)
-    _show_files(console, source, files)
+    console.note(f"From {source}")
+    for name, text in files.items():
+        if not console.quiet:
+            console.heading(name)
+        console.block(text, language="python" if Path(name).suffix == ".py" else "")
     here.record("solution", chosen.id, {"source": source})
     return here.answer(Solution(exercise=chosen.id, source=source, files=dict(files)))
 
@@ -200,14 +204,6 @@ def _texts(files: Mapping[str, bytes]) -> dict[str, str]:
     return {name: data.decode("utf-8", "replace") for name, data in sorted(files.items())}
 
 
-def _show_files(console: Console, source: str, files: Mapping[str, str]) -> None:
-    console.note(f"From {source}")
-    for name, text in files.items():
-        if not console.quiet:
-            console.heading(name)
-        console.block(text, language="python" if Path(name).suffix == ".py" else "")
-
-
 # ---
 # ``course reflect``: a question that no check can judge, answered in prose and graded by the student.
 #
@@ -243,13 +239,20 @@ def reflect(
     elif not said and console.interactive:
         said = _typed(console)
     if said:
-        _long_enough(said, rubric)
+        words = len(said.split())
+        if words < rubric.least_words:
+            least = f"a good one is shown once yours has {rubric.least_words}"
+            fix = "Write it as you would explain it to a colleague."
+            raise UsageError(
+                f"Your answer has {counted(words, 'word')}; {least}.", help=fix, code="too_short"
+            )
         if said != kept:
             graded = ()
             here.record(KIND, chosen.id, {"text": said})
         graded = _judged(console, here, chosen, rubric, grades, graded)
     elif grades is not None:
         raise UsageError("There is no answer to grade yet.", help="Give it with --answer FILE.")
+    points = tuple(map(ReflectPoint, rubric.points, graded or [None] * len(rubric.points)))
     step = f"course reflect {chosen.id}" + ("" if graded else " --grades …" if said else " --answer FILE")
     if not graded:
         console.next(step)
@@ -259,12 +262,7 @@ def reflect(
             question=_flowing(rubric.question),
             answer=said or None,
             good_answer=rubric.good_answer.strip() if said else None,
-            points=tuple(
-                ReflectPoint(point, graded[index] if graded else None)
-                for index, point in enumerate(rubric.points)
-            )
-            if said
-            else (),
+            points=points if said else (),
             next=None if graded else NextStep(step),
         )
     )
@@ -322,17 +320,6 @@ def _typed(console: Console) -> str:
     while line := console.ask("> "):
         lines.append(line)
     return "\n".join(lines)
-
-
-def _long_enough(said: str, rubric: Rubric) -> None:
-    words = len(said.split())
-    if words < rubric.least_words:
-        raise UsageError(
-            f"Your answer has {counted(words, 'word')}; a good one is shown once yours has "
-            f"{rubric.least_words}.",
-            help="Write it as you would explain it to a colleague.",
-            code="too_short",
-        )
 
 
 def _judged(

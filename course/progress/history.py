@@ -324,28 +324,24 @@ def mistakes_of(events: Iterable[Event]) -> tuple[Mistake, ...]:
     """
     found: dict[tuple[str, str, str], Mistake] = {}
     for event in events:
-        if event.kind == "check" and event.data.get("state") == "graded":
-            _take(found, event)
+        if event.kind != "check" or event.data.get("state") != "graded":
+            continue
+        run = _run(event)
+        shown: dict[tuple[str, str, str], list[CheckKept]] = {}
+        for check in run.checks:
+            if check.diagnosis and check.diagnosis not in NO_MISTAKE:
+                shown.setdefault((event.subject, check.task, check.diagnosis), []).append(check)
+        for key, checks in shown.items():
+            one = found.setdefault(key, Mistake(*key, run.at, run.at))
+            one.last, one.mended, one.raised = run.at, None, checks[0].raised
+            one.runs += 1
+            one.open |= {check.id for check in checks}
+        passed = {check.id for check in run.checks if check.passed}
+        for one in found.values():
+            if one.exercise == event.subject and one.open:
+                one.open -= passed
+                one.mended = one.mended if one.open else run.at
     return tuple(found.values())
-
-
-def _take(found: dict[tuple[str, str, str], Mistake], event: Event) -> None:
-    run = _run(event)
-    shown: dict[tuple[str, str, str], list[CheckKept]] = {}
-    for check in run.checks:
-        if check.diagnosis and check.diagnosis not in NO_MISTAKE:
-            shown.setdefault((event.subject, check.task, check.diagnosis), []).append(check)
-    for key, checks in shown.items():
-        one = found.setdefault(key, Mistake(*key, run.at, run.at))
-        one.last, one.mended, one.raised = run.at, None, checks[0].raised
-        one.runs += 1
-        one.open |= {check.id for check in checks}
-    passed = {check.id for check in run.checks if check.passed}
-    for one in found.values():
-        if one.exercise == event.subject and one.open:
-            one.open -= passed
-            if not one.open:
-                one.mended = run.at
 
 
 # ---

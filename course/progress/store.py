@@ -158,11 +158,8 @@ class Store:
 
         The damaged file is renamed, never removed.
         """
-        try:
+        with contextlib.suppress(IntegrityError):
             self.events()
-        except IntegrityError:
-            pass
-        else:
             return None
         names = numbered(self.path.with_name(f"{self.path.stem}.damaged{self.path.suffix}"))
         kept = next(path for path in names if not os.path.lexists(path))
@@ -225,9 +222,8 @@ class Store:
                 help="Wait for it to end, or end it, and run the command again.",
                 code="progress_busy",
             )
-        if name.startswith(
-            ("SQLITE_READONLY", "SQLITE_CANTOPEN", "SQLITE_PERM", "SQLITE_FULL", "SQLITE_IOERR")
-        ):
+        refused = ("SQLITE_READONLY", "SQLITE_CANTOPEN", "SQLITE_PERM", "SQLITE_FULL", "SQLITE_IOERR")
+        if name.startswith(refused):
             return _not_writable(self.path, str(error))
         return _damaged(self.path, one_line(str(error))[:200])
 

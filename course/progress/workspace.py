@@ -191,7 +191,11 @@ class Workspace:
         relative = Path(self.shown(path)) if path.is_relative_to(self.root) else Path(path.name)
         try:
             data = path.read_bytes()
-            folder = _new_folder(self.state / "backups", f"{stamp}-{why}")
+            (self.state / "backups").mkdir(parents=True, exist_ok=True)
+            for folder in numbered(self.state / "backups" / f"{stamp}-{why}"):
+                with contextlib.suppress(FileExistsError):
+                    folder.mkdir()
+                    break
             copy = folder / relative
             copy.parent.mkdir(parents=True, exist_ok=True)
             _write_new(copy, data)
@@ -286,15 +290,6 @@ def _write_new(path: Path, data: bytes) -> None:
 
 def _normal(data: bytes) -> bytes:
     return data.removeprefix(b"\xef\xbb\xbf").replace(b"\r\n", b"\n")
-
-
-def _new_folder(parent: Path, name: str) -> Path:
-    parent.mkdir(parents=True, exist_ok=True)
-    for folder in numbered(parent / name):
-        with contextlib.suppress(FileExistsError):
-            folder.mkdir()
-            break
-    return folder
 
 
 def _read_marker(marker: Path) -> tuple[str, str]:

@@ -24,9 +24,8 @@ from course.cli.reading.screen.page import Item, Page
 from course.cli.reading.screen.running import Drawer
 from course.full_screen import FullScreenApp, TextOverlay
 from course.progress.workspace import Workspace
-from course.reading.record import Judgement, Place, find
+from course.reading.record import JUDGEMENTS, Place, find
 
-_JUDGED: dict[str, Judgement] = {"1": "right", "2": "nearly", "3": "wrong"}
 #: How often the last line and running work are looked at, in s.
 _TICK = 0.25
 _WHEEL = 3
@@ -64,9 +63,9 @@ class ReaderApp(FullScreenApp):
             ("shift+tab", "item(-1)"),
             ("enter", "act"),
             ("s", "skip"),
-            ("1", "judge('1')"),
-            ("2", "judge('2')"),
-            ("3", "judge('3')"),
+            ("1", "judge(1)"),
+            ("2", "judge(2)"),
+            ("3", "judge(3)"),
             ("r", "do('run')"),
             ("e", "do('edit')"),
             ("u", "do('undo')"),
@@ -237,12 +236,12 @@ class ReaderApp(FullScreenApp):
         if question is not None:
             answer(self.page, question, "")
 
-    def action_judge(self, key: str) -> None:
+    def action_judge(self, key: int) -> None:
         """How good a prediction was; its answer may be in sight while the cell above it is at hand."""
         item = self.page.item
         judged = item if isinstance(item, AnswerItem) else unjudged(self.page)
         if judged is not None:
-            judged.judge(self.page, _JUDGED[key])
+            judged.judge(self.page, JUDGEMENTS[key - 1])
 
     def action_open_figure(self) -> None:
         figure = in_sight(self.page, FigureItem)
@@ -263,13 +262,12 @@ class ReaderApp(FullScreenApp):
         """Go where a list says: "block:12", "lesson:ID" or "lesson:ID:12"."""
         if not key:
             return
-        kind, _, rest = key.partition(":")
-        name, _, block = rest.partition(":")
+        kind, name, block = f"{key}::".split(":")[:3]
         self.page.leave_trail()
         if kind == "lesson":
             self.page.open(name, Place(int(block)) if block else None)
         else:
-            self.page.show(self.page.book.layout.row(Place(int(rest))))
+            self.page.show(self.page.book.layout.row(Place(int(name))))
 
     def action_search(self) -> None:
         self.push_screen(Find(self._search), self._chosen)

@@ -127,10 +127,9 @@ class Workspace:
 
     def has_file(self, place: str, module: str) -> bool:
         """Whether an exercise's module or notebook is there; where that cannot be seen, yes."""
-        try:
+        with contextlib.suppress(OSError):
             return any(self.path(place, module).with_suffix(kind).exists() for kind in (".py", ".ipynb"))
-        except OSError:
-            return True
+        return True
 
     def shown(self, path: Path) -> str:
         """``path`` as a person wants to read it: relative to the workspace where it lies inside."""
@@ -140,10 +139,9 @@ class Workspace:
 
     def given(self, place: str, name: str) -> bytes | None:
         """A file as it was last handed out; None if it never was."""
-        try:
+        with contextlib.suppress(OSError):
             return read_bytes(self._given_path(place, name), _MOST_GIVEN)
-        except OSError:
-            return None
+        return None
 
     def started(self) -> tuple[str, ...]:
         """Ids of the exercises that something was handed out for."""

@@ -221,10 +221,11 @@ class Console:
     @property
     def draws(self) -> bool:
         """True if the output can show a picture made of half blocks: many colours, and the letter itself."""
-        if not self.fancy or self.quiet or self.rich().no_color:
+        if not self.fancy or self.quiet:
             return False
-        encoding = getattr(self._human, "encoding", None) or ""
-        return self.rich().color_system in {"256", "truecolor"} and encoding.lower().startswith("utf")
+        from course.cli.frame.pictures import has_half_blocks
+
+        return has_half_blocks(self.rich())
 
     @property
     def wraps(self) -> bool:
@@ -331,10 +332,7 @@ class Console:
         """Rows under headings; facts under a row's name in a narrow window, one line each in plain output."""
         if not self.fancy:
             for row in rows:
-                facts = [
-                    f"{head}: {bare(cell)}" for head, cell in zip(headers, row, strict=True) if bare(cell)
-                ]
-                self._fact("; ".join(facts), hanging=2)
+                self._fact("; ".join(_named(headers, row, ": ")), hanging=2)
             return
         if self.width < _NARROW:
             self._facts(headers, rows)
@@ -360,10 +358,7 @@ class Console:
     def _facts(self, headers: Sequence[str], rows: Sequence[Sequence[Piece]]) -> None:
         for first, *rest in rows:
             self.line(first)
-            facts = [
-                f"{head} {bare(cell)}" for head, cell in zip(headers[1:], rest, strict=True) if bare(cell)
-            ]
-            self.line(", ".join(facts), indent=2)
+            self.line(", ".join(_named(headers[1:], rest, " ")), indent=2)
 
     def figure(self, make: Builder) -> None:
         """Draw a figure as well as this terminal can show it; nothing where it cannot.
@@ -541,6 +536,11 @@ class Console:
     def flush(self) -> None:
         self._out.flush()
         self._err.flush()
+
+
+def _named(headers: Sequence[str], row: Sequence[Piece], between: str) -> list[str]:
+    """The cells of a row that hold something, each after its heading."""
+    return [head + between + bare(cell) for head, cell in zip(headers, row, strict=True) if bare(cell)]
 
 
 def encode(body: msgspec.Struct) -> bytes:

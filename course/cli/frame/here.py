@@ -108,25 +108,23 @@ class Here:
     def misnamed(self, exercise: Exercise) -> str:
         """A file beside the student's whose name differs in capitals only; "" if there is none."""
         own = self.workspace.path(exercise.place, exercise.module)
-        try:
+        with suppress(OSError):
             others = [path for path in sorted(own.parent.iterdir()) if path.name != own.name]
             alike = [path for path in others if path.name.lower() == own.name.lower()]
             # Where capitals do not count, as on Windows and macOS, it is the student's file itself.
             return next((path.name for path in alike if not (own.exists() and path.samefile(own))), "")
-        except OSError:
-            return ""
+        return ""
 
     def moved(self, exercise: Exercise) -> str:
         """The exercise's file, or its notebook, in a folder of another name; "" if there is none."""
         if self.workspace.path(exercise.place, exercise.module).parent.exists():
             return ""
         names = exercise.module, Path(exercise.module).with_suffix(".ipynb").name
-        try:
+        with suppress(OSError):
             folders = [path for path in sorted(self.workspace.root.iterdir()) if path.is_dir()]
             found = (path / name for path in folders for name in names if (path / name).is_file())
             return next((f"{path.parent.name}/{path.name}" for path in found), "")
-        except OSError:
-            return ""
+        return ""
 
     def source(self, exercise: Exercise) -> bytes:
         """The student's file.
@@ -180,10 +178,9 @@ class Here:
 
     def known_history(self, exercise: Exercise) -> History:
         """As far as it can be read; a record that cannot be read is warned about elsewhere."""
-        try:
+        with suppress(CourseError):
             return self.history(exercise)
-        except CourseError:
-            return history_of(())
+        return history_of(())
 
     def standing(self) -> Standing:
         """How far the student is with everything, as it is now; raises what ``history`` raises."""
@@ -210,12 +207,11 @@ class Here:
 
     def _last_worked_on(self) -> str:
         """The exercise last started, checked by name or asked a hint for; "" if there is none."""
-        try:
-            events = self.workspace.store.events()
-        except CourseError:
-            return ""
         kinds = {"start", "check", "hint"}
-        return next((e.subject for e in reversed(events) if e.kind in kinds and not e.data.get("all")), "")
+        with suppress(CourseError):
+            events = reversed(self.workspace.store.events())
+            return next((e.subject for e in events if e.kind in kinds and not e.data.get("all")), "")
+        return ""
 
 
 def cwd() -> Path:
@@ -266,10 +262,9 @@ def catalog_of(workspace: Workspace) -> Catalog:
 
 def find_workspace() -> Here | None:
     """The workspace of the current folder, or None outside of one."""
-    try:
+    with suppress(NotFoundError):
         return Here.load()
-    except NotFoundError:
-        return None
+    return None
 
 
 def here_or_outside() -> tuple[Here | None, Catalog]:

@@ -8,7 +8,7 @@ parsed to list them.
 import ast
 import importlib
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -158,11 +158,9 @@ def simulation_settings(ctx: Any, incomplete: str) -> list[str]:
     """The names that ``--set`` takes for the simulation on the line, with the equals sign."""
     from course.simulations.registry import get
 
-    try:
-        chosen = get(_given(ctx, "name"))
-    except NotFoundError:
-        return []
-    return _beginning(incomplete, (f"{one.name}=" for one in chosen.parameters))
+    with suppress(NotFoundError):
+        return _beginning(incomplete, (f"{one.name}=" for one in get(_given(ctx, "name")).parameters))
+    return []
 
 
 def scene_settings(ctx: Any, incomplete: str) -> list[str]:
@@ -171,20 +169,18 @@ def scene_settings(ctx: Any, incomplete: str) -> list[str]:
 
     name = _given(ctx, "scene")
     path = Path(name) if name.endswith(".toml") else _SCENES / f"{name}.toml"
-    try:
+    with suppress(OSError, ValueError):
         found = toml(read_bytes(path).decode()).get("parameter", ())
-    except (OSError, ValueError):
-        return []
-    return _beginning(incomplete, (f"{one['name']}=" for one in found))
+        return _beginning(incomplete, (f"{one['name']}=" for one in found))
+    return []
 
 
 def submitted_ids(ctx: Any, incomplete: str) -> list[str]:
     """Students who handed something in to the folder on the line."""
-    try:
-        found = [entry.name for entry in Path(_given(ctx, "submissions")).iterdir() if entry.is_dir()]
-    except OSError:
-        return []
-    return _beginning(incomplete, found)
+    with suppress(OSError):
+        folders = (entry for entry in Path(_given(ctx, "submissions")).iterdir() if entry.is_dir())
+        return _beginning(incomplete, (folder.name for folder in folders))
+    return []
 
 
 def _column(query: str) -> Callable[[Any, str], list[str]]:
@@ -196,12 +192,13 @@ def _column(query: str) -> Callable[[Any, str], list[str]]:
         from course.strangers import no_programs
 
         path = Path(_given(ctx, "out"), "gradebook.sqlite").resolve()
-        try:
-            with closing(sqlite3.connect(f"{path.as_uri()}?mode=ro", uri=True)) as book:
-                no_programs(book, millions=5)
-                return _beginning(incomplete, (str(value) for (value,) in book.execute(query)))
-        except (sqlite3.Error, UnicodeDecodeError):
-            return []
+        with (
+            suppress(sqlite3.Error, UnicodeDecodeError),
+            closing(sqlite3.connect(f"{path.as_uri()}?mode=ro", uri=True)) as book,
+        ):
+            no_programs(book, millions=5)
+            return _beginning(incomplete, (str(value) for (value,) in book.execute(query)))
+        return []
 
     return complete
 
@@ -237,11 +234,10 @@ def _in_content(folder: str, *patterns: str) -> list[Path]:
     """Files and folders of the course's content; none where it cannot be found."""
     from course.catalog.locate import content
 
-    try:
+    with suppress(CourseError, OSError, ValueError):
         root: Path = getattr(content(), folder)
         return sorted(path for pattern in patterns for path in root.glob(pattern))
-    except (CourseError, OSError, ValueError):
-        return []
+    return []
 
 
 def grade_lists(incomplete: str) -> list[str]:

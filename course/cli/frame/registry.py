@@ -8,6 +8,7 @@ import importlib
 import os
 import re
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -128,10 +129,9 @@ def understood(words: tuple[str, ...]) -> tuple[str, ...]:
 
 def content_is_whole() -> bool:
     """Whether graders and solutions are here; where the course itself cannot be found, that is said later."""
-    try:
+    with suppress(CourseError):
         return content().is_checkout
-    except CourseError:
-        return True
+    return True
 
 
 class LazyGroup(TyperGroup):

@@ -12,19 +12,7 @@ from course.cli.frame.console import Console, current
 from course.cli.frame.here import load_catalog
 from course.cli.frame.options import argument, exercise_ids, graded_ids, option, student_ids
 from course.cli.frame.replies import Envelope, filled
-from course.cli.grade.options import (
-    Isolation,
-    Jobs,
-    Out,
-    Reason,
-    Yes,
-    agreed,
-    in_words,
-    levels,
-    moved_scores,
-    points,
-    show_roster,
-)
+from course.cli.grade import options as opt
 from course.cli.grade.running import checks_gave, show_unjudged
 from course.errors import UsageError
 from course.grading.exports.grades import grade_line, utc
@@ -53,7 +41,7 @@ _SHOWN = 20
 
 
 def override(
-    out: Out,
+    out: opt.Out,
     student: Annotated[str, argument("STUDENT", complete=student_ids)],
     exercise: Annotated[str, argument("EXERCISE", complete=graded_ids)],
     score: Annotated[float | None, option("--score X", "The points that count.")] = None,
@@ -83,7 +71,7 @@ def override(
     if now is None:
         console.line(f"{one_line(student)} {exercise}: nothing was handed in, and no score counts.")
     else:
-        scored = f"{points(now.score)} of {format_points(now.max_score)}"
+        scored = f"{opt.points(now.score)} of {format_points(now.max_score)}"
         counts = f"{scored} {'would count' if dry_run else 'counts'}; {checks_gave(now)}"
         console.line((f"{one_line(student)} {exercise}: {counts}.", "bold"))
         if score is not None:
@@ -118,7 +106,7 @@ class GradeLate(Envelope, tag="course.grade-late/1", frozen=True, kw_only=True):
 
 
 def late(
-    out: Out,
+    out: opt.Out,
     policy: Annotated[
         Path | None, option("--policy FILE", "Late policy (TOML) to apply from now on.")
     ] = None,
@@ -130,7 +118,7 @@ def late(
     ] = None,
     roster: Annotated[Path | None, option("--roster FILE", "Class list, for its extension_days.")] = None,
     clear: Annotated[bool, option("--clear", "Remove the late policy.")] = False,
-    reason: Reason = "",
+    reason: opt.Reason = "",
     dry_run: Annotated[bool, option("--dry-run", "Show whose score would change; change nothing.")] = False,
 ) -> int:
     """Set the late policy, and show who is late.
@@ -173,8 +161,8 @@ def late(
         )
     if not console.json:
         _show_late(console, results, found, unknown_time, unknown)
-        show_roster(console, people.file if people else "", (), dropped)
-        for line in moved_scores(moved):
+        opt.show_roster(console, people.file if people else "", (), dropped)
+        for line in opt.moved_scores(moved):
             console.line(line, indent=2)
         if moved or dry_run:
             would = "would change" if dry_run else "changed"
@@ -317,7 +305,7 @@ class GradeAssign(Envelope, tag="course.grade-assign/1", frozen=True, kw_only=Tr
 
 
 def assign(
-    out: Out,
+    out: opt.Out,
     student: Annotated[str | None, argument("STUDENT", complete=student_ids)] = None,
     file: Annotated[
         str | None, argument("FILE", "A name from the list, or a path; a path into a zip has a slash.")
@@ -328,9 +316,9 @@ def assign(
     accept_names: Annotated[bool, option("--accept-names", "Accept every proposed match.")] = False,
     reason: Annotated[str, option("--reason TEXT", "Kept with each result.")] = "",
     dry_run: Annotated[bool, option("--dry-run", "Grade and show, but store nothing.")] = False,
-    jobs: Jobs = 1,
-    isolation: Isolation = "auto",
-    yes: Yes = False,
+    jobs: opt.Jobs = 1,
+    isolation: opt.Isolation = "auto",
+    yes: opt.Yes = False,
 ) -> int:
     """Assign a file to a student, and grade it.
 
@@ -350,7 +338,7 @@ def assign(
             left = assigning.unsettled(results)
             waiting = len({item.student for item in results.all() if item.waiting})
     else:
-        level, at_least = levels(isolation)
+        level, at_least = opt.levels(isolation)
         reason = reason or ("the match that was proposed" if accept_names else "a trial" if dry_run else "")
         grade = partial(batch.grade_all, graders=jobs)
 
@@ -367,7 +355,7 @@ def assign(
                     )  # fmt: skip
                 return done, assigning.unsettled(results)
 
-        done, left = agreed(console, assigned, yes=yes)
+        done, left = opt.agreed(console, assigned, yes=yes)
     broke = unjudged(one for item in done for one in broken_checks(item.after))
     if not console.json:
         _show_assigned(console, done, dry_run=dry_run)
@@ -400,7 +388,7 @@ def _assigned_one(item: Assigned) -> AssignedOne:
 def _show_assigned(console: Console, done: list[Assigned], *, dry_run: bool) -> None:
     for item in done:
         one, after = _assigned_one(item), item.after
-        scored = f"{points(after.score)} of {format_points(after.max_score)}"
+        scored = f"{opt.points(after.score)} of {format_points(after.max_score)}"
         words = f"{one.state_before} -> {one.state_after}, {scored}; from {quoted(one.file)}"
         console.item(f"{one_line(one.student)} {one.exercise}", words)
     if done:
@@ -444,7 +432,7 @@ class GradeLog(Envelope, tag="course.grade-log/1", frozen=True, kw_only=True):
 
 
 def log(
-    out: Out,
+    out: opt.Out,
     student: Annotated[str | None, argument("STUDENT", complete=student_ids)] = None,
     exercise: Annotated[str | None, argument("EXERCISE", complete=graded_ids)] = None,
 ) -> int:
@@ -473,7 +461,7 @@ def log(
         words = f"{decision.at}, {decision.who}, {about or 'the class'}"
         words += f": {decision.reason}" if decision.reason else ""
         console.item(decision.kind, one_line(words), width=10)
-        before, after = (in_words(one, student, exercise) for one in (decision.before, decision.after))
+        before, after = (opt.in_words(one, student, exercise) for one in (decision.before, decision.after))
         if decision.kind == "lift":  # what is kept has no score: the graders' counts, whatever it is then
             after = "the graders' score"
         if before != after:

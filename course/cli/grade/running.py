@@ -14,24 +14,7 @@ from course.cli.frame.console import Console, current, meter
 from course.cli.frame.here import load_catalog
 from course.cli.frame.options import argument, exercise_ids, graded_ids, option, student_ids, submitted_ids
 from course.cli.frame.replies import Envelope, filled
-from course.cli.grade.options import (
-    Against,
-    Isolation,
-    Jobs,
-    Layout,
-    LocalCluster,
-    Out,
-    Protection,
-    RosterFile,
-    Scheduler,
-    Yes,
-    agreed,
-    in_words,
-    levels,
-    points,
-    show_change,
-    show_roster,
-)
+from course.cli.grade import options as opt
 from course.errors import INTERRUPTED, CourseError, InternalError, NotFoundError, UsageError
 from course.grading.exports.grades import grade_line
 from course.grading.gradebook.records import Decision, Result
@@ -80,20 +63,20 @@ def run(
     submissions: Annotated[Path, argument("SUBMISSIONS", "One folder per student.")],
     out: Annotated[Path, option("--out OUT", "Folder for the results; must be new.")],
     exercise: Annotated[list[str] | None, option("--exercise ID", "Grade these only.", exercise_ids)] = None,
-    jobs: Jobs = 1,
+    jobs: opt.Jobs = 1,
     timeout: Annotated[float, option("--timeout S", "CPU seconds per check.", min=0.1, max=60.0)] = 10.0,
     resume: Annotated[bool, option("--resume", "Finish the run that is in OUT.")] = False,
     only: Annotated[list[str] | None, option("--only STUDENT", complete=submitted_ids)] = None,
-    isolation: Protection = "auto",
+    isolation: opt.Protection = "auto",
     seed: Annotated[
         int | None,
         option("--seed", "Draw the same hidden inputs as an earlier run.", min=0, max=LARGEST_SEED),
     ] = None,
-    layout: Layout = "auto",
-    roster: RosterFile = None,
-    local_cluster: LocalCluster = None,
-    scheduler: Scheduler = None,
-    yes: Yes = False,
+    layout: opt.Layout = "auto",
+    roster: opt.RosterFile = None,
+    local_cluster: opt.LocalCluster = None,
+    scheduler: opt.Scheduler = None,
+    yes: opt.Yes = False,
 ) -> int:
     """Grade a folder of submissions.
 
@@ -103,7 +86,7 @@ def run(
     """
     console = current()
     _only_one_way(jobs, local_cluster, scheduler)
-    level, at_least = levels(isolation)
+    level, at_least = opt.levels(isolation)
     terms = Terms(level, at_least, timeout)
     catalog = load_catalog()
     catalog.content.instructors()  # before a roster is read, and perhaps corrected, for nothing
@@ -125,7 +108,7 @@ def run(
             return summary, _would_change(console, summary, out, catalog, terms, grade)
 
     try:
-        summary, tried = agreed(console, grading, yes=yes)
+        summary, tried = opt.agreed(console, grading, yes=yes)
     except KeyboardInterrupt:
         raise _interrupted(reached, out) from None
     _show_summary(console, summary, out, options, tried)
@@ -165,7 +148,7 @@ def _show_edited(console: Console, summary: Summary, tried: Regraded | None, out
     would = f"{len(changes)} would change{':' if changes else '.'}"
     console.line(f"No score was changed by that. With the present graders, {would}")
     for change in changes[:_MOST_TROUBLED]:
-        show_change(console, change)
+        opt.show_change(console, change)
     if len(changes) > _MOST_TROUBLED:
         console.line(f"and {len(changes) - _MOST_TROUBLED} more.", indent=2)
     show_faults(console, tried, out)
@@ -237,17 +220,17 @@ class GradeRerun(Envelope, tag="course.grade-rerun/1", frozen=True, kw_only=True
 
 
 def rerun(
-    out: Out,
+    out: opt.Out,
     dry_run: Annotated[bool, option("--dry-run", "Show what would change; change nothing.")] = False,
     everything: Annotated[bool, option("--all", "Also regrade results that the same graders gave.")] = False,
-    jobs: Jobs = 1,
+    jobs: opt.Jobs = 1,
     timeout: Annotated[
         float | None, option("--timeout S", "As in the run if left out.", min=0.1, max=60.0)
     ] = None,
-    isolation: Isolation = "auto",
-    against: Against = "",
+    isolation: opt.Isolation = "auto",
+    against: opt.Against = "",
     reason: Annotated[str, option("--reason TEXT", "Kept with the regrading.")] = "",
-    yes: Yes = False,
+    yes: opt.Yes = False,
 ) -> int:
     """Grade again, with the present graders or earlier ones.
 
@@ -256,7 +239,7 @@ def rerun(
     results stay beside the new ones, and overrides still count.
     """
     console = current()
-    level, at_least = levels(isolation)
+    level, at_least = opt.levels(isolation)
     options = RerunOptions(dry_run, everything, level, at_least, timeout, against, reason)
     catalog = load_catalog()
 
@@ -265,7 +248,7 @@ def rerun(
         with open_results(out, writing=not dry_run) as results, console.working("Grading again"):
             return regrade(results, catalog, mine, grade=partial(batch.grade_all, graders=jobs))
 
-    done = agreed(console, grading, yes=yes)
+    done = opt.agreed(console, grading, yes=yes)
     if not console.json:
         _show_rerun(console, done, out, dry_run=dry_run)
     code = InternalError.exit_code if done.faults else 0
@@ -274,7 +257,7 @@ def rerun(
 
 def _show_rerun(console: Console, done: Regraded, out: Path, *, dry_run: bool) -> None:
     for change in done.changes:
-        show_change(console, change)
+        opt.show_change(console, change)
     would = "would change" if dry_run else "changed"
     console.line((f"{done.regraded - done.faults} graded again; {len(done.changes)} {would}.", "bold"))
     if done.up_to_date:
@@ -292,7 +275,7 @@ def _show_rerun(console: Console, done: Regraded, out: Path, *, dry_run: bool) -
 
 
 def explain(
-    out: Out,
+    out: opt.Out,
     student: Annotated[str, argument("STUDENT", complete=student_ids)],
     exercise: Annotated[str, argument("EXERCISE", complete=graded_ids)],
 ) -> int:
@@ -388,7 +371,7 @@ def _show_summary(
         assign = command("grade", "assign", out)
         console.note(f"{assign} lists the files of those that could not be graded, and how to settle each.")
     _show_people(console, summary)
-    show_roster(console, options.roster.file if options.roster else "", summary.moved, summary.dropped)
+    opt.show_roster(console, options.roster.file if options.roster else "", summary.moved, summary.dropped)
     show_unjudged(console, summary.unjudged)
     _show_edited(console, summary, tried, out)
     if summary.already:
@@ -470,7 +453,9 @@ def _show_result(
         words = f"{one_line(found.override.reason)} (set {at}; {checks_gave(found)})"
         console.item("override", words, width=10)
     if found.late is not None:
-        cost = f"{in_points(found.penalty)} off {points(found.raw_score)}" if found.penalty else "no penalty"
+        cost = (
+            f"{in_points(found.penalty)} off {opt.points(found.raw_score)}" if found.penalty else "no penalty"
+        )
         console.item("late", f"{in_days(found.late)}, {cost}", width=10)
     if result.number:
         level = f" at {verdict.isolation}" if verdict.isolation else ""
@@ -479,12 +464,12 @@ def _show_result(
     for older in history:
         if older.number != result.number:
             given = None if older.verdict.state == "grader_error" else older.verdict.score
-            was = f"{points(given)}, {older.verdict.state}"
+            was = f"{opt.points(given)}, {older.verdict.state}"
             console.item("before", f"{older.graded_at}: {was}, grader {older.key.grader_version}", width=10)
     for note in verdict.warnings:
         console.item("note", one_line(note), width=10)
     for decision in decisions:
-        before = in_words(decision.before)
+        before = opt.in_words(decision.before)
         words = f"{decision.at}, {decision.who}: {one_line(decision.reason)}; before: {before}"
         console.item(decision.kind, one_line(words), width=10)
     if verdict.error is not None:
@@ -507,4 +492,4 @@ def checks_gave(found: Effective) -> str:
     """What the graders said of work that has a score by hand."""
     if found.verdict.state in {"ungradable", MISSING, NOT_YET}:
         return "no check ran"
-    return f"the checks gave {points(found.raw_score)}"
+    return f"the checks gave {opt.points(found.raw_score)}"

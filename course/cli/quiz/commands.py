@@ -10,16 +10,6 @@ from course.cli.frame.options import option
 from course.cli.frame.registry import COMMANDS, group
 from course.cli.frame.replies import NextStep, filled
 from course.cli.quiz import screen
-from course.cli.quiz.screen import (
-    KEYS,
-    Desk,
-    Quiz,
-    QuizHistoryReply,
-    QuizReview,
-    agrees,
-    open_or_new,
-    printed_seed,
-)
 from course.errors import INTERRUPTED, UsageError
 from course.progress.quiz import Attempt
 from course.quizzing.answers import AnswerFile, read_answers
@@ -63,19 +53,19 @@ def take(answers: AnswersOption = None, seed: SeedOption = None, questions: Ques
     _check_options(answers, seed, questions, "take")
     if answers is None and not questions:
         _need_terminal(console, "take")
-    desk = Desk.load()
+    desk = screen.Desk.load()
     if answers is not None:
         return _take_file(console, desk, answers, seed)
     if questions:
-        seed = printed_seed(console, desk, seed)
+        seed = screen.printed_seed(console, desk, seed)
         posed = desk.bank.pose(seed)
         screen.show_mark(console, len(posed))
         return screen.hand_out(console, desk.here, posed, seed, "take")
-    attempt = open_or_new(console, desk, seed)
+    attempt = screen.open_or_new(console, desk, seed)
     resumed = bool(attempt.answers)
     posed = desk.bank.pose(attempt.seed)
     screen.show_mark(console, len(posed))
-    console.note(KEYS)
+    console.note(screen.KEYS)
     if resumed:
         console.line(f"Continuing the attempt you left: {len(attempt.answers)} of {len(posed)} answered.")
     if not _ask_all(console, desk, attempt, posed):
@@ -106,7 +96,7 @@ def _need_terminal(console: Console, command: str) -> None:
     )
 
 
-def _ask_all(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[PosedQuestion]) -> bool:
+def _ask_all(console: Console, desk: screen.Desk, attempt: Attempt, posed: Sequence[PosedQuestion]) -> bool:
     """Ask the unanswered questions; False if the student stops."""
     for number, question in enumerate(posed, start=1):
         if question.question in attempt.answers:
@@ -122,14 +112,14 @@ def _ask_all(console: Console, desk: Desk, attempt: Attempt, posed: Sequence[Pos
     return True
 
 
-def _take_file(console: Console, desk: Desk, path: Path, seed: int | None) -> int:
+def _take_file(console: Console, desk: screen.Desk, path: Path, seed: int | None) -> int:
     file = read_answers(path)
     open_one = desk.history.open
     seed = _seed("take", file, seed, file.seed, open_one.seed if open_one is not None else None)
     posed = desk.bank.pose(seed)
     answers = file.choose(posed, desk.bank, seed)
     screen.show_mark(console, len(posed))
-    attempt = open_one if open_one is not None and agrees(desk.bank, open_one, seed, answers) else None
+    attempt = open_one if open_one is not None and screen.agrees(desk.bank, open_one, seed, answers) else None
     resumed = attempt is not None and bool(attempt.answers)
     attempt = attempt or desk.begin(seed)
     for name, picked in answers.items():
@@ -151,7 +141,7 @@ def _seed(command: str, file: AnswerFile, *seeds: int | None) -> int:
 
 
 def _finish(
-    console: Console, desk: Desk, attempt: Attempt, posed: Sequence[PosedQuestion], *, resumed: bool
+    console: Console, desk: screen.Desk, attempt: Attempt, posed: Sequence[PosedQuestion], *, resumed: bool
 ) -> int:
     result = finished(attempt, posed, desk.here.record)
     due = desk.reviews()
@@ -167,7 +157,7 @@ def _finish(
     console.next(step)
     return desk.here.answer(
         filled(
-            Quiz,
+            screen.Quiz,
             result,
             exit_code=0 if result.passed else 1,
             course=desk.here.course,
@@ -193,7 +183,7 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
     """
     console = current()
     _check_options(answers, seed, questions, "review")
-    desk = Desk.load()
+    desk = screen.Desk.load()
     ids = [entry.question for entry in desk.reviews() if entry.on <= today()]
     if not ids:
         return _end_review(console, desk, None, [])
@@ -205,7 +195,7 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
     posed = desk.bank.pose(seed, only=ids)
     if questions:
         return screen.hand_out(console, desk.here, posed, seed, "review")
-    console.note(KEYS)
+    console.note(screen.KEYS)
     marked: list[MarkedQuestion] = []
     for number, question in enumerate(posed, start=1):
         one = screen.ask(console, question, number, len(posed))
@@ -217,7 +207,9 @@ def review(answers: AnswersOption = None, seed: SeedOption = None, questions: Qu
     return _end_review(console, desk, seed, marked)
 
 
-def _review_file(console: Console, desk: Desk, path: Path, seed: int | None, ids: Sequence[str]) -> int:
+def _review_file(
+    console: Console, desk: screen.Desk, path: Path, seed: int | None, ids: Sequence[str]
+) -> int:
     file = read_answers(path)
     seed = _seed("review", file, seed, file.seed)
     posed = desk.bank.pose(seed, only=ids)
@@ -228,7 +220,9 @@ def _review_file(console: Console, desk: Desk, path: Path, seed: int | None, ids
     return _end_review(console, desk, seed, marked)
 
 
-def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence[MarkedQuestion]) -> int:
+def _end_review(
+    console: Console, desk: screen.Desk, seed: int | None, marked: Sequence[MarkedQuestion]
+) -> int:
     due = desk.reviews()
     missed = [one for one in marked if not one.right]
     if marked:
@@ -246,7 +240,7 @@ def _end_review(console: Console, desk: Desk, seed: int | None, marked: Sequence
     step = "course" if best is not None and best.passed else "course quiz take"
     console.next(step)
     return desk.here.answer(
-        QuizReview(
+        screen.QuizReview(
             exit_code=1 if missed else 0,
             course=desk.here.course,
             seed=seed,
@@ -266,7 +260,7 @@ def history(
     ] = False,
 ) -> int:
     """Show every attempt, with dates and scores, and what is under review."""
-    console, desk = current(), Desk.load()
+    console, desk = current(), screen.Desk.load()
     last = desk.history.finished[-1] if whole and desk.history.finished else None
     if last is not None and fits(desk.bank, last):
         with console.paged():
@@ -286,7 +280,7 @@ def history(
     step = "course quiz review" if ready else "course" if passed else "course quiz take"
     console.next(step)
     return desk.here.answer(
-        QuizHistoryReply(
+        screen.QuizHistoryReply(
             course=desk.here.course,
             mark=mark_sentence(len(desk.bank.ids)),
             attempts=attempts,

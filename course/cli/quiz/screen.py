@@ -13,7 +13,7 @@ from course.catalog.models import CourseRef
 from course.cli.frame.console import Console
 from course.cli.frame.here import Here
 from course.cli.frame.replies import Envelope, NextStep, filled
-from course.cli.home.learning import day
+from course.cli.home.overview import day
 from course.errors import CourseError, UsageError
 from course.progress.quiz import Attempt, QuizHistory, quiz_history
 from course.quizzing.bank import (

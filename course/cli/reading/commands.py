@@ -17,8 +17,7 @@ from course.cli.frame.here import Here, here_or_outside
 from course.cli.frame.options import LessonName, Verbose, WarmUpName, option
 from course.cli.frame.replies import Envelope, NextStep, filled
 from course.cli.home.advice import after_lesson
-from course.cli.home.learning import day
-from course.cli.home.overview import lesson_states, warm_up_states
+from course.cli.home.overview import day, lesson_states, warm_up_states
 from course.cli.home.replies import LessonState, WarmUpState
 from course.cli.reading.lesson import Printer, printer
 from course.cli.work.changing import put

@@ -16,14 +16,6 @@ from course.cli.frame.options import argument, choice_of, option, scene_ids, sce
 from course.cli.frame.registry import COMMANDS, OPTIONS
 from course.cli.frame.replies import filled
 from course.cli.sandbox import play as playing
-from course.cli.sandbox.play import (
-    SandboxEntry,
-    SandboxExport,
-    SandboxList,
-    SandboxParameter,
-    SandboxReplay,
-    SandboxVersion,
-)
 from course.errors import NotFoundError, UsageError
 from course.printable import counted
 from course.sandbox.exports.formats import START, mjcf, sdf, start_script
@@ -135,7 +127,7 @@ def replay(file: Annotated[Path, argument("FILE", "A recording.")]) -> int:
     with console.working("Replaying"):
         difference = recording.replay(recorded)
     versions = tuple(
-        SandboxVersion(name=name, recorded=then, here=here)
+        playing.SandboxVersion(name=name, recorded=then, here=here)
         for name, (then, here) in difference.versions.items()
     )
     for one in versions:
@@ -152,7 +144,7 @@ def replay(file: Annotated[Path, argument("FILE", "A recording.")]) -> int:
             console.note("All versions are the same: the file was changed, or this is a fault of the course.")
     return console.answer(
         filled(
-            SandboxReplay,
+            playing.SandboxReplay,
             difference,
             exit_code=0 if difference.same else 1,
             scene=recorded.head.scene.id,
@@ -197,7 +189,7 @@ def export(
         console.note(f"Run it: GZ_SIM_SYSTEM_PLUGIN_PATH={folder} gz sim {shlex.quote(str(target))}")
     text = "" if written else data.decode()
     return console.answer(
-        SandboxExport(scene=chosen.scene.id, format=format_, file=written, beside=beside, text=text)
+        playing.SandboxExport(scene=chosen.scene.id, format=format_, file=written, beside=beside, text=text)
     )
 
 
@@ -209,7 +201,7 @@ def _list(console: Console, name: str | None) -> None:
     for place, scene in enumerate(found, 1):
         _describe(console, scene, place, one.path if one else None)
     console.note((f"Next: course sandbox play {name or found[0].id}", "bold"))
-    console.emit(SandboxList(scenes=tuple(_entry(scene) for scene in found)))
+    console.emit(playing.SandboxList(scenes=tuple(_entry(scene) for scene in found)))
 
 
 def _describe(console: Console, scene: Scene, place: int, path: Path | None) -> None:
@@ -230,7 +222,7 @@ def _describe(console: Console, scene: Scene, place: int, path: Path | None) -> 
     console.item("file", str(path), width=5)
 
 
-def _entry(scene: Scene) -> SandboxEntry:
+def _entry(scene: Scene) -> playing.SandboxEntry:
     wheels = next((body.wheels for body in scene.body if body.wheels), None)
     own = {
         "gravity": math.hypot(*scene.gravity),
@@ -241,10 +233,12 @@ def _entry(scene: Scene) -> SandboxEntry:
         "left": wheels.left if wheels else None,
         "right": wheels.right if wheels else None,
     }
-    parameters = [filled(SandboxParameter, one) for one in scene.parameter]
-    parameters += [filled(SandboxParameter, one, default=own.get(one.name)) for one in settings_of(scene)]
+    parameters = [filled(playing.SandboxParameter, one) for one in scene.parameter]
+    parameters += [
+        filled(playing.SandboxParameter, one, default=own.get(one.name)) for one in settings_of(scene)
+    ]
     return filled(
-        SandboxEntry,
+        playing.SandboxEntry,
         scene,
         question=question(unchanged(scene)),
         note=" ".join(scene.note.split()),

@@ -6,6 +6,7 @@ because students who see a countdown click through it.
 """
 
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -138,10 +139,9 @@ def _task(exercise: Exercise, history: History, wanted: str | None) -> str | Non
 
 def _file_name(here: Here, exercise: Exercise) -> str:
     """The file that the student works in, as far as it is known."""
-    try:
+    with suppress(CourseError):
         return chosen_work(here, exercise).name
-    except CourseError:
-        return exercise.module
+    return exercise.module
 
 
 def solution(exercise: ExerciseName = None) -> int:

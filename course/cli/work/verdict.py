@@ -7,6 +7,7 @@ ones, and the summary is last, where the eye is when a terminal has finished scr
 import os
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from importlib.util import decode_source
 from pathlib import Path
@@ -164,14 +165,10 @@ class _Page:
 
     def tasks(self, tasks: Tasks) -> None:
         """The functions that pass, the unwritten ones, and last those that fail."""
-        done: list[tuple[Task, Sequence[CheckResult]]] = []
-        unwritten, failing = done.copy(), done.copy()
-        for task, checks in tasks:
-            if is_unwritten(checks):
-                unwritten.append((task, checks))
-            elif checks:
-                whole = all(check.status == "pass" for check in checks)
-                (done if whole else failing).append((task, checks))
+        unwritten = [pair for pair in tasks if is_unwritten(pair[1])]
+        begun = [pair for pair in tasks if pair[1] and pair not in unwritten]
+        done = [pair for pair in begun if all(check.status == "pass" for check in pair[1])]
+        failing = [pair for pair in begun if pair not in done]
         if self.brief and failing:
             failing = [self._but_one(done, unwritten, failing)]
         else:
@@ -438,7 +435,6 @@ def _path(here: Here, work: StudentWork, form: str) -> str:
     """A path relative to the folder of the lines' reader, with slashes on every system."""
     path = here.workspace.path(work.exercise.place, work.name)
     top = os.environ.get("GITHUB_WORKSPACE") if form == "github" else None
-    try:
+    with suppress(ValueError):
         return path.resolve().relative_to(Path(top).resolve() if top else cwd().resolve()).as_posix()
-    except ValueError:
-        return path.as_posix()
+    return path.as_posix()

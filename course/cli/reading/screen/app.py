@@ -8,18 +8,8 @@ from textual.events import Resize
 
 from course.catalog.blocks import Task
 from course.catalog.load import Catalog
+from course.cli.reading.screen import items
 from course.cli.reading.screen.asking import Choice, Edit, Find, keys_table
-from course.cli.reading.screen.items import (
-    AnswerItem,
-    FigureItem,
-    TaskItem,
-    answer,
-    cell_at_hand,
-    in_sight,
-    items_of,
-    keys_of,
-    unjudged,
-)
 from course.cli.reading.screen.page import Item, Page
 from course.cli.reading.screen.running import Drawer
 from course.full_screen import FullScreenApp, TextOverlay
@@ -94,7 +84,7 @@ class ReaderApp(FullScreenApp):
         self._first, self._section = first, section
         self._wanted = ""
         shown = pictures if self.in_colour else None
-        self.page = Page(self, catalog, workspace, shown, items_of, keys_of)
+        self.page = Page(self, catalog, workspace, shown, items.items_of, items.keys_of)
 
     # -- coming and going --------------------------------------------------------------------------------
 
@@ -172,13 +162,13 @@ class ReaderApp(FullScreenApp):
     def action_item(self, way: int) -> None:
         """The next thing on this screen that keys act on, links last; then the first of the next screen."""
         self.hush()
-        items, item = sorted(self.page.items(), key=lambda one: one.inline), self.page.item
-        at = items.index(item) + way if item in items else (0 if way > 0 else -1)
-        if not items or at >= len(items) or (at < 0 and item in items):
+        found, item = sorted(self.page.items(), key=lambda one: one.inline), self.page.item
+        at = found.index(item) + way if item in found else (0 if way > 0 else -1)
+        if not found or at >= len(found) or (at < 0 and item in found):
             self.action_turn("next" if way > 0 else "previous")
-            items, at = sorted(self.page.items(), key=lambda one: one.inline), 0 if way > 0 else -1
-        if items:
-            self.page.item = items[at]
+            found, at = sorted(self.page.items(), key=lambda one: one.inline), 0 if way > 0 else -1
+        if found:
+            self.page.item = found[at]
             self.page.say_round()
 
     def action_return(self) -> None:
@@ -217,14 +207,14 @@ class ReaderApp(FullScreenApp):
     def action_do(self, act: str) -> None:
         """Run or change the task at hand, or else the cell; undo, copy or write the cell."""
         item: Item | None = self.page.item
-        if not (isinstance(item, TaskItem) and hasattr(item, act)):
-            item = cell_at_hand(self.page)
+        if not (isinstance(item, items.TaskItem) and hasattr(item, act)):
+            item = items.cell_at_hand(self.page)
         if item is not None:
             getattr(item, act)(self.page)
 
     def action_hint(self) -> None:
         """The hint that is due at the task at hand; all keys elsewhere."""
-        if isinstance(self.page.item, TaskItem):
+        if isinstance(self.page.item, items.TaskItem):
             self.page.item.ask_hint(self.page)
         else:
             self.action_help()
@@ -234,17 +224,17 @@ class ReaderApp(FullScreenApp):
         item = self.page.item
         question = self.page.progress.asked_by(item.block) if item is not None else None
         if question is not None:
-            answer(self.page, question, "")
+            items.answer(self.page, question, "")
 
     def action_judge(self, key: int) -> None:
         """How good a prediction was; its answer may be in sight while the cell above it is at hand."""
         item = self.page.item
-        judged = item if isinstance(item, AnswerItem) else unjudged(self.page)
+        judged = item if isinstance(item, items.AnswerItem) else items.unjudged(self.page)
         if judged is not None:
             judged.judge(self.page, JUDGEMENTS[key - 1])
 
     def action_open_figure(self) -> None:
-        figure = in_sight(self.page, FigureItem)
+        figure = items.in_sight(self.page, items.FigureItem)
         if figure is not None:
             figure.act(self.page)
         else:

@@ -190,9 +190,8 @@ class _Loop:
             self.console.gap()  # the terminal has written ^C
         finally:
             self.console.led = False
-        return self.console.answer(
-            Watch(exit_code=code, exercise=name, runs=tuple(self.runs), last=self.last)
-        )
+        reply = Watch(exit_code=code, exercise=name, runs=tuple(self.runs), last=self.last)
+        return self.console.answer(reply)
 
     def _work(self, task: Exercise) -> Exercise | None:
         """Work on a task until it passes or the user wants another one, which is returned."""
@@ -449,10 +448,8 @@ class Watcher:
         """Whether there is something to check: the file that counts was edited."""
         try:
             work = chosen_work(self.here, self.exercise, self.named)
-            self._name = work.name
-            return work.notebook is not None or self.here.workspace.is_edited(
-                self.exercise.place, work.name, work.data
-            )
+            self._name, place = work.name, self.exercise.place
+            return work.notebook is not None or self.here.workspace.is_edited(place, work.name, work.data)
         except CourseError:  # the check says what is wrong
             return True
 

@@ -212,16 +212,10 @@ def _run_one(console: Console, name: str, pairs: Sequence[str], plot: Path | Non
         names = (f"{column.name} [{column.unit}]" for column in result.columns)
         samples = zip(*(column.values.tolist() for column in result.columns), strict=True)
         written = here.write_told(csv, here.as_csv(names, samples), why="sim")
-    return filled(
-        Sim,
-        simulation,
-        result,
-        simulation=simulation.id,
-        settings={p.name: SimSetting(result.settings[p.name], p.unit) for p in simulation.parameters},
-        results=tuple(filled(SimRow, row, simulated=float(row.simulated)) for row in result.rows),
-        plot=plotted,
-        csv=written,
-    )
+    settings = {p.name: SimSetting(result.settings[p.name], p.unit) for p in simulation.parameters}
+    rows = tuple(filled(SimRow, row, simulated=float(row.simulated)) for row in result.rows)
+    made = {"settings": settings, "results": rows, "plot": plotted, "csv": written}
+    return filled(Sim, simulation, result, simulation=simulation.id, **made)
 
 
 # -- on the screen ---------------------------------------------------------------------------------------

@@ -55,12 +55,9 @@ class AnswerFile:
             UsageError: an answer is missing, or is to a question or an option that is not there.
         """
         if self.seed is not None and self.seed != seed:
-            self.fail(
-                "seed",
-                f"these answers are for seed {self.seed}, and the questions of seed {seed} are asked.",
-                f"Leave --seed out, or print the others: course quiz take --questions --seed {seed}.",
-                "answers_for_other_seed",
-            )
+            other = f"these answers are for seed {self.seed}, and the questions of seed {seed} are asked."
+            fix = f"Leave --seed out, or print the others: course quiz take --questions --seed {seed}."
+            self.fail("seed", other, fix, "answers_for_other_seed")
         asked = {question.question: question for question in posed}
         listed = ", ".join(asked)
         for name in self.answers:
@@ -75,13 +72,9 @@ class AnswerFile:
             entry = f'a line {missing[0]} = "..." under [answers]'
             if _is_json(self.path):
                 entry = f'"{missing[0]}": "..." to "answers"'
-            self.fail(
-                "answers",
-                f"{counted(len(missing), 'answer')} {'is' if len(missing) == 1 else 'are'} missing:"
-                f" {', '.join(missing)}.",
-                f"Add {entry}; a guess counts like any answer.",
-                "answers_missing",
-            )
+            are = f"{counted(len(missing), 'answer')} {'is' if len(missing) == 1 else 'are'} missing"
+            fix = f"Add {entry}; a guess counts like any answer."
+            self.fail("answers", f"{are}: {', '.join(missing)}.", fix, "answers_missing")
         return {name: self._option(name, asked[name], bank, seed) for name in asked}
 
     def _option(self, name: str, posed: PosedQuestion, bank: Bank, seed: int) -> str:
@@ -128,11 +121,8 @@ def read_answers(path: Path) -> AnswerFile:
     file = AnswerFile(path, text, seed, answers if isinstance(answers, dict) else {})
     version = data.get("format_version", FORMAT_VERSION)
     if version != FORMAT_VERSION or isinstance(version, bool):
-        file.fail(
-            "format_version",
-            f"format_version is {version!r}, and this program knows {FORMAT_VERSION}.",
-            "Write 1, or install a newer version of the course.",
-        )
+        other = f"format_version is {version!r}, and this program knows {FORMAT_VERSION}."
+        file.fail("format_version", other, "Write 1, or install a newer version of the course.")
     unknown = sorted(set(data) - {"format_version", "seed", "answers"})
     if unknown:
         file.fail("", f"unknown key {unknown[0]!r} outside of the answers.", _form(path))

@@ -157,12 +157,8 @@ class LazyGroup(TyperGroup):
         entry = COMMANDS.get(cmd_name)
         if entry is None:
             return None
-        return TyperCommand(
-            name=cmd_name,
-            help=entry.summary,
-            rich_help_panel=entry.panel,
-            rich_markup_mode=self.rich_markup_mode,
-        )
+        mode = self.rich_markup_mode
+        return TyperCommand(cmd_name, help=entry.summary, rich_help_panel=entry.panel, rich_markup_mode=mode)
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """The real command, for the one that is run or completed."""
@@ -187,12 +183,9 @@ def group(summary: str) -> typer.Typer:
 
 def build(*, fancy: bool) -> typer.Typer:
     """The empty program: its commands come from ``COMMANDS``."""
+    markup: Any = "rich" if fancy else None
     return typer.Typer(
-        name="course",
-        cls=LazyGroup,
-        invoke_without_command=True,
-        rich_markup_mode="rich" if fancy else None,
-        **OPTIONS,
+        name="course", cls=LazyGroup, invoke_without_command=True, rich_markup_mode=markup, **OPTIONS
     )
 
 

@@ -209,13 +209,9 @@ def _times(
 
 def _unsure(results: Results, known: list[SubmittedAt]) -> list[str]:
     """Whose penalty depends on whether the clock was changed since the deadline."""
-    exercises = {time.exercise for time in known}
-    listed = {time.student for time in known}
-    return [
-        one_line(item.student)
-        for item in results.all()
-        if item.student in listed and item.exercise in exercises and results.hangs_on_the_clock(item)
-    ]
+    exercises, listed = {time.exercise for time in known}, {time.student for time in known}
+    mine = (one for one in results.all() if one.student in listed and one.exercise in exercises)
+    return [one_line(item.student) for item in mine if results.hangs_on_the_clock(item)]
 
 
 def _unknown(results: Results, times: list[SubmittedAt]) -> list[str]:
@@ -367,13 +363,9 @@ def assign(
     for item in left:
         files = tuple(filled(FoundFile, one, file=one.name) for one in item.found.candidates)
         unsettled.append(filled(UnsettledOne, item, reason=item.found.reason, files=files))
+    ones = tuple(map(_assigned_one, done))
     return console.answer(
-        GradeAssign(
-            dry_run=dry_run,
-            assigned=tuple(map(_assigned_one, done)),
-            unsettled=tuple(unsettled),
-            unjudged=broke,
-        )
+        GradeAssign(dry_run=dry_run, assigned=ones, unsettled=tuple(unsettled), unjudged=broke)
     )
 
 

@@ -199,10 +199,7 @@ def in_words(text: str, student: str | None = None, exercise: str | None = None)
         return one_line(", ".join(filter(None, words)))
     with suppress(msgspec.MsgspecError, RecursionError):
         rows = msgspec.json.decode(text, type=list[tuple[str, str, float | None]])
-        shown = [
-            f"{who} {what} {points(score)}"
-            for who, what, score in rows
-            if student in {None, who} and exercise in {None, what}
-        ]
+        about = [one for one in rows if student in {None, one[0]} and exercise in {None, one[1]}]
+        shown = [f"{who} {what} {points(score)}" for who, what, score in about]
         return one_line("; ".join(shown[:_FEW] + ["..."] * (len(shown) > _FEW)))
     return one_line(text[:_SHOWN])

@@ -135,27 +135,27 @@ def _done_of(states: Sequence[replies.WarmUpState]) -> str:
 
 def exercise_states(catalog: Catalog, standing: Standing) -> tuple[replies.ExerciseState, ...]:
     """Every exercise and how far the student is; raises what reading the record raises."""
-    return tuple(_exercise_state(one, n, standing) for n, one in enumerate(catalog.exercises(), start=1))
-
-
-def _exercise_state(exercise: Exercise, number: int, standing: Standing) -> replies.ExerciseState:
-    history = standing.history(exercise.id)
-    graded, best, first_pass, last = history.last_graded, history.best, history.first_pass, history.last
-    return filled(
-        replies.ExerciseState,
-        exercise,
-        number=number,
-        chapter=exercise.number or None,
-        state=_state(exercise.id in standing.started, history),
-        score=graded.score if graded else None,
-        max_score=graded.max_score if graded else None,
-        best_score=best.score if best else None,
-        checks_run=len(history.runs),
-        hints_shown=len(history.hints),
-        started_at=history.started.isoformat() if history.started else None,
-        checked_at=last.at.isoformat() if last else None,
-        passed_at=first_pass.at.isoformat() if first_pass else None,
-    )
+    states = []
+    for number, one in enumerate(catalog.exercises(), start=1):
+        history = standing.history(one.id)
+        graded, best, first_pass, last = history.last_graded, history.best, history.first_pass, history.last
+        state = filled(
+            replies.ExerciseState,
+            one,
+            number=number,
+            chapter=one.number or None,
+            state=_state(one.id in standing.started, history),
+            score=graded.score if graded else None,
+            max_score=graded.max_score if graded else None,
+            best_score=best.score if best else None,
+            checks_run=len(history.runs),
+            hints_shown=len(history.hints),
+            started_at=history.started.isoformat() if history.started else None,
+            checked_at=last.at.isoformat() if last else None,
+            passed_at=first_pass.at.isoformat() if first_pass else None,
+        )
+        states.append(state)
+    return tuple(states)
 
 
 def quiz_state(catalog: Catalog, standing: Standing) -> replies.QuizState | None:
@@ -171,14 +171,8 @@ def quiz_state(catalog: Catalog, standing: Standing) -> replies.QuizState | None
 
 def lesson_states(catalog: Catalog, standing: Standing) -> tuple[replies.LessonState, ...]:
     """Every lesson and when it was first read; raises what reading the record raises."""
-    return tuple(
-        filled(
-            replies.LessonState,
-            lesson,
-            read_at=at.isoformat() if (at := standing.read.get(lesson.id)) else None,
-        )
-        for lesson in catalog.lessons()
-    )
+    read = {name: at.isoformat() for name, at in standing.read.items()}
+    return tuple(filled(replies.LessonState, one, read_at=read.get(one.id)) for one in catalog.lessons())
 
 
 def _state(started: bool, history: History) -> str:
@@ -215,16 +209,12 @@ def _inside(console: Console, here: Here) -> int:
     console.line("; ".join(done))
     if objectives:
         taken = quiz is not None and quiz.best is not None
-        evidence = {
-            state.id: f"exercise {state.number}, {state.id}: {WORDS[state.state]} {score_of(state)}".rstrip()
-            for state in states
-        }
+        known = {one.id: f"{WORDS[one.state]} {score_of(one)}".rstrip() for one in states}
+        evidence = {one.id: f"exercise {one.number}, {one.id}: {known[one.id]}" for one in states}
         show_objectives(console, objectives, evidence, taken=taken)
     elif states:
-        console.table(
-            ("Exercise", "No.", "State", "Score"),
-            [(state.id, str(state.number), WORDS[state.state], score_of(state)) for state in states],
-        )
+        rows = [(one.id, str(one.number), WORDS[one.state], score_of(one)) for one in states]
+        console.table(("Exercise", "No.", "State", "Score"), rows)
     if here.workspace.version != catalog.version:
         console.note(
             f"The course is at version {catalog.version}, this workspace at {here.workspace.version}: "
@@ -495,13 +485,8 @@ def _show_mistakes(console: Console, what: str, done: str, mistakes: Sequence[re
 
 def _in_words(counts: replies.PredictionsOf) -> str:
     """ "3 right, 1 nearly, 1 wrong, 1 skipped"; zero counts are left out."""
-    named = (
-        (counts.right, "right"),
-        (counts.nearly, "nearly right"),
-        (counts.wrong, "wrong"),
-        (counts.unjudged, "not compared"),
-        (counts.skipped, "skipped"),
-    )
+    numbers = (counts.right, counts.nearly, counts.wrong, counts.unjudged, counts.skipped)
+    named = zip(numbers, ("right", "nearly right", "wrong", "not compared", "skipped"), strict=True)
     return ", ".join(f"{number} {word}" for number, word in named if number)
 
 
@@ -536,11 +521,8 @@ def objective_states(
     warm_ups: Sequence[replies.WarmUpState],
 ) -> tuple[replies.ObjectiveState, ...]:
     """The evidence for each objective; raises what reading the record raises."""
-    predicted = {
-        (event.subject, event.data.get("key"))
-        for event in standing.events("prediction")
-        if event.data.get("text")
-    }
+    said = [event for event in standing.events("prediction") if event.data.get("text")]
+    predicted = {(event.subject, event.data.get("key")) for event in said}
     passed = {state.id for state in states if state.passed_at is not None}
     rights = [attempt.right.items() for attempt in standing.quiz.counting]
     answered = {question for items in rights for question, right in items if right}

@@ -321,27 +321,12 @@ def hand_out(console: Console, here: Here, posed: Sequence[PosedQuestion], seed:
 
 def question_reply(marked: MarkedQuestion) -> QuizQuestion:
     """An answered question as a script reads it."""
-    posed = marked.posed
-    options = tuple(
-        filled(
-            QuizOption,
-            choice,
-            chosen=choice is marked.chosen,
-            misconception=choice.misconception or None,
-            belief=choice.belief or None,
-        )
-        for choice in posed.choices
-    )
-    return filled(
-        QuizQuestion,
-        marked,
-        posed,
-        id=posed.question,
-        answer=marked.chosen.id,
-        options=options,
-        lesson=posed.lesson or None,
-        read=posed.read or None,
-    )
+    posed, options = marked.posed, []
+    for one in posed.choices:
+        behind = {"misconception": one.misconception or None, "belief": one.belief or None}
+        options.append(filled(QuizOption, one, chosen=one is marked.chosen, **behind))
+    more = {"options": tuple(options), "lesson": posed.lesson or None, "read": posed.read or None}
+    return filled(QuizQuestion, marked, posed, id=posed.question, answer=marked.chosen.id, **more)
 
 
 def due_reply(due: Sequence[Due]) -> tuple[QuizDue, ...]:

@@ -327,10 +327,8 @@ def _begin(console: Console, here: Here, chosen: Exercise) -> int:
         show_text(console, here, chosen)
     files = put(console, here, chosen)
     step = f"course check {chosen.id}"
-    console.note(
-        f"Write in {chosen.place}/{chosen.module} with your own editor, "
-        f"about {counted(chosen.minutes, 'minute')}."
-    )
+    about = f"about {counted(chosen.minutes, 'minute')}"
+    console.note(f"Write in {chosen.place}/{chosen.module} with your own editor, {about}.")
     console.note(f"Check it:          {step}")
     console.note(f"On every save:     course watch {chosen.id}")
     console.note(f"Still failing:     course hint {chosen.id}")

@@ -237,10 +237,5 @@ def _entry(scene: Scene) -> playing.SandboxEntry:
     parameters += [
         filled(playing.SandboxParameter, one, default=own.get(one.name)) for one in settings_of(scene)
     ]
-    return filled(
-        playing.SandboxEntry,
-        scene,
-        question=question(unchanged(scene)),
-        note=" ".join(scene.note.split()),
-        parameters=tuple(parameters),
-    )
+    asked, note = question(unchanged(scene)), " ".join(scene.note.split())
+    return filled(playing.SandboxEntry, scene, question=asked, note=note, parameters=tuple(parameters))

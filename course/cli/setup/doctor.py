@@ -108,11 +108,8 @@ def doctor(
         console.line(sentence, indent=2)
     _fact("Terminal", "; ".join(f"{name} {value}" for name, value in shape.items()))
     _fact("Workspace", workspace or "none here")
-    unserved = tuple(
-        f"Optional ({one.group}): {one.unserved}."
-        for one in requirements()
-        if one.unserved and one.group not in _NOT_FOR_USERS
-    )
+    others = [one for one in requirements() if one.unserved and one.group not in _NOT_FOR_USERS]
+    unserved = tuple(f"Optional ({one.group}): {one.unserved}." for one in others)
     install = (f"{fix.problem} Install it with: {fix.command}" for fix in fixes)
     for line in filter(None, (repaired, trouble, *unserved, *install)):
         console.line(line)
@@ -199,12 +196,10 @@ def _workspace(*, repair: bool) -> tuple[str | None, str | None, str | None]:
         root, store = str(here.workspace.root), here.workspace.store
         if repair:
             result = store.repair()
-            repaired = (
-                "The record of progress is sound; nothing was repaired."
-                if result is None
-                else f"The damaged record is kept at {here.workspace.shown(result.kept)}; "
-                f"{counted(result.carried, 'event')} moved to a new one."
-            )
+            repaired = "The record of progress is sound; nothing was repaired."
+            if result is not None:
+                carried = f"{counted(result.carried, 'event')} moved to a new one"
+                repaired = f"The damaged record is kept at {here.workspace.shown(result.kept)}; {carried}."
         store.events()
     except CourseError as error:
         return root, repaired, f"{error.message} {error.help}"
@@ -275,17 +270,11 @@ def redacted(text: str) -> str:
 
 def _spellings(text: str) -> set[str]:
     """A name's spellings: unchanged; with decomposed accents, as on macOS; and in Python, JSON and a URL."""
-    forms = {unicodedata.normalize(form, text) for form in ("NFC", "NFD")}
-    return {
-        way
-        for form in forms
-        for way in (
-            form,
-            form.encode("unicode_escape").decode("ascii"),
-            json.dumps(form)[1:-1],
-            quote(form, errors="surrogateescape"),
-        )
-    }
+    found = {unicodedata.normalize("NFC", text), unicodedata.normalize("NFD", text)}
+    for form in tuple(found):
+        found |= {form.encode("unicode_escape").decode("ascii"), json.dumps(form)[1:-1]}
+        found.add(quote(form, errors="surrogateescape"))
+    return found
 
 
 def _places() -> list[tuple[str, str]]:

@@ -173,20 +173,17 @@ def _put(path: Path, beside: str, new: bytes, action: str, *, dry_run: bool) -> 
 
 
 def _sentence(here: Here, change: Change, *, dry_run: bool) -> str:
-    name = here.workspace.shown(Path(change.path))
     kept = f" The old one is kept at {here.workspace.shown(Path(change.backup))}." if change.backup else ""
-    if change.action == "replace":
-        verb = "would be replaced" if dry_run else "was replaced"
-        return f"{name}: {verb} by the newer one; you had not edited it.{kept}"
-    if change.action == "merge":
-        return f"{name}: newer text {'would be' if dry_run else 'was'} put around your work.{kept}"
-    if change.action == "beside":
-        verb = "would be put" if dry_run else "is"
-        beside = here.workspace.shown(Path(change.new or ""))
-        return f"{name}: you edited it, so it stays; the newer one {verb} beside it as {beside}.{kept}"
-    if change.action == "missing":
-        return f"{name}: not there, and left so; `course start` would put it back."
-    return f"{name}: up to date."
+    was, put = ("would be", "would be put") if dry_run else ("was", "is")
+    beside = f"{put} beside it as {here.workspace.shown(Path(change.new or ''))}"
+    said = {
+        "replace": f"{was} replaced by the newer one; you had not edited it.{kept}",
+        "merge": f"newer text {was} put around your work.{kept}",
+        "beside": f"you edited it, so it stays; the newer one {beside}.{kept}",
+        "missing": "not there, and left so; `course start` would put it back.",
+        "current": "up to date.",
+    }
+    return f"{here.workspace.shown(Path(change.path))}: {said[change.action]}"
 
 
 def _lines(data: bytes) -> list[str]:

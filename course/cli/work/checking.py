@@ -136,14 +136,9 @@ def reply_to(
         printed: the file's output while it was loaded.
         curves: of its failed checks.
     """
+    code, following = 0 if verdict.all_pass else 1, NextStep(step) if step else None
     return filled(
-        Check,
-        verdict,
-        exit_code=0 if verdict.all_pass else 1,
-        course=course,
-        next=NextStep(step) if step else None,
-        printed=printed,
-        curves=curves,
+        Check, verdict, exit_code=code, course=course, next=following, printed=printed, curves=curves
     )
 
 

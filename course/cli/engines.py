@@ -244,11 +244,9 @@ def _step(text: str) -> float:
             f"--dt {text}: this is not a step.", help="Give seconds, as 0.005 or 1/240.", code="bad_step"
         ) from None
     if not _SHORTEST <= step <= _LONGEST:
-        raise UsageError(
-            f"--dt {text}: the step is not between {_SHORTEST:g} and {_LONGEST:g} s.",
-            help="The scenarios last from half a second to ten seconds; 1/240 is usual.",
-            code="bad_step",
-        )
+        problem = f"--dt {text}: the step is not between {_SHORTEST:g} and {_LONGEST:g} s."
+        fix = "The scenarios last from half a second to ten seconds; 1/240 is usual."
+        raise UsageError(problem, help=fix, code="bad_step")
     return step
 
 

@@ -93,11 +93,8 @@ def _exercise(catalog: Catalog, path: Path, data: bytes, wanted: str | None) -> 
         with contextlib.suppress(UngradableError):
             notebook_source(data, exercise)
             return exercise
-    raise NotFoundError(
-        f"{path.name} does not say which exercise it is about, and defines no function of any.",
-        help="Say which with --exercise.",
-        code="which_exercise",
-    )
+    problem = f"{path.name} does not say which exercise it is about, and defines no function of any."
+    raise NotFoundError(problem, help="Say which with --exercise.", code="which_exercise")
 
 
 # ---
@@ -195,11 +192,8 @@ def update(ids: Ids = None, out: Out = None) -> int:
     folder, layout = place(out)
     there = list(generate(catalog, ids or [], layout, there=folder))
     if not there:
-        raise NotFoundError(
-            f"There is no notebook of the course in {folder}.",
-            help="`course notebook build` writes them.",
-            code="no_notebooks",
-        )
+        problem = f"There is no notebook of the course in {folder}."
+        raise NotFoundError(problem, help="`course notebook build` writes them.", code="no_notebooks")
     return _write(console, catalog, folder, there)
 
 
@@ -246,11 +240,8 @@ def _build_nbgrader(console: Console, ids: list[str], out: Path | None, *, execu
     from course.notebooks.magic import nbgrader_notebook
 
     if executed:
-        raise UsageError(
-            "--format nbgrader --executed: nbgrader runs notebooks itself.",
-            help="Leave one of the two out.",
-            code="executed_nbgrader",
-        )
+        problem = "--format nbgrader --executed: nbgrader runs notebooks itself."
+        raise UsageError(problem, help="Leave one of the two out.", code="executed_nbgrader")
     catalog = load_catalog()
     exercises = [catalog.exercise(name) for name in ids] if ids else list(catalog.exercises())
     notebooks = (

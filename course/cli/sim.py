@@ -167,11 +167,8 @@ def run(
     if everything:
         if name is not None or pairs:
             extra = name if name is not None else f"--set {pairs[0]}"
-            raise UsageError(
-                f"{extra}: --all runs all four with their defaults.",
-                help="Leave one of the two out.",
-                code="all_and_one",
-            )
+            problem = f"{extra}: --all runs all four with their defaults."
+            raise UsageError(problem, help="Leave one of the two out.", code="all_and_one")
         return _run_all(console, plot, csv)
     if name is None:
         there = f"Known: {', '.join(SIMULATIONS)}."

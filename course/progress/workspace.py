@@ -78,11 +78,9 @@ class Workspace:
         for folder in (start, *start.parents):
             if (folder / MARKER).is_file():
                 return cls.read(folder)
-        raise NotFoundError(
-            "This folder is not inside a workspace.",
-            help="Make one with `course init my-course`, or name one with `-C DIR`.",
-            code="workspace_not_found",
-        )
+        problem = "This folder is not inside a workspace."
+        fix = "Make one with `course init my-course`, or name one with `-C DIR`."
+        raise NotFoundError(problem, help=fix, code="workspace_not_found")
 
     @classmethod
     def read(cls, root: Path) -> Workspace:
@@ -303,11 +301,9 @@ def _read_marker(marker: Path) -> tuple[str, str]:
         raise _bad_marker(marker, None, f"cannot be read: {error}.") from error
     version = table.get("format_version")
     if isinstance(version, int) and version > FORMAT_VERSION:
-        raise MissingCapabilityError(
-            f"{marker} was written by a newer version of the course (format {version}).",
-            help="Install that version or a later one; nothing here was touched.",
-            code="workspace_too_new",
-        )
+        said = f"{marker} was written by a newer version of the course (format {version})."
+        fix = "Install that version or a later one; nothing here was touched."
+        raise MissingCapabilityError(said, help=fix, code="workspace_too_new")
     course = table.get("course")
     if version != FORMAT_VERSION or not isinstance(course, dict):
         raise _bad_marker(marker, None, "format_version or [course] is missing.")
@@ -327,8 +323,6 @@ def _bad_marker(marker: Path, line: int | None, problem: str) -> ContentError:
 
 
 def _not_writable(path: Path, error: OSError) -> CourseError:
-    return MissingCapabilityError(
-        f"{path} cannot be written ({error.strerror or error}).",
-        help="Make the folder writable or free some space, or work in another folder.",
-        code="not_writable",
-    )
+    problem = f"{path} cannot be written ({error.strerror or error})."
+    fix = "Make the folder writable or free some space, or work in another folder."
+    return MissingCapabilityError(problem, help=fix, code="not_writable")

@@ -137,11 +137,9 @@ def _read(path: Path) -> str:
     try:
         data = read_bytes(path)
     except OSError as error:
-        raise UsageError(
-            f"{path} cannot be read: {error.strerror or error}.",
-            help="Name a file of answers; `course quiz take --questions` prints one to fill in.",
-            code="answers_unreadable",
-        ) from None
+        problem = f"{path} cannot be read: {error.strerror or error}."
+        fix = "Name a file of answers; `course quiz take --questions` prints one to fill in."
+        raise UsageError(problem, help=fix, code="answers_unreadable") from None
     if len(data) > MAX_BYTES:
         large = f"{path} is larger than {MAX_BYTES:,} bytes."
         raise UsageError(large, help="Name a file of answers.", code="answers_format")

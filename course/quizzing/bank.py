@@ -114,11 +114,9 @@ class Bank:
         """
         documents = read_questions(catalog.content.quiz)
         if not documents:
-            raise NotFoundError(
-                "This course has no quiz.",
-                help=f"Its questions would be in {catalog.content.quiz}.",
-                code="quiz_not_found",
-            )
+            problem = "This course has no quiz."
+            fix = f"Its questions would be in {catalog.content.quiz}."
+            raise NotFoundError(problem, help=fix, code="quiz_not_found")
         return cls(documents)
 
     @property

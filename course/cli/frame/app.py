@@ -204,11 +204,8 @@ def _enter(directory: str) -> None:
     try:
         os.chdir(directory)
     except OSError as error:
-        raise NotFoundError(
-            f"-C names {directory}, which cannot be entered ({error.strerror}).",
-            help="Name a folder that exists.",
-            code="directory_not_found",
-        ) from error
+        problem = f"-C names {directory}, which cannot be entered ({error.strerror})."
+        raise NotFoundError(problem, help="Name a folder that exists.", code="directory_not_found") from error
 
 
 def _say(

@@ -93,11 +93,9 @@ class Here:
     def nothing_started(self) -> NotFoundError:
         """The error that no exercise has been started; its advice names the first one."""
         first = next(iter(self.catalog.exercises()), None)  # in the order they are done
-        return NotFoundError(
-            "No exercise has been started here.",
-            help=f"Start one: `course start {first.id}`." if first else "This course has no exercises.",
-            code="nothing_started",
-        )
+        problem = "No exercise has been started here."
+        fix = f"Start one: `course start {first.id}`." if first else "This course has no exercises."
+        return NotFoundError(problem, help=fix, code="nothing_started")
 
     def started(self) -> tuple[Exercise, ...]:
         """The exercises that have been started, in the order they are done, and then the warm-ups."""
@@ -140,18 +138,13 @@ class Here:
             if not path.is_file():
                 raise UngradableError(f"{shown} is not a file.", help="Move it away.", code="no_file")
             if path.stat().st_size > MAX_FILE:
-                raise UngradableError(
-                    f"{shown} is larger than {MAX_FILE:,} bytes.",
-                    help="Keep data out of the file; the exercise needs none.",
-                    code="too_large",
-                )
+                problem = f"{shown} is larger than {MAX_FILE:,} bytes."
+                fix = "Keep data out of the file; the exercise needs none."
+                raise UngradableError(problem, help=fix, code="too_large")
             return read_bytes(path)
         except OSError as error:
-            raise UngradableError(
-                f"{shown} cannot be read ({error.strerror or error}).",
-                help="Check its permissions.",
-                code="unreadable",
-            ) from error
+            problem = f"{shown} cannot be read ({error.strerror or error})."
+            raise UngradableError(problem, help="Check its permissions.", code="unreadable") from error
 
     def _missing(self, exercise: Exercise, path: Path, shown: str) -> UngradableError:
         if path.is_symlink():
@@ -358,9 +351,6 @@ def _keep(path: Path, old: bytes, why: str) -> Path:
                 file.write(old)
                 break
         except OSError as error:
-            raise UsageError(
-                f"{path} is there, and no copy of it can be kept ({error.strerror or error}).",
-                help="Name another file.",
-                code="not_writable",
-            ) from error
+            problem = f"{path} is there, and no copy of it can be kept ({error.strerror or error})."
+            raise UsageError(problem, help="Name another file.", code="not_writable") from error
     return copy

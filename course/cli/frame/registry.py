@@ -118,10 +118,8 @@ def understood(words: tuple[str, ...]) -> tuple[str, ...]:
         return words
     first, rest = words[0], words[1:]
     if first in _NOTHING_TO_LEAVE:
-        raise UsageError(
-            "There is nothing to leave: every command ends by itself.",
-            help="In a lesson, in `course watch` and in the sandbox, the key q leaves.",
-        )
+        problem = "There is nothing to leave: every command ends by itself."
+        raise UsageError(problem, help="In a lesson, in `course watch` and in the sandbox, the key q leaves.")
     if first == "help":
         return (*understood(rest), "--help")
     return (*ALSO[first], *rest) if first in ALSO else words

@@ -189,18 +189,13 @@ def _times(
     ids = [item.id for item in results.exercises() if item.id != "quiz"]
     name = exercise or (ids[0] if len(ids) == 1 else "")
     if name not in ids:
-        raise UsageError(
-            f"{listed.path} is Moodle's worksheet of one assignment; which exercise is it?",
-            help=f"Add --exercise, one of {', '.join(ids)}.",
-            code="needs_exercise",
-        )
+        problem = f"{listed.path} is Moodle's worksheet of one assignment; which exercise is it?"
+        raise UsageError(problem, help=f"Add --exercise, one of {', '.join(ids)}.", code="needs_exercise")
     deadlines = {one.exercise: one.due for one in (results.policy.deadline if results.policy else ())}
     due = deadlines.get(name, deadlines.get("*"))
     if due is None or due.tzinfo is None:
-        raise UsageError(
-            f"{listed.path} says no time zone, and there is no deadline for {name} to take it from.",
-            help="Add --policy FILE.",
-        )
+        problem = f"{listed.path} says no time zone, and there is no deadline for {name} to take it from."
+        raise UsageError(problem, help="Add --policy FILE.")
     people = read_roster(listed.path)
     found = people.match(results.students(), results.downloads)[0]
     students = {person.moodle_key: student for student, person in found.items()}
@@ -322,10 +317,8 @@ def assign(
     that each file defines, and the proposed match. No file is renamed; who decided, when and why is kept.
     """
     if (student is None) != (file is None) or (student is not None and accept_names):
-        raise UsageError(
-            "Give STUDENT and FILE, or --accept-names, or neither for a list.",
-            help="See `course grade assign -h`.",
-        )
+        problem = "Give STUDENT and FILE, or --accept-names, or neither for a list."
+        raise UsageError(problem, help="See `course grade assign -h`.")
     console = current()
     done: list[Assigned] = []
     waiting = 0

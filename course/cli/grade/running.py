@@ -159,17 +159,12 @@ def _show_edited(console: Console, summary: Summary, tried: Regraded | None, out
 
 def _only_one_way(jobs: int, local_cluster: int | None, scheduler: str | None) -> None:
     if local_cluster is not None and scheduler is not None:
-        raise UsageError(
-            "--local-cluster and --scheduler name two clusters.",
-            help="Name one of them.",
-            code="two_clusters",
-        )
+        problem = "--local-cluster and --scheduler name two clusters."
+        raise UsageError(problem, help="Name one of them.", code="two_clusters")
     if jobs > 1 and (local_cluster is not None or scheduler is not None):
-        raise UsageError(
-            "-j is for a run without a cluster.",
-            help="--local-cluster N says how many; a cluster elsewhere grades on all the workers it has.",
-            code="jobs_and_cluster",
-        )
+        problem = "-j is for a run without a cluster."
+        fix = "--local-cluster N says how many; a cluster elsewhere grades on all the workers it has."
+        raise UsageError(problem, help=fix, code="jobs_and_cluster")
 
 
 def _graders(jobs: int, local_cluster: int | None, scheduler: str | None) -> AbstractContextManager[GradeAll]:

@@ -78,10 +78,9 @@ def _check_options(answers: Path | None, seed: int | None, questions: bool, comm
     if seed is not None:
         check_seed(seed)
     if answers is not None and questions:
-        raise UsageError(
-            "--questions prints the questions and --answers answers them; give one of the two.",
-            help=f"First: course quiz {command} --questions. Then: course quiz {command} --answers FILE.",
-        )
+        problem = "--questions prints the questions and --answers answers them; give one of the two."
+        fix = f"First: course quiz {command} --questions. Then: course quiz {command} --answers FILE."
+        raise UsageError(problem, help=fix)
 
 
 def _need_terminal(console: Console, command: str) -> None:
@@ -133,11 +132,9 @@ def _seed(command: str, file: AnswerFile, *seeds: int | None) -> int:
     for seed in seeds:
         if seed is not None:
             return check_seed(seed)
-    raise UsageError(
-        f"{file.path} does not say which questions its answers are for.",
-        help=f"Add the seed that `course quiz {command} --questions` prints, or give --seed N.",
-        code="seed_missing",
-    )
+    problem = f"{file.path} does not say which questions its answers are for."
+    fix = f"Add the seed that `course quiz {command} --questions` prints, or give --seed N."
+    raise UsageError(problem, help=fix, code="seed_missing")
 
 
 def _finish(

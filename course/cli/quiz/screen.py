@@ -386,11 +386,9 @@ class Desk:
         """
         self._read_again()
         if there := caught_up(attempt, self.history):
-            raise UsageError(
-                f"This attempt was finished in another terminal: {there.score} of {there.total} right.",
-                help="`course quiz history` shows it; `course quiz take` begins another one.",
-                code="attempt_finished",
-            )
+            problem = f"This attempt was finished in another terminal: {there.score} of {there.total} right."
+            fix = "`course quiz history` shows it; `course quiz take` begins another one."
+            raise UsageError(problem, help=fix, code="attempt_finished")
 
     def _read_again(self) -> None:
         try:

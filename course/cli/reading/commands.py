@@ -209,11 +209,8 @@ def _say_unkept(console: Console, here: Here | None) -> None:
 def _print_code(console: Console, script: Script, number: int) -> int:
     cells = script.shown_cells
     if number > len(cells):
-        raise NotFoundError(
-            f"{script.lesson.id} has {counted(len(cells), 'cell')}.",
-            help="Name one of them.",
-            code="cell_not_found",
-        )
+        problem = f"{script.lesson.id} has {counted(len(cells), 'cell')}."
+        raise NotFoundError(problem, help="Name one of them.", code="cell_not_found")
     source = cells[number - 1].source
     console.raw(f"{source}\n")
     return console.answer(_reply(script.lesson, source))
@@ -278,17 +275,13 @@ def _warm_up(catalog: Catalog, name: str) -> Exercise:
     try:
         chosen = catalog.warm_up_called(name.rstrip("/\\"))
     except NotFoundError as error:
-        raise NotFoundError(
-            f"There is no warm-up called {name!r}.",
-            help=error.help.replace("course exercises", "course warmup"),
-            code=error.code,
-        ) from None
+        problem = f"There is no warm-up called {name!r}."
+        fix = error.help.replace("course exercises", "course warmup")
+        raise NotFoundError(problem, help=fix, code=error.code) from None
     if not chosen.is_warm_up:
-        raise NotFoundError(
-            f"{chosen.id} is an exercise, not a warm-up.",
-            help=f"`course start {chosen.id}` puts it into the workspace.",
-            code="not_a_warm_up",
-        )
+        problem = f"{chosen.id} is an exercise, not a warm-up."
+        fix = f"`course start {chosen.id}` puts it into the workspace."
+        raise NotFoundError(problem, help=fix, code="not_a_warm_up")
     return chosen
 
 

@@ -37,11 +37,9 @@ class _Scenes(TyperGroup):
             # Say which scene was meant, unless a command is as close; either way it is no command, exit 2.
             close = difflib.get_close_matches(name, [*self.commands, *known_scenes()], n=1)
             if close and close[0] not in self.commands:
-                raise UsageError(
-                    f"There is no scene {name!r}.",
-                    help=f"Did you mean: course sandbox play {close[0]}?",
-                    code="scene_not_found",
-                )
+                problem = f"There is no scene {name!r}."
+                fix = f"Did you mean: course sandbox play {close[0]}?"
+                raise UsageError(problem, help=fix, code="scene_not_found")
         return super().resolve_command(ctx, args)
 
 

@@ -162,11 +162,8 @@ def pairs(settings: Sequence[str]) -> dict[str, object]:
         try:
             number = float(value)
         except ValueError:
-            raise UsageError(
-                f"--set {pair}: {value[:40]!r} is not a number.",
-                help=f"For example --set {key}=1.",
-                code="bad_parameter",
-            ) from None
+            problem = f"--set {pair}: {value[:40]!r} is not a number."
+            raise UsageError(problem, help=f"For example --set {key}=1.", code="bad_parameter") from None
         found[key.strip()] = int(number) if key == "seed" and number.is_integer() else number
     return found
 
@@ -248,11 +245,9 @@ def play(console: Console, options: PlayOptions) -> int:
     picked = chosen(options.scene, tuple(options.settings or ()))
     end = picked.scene.duration if options.duration is None else options.duration
     if options.at is not None and options.at > end:
-        raise UsageError(
-            f"--at {options.at:g}: the run ends at {end:g} s.",
-            help=f"Take a time up to {end:g}, or a longer --duration.",
-            code="bad_parameter",
-        )
+        problem = f"--at {options.at:g}: the run ends at {end:g} s."
+        fix = f"Take a time up to {end:g}, or a longer --duration."
+        raise UsageError(problem, help=fix, code="bad_parameter")
     given = _given_guess(picked, options)
     if lines := unwritten(picked.path):
         left = f"and {len(lines) - 1} more below are" if len(lines) > 1 else "is"

@@ -72,11 +72,9 @@ def usable(requirement: str | None) -> str | None:
     if requirement is not None and (
         not requirement.isprintable() or requirement.startswith("-") or "${{" in requirement
     ):
-        raise UsageError(
-            f"--requirement {requirement[:80]!r}: this is nothing that pip could install.",
-            help="Give what you would write after `pip install`: an address, a path or a name.",
-            code="bad_requirement",
-        )
+        problem = f"--requirement {requirement[:80]!r}: this is nothing that pip could install."
+        fix = "Give what you would write after `pip install`: an address, a path or a name."
+        raise UsageError(problem, help=fix, code="bad_requirement")
     return requirement
 
 
@@ -105,10 +103,8 @@ def chosen_kinds(text: str) -> tuple[str, ...]:
     kinds = tuple(dict.fromkeys(word.strip() for word in text.split(",") if word.strip()))
     unknown = [kind for kind in kinds if kind not in KINDS]
     if unknown or not kinds:
-        raise UsageError(
-            f"--with {text[:80]}: there is no {' or '.join(unknown) or 'such word'}.",
-            help=f"Known: {', '.join(KINDS)}; several are joined by commas.",
-        )
+        problem = f"--with {text[:80]}: there is no {' or '.join(unknown) or 'such word'}."
+        raise UsageError(problem, help=f"Known: {', '.join(KINDS)}; several are joined by commas.")
     return kinds
 
 
@@ -237,11 +233,9 @@ def _refuse_odd_places(root: Path, catalog: Catalog) -> None:
     """A workspace inside another one, or in the course's own folder, would mix up two people's files."""
     content = catalog.content
     if root in (content.root, content.exercises, content.lessons) or content.exercises in root.parents:
-        raise UsageError(
-            f"{root} is where the course itself lies.",
-            help="Name a folder of your own: `course init my-course`.",
-            code="inside_course",
-        )
+        problem = f"{root} is where the course itself lies."
+        fix = "Name a folder of your own: `course init my-course`."
+        raise UsageError(problem, help=fix, code="inside_course")
     if root.exists() and not root.is_dir():
         raise UsageError(f"{root} is a file.", help="Name a folder.", code="exists")
     try:
@@ -250,11 +244,8 @@ def _refuse_odd_places(root: Path, catalog: Catalog) -> None:
         return
     except CourseError as error:
         raise UsageError(error.message, help=error.help, code="nested_workspace") from error
-    raise UsageError(
-        f"{root} lies inside the workspace {outer.root}.",
-        help="Use that one, or make yours somewhere else.",
-        code="nested_workspace",
-    )
+    problem = f"{root} lies inside the workspace {outer.root}."
+    raise UsageError(problem, help="Use that one, or make yours somewhere else.", code="nested_workspace")
 
 
 def _quoted(root: Path, here: Path) -> str:

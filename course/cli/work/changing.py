@@ -72,11 +72,8 @@ def reset(exercise: OneExercise, yes: Annotated[bool, option("--yes -y", "Do not
     step = f"course check {chosen.id}"
     there = path.is_file()
     if not there and chosen.id not in here.workspace.started() and here.known_history(chosen).last is None:
-        raise NotFoundError(
-            f"You have not started {chosen.id}: there is nothing to reset.",
-            help=f"Start it: `course start {chosen.id}`.",
-            code="not_started",
-        )
+        problem = f"You have not started {chosen.id}: there is nothing to reset."
+        raise NotFoundError(problem, help=f"Start it: `course start {chosen.id}`.", code="not_started")
     why_not = ""
     if there and path.read_bytes() == stub:
         why_not = f"{shown} is the stub already; nothing was changed."
@@ -123,11 +120,8 @@ def update(dry_run: Annotated[bool, option("--dry-run", "Only print what would b
 
 def _agreed(console: Console, shown: str) -> bool:
     if not console.interactive:
-        raise UsageError(
-            f"This would replace {shown}, and there is no terminal to ask on.",
-            help="Add --yes; a copy of the file is kept.",
-            code="needs_yes",
-        )
+        problem = f"This would replace {shown}, and there is no terminal to ask on."
+        raise UsageError(problem, help="Add --yes; a copy of the file is kept.", code="needs_yes")
     return console.confirm(f"Replace {shown} with the stub? A copy of yours is kept.")
 
 

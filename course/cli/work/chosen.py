@@ -84,11 +84,8 @@ def asked_for(here: Here, wanted: str | None) -> tuple[Exercise, str | None]:
                 return exercise, name
     check = command("notebook", "check", wanted)
     elsewhere = f"; {check} checks this notebook" if path.suffix == NOTEBOOK else ""
-    raise NotFoundError(
-        f"{wanted} is not where a file of an exercise lies in this workspace.",
-        help=f"Name the exercise{elsewhere}.",
-        code="exercise_not_found",
-    )
+    problem = f"{wanted} is not where a file of an exercise lies in this workspace."
+    raise NotFoundError(problem, help=f"Name the exercise{elsewhere}.", code="exercise_not_found")
 
 
 def chosen_work(here: Here, exercise: Exercise, named: str | None = None) -> StudentWork:
@@ -187,19 +184,15 @@ def _notebook(here: Here, exercise: Exercise) -> StudentWork:
     name = _notebook_name(exercise)
     path = here.workspace.path(exercise.place, name)
     if not path.exists():
-        raise UngradableError(
-            f"There is no file {here.workspace.shown(path)}.",
-            help=f"`course notebook build {exercise.id}` puts one there.",
-            code="no_file",
-        )
+        problem = f"There is no file {here.workspace.shown(path)}."
+        fix = f"`course notebook build {exercise.id}` puts one there."
+        raise UngradableError(problem, help=fix, code="no_file")
     data = read_notebook(path)
     module = notebook_source(data, exercise, name)
     if len(module.source) > MAX_FILE:
-        raise UngradableError(
-            f"The functions of {name} are larger than {MAX_FILE:,} bytes.",
-            help="Keep data out of them; the exercise needs none.",
-            code="too_large",
-        )
+        problem = f"The functions of {name} are larger than {MAX_FILE:,} bytes."
+        fix = "Keep data out of them; the exercise needs none."
+        raise UngradableError(problem, help=fix, code="too_large")
     given = notebook_source(exercise_notebook(here.catalog, exercise), exercise)
     return StudentWork(exercise, name, data, module.source, given.source, module)
 

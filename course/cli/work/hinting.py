@@ -127,11 +127,8 @@ def _task(exercise: Exercise, history: History, wanted: str | None) -> str | Non
     failing, new = history.failing_tasks(), history.unwritten_tasks()
     known = [task.id for task in exercise.task]
     if wanted is not None and wanted not in known:
-        raise NotFoundError(
-            f"{exercise.id} has no function called {wanted!r}.",
-            help=f"It has: {', '.join(known)}.",
-            code="task_not_found",
-        )
+        problem = f"{exercise.id} has no function called {wanted!r}."
+        raise NotFoundError(problem, help=f"It has: {', '.join(known)}.", code="task_not_found")
     candidates = known if wanted is None else [wanted]
     found = [task for task in candidates if task in failing]
     return next((task for task in found if task not in new), found[0] if found else None)
@@ -193,11 +190,9 @@ def _released(here: Here, exercise: Exercise) -> tuple[str, Mapping[str, str]]:
         return str(folder), _texts({p.name: p.read_bytes() for p in found if p.is_file()})
     if problem is not None:
         raise problem
-    raise NotFoundError(
-        f"No solution of {exercise.id} has been released to this machine.",
-        help=f"Your instructor hands one out as a .coursepack file; put it into {here.workspace.root}.",
-        code="no_solution",
-    )
+    said = f"No solution of {exercise.id} has been released to this machine."
+    fix = f"Your instructor hands one out as a .coursepack file; put it into {here.workspace.root}."
+    raise NotFoundError(said, help=fix, code="no_solution")
 
 
 def _texts(files: Mapping[str, bytes]) -> dict[str, str]:
@@ -277,17 +272,13 @@ def _rubric(here: Here, chosen: Exercise) -> Rubric:
     rubric = here.catalog.rubric(chosen)
     if rubric is None:
         having = [one.id for one in here.catalog.exercises() if here.catalog.rubric(one) is not None]
-        raise NotFoundError(
-            f"{chosen.id} has no question to answer in prose.",
-            help=f"These have one: {', '.join(having)}." if having else "This course has none.",
-            code="nothing_to_reflect_on",
-        )
+        problem = f"{chosen.id} has no question to answer in prose."
+        fix = f"These have one: {', '.join(having)}." if having else "This course has none."
+        raise NotFoundError(problem, help=fix, code="nothing_to_reflect_on")
     if here.history(chosen).first_pass is None:
-        raise NotFoundError(
-            f"The question of {chosen.id} comes once its checks reach the pass mark.",
-            help=f"Work on it first: course watch {chosen.id}",
-            code="not_passed_yet",
-        )
+        problem = f"The question of {chosen.id} comes once its checks reach the pass mark."
+        fix = f"Work on it first: course watch {chosen.id}"
+        raise NotFoundError(problem, help=fix, code="not_passed_yet")
     return rubric
 
 
@@ -354,10 +345,8 @@ def _judged(
 def _parsed(grades: str, rubric: Rubric) -> tuple[str, ...]:
     given = tuple(word.strip().lower() for word in grades.split(","))
     if len(given) != len(rubric.points) or not set(given) <= set(GRADES):
-        raise UsageError(
-            f"--grades takes {len(rubric.points)} of yes, partly and no, joined by commas.",
-            help=f"For example: --grades {','.join(['yes'] * len(rubric.points))}",
-        )
+        problem = f"--grades takes {len(rubric.points)} of yes, partly and no, joined by commas."
+        raise UsageError(problem, help=f"For example: --grades {','.join(['yes'] * len(rubric.points))}")
     return given
 
 

@@ -59,11 +59,8 @@ def _folder(here: Here, place: str, out: Path | None) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise UsageError(
-            f"The folder {folder} cannot be made ({error.strerror or error}).",
-            help="Name another one with --out.",
-            code="not_writable",
-        ) from error
+        problem = f"The folder {folder} cannot be made ({error.strerror or error})."
+        raise UsageError(problem, help="Name another one with --out.", code="not_writable") from error
     return folder
 
 
@@ -105,11 +102,9 @@ def _drawn(console: Console, plot: Plot, path: Path) -> WrittenFile:
 
 def _write_bag(console: Console, made: Report, bag: Path) -> str:
     if not made.streams:
-        raise UsageError(
-            "This report has no sensor streams to write.",
-            help="Its sensors are not written yet, or the exercise has none.",
-            code="no_streams",
-        )
+        problem = "This report has no sensor streams to write."
+        fix = "Its sensors are not written yet, or the exercise has none."
+        raise UsageError(problem, help=fix, code="no_streams")
     from course.simulations.bags import KINDS, VIEW, streams_from, write_bag
 
     path, streams = named(bag), streams_from(made.streams)

@@ -121,11 +121,8 @@ def _packed(here: Here, works: Sequence[StudentWork], quiz: Sequence[Mapping[str
     files = {work.path: work.data for work in works}
     data = archive(here.catalog.course_id, here.catalog.version, files, quiz)
     if len(data) > MAX_UNPACKED:
-        raise UngradableError(
-            f"Together the files are larger than {MAX_UNPACKED:,} bytes, which no grading run unpacks.",
-            help="Keep data out of them.",
-            code="too_large",
-        )
+        problem = f"Together the files are larger than {MAX_UNPACKED:,} bytes, which no grading run unpacks."
+        raise UngradableError(problem, help="Keep data out of them.", code="too_large")
     return data
 
 

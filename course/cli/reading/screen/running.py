@@ -147,11 +147,9 @@ def write_cell(progress: InProgress, cell: Cell) -> Path:
                 file.write(progress.cell(cell).source + "\n")
                 break
         except OSError as error:
-            raise MissingCapabilityError(
-                f"{path} cannot be written ({error.strerror or error}).",
-                help="Change to a folder that can be written.",
-                code="not_writable",
-            ) from error
+            problem = f"{path} cannot be written ({error.strerror or error})."
+            fix = "Change to a folder that can be written."
+            raise MissingCapabilityError(problem, help=fix, code="not_writable") from error
     return path
 
 
